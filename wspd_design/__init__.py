@@ -1,0 +1,1 @@
+"""Design, prove and validate controllers for railway wheel slide protection."""

@@ -1,0 +1,161 @@
+"""The records that carry numbers: plain SI floats, without their history.
+
+The history of each number (unit, source, status, bounds) stays with the :class:`Entry` it was loaded from.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Entry:
+    """One number of a parameter file with everything that is known about it.
+
+    ``value`` and ``bounds`` are in SI units; ``unit`` is the unit that the file states.
+    """
+
+    name: str
+    value: float | tuple[float, ...] | tuple[tuple[float, ...], ...] | str
+    unit: str
+    bounds: tuple[float, float] | None
+    source: str
+    at: str
+    status: str
+    note: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterSet:
+    """All entries of one parameter file."""
+
+    kind: str
+    name: str
+    title: str
+    entries: dict[str, Entry]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Constants:
+    """Numbers that belong to no vehicle and no rail: gravity and the conventions near standstill."""
+
+    gravity: float  # m/s2
+    slip_regularization_speed: float  # m/s, slip is referred to at least this speed
+    stop_speed: float  # m/s, a stop ends here
+    time_limit: float  # s, a stop that takes longer ends without standstill
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Brake:
+    """Electro-pneumatic brake of one wheelset, eqs. (8)-(14)."""
+
+    max_torque: float  # N m per wheelset
+    max_pressure: float  # Pa
+    supply_rate: float  # 1/s, build-up of the supply pressure, eq. (8)
+    fill_time: float  # s, T_F
+    vent_time: float  # s, T_V
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contact:
+    """Wheel-rail contact ellipse and elasticity, eq. (6)."""
+
+    shear_modulus: float  # Pa
+    semi_axis_rolling: float  # m, a
+    semi_axis_lateral: float  # m, b
+    kalker_c11: float  # -
+    reference_load: float  # N, wheel load at which a and b are given
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Vehicle:
+    """A four-axle locomotive, eqs. (1)-(4)."""
+
+    name: str
+    mass: float  # kg
+    wheelsets: int
+    wheel_radius: float  # m
+    wheelset_inertia: float  # kg m2, all that rotates with one wheelset
+    wheel_damping: float  # N m s per wheel at t = 0, B_W
+    wheel_damping_decay: float  # 1/s
+    resistance_constant: float  # N, a0
+    resistance_linear: float  # N s/m, a1
+    resistance_quadratic: float  # N s2/m2, a2
+    body_mass: float  # kg
+    bogie_mass: float  # kg, each, complete with its wheelsets
+    body_height: float  # m, centre of gravity above the rail
+    bogie_height: float  # m
+    traction_rod_height: float  # m
+    bogie_spacing: float  # m, distance of the bogie centres
+    wheelbase: float  # m, of one bogie
+    body_pitch_frequency: float  # Hz
+    bogie_pitch_frequency: float  # Hz
+    pitch_damping_ratio: float  # -
+    brake: Brake
+    contact: Contact
+
+    @property
+    def wheel_inertia(self) -> float:
+        """Moment of inertia per wheel, I_W of eq. (2) [kg m2]."""
+        return self.wheelset_inertia / 2.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rail:
+    """Adhesion of one rail condition by Polach's law, eqs. (5)-(7)."""
+
+    name: str
+    mu0: float  # -, friction coefficient without sliding
+    friction_ratio: float  # -, A = mu_infinity / mu0
+    friction_decay: float  # s/m, B
+    adhesion_reduction: float  # -, kA
+    slip_reduction: float  # -, kS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PaperGains:
+    """The gains that Section 7 of the paper prints for its adaptive fuzzy sliding-mode controller."""
+
+    proportional_gain: float  # K_P
+    integral_gain: float  # K_I
+    weight_rate: float  # alpha_1
+    bound_rate: float  # alpha_2
+    initial_weights: tuple[float, ...]  # b_hat(0)
+    initial_bound: float  # psi_hat(0)
+    centres: tuple[float, ...]  # of the membership functions, in s
+    widths: tuple[float, ...]
+    boundary_layer: float  # Phi, in s
+    torque_unit: float  # N m, what one unit of u stands for
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrenitaliaTable:
+    """Thresholds and pulses of the Trenitalia controller, eq. (16) and Table 3."""
+
+    lower_speed_ratio: float  # V_min / v
+    upper_speed_ratio: float  # V_max / v
+    acceleration_limit: float  # m/s2, ACC
+    deceleration_limit: float  # m/s2, DEC
+    fill_pulse: float  # share of the sample time
+    vent_pulse: float  # share of the sample time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnorrBremseTable:
+    """Slide regions, acceleration limits and decision table of the Knorr-Bremse controller, eqs. (17), (18)."""
+
+    slide_slopes: tuple[float, ...]  # -, of each region limit over train speed
+    slide_offsets: tuple[float, ...]  # m/s
+    slide_caps: tuple[float, ...]  # m/s, above 60 km/h
+    acceleration_limits: tuple[float, ...]  # m/s2, rising
+    decisions: tuple[tuple[float, ...], ...]  # row: acceleration, column: slide region; + fill, - vent
+    pulses: tuple[float, ...]  # share of the sample time for |u| = 0..3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MitsubishiTable:
+    """Membership centres and rules of the Mitsubishi fuzzy controller, Table 5."""
+
+    slide_centres: tuple[float, ...]  # m/s
+    rate_centres: tuple[float, ...]  # m/s2, of d sigma/dt
+    rules: tuple[tuple[float, ...], ...]  # output level y; row: rate, column: slide
+    duty_offset: float
+    duty_gain: float
