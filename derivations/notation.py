@@ -1,0 +1,178 @@
+"""Nomenclature: one symbol per quantity, with its unit, its meaning and how the paper writes it.
+
+Every derivation takes its symbols from here, so that the same word is the same SymPy symbol everywhere and
+the generated docstrings, the equation map and the typeset equations agree.
+"""
+
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+time = sp.Symbol("t", real=True, nonnegative=True)
+"""Time, the independent variable of functions such as v(t)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """One quantity: SI unit, meaning, and the paper's symbol in plain text and in Typst."""
+
+    unit: str
+    meaning: str
+    plain: str
+    typst: str
+    sign: str = "real"
+
+
+def _table() -> dict[str, Quantity]:
+    positive = "positive"
+    q = Quantity
+    return {
+        # contact and adhesion, eqs. (5)-(7)
+        "shear_modulus": q("Pa", "shear modulus", "G_s", "G_s", positive),
+        "semi_axis_rolling": q(
+            "m", "semi-axis of the contact ellipse along the rail", "a_x", "a_x", positive
+        ),
+        "semi_axis_lateral": q(
+            "m", "semi-axis of the contact ellipse across the rail", "b_y", "b_y", positive
+        ),
+        "kalker_c11": q("-", "longitudinal coefficient of Kalker's linear theory", "c11", "c_11", positive),
+        "contact_stiffness": q("N", "contact stiffness pi G a b c11 / 4 of one wheel", "C", "C", positive),
+        "wheel_load": q("N", "vertical load of one wheel", "Q", "Q", positive),
+        "mu0": q("-", "friction coefficient without sliding", "μ0", "mu_0", positive),
+        "friction_ratio": q("-", "friction at infinite sliding speed divided by mu0", "A", "A", positive),
+        "friction_decay": q("s/m", "decay of friction with sliding speed", "B", "B", positive),
+        "adhesion_reduction": q("-", "reduction factor in the area of adhesion, kA", "k_A", "k_A", positive),
+        "slip_reduction": q("-", "reduction factor in the area of slip, kS", "k_S", "k_S", positive),
+        "sliding_speed": q("m/s", "magnitude of the sliding speed, |v - R omega|", "w", "w"),
+        "friction": q("-", "friction coefficient at the present sliding speed", "μ", "mu", positive),
+        "gradient": q("-", "gradient of the tangential stress in the area of adhesion", "ε", "epsilon"),
+        "friction_slope": q("s/m", "derivative of friction with respect to the sliding speed", "μ'", "mu'"),
+        "shape": q("-", "saturation function of the stress gradient", "h", "h"),
+        "shape_slope": q("-", "derivative of the saturation function", "h'", "h'"),
+        # motion, eqs. (1)-(4)
+        "speed": q("m/s", "train speed", "v", "v", positive),
+        "wheel_speed": q("rad/s", "angular speed of the wheelset", "ω", "omega"),
+        "wheel_radius": q("m", "wheel radius", "R", "R", positive),
+        "wheel_inertia": q("kg m2", "moment of inertia per wheel, half of one wheelset", "I", "I", positive),
+        "wheel_damping": q("N m s", "damping torque per wheel speed, B_W", "B_W", "B_W", positive),
+        "mass": q("kg", "mass of the train", "m", "m", positive),
+        "creep_force": q("N", "creep force of one wheel, positive when it brakes the train", "f", "f"),
+        "creep_force_slip_derivative": q(
+            "N", "derivative of the creep force with respect to slip at fixed speed", "f_λ", "f_lambda"
+        ),
+        "resistance": q("N", "running resistance of the train", "f_d", "f_d"),
+        "constant": q("N", "constant part of the resistance, a0", "a0", "a_0"),
+        "linear": q("N s/m", "linear part of the resistance, a1", "a1", "a_1"),
+        "quadratic": q("N s2/m2", "quadratic part of the resistance, a2", "a2", "a_2"),
+        "grade_force": q("N", "force of the gradient, positive uphill", "f_r", "f_r"),
+        "curve_force": q("N", "resistance of the curve", "f_c", "f_c"),
+        "tunnel_force": q("N", "additional resistance in a tunnel", "f_t", "f_t"),
+        "time": q("s", "time since the brake was applied", "t", "t"),
+        "initial": q("N m s", "damping at t = 0", "B_0", "B_0", positive),
+        "decay": q("1/s", "decay rate", "β", "beta", positive),
+        # slip, eqs. (3), (19)
+        "slip": q("-", "longitudinal slip ratio, positive when braking", "λ", "lambda"),
+        "reference_speed": q(
+            "m/s", "speed that the slip is referred to, the train speed in eq. (3)", "v_r", "v_r"
+        ),
+        "deceleration": q("m/s2", "deceleration of the train, -dv/dt", "a", "a"),
+        # brake, eqs. (8)-(15)
+        "braking_torque": q("N m", "braking torque of one wheelset", "T", "T"),
+        "max_torque": q("N m", "braking torque at full pressure", "T_max", 'T_"max"', positive),
+        "pressure": q("Pa", "pressure of the brake cylinder", "P_c", "P_c"),
+        "supply_pressure": q("Pa", "pressure at the valves, P_cin", "P_in", 'P_"in"'),
+        "max_pressure": q("Pa", "full brake pressure", "P_max", 'P_"max"', positive),
+        "start_pressure": q("Pa", "pressure at the start of filling or venting", "P_0", "P_0"),
+        "start_time": q("s", "time at which the filling starts", "t_0", "t_0"),
+        "elapsed": q("s", "time since the venting started", "Δt", "Delta t"),
+        "supply_rate": q("1/s", "build-up rate of the supply pressure", "r", "r", positive),
+        "fill": q("-", "1 while filling, else 0: 1 - u_BV", "u_F", "u_F"),
+        "vent": q("-", "1 while venting, else 0: u_EV", "u_V", "u_V"),
+        "fill_time": q("s", "time constant of filling", "T_F", "T_F", positive),
+        "vent_time": q("s", "time constant of venting", "T_V", "T_V", positive),
+        "time_constant": q("s", "time constant of filling and venting", "τ", "tau", positive),
+        "torque": q("N m", "braking torque of one wheelset", "T", "T"),
+        "command": q("-", "valve command or duty, 0 to 1", "ū", "overline(u)"),
+        "period": q("s", "period of the pulse width modulation", "h", "h", positive),
+        # sliding surface, eqs. (21)-(28)
+        "slip_reference": q("-", "desired slip ratio", "λ_d", "lambda_d"),
+        "error": q("-", "slip error", "e", "e"),
+        "error_integral": q("s", "time integral of the slip error", "E", "E"),
+        "proportional_gain": q("-", "gain K_P of the sliding surface", "K_P", "K_P", positive),
+        "integral_gain": q("1/s", "gain K_I of the sliding surface", "K_I", "K_I", positive),
+        "sliding_variable": q("-", "sliding variable s", "s", "s"),
+        "surface_rate": q("1/s", "K_I / K_P, rate of the error on the sliding surface", "c", "c", positive),
+        "drift": q("1/s", "drift F of the slip, eq. (19)", "F", "F"),
+        "gain": q("1/(N m s)", "input gain G of the slip, eq. (19)", "G", "G", positive),
+        "gain_rate": q("1/(N m s2)", "time derivative of the input gain G", "G'", "dot(G)"),
+        "reference_rate": q("1/s", "time derivative of the desired slip", "λ_d'", "dot(lambda)_d"),
+        "uncertainty": q("1/s", "lumped uncertainty of eq. (20)", "δ", "delta"),
+        "uncertainty_bound": q("1/s", "bound W of the uncertainty", "W", "W", positive),
+        "layer": q("-", "boundary layer Phi, in s", "Φ", "Phi", positive),
+        "pole": q("1/s", "open-loop slip pole, dF/d(slip) at fixed speed", "p", "p"),
+        "layer_rate": q("1/s", "loop gain inside the boundary layer, W K_P / Phi", "k", "k", positive),
+        # adaptive fuzzy law, eqs. (29)-(44)
+        "centre": q("-", "centre of the membership function", "c_r", "c^r"),
+        "width": q("-", "width of the membership function", "σ_r", "sigma^r", positive),
+        "approximation_error": q("N m", "approximation error xi of the fuzzy system", "ξ", "xi"),
+        "bound": q("N m", "bound psi of the approximation error", "ψ", "psi", positive),
+        "bound_error": q("N m", "error of the estimated bound", "ψ~", "tilde(psi)"),
+        "bound_estimate": q("N m", "estimated bound", "ψ^", "hat(psi)"),
+        "weight_error_squared": q(
+            "N2 m2", "squared norm of the error of the weights", "|b~|²", "abs(tilde(b))^2"
+        ),
+        "weight_rate": q("N m/s", "adaptation rate alpha_1 of the weights", "α1", "alpha_1", positive),
+        "bound_rate": q("N m/s", "adaptation rate alpha_2 of the bound", "α2", "alpha_2", positive),
+        "dead_zone_variable": q("-", "s / K_P reduced by the boundary layer (dead zone)", "s_D", "s_D"),
+        "gain_times_speed": q("m/(N m s2)", "g = G v = R / (2 I)", "g", "g", positive),
+        # track, eq. (49)
+        "wavenumber": q("rad/m", "wavenumber of the irregularity", "Ω", "Omega", positive),
+        "beta0": q("", "coefficient of the numerator", "β0", "beta_0"),
+        "beta2": q("", "coefficient of the numerator", "β2", "beta_2"),
+        "gamma0": q("", "coefficient of the denominator", "γ0", "gamma_0"),
+        "gamma2": q("", "coefficient of the denominator", "γ2", "gamma_2"),
+        "gamma4": q("", "coefficient of the denominator", "γ4", "gamma_4"),
+        "gamma6": q("", "coefficient of the denominator", "γ6", "gamma_6"),
+    }
+
+
+NOMENCLATURE = _table()
+
+
+def symbol(name: str) -> sp.Symbol:
+    """Return the SymPy symbol of a quantity of the nomenclature."""
+    return sp.Symbol(name, **{NOMENCLATURE[name].sign: True})
+
+
+def symbols(names: str) -> tuple[sp.Symbol, ...]:
+    """Return the symbols of several quantities, separated by spaces."""
+    return tuple(symbol(name) for name in names.split())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Generated:
+    """One function of the generated model: what is computed from what.
+
+    ``steps`` are named intermediate results, in the order in which they are computed; ``value`` may use
+    them. A tuple as ``value`` makes a function that returns a tuple.
+    """
+
+    name: str
+    arguments: tuple[sp.Symbol, ...]
+    value: sp.Expr | tuple[sp.Expr, ...]
+    summary: str
+    returns: str
+    equation: str
+    steps: tuple[tuple[sp.Symbol, sp.Expr], ...] = ()
+    notes: str = ""
+    meanings: dict[str, str] = field(default_factory=dict)
+    """Argument descriptions ``meaning [unit]`` where the nomenclature's is too general."""
+
+    @property
+    def expressions(self) -> tuple[sp.Expr, ...]:
+        """The results as expressions of the arguments alone, the steps substituted."""
+        values = self.value if isinstance(self.value, tuple) else (self.value,)
+        known: dict[sp.Symbol, sp.Expr] = {}
+        for name, expression in self.steps:
+            known[name] = expression.xreplace(known)
+        return tuple(sp.sympify(value).xreplace(known) for value in values)
