@@ -10,11 +10,12 @@ from dataclasses import dataclass
 class Entry:
     """One number of a parameter file with everything that is known about it.
 
-    ``value`` and ``bounds`` are in SI units; ``unit`` is the unit that the file states.
+    ``value`` and ``bounds`` are in SI units; ``unit`` is the unit that the file states. Words are kept as they
+    are. A number without bounds is taken as exactly known.
     """
 
     name: str
-    value: float | tuple[float, ...] | tuple[tuple[float, ...], ...] | str
+    value: float | tuple[float, ...] | tuple[tuple[float, ...], ...] | tuple[tuple[str, ...], ...] | str
     unit: str
     bounds: tuple[float, float] | None
     source: str
@@ -31,6 +32,24 @@ class ParameterSet:
     name: str
     title: str
     entries: dict[str, Entry]
+
+    @property
+    def bounds(self) -> dict[str, tuple[float, float]]:
+        """Lower and upper bound of every uncertain number, by its name [SI units]."""
+        return {name: entry.bounds for name, entry in self.entries.items() if entry.bounds is not None}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """Where numbers come from, and how its content is known."""
+
+    key: str
+    title: str
+    authors: str
+    year: int
+    kind: str  # paper, book, standard, software, calibration, reference, team
+    access: str  # seen, recalled, inferred
+    note: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,3 +178,29 @@ class MitsubishiTable:
     rules: tuple[tuple[float, ...], ...]  # output level y; row: rate, column: slide
     duty_offset: float
     duty_gain: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpectrumCoefficients:
+    """Coefficients of one track irregularity spectrum S(W), eq. (49), with W in rad/m.
+
+    S is in m2/(rad/m) for displacements and in rad2/(rad/m) for the cross level.
+    """
+
+    beta0: float
+    beta2: float
+    gamma0: float
+    gamma2: float
+    gamma4: float
+    gamma6: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackSpectrum:
+    """Spectra of the track irregularities of one line quality set, eq. (49) and Table 9."""
+
+    name: str
+    rows: dict[str, SpectrumCoefficients]  # by direction and level, such as "vertical-high"
+    shortest_wavelength: float  # m
+    longest_wavelength: float  # m
+    one_sided: bool  # the whole variance lies at W > 0

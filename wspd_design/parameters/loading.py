@@ -1,0 +1,197 @@
+"""From parameter files to the records that the physics and the controllers take."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import available, data_file, load_entries, read_toml
+from wspd_design.parameters.records import (
+    Brake,
+    Constants,
+    Contact,
+    KnorrBremseTable,
+    MitsubishiTable,
+    PaperGains,
+    ParameterSet,
+    Rail,
+    Source,
+    SpectrumCoefficients,
+    TrackSpectrum,
+    TrenitaliaTable,
+    Vehicle,
+)
+from wspd_design.parameters.schema import MITSUBISHI_LEVELS, PRESETS, TRACK_ROWS, Preset
+
+__all__ = [
+    "available",
+    "constants",
+    "load_entries",
+    "load_knorr_bremse",
+    "load_mitsubishi",
+    "load_paper_gains",
+    "load_rail",
+    "load_track_spectrum",
+    "load_trenitalia",
+    "load_vehicle",
+    "sources",
+]
+
+_Record = TypeVar("_Record")
+
+_MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms or to 0.1 t
+
+
+@cache
+def constants() -> Constants:
+    """Return gravity and the conventions near standstill."""
+    return _build(Constants, _values(load_entries("constants", "constants")))
+
+
+@cache
+def sources() -> dict[str, Source]:
+    """Return where the shipped numbers come from, by the key that their entries state."""
+    document = read_toml(data_file("sources.toml"), "sources.toml")
+    return {key: Source(key=key, **table) for key, table in document.items()}
+
+
+def load_vehicle(name_or_path: str | Path) -> Vehicle:
+    """Load a vehicle by its name, such as ``er24pc``, or from a ``.toml`` file.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        Name of a shipped vehicle or path of a user's own file.
+
+    Returns
+    -------
+    Vehicle
+        All numbers in SI units.
+
+    Raises
+    ------
+    UserError
+        If there is no such vehicle, its file is wrong, or its masses contradict each other.
+    """
+    parameters = load_entries("vehicle", name_or_path)
+    values = _values(parameters)
+    if values["wheelsets"] != 4.0:
+        raise UserError(
+            f"wheelsets = {values['wheelsets']:g} in vehicle {parameters.name} must be 4; "
+            "other arrangements are not modeled."
+        )
+    parts = values["body_mass"] + 2.0 * values["bogie_mass"]
+    if abs(parts - values["mass"]) > _MASS_TOLERANCE * values["mass"]:
+        raise UserError(
+            f"mass = {values['mass']:g} kg in vehicle {parameters.name} must equal body_mass + 2 bogie_mass = "
+            f"{parts:g} kg; change the three together."
+        )
+    return _build(
+        Vehicle,
+        values,
+        name=parameters.name,
+        wheelsets=4,
+        brake=_build(Brake, values, "brake."),
+        contact=_build(Contact, values, "contact."),
+    )
+
+
+def load_rail(name_or_path: str | Path) -> Rail:
+    """Load a rail condition by its name, such as ``polach-wet``, or from a ``.toml`` file.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        Name of a shipped rail condition or path of a user's own file.
+
+    Returns
+    -------
+    Rail
+        Coefficients of eqs. (5)-(7) in SI units.
+
+    Raises
+    ------
+    UserError
+        If there is no such rail or its file is wrong.
+    """
+    parameters = load_entries("rail", name_or_path)
+    return _build(Rail, _values(parameters), name=parameters.name)
+
+
+def load_paper_gains() -> PaperGains:
+    """Return the gains that the paper prints for its adaptive fuzzy sliding-mode controller."""
+    return _build(PaperGains, _values(load_entries("controller", "afsmc")))
+
+
+def load_trenitalia(preset: Preset) -> TrenitaliaTable:
+    """Return the Trenitalia controller, as calibrated on Table 10 or from conventional practice."""
+    return _build(TrenitaliaTable, _preset_values("trenitalia", preset))
+
+
+def load_knorr_bremse(preset: Preset) -> KnorrBremseTable:
+    """Return the Knorr-Bremse controller, as calibrated on Table 10 or from conventional practice."""
+    return _build(KnorrBremseTable, _preset_values("knorr-bremse", preset))
+
+
+def load_mitsubishi(preset: Preset) -> MitsubishiTable:
+    """Return the Mitsubishi controller, as calibrated on Table 10 or from conventional practice.
+
+    The words of Table 5 become the output levels of the preset.
+    """
+    values = _preset_values("mitsubishi", preset)
+    levels = {word: values[f"levels.{word}"] for word in MITSUBISHI_LEVELS}
+    rules = tuple(tuple(levels[word] for word in row) for row in values["rules"])
+    return _build(MitsubishiTable, values, rules=rules)
+
+
+def load_track_spectrum(name: str) -> TrackSpectrum:
+    """Load the spectra of track irregularities, such as ``erri-b176``.
+
+    Parameters
+    ----------
+    name : str
+        Name of a shipped set.
+
+    Returns
+    -------
+    TrackSpectrum
+        Coefficients of eq. (49) for W in rad/m, and the band of wavelengths [m].
+
+    Raises
+    ------
+    UserError
+        If there is no such set.
+    """
+    parameters = load_entries("track", name)
+    values = _values(parameters)
+    # A displacement has beta2 = gamma6 = 0 and an angle beta0 = 0 by the form of their spectra.
+    rows = {
+        row: SpectrumCoefficients(
+            **{f.name: values.get(f"{row}.{f.name}", 0.0) for f in fields(SpectrumCoefficients)}
+        )
+        for row in TRACK_ROWS
+    }
+    return _build(TrackSpectrum, values, name=parameters.name, rows=rows, one_sided=values["sides"] == 1.0)
+
+
+def _values(parameters: ParameterSet) -> dict[str, Any]:
+    return {name: entry.value for name, entry in parameters.entries.items()}
+
+
+def _preset_values(controller: str, preset: Preset) -> dict[str, Any]:
+    """Return what all presets of a controller share, and what this one adds."""
+    if preset not in PRESETS:
+        raise UserError(f'unknown preset "{preset}" of {controller}; available: {", ".join(PRESETS)}.')
+    values = _values(load_entries("controller", controller))
+    prefix = f"{preset}."
+    return values | {
+        name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)
+    }
+
+
+def _build(record: type[_Record], values: Mapping[str, Any], prefix: str = "", **known: object) -> _Record:
+    """Fill a record with the values of the same names; ``known`` are the fields that no file holds."""
+    names = (field.name for field in fields(record) if field.name not in known)  # type: ignore[arg-type]
+    return record(**{name: values[prefix + name] for name in names}, **known)

@@ -1,0 +1,213 @@
+"""What each kind of parameter file must contain: names, dimensions, shapes and admissible ranges.
+
+The ranges say what is physically possible at all. How far a number is uncertain is said by the ``bounds`` of
+the file.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from wspd_design.parameters.units import Dimension
+
+Shape: TypeAlias = Literal["number", "vector", "matrix", "word matrix"]
+Kind: TypeAlias = Literal["constants", "vehicle", "rail", "controller", "track"]
+Preset: TypeAlias = Literal["calibrated", "textbook"]
+
+PRESETS: tuple[Preset, ...] = ("calibrated", "textbook")
+"""Two reconstructions of each baseline: fitted to Table 10, or from conventional practice."""
+
+MITSUBISHI_LEVELS = ("DB", "DM", "DS", "ZO", "IS", "IM", "IB")
+"""Output levels of Table 5, from the largest decrease to the largest increase of pressure."""
+
+TRACK_ROWS = tuple(
+    f"{row}-{level}" for row in ("lateral", "vertical", "cross-level") for level in ("high", "low")
+)
+"""Spectra of a track file: direction and level."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quantity:
+    """What is expected of one number of a file; the range is in SI units."""
+
+    dimension: Dimension
+    shape: Shape = "number"
+    low: float = -math.inf
+    high: float = math.inf
+    low_is_allowed: bool = True
+
+    def admits(self, value: float) -> bool:
+        """Tell whether an SI value is physically possible."""
+        above = value >= self.low if self.low_is_allowed else value > self.low
+        return above and value <= self.high
+
+    @property
+    def range_text(self) -> str:
+        """The admissible range in words."""
+        if math.isfinite(self.high):
+            return f"in {'[' if self.low_is_allowed else '('}{self.low:g}, {self.high:g}]"
+        return "at least 0" if self.low_is_allowed else "above 0"
+
+
+Schema: TypeAlias = dict[str, Quantity]
+
+
+def _any(dimension: Dimension, shape: Shape = "number") -> Quantity:
+    return Quantity(dimension=dimension, shape=shape)
+
+
+def _positive(dimension: Dimension, shape: Shape = "number") -> Quantity:
+    return Quantity(dimension=dimension, shape=shape, low=0.0, low_is_allowed=False)
+
+
+def _not_negative(dimension: Dimension, shape: Shape = "number") -> Quantity:
+    return Quantity(dimension=dimension, shape=shape, low=0.0)
+
+
+def _share(shape: Shape = "number", *, zero: bool = True) -> Quantity:
+    return Quantity(dimension="ratio", shape=shape, low=0.0, high=1.0, low_is_allowed=zero)
+
+
+_CONSTANTS: Schema = {
+    "gravity": _positive("acceleration"),
+    "slip_regularization_speed": _positive("speed"),
+    "stop_speed": _positive("speed"),
+    "time_limit": _positive("time"),
+}
+
+_VEHICLE: Schema = {
+    "mass": _positive("mass"),
+    "wheelsets": _positive("ratio"),
+    "wheel_radius": _positive("length"),
+    "wheelset_inertia": _positive("inertia"),
+    "wheel_damping": _not_negative("rotational damping"),
+    "wheel_damping_decay": _not_negative("rate"),
+    "resistance_constant": _not_negative("force"),
+    "resistance_linear": _not_negative("linear resistance"),
+    "resistance_quadratic": _not_negative("quadratic resistance"),
+    "body_mass": _positive("mass"),
+    "bogie_mass": _positive("mass"),
+    "body_height": _positive("length"),
+    "bogie_height": _positive("length"),
+    "traction_rod_height": _not_negative("length"),
+    "bogie_spacing": _positive("length"),
+    "wheelbase": _positive("length"),
+    "body_pitch_frequency": _positive("frequency"),
+    "bogie_pitch_frequency": _positive("frequency"),
+    "pitch_damping_ratio": _not_negative("ratio"),
+    "brake.max_torque": _positive("torque"),
+    "brake.max_pressure": _positive("pressure"),
+    "brake.supply_rate": _positive("rate"),
+    "brake.fill_time": _positive("time"),
+    "brake.vent_time": _positive("time"),
+    "contact.shear_modulus": _positive("pressure"),
+    "contact.semi_axis_rolling": _positive("length"),
+    "contact.semi_axis_lateral": _positive("length"),
+    "contact.kalker_c11": _positive("ratio"),
+    "contact.reference_load": _positive("force"),
+}
+
+_RAIL: Schema = {
+    "mu0": _share(zero=False),
+    "friction_ratio": _share(),
+    "friction_decay": _not_negative("friction decay"),
+    "adhesion_reduction": _share(zero=False),
+    "slip_reduction": _share(zero=False),
+}
+
+_AFSMC: Schema = {
+    "proportional_gain": _positive("ratio"),
+    "integral_gain": _positive("rate"),
+    "weight_rate": _not_negative("rate"),
+    "bound_rate": _not_negative("rate"),
+    "initial_weights": _any("ratio", "vector"),
+    "initial_bound": _not_negative("ratio"),
+    "centres": _any("ratio", "vector"),
+    "widths": _positive("ratio", "vector"),
+    "boundary_layer": _positive("ratio"),
+    "torque_unit": _positive("torque"),
+}
+
+
+def _in_each_preset(schema: Schema) -> Schema:
+    return {f"{preset}.{name}": quantity for preset in PRESETS for name, quantity in schema.items()}
+
+
+_TRENITALIA: Schema = {
+    "lower_speed_ratio": _share(),
+    "upper_speed_ratio": _share(),
+    **_in_each_preset(
+        {
+            "acceleration_limit": _any("acceleration"),
+            "deceleration_limit": _any("acceleration"),
+            "fill_pulse": _share(),
+            "vent_pulse": _share(),
+        }
+    ),
+}
+
+_KNORR_BREMSE: Schema = {
+    "slide_slopes": _not_negative("ratio", "vector"),
+    "slide_offsets": _not_negative("speed", "vector"),
+    "slide_caps": _positive("speed", "vector"),
+    "pulses": _share("vector"),
+    **_in_each_preset(
+        {
+            "acceleration_limits": _any("acceleration", "vector"),
+            "decisions": Quantity(dimension="ratio", shape="matrix", low=-3.0, high=3.0),
+        }
+    ),
+}
+
+_MITSUBISHI: Schema = {
+    "rules": _any("ratio", "word matrix"),
+    **_in_each_preset(
+        {
+            "slide_centres": _not_negative("speed", "vector"),
+            "rate_centres": _any("acceleration", "vector"),
+            **{f"levels.{level}": _any("ratio") for level in MITSUBISHI_LEVELS},
+            "duty_offset": _any("ratio"),
+            "duty_gain": _any("ratio"),
+        }
+    ),
+}
+
+# Only the coefficients that do not vanish; the orders of gamma follow from the leading one being a number.
+_DISPLACEMENT: Schema = {
+    "beta0": _positive("1/length"),
+    "gamma0": _positive("1/length^4"),
+    "gamma2": _positive("1/length^2"),
+    "gamma4": _positive("ratio"),
+}
+_ANGLE: Schema = {
+    "beta2": _positive("1/length^3"),
+    "gamma0": _positive("1/length^6"),
+    "gamma2": _positive("1/length^4"),
+    "gamma4": _positive("1/length^2"),
+    "gamma6": _positive("ratio"),
+}
+
+_TRACK: Schema = {
+    "shortest_wavelength": _positive("length"),
+    "longest_wavelength": _positive("length"),
+    "sides": Quantity(dimension="ratio", low=1.0, high=2.0),
+    **{
+        f"{row}.{name}": quantity
+        for row in TRACK_ROWS
+        for name, quantity in (_ANGLE if row.startswith("cross") else _DISPLACEMENT).items()
+    },
+}
+
+CONTROLLER_SCHEMAS: dict[str, Schema] = {
+    "afsmc": _AFSMC,
+    "trenitalia": _TRENITALIA,
+    "knorr-bremse": _KNORR_BREMSE,
+    "mitsubishi": _MITSUBISHI,
+}
+
+
+def schema_of(kind: Kind, name: str) -> Schema:
+    """Return what a file of this kind must contain; each controller has its own schema."""
+    if kind == "controller":
+        return CONTROLLER_SCHEMAS[name]
+    return {"constants": _CONSTANTS, "vehicle": _VEHICLE, "rail": _RAIL, "track": _TRACK}[kind]

@@ -1,0 +1,212 @@
+"""Units: a closed table of spellings, and numbers with units in text.
+
+Inside the program all numbers are SI floats. Units appear only where people read or write: in parameter files,
+on the command line and in reports.
+"""
+
+import math
+import re
+from difflib import get_close_matches
+from typing import Literal, TypeAlias
+
+from wspd_design.parameters.errors import UserError
+
+Dimension: TypeAlias = Literal[
+    "ratio",
+    "speed",
+    "acceleration",
+    "time",
+    "rate",
+    "frequency",
+    "length",
+    "mass",
+    "inertia",
+    "force",
+    "torque",
+    "pressure",
+    "linear resistance",
+    "quadratic resistance",
+    "rotational damping",
+    "friction decay",
+    "1/length",
+    "1/length^2",
+    "1/length^3",
+    "1/length^4",
+    "1/length^6",
+]
+
+# Spelling -> SI factor. Radians count as one, so that spectra over rad/m have powers of 1/m.
+_TABLE: dict[Dimension, dict[str, float]] = {
+    "ratio": {"-": 1.0, "%": 1e-2},
+    "speed": {"m/s": 1.0, "km/h": 1.0 / 3.6},
+    "acceleration": {"m/s^2": 1.0},
+    "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
+    "rate": {"1/s": 1.0},
+    "frequency": {"Hz": 1.0},
+    "length": {"m": 1.0, "mm": 1e-3},
+    "mass": {"kg": 1.0, "t": 1e3},
+    "inertia": {"kg m^2": 1.0},
+    "force": {"N": 1.0, "kN": 1e3},
+    "torque": {"N m": 1.0, "kN m": 1e3},
+    "pressure": {"Pa": 1.0, "bar": 1e5, "MPa": 1e6, "GPa": 1e9},
+    "linear resistance": {"N s/m": 1.0},
+    "quadratic resistance": {"N s^2/m^2": 1.0},
+    "rotational damping": {"N m s": 1.0},
+    "friction decay": {"s/m": 1.0},
+    "1/length": {"1/m": 1.0},
+    "1/length^2": {"1/m^2": 1.0},
+    "1/length^3": {"1/m^3": 1.0},
+    "1/length^4": {"1/m^4": 1.0},
+    "1/length^6": {"1/m^6": 1.0},
+}
+
+UNITS: dict[str, tuple[Dimension, float]] = {
+    spelling: (dimension, factor) for dimension, row in _TABLE.items() for spelling, factor in row.items()
+}
+"""Every unit the program knows: spelling -> (dimension, SI value of one unit)."""
+
+_EXAMPLES: dict[Dimension, str] = {"ratio": "0.14", "speed": "120 km/h", "time": "100 ms", "mass": "76.8 t"}
+
+_NUMBER = re.compile(
+    r"(?P<number>[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)", re.DOTALL
+)
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+
+
+def _plain(spelling: str) -> str:
+    """Strip what people vary in a unit without changing its meaning: ``kNm``, ``kN*m``, ``kN m``; ``m/s2``."""
+    return spelling.replace("²", "2").translate(str.maketrans("", "", " *·^")).replace("−", "-")
+
+
+_SPELLINGS: dict[str, str] = {_plain(spelling): spelling for spelling in UNITS}
+
+
+def units_of(dimension: Dimension) -> tuple[str, ...]:
+    """Return the spellings of the units of a dimension, SI unit first."""
+    return tuple(_TABLE[dimension])
+
+
+def dimension_of(unit: str) -> Dimension:
+    """Return the dimension of a unit; an unknown spelling raises :class:`UserError`."""
+    return UNITS[_spelling(unit)][0]
+
+
+def to_si(value: float, unit: str) -> float:
+    """Convert a number from a unit of the table to SI units.
+
+    Parameters
+    ----------
+    value : float
+        Number in ``unit``.
+    unit : str
+        A spelling of :data:`UNITS`; ``kNm`` and ``kN*m`` are accepted for ``kN m``.
+
+    Returns
+    -------
+    float
+        The same quantity in SI units.
+
+    Raises
+    ------
+    UserError
+        If the unit is unknown; the sentence offers the nearest one.
+    """
+    spelling = _spelling(unit)
+    if spelling == "km/h":
+        return value / 3.6  # correctly rounded, which a factor is not
+    return value * UNITS[spelling][1]
+
+
+def format_quantity(value_si: float, unit: str) -> str:
+    """Write an SI number in a unit, with six significant digits: ``120 km/h``.
+
+    Parameters
+    ----------
+    value_si : float
+        Quantity in SI units.
+    unit : str
+        A spelling of :data:`UNITS`; ``-`` is left out of the text.
+
+    Returns
+    -------
+    str
+        Number and unit.
+    """
+    spelling = _spelling(unit)
+    number = f"{value_si / UNITS[spelling][1]:.6g}"
+    return number if spelling == "-" else f"{number} {spelling}"
+
+
+def parse_quantity(text: str, dimension: Dimension, *, what: str) -> float:
+    """Read a number with its unit, such as ``120 km/h``, ``100 ms``, ``14 %`` or ``33,3 m/s``.
+
+    Parameters
+    ----------
+    text : str
+        What the user wrote.
+    dimension : str
+        Dimension that is expected; only a ratio may stand without a unit.
+    what : str
+        Name of the quantity for the error sentence.
+
+    Returns
+    -------
+    float
+        The quantity in SI units.
+
+    Raises
+    ------
+    UserError
+        If the text is no finite number, or its unit is missing, unknown or of another dimension.
+    """
+    match = _NUMBER.fullmatch(text.strip())
+    allowed = f"write it in {' or '.join(units_of(dimension))}, for example {_example(dimension)}"
+    if match is None:
+        raise UserError(f'{what} = "{text}" is not a finite number with a unit; {allowed}.')
+    number, unit = match["number"], match["unit"]
+    if _THOUSANDS.fullmatch(number):
+        raise UserError(
+            f'{what} = "{text}" is ambiguous, since the comma may separate decimals or thousands; '
+            f'write "{number.replace(",", ".")} {unit}" or "{number.replace(",", "")} {unit}".'
+        )
+    if not unit and dimension != "ratio":
+        raise UserError(f'{what} = "{text}" has no unit; {allowed}.')
+    try:
+        found = dimension_of(unit or "-")
+    except UserError:
+        raise UserError(
+            f'{what} = "{text}" has an unknown unit; {_offer(number, unit, dimension)}.'
+        ) from None
+    if found != dimension:
+        raise UserError(f'{what} = "{text}" has a unit of {found}, not of {dimension}; {allowed}.')
+    value = to_si(float(number.replace(",", ".")), unit or "-")
+    if not math.isfinite(value):
+        raise UserError(f'{what} = "{text}" is not a finite number; {allowed}.')
+    return value
+
+
+def nearest_unit(unit: str, dimension: Dimension | None = None) -> str | None:
+    """Return the known spelling that looks most like ``unit``, of a dimension if one is given."""
+    candidates = {_plain(s).lower(): s for s in (UNITS if dimension is None else _TABLE[dimension])}
+    close = get_close_matches(_plain(unit).lower(), candidates, n=1, cutoff=0.5)
+    return candidates[close[0]] if close else None
+
+
+def _spelling(unit: str) -> str:
+    plain = _plain(unit)
+    if plain not in _SPELLINGS:
+        near = nearest_unit(unit)
+        remedy = f'did you mean "{near}"?' if near else f"known units: {', '.join(UNITS)}."
+        raise UserError(f'"{unit}" is not a known unit; {remedy}')
+    return _SPELLINGS[plain]
+
+
+def _offer(number: str, unit: str, dimension: Dimension) -> str:
+    near = nearest_unit(unit, dimension)
+    if near is not None:
+        return f'did you mean "{number} {near}"? Units of {dimension}: {", ".join(units_of(dimension))}'
+    return f"write it in {' or '.join(units_of(dimension))}, for example {_example(dimension)}"
+
+
+def _example(dimension: Dimension) -> str:
+    return f'"{_EXAMPLES.get(dimension, "1 " + units_of(dimension)[0])}"'
