@@ -1,0 +1,126 @@
+"""The slip dynamics linearized at a slip ratio and a train speed."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from wspd_design.codegen.functions import slip_plant
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.records import Rail, Vehicle
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+STATES = ("slip", "torque")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Linearization:
+    """Slip and torque near an equilibrium at frozen train speed: x' = A x + B duty.
+
+    The states are the deviations of slip [-] and of the torque per wheelset [N m]. The train speed changes
+    slowly against the slip and is held; ``equilibrium_torque`` keeps the slip there.
+    """
+
+    vehicle: str
+    rail: str
+    slip: float  # -
+    speed: float  # m/s
+    equilibrium_torque: float  # N m per wheelset
+    equilibrium_duty: float  # -, above 1 the brake cannot hold this slip
+    slip_pole: float  # 1/s, without the valve lag
+    gain: float  # 1/(N m s), G
+    time_constant: float  # s, of the valve
+    state_matrix: "NDArray[np.float64]"
+    input_matrix: "NDArray[np.float64]"
+
+    def poles(self, *, with_lag: bool = True) -> tuple[float, ...]:
+        """Open-loop poles [1/s], fastest growing first; ``with_lag`` includes the valve."""
+        if not with_lag:
+            return (self.slip_pole,)
+        import numpy as np
+
+        return tuple(sorted((float(p.real) for p in np.linalg.eigvals(self.state_matrix)), reverse=True))
+
+    def state_space(self, *, with_lag: bool = True) -> Any:
+        """Return a ``control.StateSpace`` from duty (or, without lag, torque [N m]) to slip."""
+        import control
+        import numpy as np
+
+        if with_lag:
+            return control.ss(
+                self.state_matrix,
+                self.input_matrix,
+                np.array([[1.0, 0.0]]),
+                0.0,
+                states=list(STATES),
+                inputs=["duty"],
+                outputs=["slip"],
+                name="slip_plant",
+            )
+        return control.ss(
+            [[self.slip_pole]],
+            [[self.gain]],
+            [[1.0]],
+            0.0,
+            states=["slip"],
+            inputs=["torque"],
+            outputs=["slip"],
+            name="slip_plant_without_lag",
+        )
+
+
+def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Linearization:
+    """Linearize eqs. (19) and (14) at a slip ratio and a train speed.
+
+    Parameters
+    ----------
+    vehicle, rail : Vehicle, Rail
+        Quarter locomotive and friction.
+    slip : float
+        Slip ratio in (0, 1).
+    speed : float
+        Train speed, positive [m/s].
+
+    Returns
+    -------
+    Linearization
+        With Jacobians from CasADi, exact up to rounding.
+
+    Raises
+    ------
+    UserError
+        If slip or speed are outside their range, or the brake fills and vents at different rates: the averaged
+        valve is then bilinear and has no one time constant.
+    """
+    import numpy as np
+
+    if not 0.0 < slip < 1.0:
+        raise UserError(f"slip = {slip:g} must lie in (0, 1); for percent write for example 0.14 or 14 %")
+    if not 0.0 < speed < 150.0:
+        raise UserError(f"speed = {speed:g} m/s must be above 0 and below 150 m/s (540 km/h)")
+    brake = vehicle.brake
+    if brake.fill_time != brake.vent_time:
+        raise UserError(
+            f"the brake of {vehicle.name} fills with {brake.fill_time:g} s and vents with {brake.vent_time:g} s; "
+            "eq. (14) and the linearization need one time constant: set fill_time equal to vent_time"
+        )
+    plant = slip_plant(vehicle, rail)
+    drift, gain = (float(x) for x in plant.drift_and_gain(slip, speed))
+    torque = -drift / gain
+    duty = torque / brake.max_torque
+    a, b = plant.jacobians(slip, torque, speed, duty)
+    a, b = np.array(a, dtype=np.float64), np.array(b, dtype=np.float64)
+    return Linearization(
+        vehicle=vehicle.name,
+        rail=rail.name,
+        slip=slip,
+        speed=speed,
+        equilibrium_torque=torque,
+        equilibrium_duty=duty,
+        slip_pole=float(a[0, 0]),
+        gain=gain,
+        time_constant=brake.fill_time,
+        state_matrix=a,
+        input_matrix=b,
+    )

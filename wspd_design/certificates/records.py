@@ -1,0 +1,97 @@
+"""The form of a statement about stability: what is claimed, what supports it, and what it assumes."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from wspd_design.controllers.protocol import Controller
+from wspd_design.parameters.records import Rail, Vehicle
+
+
+class Status(Enum):
+    """Verdict on a claim; the value says what it means."""
+
+    PROVED = "holds for every point of the domain, by an exact argument"
+    REFUTED = "false: the witness is a point where it fails"
+    UNDECIDED = "neither shown nor refuted"
+    EVIDENCE = "holds at every point that was tried, which proves nothing between them"
+    VACUOUS = "true but says nothing about a stop"
+    NOT_APPLICABLE = "the claim does not speak about this controller"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Range:
+    """A two-sided enclosure of a number; a sampled bound has one open end."""
+
+    low: float | None
+    high: float | None
+    unit: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Point:
+    """A coordinate of a witness or of a worst case, in the unit that people read."""
+
+    name: str
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hypothesis:
+    """A condition that a theorem needs, with its own verdict."""
+
+    text: str
+    status: Status
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Series:
+    """Samples of a quantity over another one, for the plot beside the verdict."""
+
+    name: str
+    x_label: str
+    y_label: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certificate:
+    """A claim about a closed loop and its verdict.
+
+    ``margin`` is positive when the claim holds: how far the tightest point is from the limit.
+    """
+
+    name: str
+    title: str
+    claim: str
+    status: Status
+    explanation: str
+    margin: Range | None = None
+    worst_point: tuple[Point, ...] = ()
+    witness: tuple[Point, ...] = ()
+    hypotheses: tuple[Hypothesis, ...] = ()
+    assumptions: tuple[str, ...] = ()
+    method: str
+    resolution: str = ""
+    reference: str = ""
+    model_hash: str = ""
+    seconds: float = 0.0
+    series: tuple[Series, ...] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem:
+    """The closed loop and the domain that all checks speak about."""
+
+    vehicle: Vehicle
+    rail: Rail
+    controller: Controller
+    slip: float  # -, reference
+    speeds: tuple[float, float]  # m/s, lowest and highest
+    slips: tuple[float, float]  # -, range of slip
+    mass_bounds: tuple[float, float]  # kg
+    inertia_bounds: tuple[float, float]  # kg m2, per wheelset
+    mu0_bounds: tuple[float, float]
+    sample_time: float  # s
+    seed: int = 0

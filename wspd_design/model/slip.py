@@ -1,0 +1,92 @@
+"""Slip ratio and slip dynamics of the quarter locomotive, eqs. (3) and (19)."""
+
+from typing import NamedTuple
+
+from wspd_design.model import adhesion
+from wspd_design.model.generated import motion
+from wspd_design.model.generated import slip as generated
+from wspd_design.model.number import Number, maximum
+from wspd_design.parameters import constants
+from wspd_design.parameters.records import Rail, Vehicle
+
+
+def slip_ratio(speed: Number, wheel_speed: Number, wheel_radius: Number) -> Number:
+    """Longitudinal slip ratio, positive when braking, eq. (3) [-].
+
+    This is the one place where the slip is kept finite at standstill: it is referred to the train speed, and
+    below ``slip_regularization_speed`` to that speed.
+
+    Parameters
+    ----------
+    speed : number
+        Train speed [m/s].
+    wheel_speed : number
+        Angular speed of the wheel [rad/s].
+    wheel_radius : number
+        Radius [m].
+    """
+    reference_speed = maximum(speed, constants().slip_regularization_speed)
+    return generated.slip_ratio(speed, wheel_speed, wheel_radius, reference_speed)
+
+
+def resistance(vehicle: Vehicle, speed: Number) -> Number:
+    """Running resistance f_d on level, straight track, eq. (4) [N]."""
+    return motion.running_resistance(
+        speed,
+        vehicle.resistance_constant,
+        vehicle.resistance_linear,
+        vehicle.resistance_quadratic,
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
+def static_wheel_load(vehicle: Vehicle) -> Number:
+    """Wheel load without weight transfer, m g / 8 [N]."""
+    return vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
+
+
+class SlipDynamics(NamedTuple):
+    """Eq. (19) at one point: slip' = drift + gain * torque, with the slip derivative of the drift."""
+
+    drift: Number  # 1/s, F
+    gain: Number  # 1/(N m s), G
+    pole: Number  # 1/s, dF/dslip at fixed speed
+    creep_force: Number  # N per wheel
+    deceleration: Number  # m/s2, positive when braking
+
+
+def slip_dynamics(
+    vehicle: Vehicle, rail: Rail, slip: Number, speed: Number, *, wheel_load: Number | None = None
+) -> SlipDynamics:
+    """Evaluate eq. (19) of the quarter locomotive.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        Masses, inertia, resistance and contact.
+    rail : Rail
+        Friction.
+    slip : number
+        Slip ratio [-].
+    speed : number
+        Train speed, positive [m/s].
+    wheel_load : number, optional
+        Vertical load of a wheel [N]; the static load by default. The design model of a controller and the
+        bounds of a certificate may fix it apart from the mass.
+    """
+    load = static_wheel_load(vehicle) if wheel_load is None else wheel_load
+    stiffness = adhesion.contact_stiffness(vehicle.contact, load)
+    force = adhesion.creep_force(slip, speed * slip, load, rail, stiffness)
+    force_slope = adhesion.creep_force_slip_derivative(slip, speed, load, rail, stiffness)
+    resisting = resistance(vehicle, speed)
+    inertia = vehicle.wheel_inertia
+    mechanics = (vehicle.mass, inertia, vehicle.wheel_radius, vehicle.wheel_damping)
+    return SlipDynamics(
+        drift=generated.slip_drift(slip, speed, force, resisting, *mechanics),
+        gain=generated.slip_gain(speed, inertia, vehicle.wheel_radius),
+        pole=generated.slip_drift_slip_derivative(slip, speed, force, force_slope, resisting, *mechanics),
+        creep_force=force,
+        deceleration=-motion.train_acceleration(force, resisting, vehicle.mass),
+    )

@@ -1,0 +1,101 @@
+"""What a stop is judged by, worked out from its integrals."""
+
+import math
+from dataclasses import dataclass
+
+from wspd_design.parameters.records import Vehicle
+from wspd_design.simulation.records import Ending, Run
+from wspd_design.simulation.stop import WHEELS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Metrics:
+    """Figures of one stop. Slip figures count above 10 km/h."""
+
+    distance: float  # m
+    stopping_time: float  # s
+    torque_integral: float  # N m s, sum over wheelsets of the transmitted torque
+    lag: float  # s, 2 d / v0 - t: what the build-up of the brake costs
+    plateau: float  # m/s2, v0 / (2 (t - d / v0)): deceleration after the build-up
+    slip_mean: float  # -
+    slip_max: float  # -
+    slip_rms: float  # -, about the reference
+    lock_time: float  # s
+    saturated_share: float  # -, samples that fill or vent for the whole sample time
+    valve_switches: int  # changes of the valve state
+    momentum_residual: float  # -, relative to the initial momentum
+    energy_residual: float  # -, relative to the initial energy
+
+
+def metrics(run: Run, vehicle: Vehicle, *, slip_reference: float) -> Metrics:
+    """Judge a stop.
+
+    Parameters
+    ----------
+    run : Run
+        The stop.
+    vehicle : Vehicle
+        The vehicle it was simulated with.
+    slip_reference : float
+        Reference of ``slip_rms`` [-].
+
+    Returns
+    -------
+    Metrics
+        A run that did not come to a standstill gives NaN for lag and plateau.
+    """
+    totals, time = run.totals, float(run.time[-1])
+    stopped = run.ending is Ending.STOPPED
+    judged = totals.judged_time
+    mean = totals.slip / judged if judged else math.nan
+    square = (
+        totals.slip_squared / judged - 2.0 * slip_reference * mean + slip_reference**2 if judged else math.nan
+    )
+    commands = [(sample.fill, sample.vent) for sample in run.samples]
+    return Metrics(
+        distance=totals.distance,
+        stopping_time=time,
+        torque_integral=totals.torque,
+        lag=2.0 * totals.distance / run.initial_speed - time if stopped else math.nan,
+        plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed)) if stopped else math.nan,
+        slip_mean=mean,
+        slip_max=run.slip_max,
+        slip_rms=math.sqrt(max(square, 0.0)),
+        lock_time=totals.lock_time,
+        saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands),
+        valve_switches=_switches(commands),
+        momentum_residual=momentum_residual(run, vehicle),
+        energy_residual=energy_residual(run, vehicle),
+    )
+
+
+def momentum_residual(run: Run, vehicle: Vehicle) -> float:
+    """What is missing in the balance behind Table 10, relative to the initial momentum.
+
+    sum of the torque integrals = R m (v0 - v) + 8 I (omega0 - omega) - R int f_d dt - 8 int B omega dt.
+    """
+    radius, inertia = vehicle.wheel_radius, WHEELS * vehicle.wheel_inertia
+    initial = radius * vehicle.mass * run.initial_speed + inertia * run.initial_speed / radius
+    final = radius * vehicle.mass * float(run.speed[-1]) + inertia * run.final_wheel_speed
+    taken = run.totals.torque + radius * run.totals.resistance_impulse + run.totals.damping_impulse
+    return (initial - final - taken) / initial
+
+
+def energy_residual(run: Run, vehicle: Vehicle) -> float:
+    """What is missing in the balance of kinetic energy and work, relative to the initial energy."""
+    inertia = WHEELS * vehicle.wheel_inertia
+    initial = 0.5 * vehicle.mass * run.initial_speed**2
+    initial += 0.5 * inertia * (run.initial_speed / vehicle.wheel_radius) ** 2
+    final = 0.5 * vehicle.mass * float(run.speed[-1]) ** 2 + 0.5 * inertia * run.final_wheel_speed**2
+    totals = run.totals
+    work = totals.brake_work + totals.sliding_work + totals.resistance_work + totals.damping_work
+    return (initial - final - work) / initial
+
+
+def _switches(commands: list[tuple[float, float]]) -> int:
+    """Count the changes of the valve state over a run, inside the samples and between them."""
+    states: list[str] = []
+    for fill, vent in commands:
+        shares = (("fill", fill), ("vent", vent), ("hold", 1.0 - fill - vent))
+        states += [state for state, share in shares if share > 1e-9]
+    return sum(a != b for a, b in zip(states, states[1:], strict=False))
