@@ -1,8 +1,8 @@
 """Parameter files: from TOML to checked entries.
 
-Every number is a table with ``value``, ``unit``, ``bounds``, ``source``, ``at``, ``status`` and ``note``. A user's
-own file has the same format; it may start from a shipped one with ``base = "er24pc"`` and then states only the
-tables that differ. Such a table replaces that of the base as a whole, bounds included.
+Every number is a table with ``value``, ``unit``, ``bounds``, ``source``, ``at``, ``status`` and ``note``. A
+user's own file has the same format; it may start from a shipped one with ``base = "er24pc"`` and then states
+only the tables that differ. Such a table replaces that of the base as a whole, bounds included.
 """
 
 import math
@@ -104,13 +104,13 @@ def _load_own(kind: Kind, path: Path) -> ParameterSet:
     # A user may leave out the history of a number, but then it says so itself.
     entries = _entries(document, schema, where, {"source": "own file", "at": path.name, "status": "assumed"})
     if "base" in document:
-        if document["base"] not in available(kind):
-            base = document["base"]
+        base, shipped = document["base"], available(kind)
+        if base not in shipped:
             raise UserError(
-                f'base = "{base}" in {where} is not a shipped {kind}{_did_you_mean(str(base), available(kind))}; '
-                f"available: {', '.join(available(kind))}."
+                f"base = {_text(base)} in {where} is not a shipped {kind}"
+                f"{_did_you_mean(str(base), shipped)}; available: {', '.join(shipped)}."
             )
-        entries = load_entries(kind, document["base"]).entries | entries
+        entries = load_entries(kind, base).entries | entries
     return _parameter_set(kind, path.stem, document, schema, entries, where)
 
 
@@ -148,7 +148,8 @@ def _named_tables(
         is_group = any(known.startswith(f"{name}.") for known in schema)
         if name not in schema and not is_group:
             raise UserError(
-                f"{where} has an unknown key {name}{_did_you_mean(name, _known_names(schema))}; {_ALLOWED}."
+                f"{where} has an unknown key {name}{_did_you_mean(name, _known_names(schema))}; "
+                "correct or remove it."
             )
         if not isinstance(table, dict):
             example = (
@@ -156,15 +157,13 @@ def _named_tables(
             )
             unit = units_of(schema[example].dimension)[0]
             raise UserError(
-                f'{name} in {where} must be a table: write [{example}] and below it value = ... and unit = "{unit}".'
+                f"{name} in {where} must be a table: write [{example}] and below it "
+                f'value = ... and unit = "{unit}".'
             )
         if is_group:
             yield from _named_tables(table, schema, where, f"{name}.")
         else:
             yield name, table
-
-
-_ALLOWED = "remove it or correct its spelling"
 
 
 def _known_names(schema: Schema) -> Iterable[str]:
@@ -202,8 +201,8 @@ def _entry(
     )
     if bounds is not None and not all(bounds[0] <= number <= bounds[1] for number in _numbers(value)):
         raise UserError(
-            f"value = {table['value']} of [{name}] in {where} lies outside its bounds {table['bounds']} {unit}; "
-            "correct one of them."
+            f"value = {table['value']} of [{name}] in {where} lies outside its bounds {table['bounds']} "
+            f"{unit}; correct one of them."
         )
     return Entry(
         name=name,
@@ -227,7 +226,8 @@ def _check_unit(name: str, unit: str, quantity: Quantity, where: str) -> None:
         raise UserError(f'unit = "{unit}" of [{name}] in {where} is unknown{offer}; {allowed}.') from None
     if dimension != quantity.dimension:
         raise UserError(
-            f'unit = "{unit}" of [{name}] in {where} is a unit of {dimension}, not of {quantity.dimension}; {allowed}.'
+            f'unit = "{unit}" of [{name}] in {where} is a unit of {dimension}, not of {quantity.dimension}; '
+            f"{allowed}."
         )
 
 

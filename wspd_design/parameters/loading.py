@@ -85,8 +85,8 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     parts = values["body_mass"] + 2.0 * values["bogie_mass"]
     if abs(parts - values["mass"]) > _MASS_TOLERANCE * values["mass"]:
         raise UserError(
-            f"mass = {values['mass']:g} kg in vehicle {parameters.name} must equal body_mass + 2 bogie_mass = "
-            f"{parts:g} kg; change the three together."
+            f"mass = {values['mass']:g} kg in vehicle {parameters.name} must equal body_mass + 2 bogie_mass "
+            f"= {parts:g} kg; change the three together."
         )
     return _build(
         Vehicle,

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 class Entry:
     """One number of a parameter file with everything that is known about it.
 
-    ``value`` and ``bounds`` are in SI units; ``unit`` is the unit that the file states. Words are kept as they
-    are. A number without bounds is taken as exactly known.
+    ``value`` and ``bounds`` are in SI units; ``unit`` is the unit that the file states. Words are kept as
+    they are. A number without bounds is taken as exactly known.
     """
 
     name: str
@@ -159,7 +159,7 @@ class TrenitaliaTable:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnorrBremseTable:
-    """Slide regions, acceleration limits and decision table of the Knorr-Bremse controller, eqs. (17), (18)."""
+    """Slide regions, acceleration limits and decisions of the Knorr-Bremse controller, eqs. (17)-(18)."""
 
     slide_slopes: tuple[float, ...]  # -, of each region limit over train speed
     slide_offsets: tuple[float, ...]  # m/s

@@ -1,12 +1,13 @@
 """Units: a closed table of spellings, and numbers with units in text.
 
-Inside the program all numbers are SI floats. Units appear only where people read or write: in parameter files,
-on the command line and in reports.
+Inside the program all numbers are SI floats. Units appear only where people read or write: in parameter
+files, on the command line and in reports.
 """
 
 import math
 import re
 from difflib import get_close_matches
+from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from wspd_design.parameters.errors import UserError
@@ -35,35 +36,33 @@ Dimension: TypeAlias = Literal[
     "1/length^6",
 ]
 
-# Spelling -> SI factor. Radians count as one, so that spectra over rad/m have powers of 1/m.
-_TABLE: dict[Dimension, dict[str, float]] = {
-    "ratio": {"-": 1.0, "%": 1e-2},
-    "speed": {"m/s": 1.0, "km/h": 1.0 / 3.6},
-    "acceleration": {"m/s^2": 1.0},
-    "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
-    "rate": {"1/s": 1.0},
-    "frequency": {"Hz": 1.0},
-    "length": {"m": 1.0, "mm": 1e-3},
-    "mass": {"kg": 1.0, "t": 1e3},
-    "inertia": {"kg m^2": 1.0},
-    "force": {"N": 1.0, "kN": 1e3},
-    "torque": {"N m": 1.0, "kN m": 1e3},
-    "pressure": {"Pa": 1.0, "bar": 1e5, "MPa": 1e6, "GPa": 1e9},
-    "linear resistance": {"N s/m": 1.0},
-    "quadratic resistance": {"N s^2/m^2": 1.0},
-    "rotational damping": {"N m s": 1.0},
-    "friction decay": {"s/m": 1.0},
-    "1/length": {"1/m": 1.0},
-    "1/length^2": {"1/m^2": 1.0},
-    "1/length^3": {"1/m^3": 1.0},
-    "1/length^4": {"1/m^4": 1.0},
-    "1/length^6": {"1/m^6": 1.0},
+# Spelling -> SI value of one unit, exactly. Radians count as one: spectra over rad/m have powers of 1/m.
+_ONE = Fraction(1)
+_TABLE: dict[Dimension, dict[str, Fraction]] = {
+    "ratio": {"-": _ONE, "%": Fraction(1, 100)},
+    "speed": {"m/s": _ONE, "km/h": Fraction(10, 36)},
+    "acceleration": {"m/s^2": _ONE},
+    "time": {"s": _ONE, "ms": Fraction(1, 1000), "min": Fraction(60)},
+    "rate": {"1/s": _ONE},
+    "frequency": {"Hz": _ONE},
+    "length": {"m": _ONE, "mm": Fraction(1, 1000)},
+    "mass": {"kg": _ONE, "t": Fraction(1000)},
+    "inertia": {"kg m^2": _ONE},
+    "force": {"N": _ONE, "kN": Fraction(1000)},
+    "torque": {"N m": _ONE, "kN m": Fraction(1000)},
+    "pressure": {"Pa": _ONE, "bar": Fraction(100000), "MPa": Fraction(1000000), "GPa": Fraction(1000000000)},
+    "linear resistance": {"N s/m": _ONE},
+    "quadratic resistance": {"N s^2/m^2": _ONE},
+    "rotational damping": {"N m s": _ONE},
+    "friction decay": {"s/m": _ONE},
+    "1/length": {"1/m": _ONE},
+    "1/length^2": {"1/m^2": _ONE},
+    "1/length^3": {"1/m^3": _ONE},
+    "1/length^4": {"1/m^4": _ONE},
+    "1/length^6": {"1/m^6": _ONE},
 }
 
-UNITS: dict[str, tuple[Dimension, float]] = {
-    spelling: (dimension, factor) for dimension, row in _TABLE.items() for spelling, factor in row.items()
-}
-"""Every unit the program knows: spelling -> (dimension, SI value of one unit)."""
+_UNITS: dict[str, Dimension] = {unit: dimension for dimension, row in _TABLE.items() for unit in row}
 
 _EXAMPLES: dict[Dimension, str] = {"ratio": "0.14", "speed": "120 km/h", "time": "100 ms", "mass": "76.8 t"}
 
@@ -74,11 +73,11 @@ _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 
 
 def _plain(spelling: str) -> str:
-    """Strip what people vary in a unit without changing its meaning: ``kNm``, ``kN*m``, ``kN m``; ``m/s2``."""
-    return spelling.replace("²", "2").translate(str.maketrans("", "", " *·^")).replace("−", "-")
+    """Strip what people vary in a unit without changing its meaning: ``kNm``, ``kN*m``; ``m/s2``."""
+    return spelling.replace("²", "2").translate(str.maketrans("", "", " *·^"))
 
 
-_SPELLINGS: dict[str, str] = {_plain(spelling): spelling for spelling in UNITS}
+_SPELLINGS: dict[str, str] = {_plain(spelling): spelling for spelling in _UNITS}
 
 
 def units_of(dimension: Dimension) -> tuple[str, ...]:
@@ -88,7 +87,7 @@ def units_of(dimension: Dimension) -> tuple[str, ...]:
 
 def dimension_of(unit: str) -> Dimension:
     """Return the dimension of a unit; an unknown spelling raises :class:`UserError`."""
-    return UNITS[_spelling(unit)][0]
+    return _UNITS[_spelling(unit)]
 
 
 def to_si(value: float, unit: str) -> float:
@@ -99,7 +98,7 @@ def to_si(value: float, unit: str) -> float:
     value : float
         Number in ``unit``.
     unit : str
-        A spelling of :data:`UNITS`; ``kNm`` and ``kN*m`` are accepted for ``kN m``.
+        A unit of the table; ``kNm`` and ``kN*m`` are accepted for ``kN m``, ``m/s2`` for ``m/s^2``.
 
     Returns
     -------
@@ -111,10 +110,15 @@ def to_si(value: float, unit: str) -> float:
     UserError
         If the unit is unknown; the sentence offers the nearest one.
     """
-    spelling = _spelling(unit)
-    if spelling == "km/h":
-        return value / 3.6  # correctly rounded, which a factor is not
-    return value * UNITS[spelling][1]
+    factor = _factor(unit)
+    if not math.isfinite(value):
+        return value
+    try:
+        return float(
+            Fraction(repr(value)) * factor
+        )  # through decimals: 7.73 mm becomes 0.00773, to the last bit
+    except OverflowError:
+        return math.copysign(math.inf, value)
 
 
 def format_quantity(value_si: float, unit: str) -> str:
@@ -125,7 +129,7 @@ def format_quantity(value_si: float, unit: str) -> str:
     value_si : float
         Quantity in SI units.
     unit : str
-        A spelling of :data:`UNITS`; ``-`` is left out of the text.
+        A unit of the table; ``-`` is left out of the text.
 
     Returns
     -------
@@ -133,7 +137,7 @@ def format_quantity(value_si: float, unit: str) -> str:
         Number and unit.
     """
     spelling = _spelling(unit)
-    number = f"{value_si / UNITS[spelling][1]:.6g}"
+    number = f"{value_si / float(_factor(unit)):.6g}"
     return number if spelling == "-" else f"{number} {spelling}"
 
 
@@ -187,16 +191,21 @@ def parse_quantity(text: str, dimension: Dimension, *, what: str) -> float:
 
 def nearest_unit(unit: str, dimension: Dimension | None = None) -> str | None:
     """Return the known spelling that looks most like ``unit``, of a dimension if one is given."""
-    candidates = {_plain(s).lower(): s for s in (UNITS if dimension is None else _TABLE[dimension])}
+    candidates = {_plain(s).lower(): s for s in (_UNITS if dimension is None else _TABLE[dimension])}
     close = get_close_matches(_plain(unit).lower(), candidates, n=1, cutoff=0.5)
     return candidates[close[0]] if close else None
+
+
+def _factor(unit: str) -> Fraction:
+    spelling = _spelling(unit)
+    return _TABLE[_UNITS[spelling]][spelling]
 
 
 def _spelling(unit: str) -> str:
     plain = _plain(unit)
     if plain not in _SPELLINGS:
         near = nearest_unit(unit)
-        remedy = f'did you mean "{near}"?' if near else f"known units: {', '.join(UNITS)}."
+        remedy = f'did you mean "{near}"?' if near else f"known units: {', '.join(_UNITS)}."
         raise UserError(f'"{unit}" is not a known unit; {remedy}')
     return _SPELLINGS[plain]
 
