@@ -1,0 +1,137 @@
+"""Inline text of a report: plain strings are literal, light markup is parsed once for both renderings.
+
+A ``str`` in a block is always shown as it stands, whatever it contains: names of files, vehicles and users
+need no escaping. Emphasis, code, mathematics and links come from :func:`rich`.
+"""
+
+import re
+from dataclasses import dataclass
+from typing import TypeAlias
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Emphasis:
+    """Stressed words, set in italics."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeSpan:
+    """A command, a file name or a key, set in a fixed-width face."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Math:
+    """A formula inside a line, in Typst's math syntax, and how to read it aloud."""
+
+    source: str
+    spoken: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Link:
+    """A reference to an anchor of the same document; without text, the label of its target is shown."""
+
+    anchor: str
+    text: str = ""
+
+
+Inline: TypeAlias = str | Emphasis | CodeSpan | Math | Link
+Text: TypeAlias = str | tuple[Inline, ...]
+
+_MARKUP = re.compile(
+    r"\\(?P<literal>[\\*`$\[\]])"
+    r"|\*(?P<emphasis>[^*\s](?:[^*]*[^*\s])?)\*"
+    r"|`(?P<code>[^`]+)`"
+    r"|\$(?P<math>[^$]+)\$"
+    r"|\[(?P<label>[^\[\]]*)\]\(#(?P<anchor>[a-z][a-z0-9-]*)\)"
+)
+
+
+def rich(markup: str) -> tuple[Inline, ...]:
+    r"""Parse light markup: ``*emphasis*``, ```code```, ``$math$``, ``[text](#anchor)``, ``[](#anchor)``.
+
+    A backslash makes the next special character literal. Text from outside goes through :func:`escape` first.
+    """
+    spans: list[Inline] = []
+    position = 0
+    for match in _MARKUP.finditer(markup):
+        _append(spans, markup[position : match.start()])
+        position = match.end()
+        match match.lastgroup:
+            case "literal":
+                _append(spans, match["literal"])
+            case "emphasis":
+                spans.append(Emphasis(text=match["emphasis"]))
+            case "code":
+                spans.append(CodeSpan(text=match["code"]))
+            case "math":
+                spans.append(Math(source=match["math"], spoken=spoken(match["math"])))
+            case _:
+                spans.append(Link(anchor=match["anchor"], text=match["label"]))
+    _append(spans, markup[position:])
+    return tuple(spans)
+
+
+def _append(spans: list[Inline], text: str) -> None:
+    """Add literal text, joined with literal text before it."""
+    if spans and isinstance(spans[-1], str):
+        spans[-1] += text
+    elif text:
+        spans.append(text)
+
+
+def escape(text: str) -> str:
+    """Return markup that :func:`rich` shows as exactly this text."""
+    return re.sub(r"([\\*`$\[\]])", r"\\\1", text)
+
+
+def spans(text: Text) -> tuple[Inline, ...]:
+    """Return the parts of a text, whichever of its two forms it has."""
+    return (text,) if isinstance(text, str) else text
+
+
+def plain(text: Text) -> str:
+    """Return the words of a text without markup, formulas as they are read aloud."""
+    return "".join(_words(span) for span in spans(text))
+
+
+def _words(span: Inline) -> str:
+    match span:
+        case str():
+            return span
+        case Math():
+            return span.spoken
+        case _:
+            return span.text
+
+
+def printable(text: str) -> str:
+    """Return the text without control characters, which neither HTML nor PDF can hold."""
+    return re.sub(
+        r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]", "\N{REPLACEMENT CHARACTER}", text
+    )
+
+
+_SPOKEN = (
+    (r'"', ""),
+    (r"\b(dot|hat|tilde|overline)\(([^()]*)\)", r"\2 \1"),
+    (r"<=", " at most "),
+    (r">=", " at least "),
+    (r"\^2\b", " squared"),
+    (r"\^", " to the power "),
+    (r"/", " over "),
+    (r"=", " equals "),
+    (r"[_(),]", " "),
+    (r"\s+", " "),
+)
+
+
+def spoken(source: str) -> str:
+    """Return a plain reading of a short formula in Typst's math syntax, such as ``W_0/v``: "W 0 over v"."""
+    for pattern, replacement in _SPOKEN:
+        source = re.sub(pattern, replacement, source)
+    return source.strip()
