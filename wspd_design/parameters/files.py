@@ -182,7 +182,8 @@ def _entry(
     table = defaults | table
     for key in ("value", "unit", "source", "at", "status"):
         if key not in table:
-            raise UserError(f"[{name}] in {where} lacks {key}; add a line {key} = ....")
+            example = f'"{units_of(quantity.dimension)[0]}"' if key == "unit" else "..."
+            raise UserError(f"[{name}] in {where} lacks {key}; add {key} = {example} below it.")
     for key in ("unit", "source", "at", "status", "note"):
         if not isinstance(table.get(key, ""), str):
             raise UserError(f"{key} = {table[key]} of [{name}] in {where} must be text; put it in quotes.")
@@ -222,7 +223,7 @@ def _check_unit(name: str, unit: str, quantity: Quantity, where: str) -> None:
         dimension = dimension_of(unit)
     except UserError:
         near = nearest_unit(unit, quantity.dimension)
-        offer = f', did you mean "{near}"?' if near else ""
+        offer = f' (did you mean "{near}"?)' if near else ""
         raise UserError(f'unit = "{unit}" of [{name}] in {where} is unknown{offer}; {allowed}.') from None
     if dimension != quantity.dimension:
         raise UserError(
@@ -272,7 +273,9 @@ def _number(raw: object, quantity: Quantity, unit: str, what: str) -> float:
     if not math.isfinite(number):
         raise UserError(f"{what} is not a finite number; write a finite one.")
     if not quantity.admits(number):
-        raise UserError(f"{what} is {raw} {unit} but must be {quantity.range_text} (SI units); correct it.")
+        raise UserError(
+            f"{what} is {raw} [{unit}] but must be {quantity.range_text} in SI units; correct it."
+        )
     return number
 
 
@@ -300,4 +303,4 @@ def _text(raw: object) -> str:
 
 def _did_you_mean(word: str, known: Iterable[str]) -> str:
     close = get_close_matches(word.lower(), list(known), n=1, cutoff=0.5)
-    return f', did you mean "{close[0]}"?' if close else ""
+    return f' (did you mean "{close[0]}"?)' if close else ""

@@ -64,7 +64,7 @@ _TABLE: dict[Dimension, dict[str, Fraction]] = {
 
 _UNITS: dict[str, Dimension] = {unit: dimension for dimension, row in _TABLE.items() for unit in row}
 
-_EXAMPLES: dict[Dimension, str] = {"ratio": "0.14", "speed": "120 km/h", "time": "100 ms", "mass": "76.8 t"}
+_EXAMPLES: dict[Dimension, str] = {"speed": "120 km/h", "time": "100 ms", "mass": "76.8 t"}
 
 _NUMBER = re.compile(
     r"(?P<number>[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)", re.DOTALL
@@ -164,7 +164,7 @@ def parse_quantity(text: str, dimension: Dimension, *, what: str) -> float:
         If the text is no finite number, or its unit is missing, unknown or of another dimension.
     """
     match = _NUMBER.fullmatch(text.strip())
-    allowed = f"write it in {' or '.join(units_of(dimension))}, for example {_example(dimension)}"
+    allowed = _instruction(dimension)
     if match is None:
         raise UserError(f'{what} = "{text}" is not a finite number with a unit; {allowed}.')
     number, unit = match["number"], match["unit"]
@@ -214,8 +214,11 @@ def _offer(number: str, unit: str, dimension: Dimension) -> str:
     near = nearest_unit(unit, dimension)
     if near is not None:
         return f'did you mean "{number} {near}"? Units of {dimension}: {", ".join(units_of(dimension))}'
-    return f"write it in {' or '.join(units_of(dimension))}, for example {_example(dimension)}"
+    return _instruction(dimension)
 
 
-def _example(dimension: Dimension) -> str:
-    return f'"{_EXAMPLES.get(dimension, "1 " + units_of(dimension)[0])}"'
+def _instruction(dimension: Dimension) -> str:
+    if dimension == "ratio":
+        return 'write a plain number or %, for example "0.14" or "14 %"'
+    example = _EXAMPLES.get(dimension, f"1 {units_of(dimension)[0]}")
+    return f'write it in {" or ".join(units_of(dimension))}, for example "{example}"'
