@@ -1,7 +1,7 @@
 """Adhesion, eqs. (5)-(7): Polach's creep force follows from Kalker's linear theory and Coulomb saturation.
 
 Claims: (6) is the slope of the linear theory, (5) tends to the friction limit, (7) holds only with the
-*magnitude* of the sliding speed. Because mu depends on v - R omega, the creep force depends on slip and speed.
+*magnitude* of the sliding speed. As mu depends on v - R omega, the creep force depends on slip and speed.
 """
 
 import sympy as sp

@@ -1,8 +1,8 @@
 """Electro-pneumatic brake, eqs. (8)-(15): a first-order lag under conditions that the paper leaves out.
 
 Claims: (10) solves (9) for a constant supply only, the exact filling law with (8) has a second exponential;
-(13) drops a product-rule term; the right side of (14) is a misprint and needs full supply pressure and
-T_F = T_V; (15) is an average, with a ripple of T_max tanh(h/(4 tau)) peak to peak at half duty.
+(13) drops a product-rule term; the right side of (14) is a misprint and needs full supply pressure and T_F
+= T_V; (15) is an average, with a ripple of T_max tanh(h/(4 tau)) peak to peak at half duty.
 """
 
 import sympy as sp

@@ -15,16 +15,27 @@ import sympy as sp
 from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
-from derivations import adhesion, brake_actuator, motion, slip_equation
+from derivations import (
+    adaptive_fuzzy,
+    adhesion,
+    brake_actuator,
+    motion,
+    sliding_surface,
+    slip_equation,
+    track,
+)
 from derivations.notation import NOMENCLATURE, Generated
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = Path("wspd_design/model/generated")
 MODULES: dict[str, ModuleType] = {
+    "adaptive_fuzzy": adaptive_fuzzy,
     "adhesion": adhesion,
     "brake": brake_actuator,
     "motion": motion,
     "slip": slip_equation,
+    "sliding_surface": sliding_surface,
+    "track": track,
 }
 
 

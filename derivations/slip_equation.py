@@ -1,7 +1,8 @@
 """Slip dynamics, eqs. (3), (19), (20): lambda' = F + G T follows from (1)-(3), with G = R/(2 I v) > 0.
 
-Claims: (19) is correct as printed, affine in the torque, with an exact slope dF/d(lambda) at fixed speed; the
-uncertainty of (20) contains Delta G T, which grows as 1/v: no constant bound W exists down to standstill.
+Claims: (19) is correct as printed, affine in the torque, with an exact slope dF/d(lambda) at fixed speed;
+the uncertainty of (20) contains Delta G T, which grows as 1/v: no constant bound W exists down to
+standstill.
 """
 
 import sympy as sp
@@ -18,7 +19,8 @@ slip_of_speeds = (v - R * omega) / v
 slip_referred = (v - R * omega) / v_r
 wheel_speed_of_slip = (1 - slip) * v / R
 round_trip_residual = sp.simplify(slip_of_speeds.subs(omega, wheel_speed_of_slip) - slip)
-slip_at_standstill = sp.limit(slip_of_speeds.subs(omega, -1), v, 0, "+")  # singular: any omega != 0 will do
+turning = sp.Symbol("omega", positive=True)
+slip_at_standstill = sp.limit(slip_of_speeds.subs(omega, turning), v, 0, "+")  # minus infinity: singular
 
 # --- (19): differentiate (3) in time and insert (1), (2) --------------------------------------------------
 v_t, omega_t = sp.Function("v", positive=True)(time), sp.Function("omega", real=True)(time)
