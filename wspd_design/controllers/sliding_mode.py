@@ -6,7 +6,7 @@ from wspd_design.controllers.protocol import Command, Measurement, State, pulse_
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import clip, maximum, saturation
 from wspd_design.model.slip import slip_dynamics, slip_ratio
-from wspd_design.parameters import constants
+from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
 

@@ -6,7 +6,7 @@ from wspd_design.model import adhesion
 from wspd_design.model.generated import motion
 from wspd_design.model.generated import slip as generated
 from wspd_design.model.number import Number, maximum
-from wspd_design.parameters import constants
+from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
 

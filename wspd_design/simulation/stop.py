@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State
 from wspd_design.model.brake import Valve, braking_torque, pressure_after
-from wspd_design.parameters import constants
+from wspd_design.parameters.loading import constants
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.quarter import Quarter, quarter

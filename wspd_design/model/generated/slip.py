@@ -89,7 +89,7 @@ def slip_drift(
     x1 = 1.0 - slip
     return (
         wheel_damping * x0 * x1
-        + (-creep_force * wheel_radius**2 * x0 - x1 * (8.0 * creep_force + resistance) / mass) / speed
+        - (creep_force * wheel_radius**2 * x0 + x1 * (8.0 * creep_force + resistance) / mass) / speed
     )
 
 
@@ -155,9 +155,9 @@ def slip_drift_slip_derivative(
     x0 = 1.0 / wheel_inertia
     return (
         -wheel_damping * x0
-        + (
-            -creep_force_slip_derivative * wheel_radius**2 * x0
-            - (-8.0 * creep_force + creep_force_slip_derivative * (8.0 - 8.0 * slip) - resistance) / mass
+        - (
+            creep_force_slip_derivative * wheel_radius**2 * x0
+            + (-8.0 * creep_force + creep_force_slip_derivative * (8.0 - 8.0 * slip) - resistance) / mass
         )
         / speed
     )

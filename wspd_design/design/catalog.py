@@ -1,0 +1,116 @@
+"""Controllers by name: the paper's, the designed ones, the baselines, and design files."""
+
+from dataclasses import replace
+from difflib import get_close_matches
+from pathlib import Path
+
+from wspd_design.controllers.baselines.knorr_bremse import KnorrBremse
+from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
+from wspd_design.controllers.baselines.trenitalia import Trenitalia
+from wspd_design.controllers.baselines.unprotected import Unprotected
+from wspd_design.controllers.protocol import Controller
+from wspd_design.design.file import read_design
+from wspd_design.design.laws import GAINS_OF
+from wspd_design.design.records import Design, Gain, Specification, vehicle_hash
+from wspd_design.design.selection import design
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import (
+    load_entries,
+    load_knorr_bremse,
+    load_mitsubishi,
+    load_paper_gains,
+    load_rail,
+    load_trenitalia,
+)
+from wspd_design.parameters.records import Rail, Vehicle
+
+CONTROLLERS = ("afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
+"""Names that stand for a controller; the path of a design file stands for its own."""
+
+
+def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Controller:
+    """Build a controller from its name or from a design file.
+
+    Parameters
+    ----------
+    name_or_path : str
+        One of :data:`CONTROLLERS`, or the path of a design file ending in ``.toml``.
+    vehicle : Vehicle
+        The vehicle it shall brake.
+    rail : Rail
+        Design rail of ``smc``. A design file brings its own.
+    specification : Specification
+        Slip reference, ranges and sample time. A design file brings its own.
+
+    Raises
+    ------
+    UserError
+        If there is no such controller, or the design file does not fit the vehicle.
+    """
+    if is_design_file(name_or_path):
+        made = read_design(name_or_path)
+        return made.build(vehicle, load_rail(made.rail))
+    if name_or_path in ("afsmc", "smc"):
+        return named_design(name_or_path, vehicle, rail, specification).build(vehicle, rail)
+    sampling, radius = specification.sample_time, vehicle.wheel_radius
+    match name_or_path:
+        case "trenitalia":
+            pulses = load_trenitalia("calibrated")
+            return Trenitalia(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=pulses)
+        case "knorr-bremse":
+            decisions = load_knorr_bremse("calibrated")
+            return KnorrBremse(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=decisions)
+        case "mitsubishi":
+            rules = load_mitsubishi("calibrated")
+            return Mitsubishi(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=rules)
+        case "none":
+            return Unprotected(name=name_or_path, sample_time=sampling)
+    near = get_close_matches(name_or_path, CONTROLLERS, n=1)
+    offer = f', did you mean "{near[0]}"?' if near else ""
+    raise UserError(
+        f'unknown controller "{name_or_path}"{offer}; available: {", ".join(CONTROLLERS)}, '
+        "or the path of a design file ending in .toml"
+    )
+
+
+def is_design_file(name_or_path: str) -> bool:
+    """Tell whether a controller is given by a design file."""
+    return Path(name_or_path).suffix == ".toml"
+
+
+def named_design(name: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:
+    """Return the design behind ``afsmc`` (printed gains) or ``smc`` (chosen by the rules), under that name."""
+    if name == "afsmc":
+        return paper_design(vehicle, rail, specification)
+    return replace(design(vehicle, rail, specification, law="smc"), name=name)
+
+
+def paper_design(vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:
+    """Return the design with the gains that Section 7 of the paper prints."""
+    printed = load_paper_gains()
+    entries = load_entries("controller", "afsmc").entries
+    gains = [
+        Gain(
+            name=name,
+            value=getattr(printed, name),
+            unit="N m" if name == "torque_unit" else entries[name].unit,
+            why=f"{entries[name].status}: {entries[name].at}",
+        )
+        for name in GAINS_OF["afsmc"]
+        if name in entries
+    ]
+    for name, text in (
+        ("dead_zone", "eqs. (41), (42) adapt with s itself"),
+        ("hold_when_saturated", "the paper adapts at all times"),
+    ):
+        gains.append(Gain(name=name, value=False, unit="-", why=f"printed: {text}"))
+    order = GAINS_OF["afsmc"].index
+    return Design(
+        name="afsmc",
+        law="afsmc",
+        vehicle=vehicle.name,
+        vehicle_hash=vehicle_hash(vehicle),
+        rail=rail.name,
+        specification=specification,
+        gains=tuple(sorted(gains, key=lambda gain: order(gain.name))),
+    )

@@ -1,0 +1,147 @@
+"""Designs as TOML files, written and read without loss."""
+
+import json
+import math
+import os
+import tempfile
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from wspd_design.design.laws import GAINS_OF
+from wspd_design.design.records import Design, Gain, Specification
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import read_toml
+
+SCHEMA = "wspd-design/1"
+_HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail")
+_SPECIFICATION = {"slip": "-", "speeds": "m/s", "slips": "-", "slip_tolerance": "-", "sample_time": "s"}
+
+
+def design_text(design: Design) -> str:
+    """Return the TOML text of a design; reading it gives the same design back."""
+    head = (SCHEMA, design.name, design.law, design.vehicle, design.vehicle_hash, design.rail)
+    lines = [f"{key} = {_toml(value)}" for key, value in zip(_HEAD, head, strict=True)]
+    lines += ["", "[specification]"]
+    for key, unit in _SPECIFICATION.items():
+        lines.append(f"{key} = {_toml(getattr(design.specification, key))}  # {unit}")
+    for gain in design.gains:
+        lines += ["", f"[gains.{gain.name}]", f"value = {_toml(gain.value)}"]
+        lines += [f"unit = {_toml(gain.unit)}", f"why = {_toml(gain.why)}"]
+    return "\n".join(lines) + "\n"
+
+
+def write_design(design: Design, path: str | Path) -> None:
+    """Write a design file; nothing is left behind when that fails.
+
+    Raises
+    ------
+    UserError
+        If the folder does not exist or cannot be written.
+    """
+    target = Path(path)
+    try:
+        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as stream:
+                stream.write(design_text(design))
+            os.chmod(temporary, 0o644)
+            os.replace(temporary, target)
+        except OSError:
+            os.unlink(temporary)
+            raise
+    except OSError as error:
+        raise UserError(
+            f"cannot write {target} ({error.strerror}); choose a folder that exists and can be written"
+        ) from None
+
+
+def read_design(path: str | Path) -> Design:
+    """Read a design file.
+
+    Raises
+    ------
+    UserError
+        If the file is missing, not a design, of another version, or anything in it is misspelled or no number.
+    """
+    where = str(path)
+    document = read_toml(Path(path), where)
+    if document.get("schema") != SCHEMA:
+        raise UserError(
+            f'{where} is not a design of this version: schema = "{document.get("schema", "")}" '
+            f'must be "{SCHEMA}"; make the design again with wspd design'
+        )
+    _check_keys(document, (*_HEAD, "specification", "gains"), where, "")
+    head = {key: _string(document[key], f"{key} in {where}") for key in _HEAD[1:]}
+    law = head.pop("law")
+    if law not in GAINS_OF:
+        raise UserError(f'law = "{law}" in {where} must be one of {", ".join(GAINS_OF)}')
+    table = _table(document["specification"], "specification", where)
+    _check_keys(table, tuple(_SPECIFICATION), where, "specification.")
+    values = {key: _value(table[key], f"specification.{key} in {where}") for key in _SPECIFICATION}
+    for key, value in values.items():
+        pair = key in ("speeds", "slips")
+        if isinstance(value, bool) or isinstance(value, tuple) != pair or (pair and len(value) != 2):
+            raise UserError(f"specification.{key} in {where} must be {'two numbers' if pair else 'one number'}")
+    gains = _table(document["gains"], "gains", where)
+    _check_keys(gains, tuple(GAINS_OF[law]), where, "gains.")
+    return Design(
+        **head,
+        law=law,
+        specification=Specification(**values),
+        gains=tuple(_gain(name, gains[name], where) for name in GAINS_OF[law]),
+    )
+
+
+def _gain(name: str, table: object, where: str) -> Gain:
+    entry = _table(table, f"gains.{name}", where)
+    _check_keys(entry, ("value", "unit", "why"), where, f"gains.{name}.")
+    return Gain(
+        name=name,
+        value=_value(entry["value"], f"gains.{name}.value in {where}"),
+        unit=_string(entry["unit"], f"gains.{name}.unit in {where}"),
+        why=_string(entry["why"], f"gains.{name}.why in {where}"),
+    )
+
+
+def _table(value: object, name: str, where: str) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise UserError(f"{name} in {where} must be a table: write [{name}]")
+    return value
+
+
+def _check_keys(table: dict[str, Any], known: tuple[str, ...], where: str, prefix: str) -> None:
+    for key in table:
+        if key not in known:
+            near = get_close_matches(key, known, n=1)
+            remedy = f"did you mean {prefix}{near[0]}?" if near else f"allowed: {', '.join(known)}"
+            raise UserError(f"unknown key {prefix}{key} in {where}; {remedy}")
+    for key in known:
+        if key not in table:
+            raise UserError(f"{prefix}{key} is missing in {where}; make the design again with wspd design")
+
+
+def _string(value: object, what: str) -> str:
+    if not isinstance(value, str):
+        raise UserError(f"{what} = {value} must be text; put it in quotes")
+    return value
+
+
+def _value(value: object, what: str) -> Any:
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, list):
+        return tuple(_value(item, what) for item in value)
+    if not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise UserError(f"{what} = {value} must be a finite number")
+    return float(value)
+
+
+def _toml(value: str | float | bool | tuple[float, ...]) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, tuple):
+        return "[" + ", ".join(_toml(item) for item in value) + "]"
+    return repr(value)

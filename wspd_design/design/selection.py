@@ -1,0 +1,180 @@
+"""Selection of the gains by stated rules.
+
+Every rule is a formula of the vehicle, the rail, the specification and the bounds of the parameters; the reason
+that goes with a gain repeats it with its numbers.
+"""
+
+import math
+
+from wspd_design.certificates.reaching import supremum
+from wspd_design.design.problem import design_problem
+from wspd_design.design.records import Design, Gain, Law, Specification, vehicle_hash
+from wspd_design.model.slip import resistance, slip_dynamics, static_wheel_load
+from wspd_design.parameters.loading import load_paper_gains
+from wspd_design.parameters.records import Rail, Vehicle
+
+LAG_SEPARATION = 4.0  # the surface is this many times slower than valve and sampling
+RULES = 5  # membership functions, as in the paper
+ADAPTATION_SHARE = 0.1  # of the brake torque, that adaptation may move within one time constant of the surface
+SWITCHING_RESERVE = 1.02  # on the sampled supremum, which is a lower bound of the true one
+
+
+def design(vehicle: Vehicle, rail: Rail, specification: Specification, *, law: Law = "afsmc") -> Design:
+    """Choose the gains of a slip controller.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle, nominal values.
+    rail : Rail
+        Design rail, nominal friction; its bounds and those of the vehicle span the uncertainty.
+    specification : Specification
+        Reference, ranges, tolerance and sample time.
+    law : {"afsmc", "smc"}
+        Adaptive fuzzy sliding mode in its repaired form, or sliding mode with a friction model.
+
+    Returns
+    -------
+    Design
+        Gains with units and reasons.
+    """
+    rate = _surface_rate(vehicle, rail, specification)
+    layer = _boundary_layer(specification)
+    switching = _switching_gain(vehicle, rail, specification, rate)
+    shared = (rate, switching, layer)
+    gains = shared if law == "smc" else _adaptive_gains(vehicle, rail, specification, *shared)
+    return Design(
+        name=f"{law}-{vehicle.name}-{rail.name}",
+        law=law,
+        vehicle=vehicle.name,
+        vehicle_hash=vehicle_hash(vehicle),
+        rail=rail.name,
+        specification=specification,
+        gains=gains,
+    )
+
+
+def _surface_rate(vehicle: Vehicle, rail: Rail, specification: Specification) -> Gain:
+    lag = vehicle.brake.fill_time + specification.sample_time / 2.0
+    value = 1.0 / (LAG_SEPARATION * lag)
+    top_speed = specification.speeds[1]
+    shortest = top_speed / deceleration_limit(vehicle, rail, top_speed)
+    return Gain(
+        name="surface_rate",
+        value=value,
+        unit="1/s",
+        why=f"c = K_I/K_P = 1/({LAG_SEPARATION:g} (tau + h/2)): {LAG_SEPARATION:g} times slower than the valve "
+        f"(tau = {vehicle.brake.fill_time:g} s) and half a sample (h = {specification.sample_time:g} s); "
+        f"its time constant of {1.0 / value:.2f} s stands against a stop of at least {shortest:.1f} s",
+    )
+
+
+def _boundary_layer(specification: Specification) -> Gain:
+    return Gain(
+        name="boundary_layer",
+        value=specification.slip_tolerance / 2.0,
+        unit="-",
+        why=f"Phi/K_P = tolerance/2: inside the layer abs(e) <= 2 Phi/K_P = {specification.slip_tolerance:g}",
+    )
+
+
+def _switching_gain(vehicle: Vehicle, rail: Rail, specification: Specification, rate: Gain) -> Gain:
+    assert isinstance(rate.value, float)
+    low, high = specification.speeds
+    deceleration = deceleration_limit(vehicle, rail, high)
+    reserve = deceleration * specification.slip / math.log(high / low)
+    problem = design_problem(vehicle, rail, specification)
+    worst = supremum(problem, surface_rate=rate.value)
+    ratio = vehicle.wheelset_inertia / problem.inertia_bounds[1]
+    value = SWITCHING_RESERVE * (worst.value + reserve) / ratio
+    place = ", ".join(f"{point.name} {point.value:.4g} {point.unit}".rstrip(" -") for point in worst.point)
+    return Gain(
+        name="switching_gain",
+        value=value,
+        unit="m/s^2",
+        why=f"W0 = W v = {SWITCHING_RESERVE:g} (sup abs(r) + eta)/rho with sup abs(r) = {worst.value:.4g} m/s^2 "
+        f"at {place}; eta = {reserve:.3g} m/s^2 lets the surface be reached above {low * 3.6:.3g} km/h; "
+        f"rho = {ratio:.3g} is the smallest inertia ratio",
+    )
+
+
+def _adaptive_gains(
+    vehicle: Vehicle, rail: Rail, specification: Specification, rate: Gain, switching: Gain, layer: Gain
+) -> tuple[Gain, ...]:
+    assert isinstance(rate.value, float)
+    assert isinstance(switching.value, float)
+    assert isinstance(layer.value, float)
+    unit = load_paper_gains().torque_unit
+    low, high = specification.speeds
+    middle = math.sqrt(low * high)
+    point = slip_dynamics(vehicle, rail, specification.slip, middle)
+    equilibrium = -point.drift / point.gain / unit
+    bound = switching.value / (middle * point.gain) / unit
+    adaptation = ADAPTATION_SHARE * vehicle.brake.max_torque / unit * rate.value / layer.value
+    span = specification.slip
+    spacing = 2.0 * span / (RULES - 1)
+    centres = tuple(-span + spacing * index for index in range(RULES))
+    width = spacing / (2.0 * math.sqrt(math.log(2.0)))
+    share = f"{ADAPTATION_SHARE:.0%} of the brake torque"
+    return (
+        Gain(name="proportional_gain", value=1.0, unit="-", why="K_P = 1: s is then a slip; only ratios act"),
+        Gain(name="integral_gain", value=rate.value, unit="1/s", why=rate.why),
+        Gain(name="boundary_layer", value=layer.value, unit="-", why=layer.why),
+        Gain(
+            name="weight_rate",
+            value=adaptation,
+            unit="kN m/s",
+            why=f"alpha_1 = {ADAPTATION_SHARE:g} T_max c/(Phi/K_P): one boundary layer of error, held for the "
+            f"time constant of the surface, moves the weights by {share}",
+        ),
+        Gain(
+            name="bound_rate",
+            value=adaptation,
+            unit="kN m/s",
+            why="alpha_2 = alpha_1: weights and bound adapt alike, since both are torques",
+        ),
+        Gain(
+            name="initial_weights",
+            value=(equilibrium,) * RULES,
+            unit="kN m",
+            why=f"b_hat(0) = -F/G: the torque that holds slip {specification.slip:g} at "
+            f"{middle * 3.6:.0f} km/h on {rail.name}",
+        ),
+        Gain(
+            name="initial_bound",
+            value=bound,
+            unit="kN m",
+            why=f"psi_hat(0) = W0 2 I/R: the switching torque that the reaching condition asks for; {switching.why}",
+        ),
+        Gain(
+            name="centres",
+            value=centres,
+            unit="-",
+            why=f"{RULES} membership functions evenly over +-{span:g}: at the start of braking s = slip reference",
+        ),
+        Gain(
+            name="widths",
+            value=(width,) * RULES,
+            unit="-",
+            why="spacing/(2 sqrt(ln 2)): neighbors cross at one half",
+        ),
+        Gain(name="torque_unit", value=unit, unit="N m", why="u counts in kN m, as the printed gains do"),
+        Gain(
+            name="dead_zone",
+            value=True,
+            unit="-",
+            why="adapt with the part of s outside the boundary layer: the repaired V needs it",
+        ),
+        Gain(
+            name="hold_when_saturated",
+            value=True,
+            unit="-",
+            why="hold the adaptation while the command pushes beyond 0 or T_max: the repaired V needs it",
+        ),
+    )
+
+
+def deceleration_limit(vehicle: Vehicle, rail: Rail, speed: float) -> float:
+    """Upper bound of the deceleration: full friction on all wheels plus resistance at a speed [m/s2]."""
+    friction = 2 * vehicle.wheelsets * rail.mu0 * static_wheel_load(vehicle)
+    return (friction + float(resistance(vehicle, speed))) / vehicle.mass
