@@ -95,6 +95,8 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         wheelsets=4,
         brake=_build(Brake, values, "brake."),
         contact=_build(Contact, values, "contact."),
+        mass_bounds=_bounds(parameters, "mass"),
+        wheelset_inertia_bounds=_bounds(parameters, "wheelset_inertia"),
     )
 
 
@@ -117,7 +119,7 @@ def load_rail(name_or_path: str | Path) -> Rail:
         If there is no such rail or its file is wrong.
     """
     parameters = load_entries("rail", name_or_path)
-    return _build(Rail, _values(parameters), name=parameters.name)
+    return _build(Rail, _values(parameters), name=parameters.name, mu0_bounds=_bounds(parameters, "mu0"))
 
 
 def load_paper_gains() -> PaperGains:
@@ -178,6 +180,12 @@ def load_track_spectrum(name: str) -> TrackSpectrum:
 
 def _values(parameters: ParameterSet) -> dict[str, Any]:
     return {name: entry.value for name, entry in parameters.entries.items()}
+
+
+def _bounds(parameters: ParameterSet, name: str) -> tuple[float, float]:
+    """Bounds of a number; one without bounds counts as exactly known."""
+    value: Any = parameters.entries[name].value
+    return parameters.entries[name].bounds or (value, value)
 
 
 def _preset_values(controller: str, preset: Preset) -> dict[str, Any]:

@@ -110,6 +110,8 @@ class Vehicle:
     pitch_damping_ratio: float  # -
     brake: Brake
     contact: Contact
+    mass_bounds: tuple[float, float]  # kg
+    wheelset_inertia_bounds: tuple[float, float]  # kg m2
 
     @property
     def wheel_inertia(self) -> float:
@@ -127,6 +129,7 @@ class Rail:
     friction_decay: float  # s/m, B
     adhesion_reduction: float  # -, kA
     slip_reduction: float  # -, kS
+    mu0_bounds: tuple[float, float]  # -
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
