@@ -54,9 +54,10 @@ b_hat_rate = sp.Symbol("b_hat_rate", real=True)
 adaptation_printed = sp.solve(sp.Eq(b_hat_rate, -b_hat_rate), b_hat_rate)[0]  # b^' = -b^' leaves only zero
 adaptation_corrected = alpha1 * s * w_r
 adaptation_residual = adaptation_printed - adaptation_corrected
-bound_rate_printed = alpha2 * sp.Abs(s) * sp.Symbol("sgn_G", real=True)
+sgn_G = sp.Symbol("sgn_G", real=True)
+bound_rate_printed = alpha2 * sp.Abs(s) * sgn_G
 bound_rate_corrected = alpha2 * sp.Abs(s)
-bound_rate_residual = bound_rate_printed.subs(sp.Symbol("sgn_G", real=True), -1) - bound_rate_corrected
+bound_rate_residual = bound_rate_printed.subs(sgn_G, -1) - bound_rate_corrected
 
 
 # --- (43), (44): V2 as printed ----------------------------------------------------------------------------

@@ -38,7 +38,7 @@ slip_rate_residual = sp.simplify(slip_rate_printed - slip_rate_derived)
 slip_gain = sp.simplify(sp.diff(slip_rate_derived, T))
 slip_rate_is_affine = sp.simplify(sp.diff(slip_rate_derived, T, 2)) == 0
 drift_derived = sp.expand(slip_rate_derived.subs(T, 0).subs(omega, wheel_speed_of_slip))
-drift = -(R**2 * f / inertia + (1 - slip) * (f_d + 8 * f) / m) / v + B_W * (1 - slip) / inertia
+drift = -((R**2 * f / inertia + (1 - slip) * (f_d + 8 * f) / m) / v) + B_W * (1 - slip) / inertia
 drift_residual = sp.simplify(drift_derived - drift)
 slip_rate_corrected = drift + slip_gain * T  # the same law, written in slip instead of wheel speed
 
@@ -47,7 +47,9 @@ force_of_slip = sp.Function("f", real=True)(slip)
 drift_slope_derived = sp.diff(drift.subs(f, force_of_slip), slip).subs(
     {sp.diff(force_of_slip, slip): f_slope, force_of_slip: f}
 )
-drift_slope = -(R**2 * f_slope / inertia + ((1 - slip) * 8 * f_slope - (f_d + 8 * f)) / m) / v - B_W / inertia
+drift_slope = (
+    -((R**2 * f_slope / inertia + ((1 - slip) * 8 * f_slope - (f_d + 8 * f)) / m) / v) - B_W / inertia
+)
 drift_slope_residual = sp.simplify(drift_slope_derived - drift_slope)
 
 # --- (20): the true inertia is I / rho --------------------------------------------------------------------

@@ -41,7 +41,7 @@ expansion_residual = tuple(
     for row, density in ROWS.items()
 )
 
-# --- Table 9 as printed --------------------------------------------------------------------------------------
+# --- Table 9 as printed -----------------------------------------------------------------------------------
 # Digits and power of ten of the column. Cells that the text at hand has lost are left out.
 PRINTED = {
     "Horizontal": {"beta0": ("4.164787", -7), "gamma0": ("2.8855", -4), "gamma2": ("0.68038", 0)},

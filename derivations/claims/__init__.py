@@ -1,0 +1,1 @@
+"""What is claimed of each numbered equation: forms and residuals from the derivations, put side by side."""
