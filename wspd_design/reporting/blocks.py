@@ -98,6 +98,10 @@ class Equation:
     number: str = ""
     anchor: str = ""
 
+    def __post_init__(self) -> None:
+        if not self.description.strip():
+            raise ValueError(f"equation {self.source!r}: description must say in words what the formula says")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Figure:
@@ -110,6 +114,10 @@ class Figure:
     caption: Text
     alt: str
     anchor: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.alt.strip():
+            raise ValueError(f"figure {self.anchor!r}: alt must say in words what the picture shows")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

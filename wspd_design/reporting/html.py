@@ -110,7 +110,7 @@ class _Writer:
             case Math(spoken=spoken):
                 image = self._formulas.image(span)
                 return markup('<span class="math {}">{}<span class="spoken">{}</span></span>').format(
-                    _depth_class(image.depth), markup(image.svg), spoken
+                    _depth_class(image.depth), markup(image.svg), printable(spoken)
                 )
             case _:
                 return markup("{}").format(printable(str(span)))

@@ -5,10 +5,10 @@ Imports SymPy when it is itself imported: only who already holds an expression h
 
 from typing import Any
 
-from sympy import Basic, Integer, Mul, Rational, Symbol, fraction
+from sympy import Basic, Mul, Rational, Symbol, fraction
 from sympy.core.function import AppliedUndef
 from sympy.printing.conventions import split_super_sub
-from sympy.printing.precedence import PRECEDENCE, precedence
+from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.str import StrPrinter
 
 _GREEK = {
@@ -31,10 +31,10 @@ _FUNCTIONS |= {"Min": "min", "sign": 'op("sgn")'}
 def typst_math(expression: Basic) -> str:
     """Return a SymPy expression, equation or matrix in Typst's math syntax.
 
-    Names follow SymPy's conventions: ``T_brake`` has an upright subscript, ``mu0`` an italic one, ``omegadot``
-    and ``I_hat`` an accent, ``u_star`` an asterisk. Functions of time alone are printed without argument.
+    Names follow SymPy's conventions: ``T_brake`` has an upright subscript, ``mu0`` an italic one; accents are
+    written ``omegadot`` or ``I_hat``, ``u_star`` gets an asterisk. Functions of time lose their argument.
     """
-    return str(_TypstPrinter({"order": "none"}).doprint(expression))
+    return str(_TypstPrinter().doprint(expression))
 
 
 def _name(word: str) -> str:
@@ -100,7 +100,7 @@ class _TypstPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no type info
     def _print_Add(self, expr: Basic, order: Any = None) -> str:
         printed = ""
         for term in self._as_ordered_terms(expr, order=order):
-            text = self.parenthesize(term, PRECEDENCE["Add"])
+            text = self.parenthesize(term, PRECEDENCE["Add"], strict=True)
             if text.startswith("-"):
                 printed += f" - {text[1:]}" if printed else text
             else:
@@ -135,16 +135,12 @@ class _TypstPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no type info
         if "^" in printed and not printed.startswith("("):
             printed = f"({printed})"
         power = self.doprint(exponent)
-        return (
-            f"{printed}^{power}"
-            if isinstance(exponent, Integer | Symbol) and len(power) == 1
-            else (f"{printed}^({power})")
-        )
+        return f"{printed}^{power}" if power.isalnum() else f"{printed}^({power})"
 
     def _print_Function(self, expr: Basic) -> str:
         name = type(expr).__name__
         if isinstance(expr, AppliedUndef):
-            printed = typst_symbol(name) if len(name) == 1 or "_" in name else _function_name(name)
+            printed = _function_name(name)
             if len(expr.args) == 1 and isinstance(expr.args[0], Symbol) and expr.args[0].name == "t":
                 return printed
         else:
@@ -173,10 +169,8 @@ class _TypstPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no type info
     def _print_Integral(self, expr: Basic) -> str:
         signs, ends = "", ""
         for variable, *bounds in expr.limits:
-            limits = "".join(
-                f"{mark}({self.doprint(bound)})"
-                for mark, bound in zip("_^", bounds[-2:] if len(bounds) == 2 else (), strict=False)
-            )
+            scripts = zip("_^", bounds, strict=True) if len(bounds) == 2 else ()
+            limits = "".join(f"{mark}({self.doprint(bound)})" for mark, bound in scripts)
             signs = f"integral{limits} {signs}"
             ends += f" dif {self.doprint(variable)}"
         return f"{signs}{self.parenthesize(expr.function, PRECEDENCE['Mul'])}{ends}"
@@ -189,9 +183,8 @@ class _TypstPrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no type info
         return f"cases({', '.join(branches)})"
 
     def _print_Relational(self, expr: Basic) -> str:
-        sign = {"==": "=", "!=": "!="}.get(expr.rel_op, expr.rel_op)
-        own = precedence(expr)
-        return f"{self.parenthesize(expr.lhs, own)} {sign} {self.parenthesize(expr.rhs, own)}"
+        sign = "=" if expr.rel_op == "==" else expr.rel_op
+        return f"{self.doprint(expr.lhs)} {sign} {self.doprint(expr.rhs)}"
 
     def _print_And(self, expr: Basic) -> str:
         return ' " and " '.join(self.doprint(each) for each in sorted(expr.args, key=str))

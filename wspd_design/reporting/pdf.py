@@ -28,7 +28,7 @@ from wspd_design.reporting.blocks import (
 from wspd_design.reporting.figure_style import FONT_FAMILY
 from wspd_design.reporting.numbering import PROVENANCE, NumberedBlock, number
 from wspd_design.reporting.svg import size
-from wspd_design.reporting.text import CodeSpan, Emphasis, Inline, Link, Math, Text, printable, spans
+from wspd_design.reporting.text import CodeSpan, Emphasis, Inline, Link, Math, Text, plain, printable, spans
 
 
 def render_pdf(document: Document) -> bytes:
@@ -128,6 +128,19 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
     return {"status": None, "text": _text(cell)}
 
 
+def _shares(table: Table) -> list[int]:
+    """Return for each column its share of the free width; 0 for columns as wide as their content.
+
+    Columns of long texts share what the short ones leave, in proportion to their longest text.
+    """
+    longest = [
+        max(len(plain(cell.text if isinstance(cell, Cell) else cell)) for cell in (column.title, *cells))
+        for column, *cells in zip(table.columns, *table.rows, strict=True)
+    ]
+    threshold = min(25, max(longest))
+    return [min(length, 80) if length >= threshold else 0 for length in longest]
+
+
 def _block(numbered: NumberedBlock) -> dict[str, Any]:
     """Return a block as the plain data that the template expects."""
     block: Block = numbered.block
@@ -173,8 +186,13 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "caption": _text(block.caption),
                 "anchor": block.anchor,
                 "columns": [
-                    {"title": _text(column.title), "unit": _plain(column.unit), "align": column.align}
-                    for column in block.columns
+                    {
+                        "title": _text(column.title),
+                        "unit": _plain(column.unit),
+                        "align": column.align,
+                        "share": share,
+                    }
+                    for column, share in zip(block.columns, _shares(block), strict=True)
                 ],
                 "rows": [[_cell(cell) for cell in row] for row in block.rows],
             }

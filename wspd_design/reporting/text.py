@@ -91,7 +91,9 @@ def escape(text: str) -> str:
 
 def spans(text: Text) -> tuple[Inline, ...]:
     """Return the parts of a text, whichever of its two forms it has."""
-    return (text,) if isinstance(text, str) else text
+    if isinstance(text, str):
+        return (text,) if text else ()
+    return text
 
 
 def plain(text: Text) -> str:

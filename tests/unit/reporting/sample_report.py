@@ -26,7 +26,10 @@ from wspd_design.reporting.blocks import (
 from wspd_design.reporting.figure_style import figure_style, figure_svg, new_figure
 from wspd_design.reporting.text import rich
 
-HOSTILE = "#import \"x\" <script>alert('1')</script> $ \\ @a *b* `c` [d](#e) & © \N{PILE OF POO} \x00 ]] }} {{ </style>"
+HOSTILE = (
+    "#import \"x\" <script>alert('1')</script> $ \\ @a *b* _c_ `d` [e](#f) & © "
+    "\N{PILE OF POO} \x00 ]] }} {{ </style>"
+)
 
 
 def slip_figure() -> str:
@@ -93,12 +96,12 @@ def sample(note: str = "nothing hostile") -> Document:
     return Document(
         title="Wheel slide protection of the ER24PC",
         subtitle="Adaptive fuzzy sliding mode on wet rail, from 120 km/h",
-        status_line="wspd 0.1.0 · design er24pc-wet.toml · 22 November 2026 · seed 1",
+        status_line="wspd 0.1.0 · er24pc-wet.toml · 22 November 2026 · seed 1",
         verdict=Verdict(
             status=Status.UNDECIDED,
             sentence=rich(
-                "The reaching condition is proved for $v >= 2$ m/s, but with a valve lag of 0.6 s the closed loop has "
-                "no stable equilibrium at slip 0.14: see [](#reaching)."
+                "The reaching condition is proved for $v >= 2$ m/s, but with a valve lag of 0.6 s the closed "
+                "loop has no stable equilibrium at slip 0.14: see [](#reaching)."
             ),
         ),
         summary=(
@@ -121,18 +124,18 @@ def sample(note: str = "nothing hostile") -> Document:
             Heading(text="The slip equation", anchor="slip-equation"),
             Paragraph(
                 text=rich(
-                    "Slip follows [](#eq19), with the drift $F$ and the input gain $G = frac(R, 2 I v)$, both bounded "
-                    'away from standstill only. The torque $T_"brake"$ is that of *one wheelset*; the command '
-                    "`wspd linearize er24pc` prints the poles, and [the picture](#slip-figure) shows the stop. "
-                    "Longer lines show whether an inline formula such as $dot(lambda)_d + (K_I\\/K_P) e$ sits on the "
-                    "baseline and leaves the line spacing alone."
+                    "Slip follows [](#eq19), with the drift $F$ and the gain $G = frac(R, 2 I v)$, both "
+                    'bounded away from standstill. The torque $T_"brake"$ is that of *one wheelset*; the '
+                    "command `wspd linearize er24pc` prints the poles, and [the picture](#slip-figure) shows "
+                    "the stop. Longer lines show whether an inline formula such as "
+                    "$dot(lambda)_d + (K_I\\/K_P) e$ sits on the baseline and leaves the line spacing alone."
                 )
             ),
             Equation(
                 source="dot(lambda) = underbrace(-1/v [(R^2 f)/I + (1 - lambda) (f_d + 8 f)/m] "
                 '+ (B_W (1 - lambda))/I, F(lambda, v, t)) + underbrace(R/(2 I v), G(v)) T_"brake"',
-                description="The rate of slip equals the drift F of slip, speed and time plus the gain G of speed "
-                "times the braking torque.",
+                description="The rate of slip equals the drift F of slip, speed and time plus the gain G of "
+                "speed times the braking torque.",
                 number="19",
                 anchor="eq19",
             ),

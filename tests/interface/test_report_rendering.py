@@ -1,0 +1,276 @@
+"""Both renderings of a document with every kind of block, seen from outside, as a reader's tools see them."""
+
+import base64
+import hashlib
+import io
+import re
+from dataclasses import replace
+from datetime import timedelta
+from html.parser import HTMLParser
+
+import pypdf
+import pytest
+
+from tests.unit.reporting.sample_report import HOSTILE, sample
+from wspd_design.reporting.blocks import Definition, Document, Figure, Table
+from wspd_design.reporting.html import render_html
+from wspd_design.reporting.pdf import render_pdf
+from wspd_design.reporting.text import rich
+
+VOID = {"meta", "br", "hr", "img", "link", "input"}
+
+
+class Page(HTMLParser):
+    """Tags with their attributes and text; complains about tags that do not close in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.texts: list[str] = []
+        self._open: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self._open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self._open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open.pop() == tag
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        if self._open and self._open[-1] != "style":
+            self.texts.append(data)
+
+    def attributes(self, name: str) -> list[str]:
+        """All values of an attribute."""
+        return [attrs[name] or "" for _, attrs in self.tags if name in attrs]
+
+
+@pytest.fixture(scope="module")
+def document() -> Document:
+    return sample()
+
+
+@pytest.fixture(scope="module")
+def html(document: Document) -> str:
+    return render_html(document)
+
+
+@pytest.fixture(scope="module")
+def page(html: str) -> Page:
+    return Page(html)
+
+
+@pytest.fixture(scope="module")
+def pdf(document: Document) -> bytes:
+    return render_pdf(document)
+
+
+@pytest.fixture(scope="module")
+def reader(pdf: bytes) -> pypdf.PdfReader:
+    return pypdf.PdfReader(io.BytesIO(pdf))
+
+
+@pytest.fixture(scope="module")
+def pdf_text(reader: pypdf.PdfReader) -> str:
+    return "\n".join(sheet.extract_text() for sheet in reader.pages)
+
+
+# HTML
+
+
+def test_the_page_loads_nothing(html: str, page: Page) -> None:
+    references = page.attributes("href") + page.attributes("src") + page.attributes("xlink:href")
+    assert all(each.startswith(("#", "data:")) for each in references)
+    assert not re.search(r"https?:|@import|url\((?!#)", html)
+    assert {tag for tag, _ in page.tags} & {"script", "link", "iframe", "object", "form"} == set()
+
+
+def test_the_policy_allows_the_style_sheet_and_nothing_else(html: str, page: Page) -> None:
+    (policy,) = (a["content"] for t, a in page.tags if a.get("http-equiv") == "Content-Security-Policy")
+    (style,) = re.findall(r"<style>(.*?)</style>", html, re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    assert policy is not None
+    assert policy.startswith(f"default-src 'none'; style-src 'sha256-{digest}'; img-src data:;")
+    assert "unsafe" not in policy
+    assert page.attributes("style") == []
+    assert not any(name.startswith("on") for _, attrs in page.tags for name in attrs)
+
+
+def test_ids_are_unique_and_every_reference_resolves(html: str, page: Page) -> None:
+    ids = page.attributes("id")
+    assert len(ids) == len(set(ids))
+    inside = {each[1:] for each in page.attributes("href") if each.startswith("#")}
+    inside |= set(re.findall(r"url\(#([^)]*)\)", html))
+    assert inside <= set(ids)
+
+
+def test_screen_readers_get_words(page: Page, document: Document) -> None:
+    pictures = [attrs for tag, attrs in page.tags if tag == "svg" and attrs.get("role") == "img"]
+    figures = [block for block in document.blocks if isinstance(block, Figure)]
+    assert [attrs["aria-label"] for attrs in pictures] == [figure.alt for figure in figures]
+    hidden = [attrs for tag, attrs in page.tags if tag == "svg" and attrs.get("role") != "img"]
+    assert all(attrs.get("aria-hidden") == "true" for attrs in hidden)
+    formulas = [attrs for _, attrs in page.tags if attrs.get("role") == "math"]
+    assert (formulas[0]["aria-label"] or "").startswith("The rate of slip equals")
+    assert "T brake" in page.texts
+    assert ("html", {"lang": "en"}) in page.tags
+
+
+def test_every_status_is_a_sign_and_a_word(page: Page) -> None:
+    text = "".join(page.texts)
+    for shown in ("✓ proved", "✗ refuted", "? undecided", "≈ evidence", "∅ vacuous", "– not applicable"):
+        assert shown in text
+
+
+def test_downloads_hold_the_files(page: Page, document: Document) -> None:
+    links = {a["download"]: a["href"] or "" for t, a in page.tags if t == "a" and "download" in a}
+    for attachment in document.attachments:
+        head, content = links[attachment.name].split(",", 1)
+        assert head == f"data:{attachment.media_type};base64"
+        assert base64.b64decode(content).decode() == attachment.content
+
+
+def test_colors_follow_the_scheme(html: str) -> None:
+    body = html.split("<body>", 1)[1]
+    assert not re.search(r'(fill|stroke)="#', body)
+    assert "prefers-color-scheme: dark" in html
+    used = set(re.findall(r"var\((--[a-z0-9-]+)\)", html))
+    assert used <= set(re.findall(r"(--[a-z0-9-]+):", html))
+
+
+def test_html_is_reproducible(html: str) -> None:
+    assert render_html(sample()) == html
+
+
+def test_glyphs_are_shared(html: str) -> None:
+    """Each glyph is drawn once, however often it is used, and none is drawn in vain."""
+    drawn = re.findall(r'<symbol id="([^"]*)"', html)
+    used = re.findall(r'<use [^>]*href="#(g[0-9A-F]{32})"', html)
+    assert sorted(drawn) == sorted(set(used))
+    assert len(used) > 2 * len(drawn)
+
+
+# PDF
+
+
+def test_pdf_metadata(reader: pypdf.PdfReader, document: Document) -> None:
+    assert reader.metadata is not None
+    assert reader.metadata.title == document.title
+    assert reader.metadata.creation_date == document.timestamp
+    assert reader.root_object["/Lang"] == "en-US"
+    assert b"<pdfuaid:part>1</pdfuaid:part>" in reader.root_object["/Metadata"].get_object().get_data()
+
+
+def test_page_one_tells_the_result(reader: pypdf.PdfReader) -> None:
+    first = " ".join(reader.pages[0].extract_text().split())
+    order = ["Wheel slide protection of the ER24PC", "? undecided", "The reaching condition is proved"]
+    order += ["219.8", "12.94", "Table 1.", "C9", "Contents", "1 The slip equation", f"1/{len(reader.pages)}"]
+    positions = [first.find(each) for each in order]
+    assert -1 not in positions
+    assert positions == sorted(positions)
+
+
+def test_a_long_table_repeats_its_header(reader: pypdf.PdfReader) -> None:
+    table = [text for sheet in reader.pages if "variant" in (text := sheet.extract_text())]
+    assert len(table) >= 2
+    assert all("Distance" in text and "Slip rms" in text for text in table)
+    assert all(f"variant {row}" in "".join(table) for row in range(60))
+
+
+def test_numbers_agree_with_html(pdf_text: str, page: Page) -> None:
+    html_text = "".join(page.texts)
+    for shown in (
+        "1.1 Reaching condition",
+        "1.1.1 In the worst corner",
+        "2 Stops",
+        "(19)",
+        "Section 1.1",
+        "Eq. (19)",
+    ):
+        assert shown in html_text, shown
+        assert shown in pdf_text, shown
+    for label in ("Figure 1.", "Figure 2.", "Table 1.", "Table 2."):
+        assert label in html_text
+        assert label in pdf_text
+
+
+def test_pdf_alternative_texts(reader: pypdf.PdfReader, document: Document) -> None:
+    found = set()
+    for number in range(1, len(reader.xref[0]) + 1):
+        record = reader.get_object(number)
+        if isinstance(record, dict) and "/Alt" in record:
+            found.add(record["/Alt"])
+    assert {block.alt for block in document.blocks if isinstance(block, Figure)} <= found
+    assert "T brake" in found
+    assert "V equals one half of s squared." in found
+
+
+def test_pdf_attachments(reader: pypdf.PdfReader, document: Document) -> None:
+    for attachment in document.attachments:
+        assert reader.attachments[attachment.name] == [attachment.content.encode()]
+
+
+def test_figure_text_is_set_in_the_shipped_font(reader: pypdf.PdfReader, pdf_text: str) -> None:
+    fonts = {
+        font.get_object()["/BaseFont"].split("+")[-1]
+        for sheet in reader.pages
+        for font in sheet["/Resources"].get_object().get("/Font", {}).get_object().values()
+    }
+    assert "time [s]" in pdf_text
+    assert any(name.startswith("DejaVuSans") for name in fonts)
+    assert any(name.startswith("LibertinusSerif") for name in fonts)
+
+
+def test_pdf_is_reproducible(pdf: bytes, document: Document) -> None:
+    assert render_pdf(sample()) == pdf
+    later = replace(document, timestamp=document.timestamp + timedelta(days=1))
+    assert render_pdf(later) != pdf
+
+
+# Text from outside
+
+
+@pytest.fixture(scope="module")
+def hostile() -> Document:
+    """Foreign text in every place that takes text."""
+    document = sample(HOSTILE)
+    table = next(block for block in document.blocks if isinstance(block, Table))
+    return replace(
+        document,
+        title=f"T {HOSTILE}",
+        subtitle=HOSTILE,
+        status_line=HOSTILE,
+        verdict=replace(document.verdict, sentence=HOSTILE),
+        blocks=(
+            *(block for block in document.blocks if block is not table),
+            replace(table, caption=HOSTILE, rows=((HOSTILE,) * 5, *table.rows)),
+        ),
+        provenance=(Definition(term=HOSTILE, text=rich("`" + HOSTILE.replace("`", "") + "`")),),
+        attachments=tuple(replace(each, description=HOSTILE) for each in document.attachments),
+    )
+
+
+def test_hostile_text_is_shown_in_html(hostile: Document) -> None:
+    html = render_html(hostile)
+    page = Page(html)
+    assert "script" not in {tag for tag, _ in page.tags}
+    assert html.count("<style>") == html.count("</style>") == 1
+    shown = HOSTILE.replace("\0", "\N{REPLACEMENT CHARACTER}")
+    assert sum(shown in text for text in page.texts) >= 12
+    assert "\0" not in html
+
+
+def test_hostile_text_is_shown_in_pdf(hostile: Document) -> None:
+    reader = pypdf.PdfReader(io.BytesIO(render_pdf(hostile)))
+    text = "".join("".join(sheet.extract_text() for sheet in reader.pages).split())
+    start, _ = HOSTILE.split("\N{PILE OF POO}")
+    assert text.count("".join(start.split())) >= 10
+    assert reader.metadata is not None
+    assert (reader.metadata.title or "").startswith("T #import")
