@@ -152,7 +152,7 @@ def test_html_is_reproducible(html: str) -> None:
 def test_glyphs_are_shared(html: str) -> None:
     """Each glyph is drawn once, however often it is used, and none is drawn in vain."""
     drawn = re.findall(r'<symbol id="([^"]*)"', html)
-    used = re.findall(r'<use [^>]*href="#(g[0-9A-F]{32})"', html)
+    used = re.findall(r'<use [^>]*href="#(g[0-9A-F]+)"', html)
     assert sorted(drawn) == sorted(set(used))
     assert len(used) > 2 * len(drawn)
 
