@@ -1,9 +1,11 @@
 """The form of a statement about stability: what is claimed, what supports it, and what it assumes."""
 
+import math
 from dataclasses import dataclass, field
 from enum import Enum
 
 from wspd_design.controllers.protocol import Controller
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
 
@@ -82,7 +84,10 @@ class Certificate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Problem:
-    """The closed loop and the domain that all checks speak about."""
+    """The closed loop and the domain that all checks speak about.
+
+    ``contact_grows_with_load`` says whether Hertz's ellipse follows the wheel load when the mass varies.
+    """
 
     vehicle: Vehicle
     rail: Rail
@@ -95,3 +100,22 @@ class Problem:
     mu0_bounds: tuple[float, float]
     sample_time: float  # s
     seed: int = 0
+    contact_grows_with_load: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse ranges that are no ranges; a sign that no vehicle has is left to the checks to refute."""
+        for name, (low, high) in (
+            ("speeds", self.speeds),
+            ("slips", self.slips),
+            ("mass_bounds", self.mass_bounds),
+            ("inertia_bounds", self.inertia_bounds),
+            ("mu0_bounds", self.mu0_bounds),
+        ):
+            if not (math.isfinite(low) and math.isfinite(high) and low <= high):
+                raise UserError(
+                    f"{name} = ({low:g}, {high:g}) must be two finite numbers, the smaller one first"
+                )
+        if not 0.0 < self.slip < 1.0:
+            raise UserError(f"slip = {self.slip:g} must lie in (0, 1); for percent write for example 14 %")
+        if not 0.0 < self.sample_time < math.inf:
+            raise UserError(f"sample time = {self.sample_time:g} s must be above 0")
