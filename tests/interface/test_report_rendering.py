@@ -4,15 +4,18 @@ import base64
 import hashlib
 import io
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from datetime import timedelta
 from html.parser import HTMLParser
 
 import pypdf
+import pypdfium2
 import pytest
 
 from tests.unit.reporting.sample_report import HOSTILE, sample
-from wspd_design.reporting.blocks import Definition, Document, Figure, Table
+from wspd_design.reporting.blocks import Code, Definition, Document, Figure, Paragraph, Table
 from wspd_design.reporting.html import render_html
 from wspd_design.reporting.pdf import render_pdf
 from wspd_design.reporting.text import rich
@@ -234,7 +237,32 @@ def test_pdf_is_reproducible(pdf: bytes, document: Document) -> None:
     assert render_pdf(later) != pdf
 
 
+# Cost
+
+
+def test_the_block_model_is_cheap_to_import() -> None:
+    """Whoever builds or writes a report loads the heavy libraries only when something is rendered."""
+    program = (
+        "import sys; from wspd_design.reporting import blocks, figure_style, html, output, pdf; "
+        "print(sorted({'sympy', 'matplotlib', 'typst', 'jinja2', 'numpy'} & set(sys.modules)))"
+    )
+    printed = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    ).stdout
+    assert printed == "[]\n"
+
+
 # Text from outside
+
+
+def test_long_words_stay_on_the_page(document: Document) -> None:
+    blocks = (Paragraph(text="w" * 300), Code(text="c" * 300), *document.blocks)
+    with pypdfium2.PdfDocument(render_pdf(replace(document, blocks=blocks))) as file:
+        text = file[1].get_textpage()
+        boxes = [text.get_charbox(index) for index in range(text.count_chars())]
+        width = file[1].get_width()
+    assert len(boxes) > 600
+    assert max(right for _, _, right, _ in boxes) < width - 60  # the margin is 22 mm
 
 
 @pytest.fixture(scope="module")

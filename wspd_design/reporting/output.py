@@ -1,7 +1,7 @@
 """Writes a report to a file, whole or not at all."""
 
 import os
-import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 from wspd_design.parameters.errors import UserError
@@ -34,22 +34,17 @@ def write_document(document: Document, path: str | Path) -> None:
         _write_whole(path, content)
     except OSError as error:
         raise UserError(
-            f"report {path} cannot be written ({error.strerror}); choose an existing folder with write access"
+            f"report {path} cannot be written ({error.strerror}); choose a folder that exists and is writable"
         ) from error
 
 
 def _write_whole(path: Path, content: bytes) -> None:
     """Write to a temporary file beside the target and rename it, which is one step for every reader."""
-    if path.is_dir():
-        raise IsADirectoryError(0, "it is a folder")
-    descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(content)
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(name).chmod(0o666 & ~umask)  # mkstemp keeps files private; a report is a file like any other
-        Path(name).replace(path)
+        part.write_bytes(content)
+        part.replace(path)
     except BaseException:
-        Path(name).unlink(missing_ok=True)
+        with suppress(OSError):  # nothing to remove when the folder is missing
+            part.unlink()
         raise
