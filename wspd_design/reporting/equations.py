@@ -78,8 +78,6 @@ def _image(page: bytes, glyphs: dict[str, str]) -> FormulaImage:
                 baseline = parent.get("transform", "translate(0 0)").rstrip(")").split()[-1]
                 depth = height - float(baseline)
                 parent.remove(child)
-            elif child.tag == f"{_SVG}symbol":
-                glyphs.setdefault(child.attrib["id"], _markup(child))
             elif child.tag == f"{_SVG}defs":
                 for symbol in child:
                     glyphs.setdefault(symbol.attrib["id"], _markup(symbol))

@@ -64,7 +64,6 @@ def parameters() -> dict[str, Any]:
         "figure.facecolor": "none",
         "axes.facecolor": "none",
         "savefig.facecolor": "none",
-        "path.simplify": True,
     }
 
 
