@@ -153,7 +153,7 @@ def sources() -> dict[Path, str]:
     return files
 
 
-def outdated(root: Path = ROOT) -> list[Path]:
+def outdated(root: Path) -> list[Path]:
     """Return the generated files under ``root`` that differ from what would be written."""
     return [
         path
@@ -169,7 +169,7 @@ def main() -> int:
         "--check", action="store_true", help="exit with 1 when a committed file is not current"
     )
     if parser.parse_args().check:
-        for path in (stale := outdated()):
+        for path in (stale := outdated(ROOT)):
             print(f"{path} differs from its derivation: run `make derive`.", file=sys.stderr)
         return 1 if stale else 0
     for path, text in sources().items():

@@ -7,9 +7,9 @@ from wspd_design.model.equations import Equation
 
 _README = """# Derivations
 
-Executable SymPy mathematics of the paper, one claim per file. Each file reads top to bottom: the printed form,
-the form that SymPy derives, and their difference, the *residual*. Nothing here is asserted: the verdict of an
-equation follows from its residual (`equation_map.py`; the forms are put side by side in `claims/`).
+Executable SymPy mathematics of the paper, one claim per file. Each file reads top to bottom: the printed
+form, the form that SymPy derives, and their difference, the *residual*. Nothing here is asserted: the verdict
+of an equation follows from its residual (`equation_map.py`; `claims/` puts the forms side by side).
 
 * **holds**: the residual of the printed form is zero.
 * **misprint**: it is not, and it is zero for the corrected form.
@@ -17,9 +17,9 @@ equation follows from its residual (`equation_map.py`; the forms are put side by
 * **definition**: there is nothing to prove.
 
 `make derive` (`python -m derivations.generate`) writes the functions below to `wspd_design/model/generated/`,
-the map with all forms and residuals to `wspd_design/data/equations.toml` (shown by `wspd equations`), and this
-file; `--check` exits with 1 when one of them is not current. The last column is the test that establishes the
-entry by other means: numbers, finite differences, simulation.
+the map with all forms and residuals to `wspd_design/data/equations.toml` (shown by `wspd equations`), and
+this file; `--check` exits with 1 when one of them is not current. The last column is the test that
+establishes the entry by other means: numbers, finite differences, simulation.
 
 Symbols, units and their names are in `notation.py`. Constants in the generated code are doubles: a verified
 computation has to widen pi by one unit in the last place, the other constants are exact.
@@ -27,7 +27,7 @@ computation has to widen pi by one unit in the last place, the other constants a
 ## Equation map
 """
 
-_README_HEAD = """| eq. | what | verdict | assumption, remark | file | generated functions | test in `tests/paper/` |
+_README_HEAD = """| eq. | what | verdict | assumption, remark | file | functions | test in `tests/paper/` |
 |---|---|---|---|---|---|---|"""
 
 

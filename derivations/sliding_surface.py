@@ -67,7 +67,7 @@ ideal_residual_printed = sp.simplify(ideal_slip_rate + K_I / K_P * e)  # (28) pr
 ideal_control = equivalent_corrected.subs({F: slip_equation.drift, G: slip_equation.slip_gain})
 ideal_at_standstill = sp.simplify(sp.limit(ideal_control, slip_equation.v, 0, "+"))
 drift_at_standstill = sp.limit(
-    sp.expand(slip_equation.drift.subs(slip, sp.Rational(1, 7))), slip_equation.v, 0
+    sp.expand(slip_equation.drift.subs(slip, sp.Rational("0.14"))), slip_equation.v, 0
 )
 
 # --- lag: tau T' + T = u, error e' = p e - G dT, u from (23) inside the layer -----------------------------

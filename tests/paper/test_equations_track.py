@@ -1,0 +1,49 @@
+"""Eq. (49) and Table 9 against the published coefficients and standard deviations of ERRI B176."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from derivations import track
+from wspd_design.model.generated.track import irregularity_spectrum
+
+
+def spectrum(row, wavenumber):
+    return irregularity_spectrum(wavenumber, *(float(c) for c in track.DERIVED[row].values()))
+
+
+def test_expansion_of_the_published_spectra():
+    assert track.expansion_residual == (0, 0, 0)
+    for wavenumber in (0.05, 0.3, 2.0):
+        w2 = wavenumber**2
+        factors = (w2 + 0.0206**2) * (w2 + 0.8246**2)
+        assert spectrum("Vertical", wavenumber) == pytest.approx(1.080e-6 * 0.8246**2 / factors, rel=1e-12)
+        cross = 1.080e-6 / 0.75**2 * 0.8246**2 * w2 / (factors * (w2 + 0.4380**2))
+        assert spectrum("Lateral", wavenumber) == pytest.approx(cross, rel=1e-12)
+
+
+def test_coefficients_of_the_published_library():
+    for row, beta0 in (("Horizontal", 4.164787e-7), ("Vertical", 7.343623e-7)):
+        derived = track.DERIVED[row]
+        assert float(derived["beta0"]) == pytest.approx(beta0, rel=1e-6)
+        assert float(derived["gamma0"]) == pytest.approx(2.8855e-4, rel=1e-6)
+        assert float(derived["gamma2"]) == pytest.approx(0.6803895, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("row", "deviation"), [("Vertical", 1.61e-3), ("Horizontal", 1.21e-3), ("Lateral", 1.49e-3)]
+)
+def test_standard_deviation_in_the_band_of_the_paper(row, deviation):
+    variance, _ = quad(lambda w: spectrum(row, w), 2 * np.pi / 25.0, 2 * np.pi / 3.0)
+    assert np.sqrt(variance) == pytest.approx(deviation, rel=0.005)
+
+
+def test_table_9():
+    found = track.disagreements()
+    assert list(found) == [("Lateral", "beta2")]
+    assert float(found["Lateral", "beta2"]) == pytest.approx(-1e-6, rel=1e-5)
+
+
+def test_wrong_digit_in_table_9_is_caught(monkeypatch):
+    monkeypatch.setitem(track.PRINTED["Vertical"], "gamma2", ("0.68138", 0))
+    assert ("Vertical", "gamma2") in track.disagreements()
