@@ -78,6 +78,10 @@ def equation(claim: Claim) -> Equation:
 
 def equations() -> tuple[Equation, ...]:
     """Return the whole map in the order of the paper."""
-    from derivations.claims import brake, fuzzy, model, sliding, track
+    from derivations.claims import brake, convergence, fuzzy, model, sliding, track
 
-    return tuple(equation(claim) for part in (model, brake, sliding, fuzzy, track) for claim in part.CLAIMS)
+    return tuple(
+        equation(claim)
+        for part in (model, brake, sliding, fuzzy, convergence, track)
+        for claim in part.CLAIMS
+    )

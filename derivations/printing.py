@@ -11,7 +11,6 @@ from derivations.notation import NOMENCLATURE
 _OTHER = {  # symbols that occur in derivations only: plain text, Typst
     "slip_rate": ("λ'", "dot(lambda)"),
     "error_rate": ("e'", "dot(e)"),
-    "surface_rate_of_s": ("s'", "dot(s)"),
     "speed_rate": ("v'", "dot(v)"),
     "wheel_speed_rate": ("ω'", "dot(omega)"),
     "torque_rate": ("T'", "dot(T)"),
@@ -27,8 +26,6 @@ _OTHER = {  # symbols that occur in derivations only: plain text, Typst
     "u": ("u", "u"),
     "u_ideal": ("u*", "u^*"),
     "u_eq": ("u_eq", 'u_"eq"'),
-    "u_robust": ("u_r", "u_r"),
-    "u_fuzzy": ("u_fuz", 'u_"fuz"'),
     "rho": ("ρ", "rho"),
     "sgn_G": ("sgn(G)", 'op("sgn") (G)'),
     "b_error_times_w": ("b~'w", "tilde(b)^top w"),

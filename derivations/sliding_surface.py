@@ -18,9 +18,6 @@ Phi, p, tau, k = symbols("layer pole time_constant layer_rate")
 # --- (21), (22): surface ----------------------------------------------------------------------------------
 slip_error = slip_d - slip
 sliding_variable = K_P * e + K_I * E
-error_t = sp.Function("e", real=True)(time)
-surface_t = K_P * error_t + K_I * sp.Integral(error_t, (time, 0, time))
-surface_rate_of_error = sp.diff(surface_t, time)  # = K_P e' + K_I e
 sliding_pole = sp.solve(sp.Symbol("q") * K_P + K_I, sp.Symbol("q"))[0]  # of e' + (K_I/K_P) e = 0
 
 # --- (19), (20) as the plant: lambda' = F + G u + delta ---------------------------------------------------

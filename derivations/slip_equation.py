@@ -40,7 +40,6 @@ slip_rate_is_affine = sp.simplify(sp.diff(slip_rate_derived, T, 2)) == 0
 drift_derived = sp.expand(slip_rate_derived.subs(T, 0).subs(omega, wheel_speed_of_slip))
 drift = -((R**2 * f / inertia + (1 - slip) * (f_d + 8 * f) / m) / v) + B_W * (1 - slip) / inertia
 drift_residual = sp.simplify(drift_derived - drift)
-slip_rate_corrected = drift + slip_gain * T  # the same law, written in slip instead of wheel speed
 
 # --- slope at fixed speed: f depends on slip, f_d on speed only -------------------------------------------
 force_of_slip = sp.Function("f", real=True)(slip)

@@ -104,6 +104,8 @@ def test_true_rate_of_v2_along_a_trajectory():
     assert (np.abs(claimed - by_difference) > 0.3).all()
     assert adaptive_fuzzy.omitted_residual == adaptive_fuzzy.frozen_gain_residual == 0
     assert adaptive_fuzzy.omitted != 0
+    assert adaptive_fuzzy.gain_growth == adaptive_fuzzy.a / adaptive_fuzzy.v  # G' / G > 0 while braking
+    assert adaptive_fuzzy.last_line_residual != 0
 
 
 def test_printed_v2_rises_and_repaired_v_falls():

@@ -20,6 +20,7 @@ def test_valve_states_of_table_2():
     increase, hold, reduce = (1.0, 0.0), (0.0, 0.0), (0.0, 1.0)  # (fill, vent)
     rates = [brake.cylinder_pressure_rate(3e5, P_MAX, *state, T_F, T_V) for state in (increase, hold, reduce)]
     assert rates == pytest.approx([3e5 / T_F, 0.0, -3e5 / T_V])
+    assert brake_actuator.pressure_rate_residual == 0
 
 
 @pytest.mark.parametrize(("start", "pressure"), [(0.0, 0.0), (0.5, 1.5e5), (2.0, 5.9e5)])

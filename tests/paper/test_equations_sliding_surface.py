@@ -62,6 +62,7 @@ def test_equivalent_control_keeps_the_surface():
     assert np.ptp(s) < 1e-8
     # The printed law has the slip for the error: what (19) makes of it does not tend to the reference.
     assert sliding_surface.printed_contradiction != 0
+    assert sliding_surface.equivalent_residual_printed != 0
     assert sliding_surface.ideal_residual_printed != 0
 
     def with_slip_for_error(slip, speed, _error, _integral):
@@ -87,6 +88,16 @@ def test_reaching_condition(disturbance):
     assert (np.abs(s[~outside]) <= 1e-3 + 1e-9).any()
     assert np.abs(s[-1]) <= 1e-3
     assert sliding_surface.worst_case_rate == 0  # |delta| = W: V' is not negative
+
+
+def test_error_inside_the_layer():
+    # s at +Phi until the error has died out (integral Phi/K_I), then at once at -Phi: the worst case.
+    layer = 3.0
+    bound = float(
+        sliding_surface.layer_error_bound.subs({sliding_surface.Phi: layer, sliding_surface.K_P: K_P})
+    )
+    assert sliding_variable(0.0, layer / K_I, K_P, K_I) == pytest.approx(layer)
+    assert sliding_variable(-bound, layer / K_I, K_P, K_I) == pytest.approx(-layer)
 
 
 def test_unit_of_the_printed_gains():
@@ -117,6 +128,7 @@ def test_lag_polynomial_is_that_of_the_loop(pole, layer_rate):
         ]
     )
     coefficients = np.array(lag_characteristic(pole, tau, c, layer_rate))
+    assert sliding_surface.characteristic_residual == (0, 0, 0, 0)
     assert np.poly(loop) * tau == pytest.approx(coefficients)
     stable = np.linalg.eigvals(loop).real.max() < 0
     routh = pole * tau < 1 and (1 - pole * tau) * (c + layer_rate) > tau * layer_rate * c

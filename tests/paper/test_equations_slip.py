@@ -63,6 +63,10 @@ def test_drift_slope_equals_finite_difference(ratio, v):
     assert exact == pytest.approx((drift(ratio + step, v) - drift(ratio - step, v)) / (2 * step), rel=1e-5)
 
 
+def test_drift_slope_is_the_derivative_of_the_drift():
+    assert slip_equation.drift_slope_residual == 0
+
+
 def test_wrong_sign_in_eq_19_is_caught():
     claim = next(c for c in sliding.CLAIMS if c.number == "19")
     assert verdict(claim) == "holds"
