@@ -1,0 +1,131 @@
+"""The Typer application and the one place where errors become exit codes."""
+
+import signal
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from wspd_design.cli.commands import (
+    compare,
+    design,
+    doctor,
+    equations,
+    linearize,
+    new,
+    report,
+    simulate,
+    sources,
+    verify,
+)
+from wspd_design.cli.console import program_version
+from wspd_design.cli.exit_codes import BUG, INTERRUPTED, WRONG_USE
+from wspd_design.parameters.errors import UserError
+
+# Typer carries its own copy of Click since 0.26; the parent of this class is the usage error of either.
+_USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
+
+app = typer.Typer(
+    name="wspd",
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"wspd {program_version()}")
+        raise typer.Exit
+
+
+@app.callback(
+    invoke_without_command=True,
+    epilog="Without a command the wizard starts. Exit codes: 0 good, 1 a check refuted, 2 wrong use, "
+    "3 undecided, 130 interrupted.",
+)
+def _start(
+    context: typer.Context,
+    _version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Design, prove and validate controllers for railway wheel slide protection."""
+    if context.invoked_subcommand is None:
+        new.new()
+
+
+_DESIGNING, _JUDGING, _KNOWING = "Design", "Prove and validate", "Look up"
+
+app.command(rich_help_panel=_DESIGNING, epilog="Example: wspd new -o design.toml")(new.new)
+app.command(rich_help_panel=_DESIGNING, epilog='Example: wspd design --law smc --slip "14 %" -o design.toml')(
+    design.design
+)
+app.command(rich_help_panel=_JUDGING, epilog="Example: wspd verify design.toml")(verify.verify)
+app.command(
+    rich_help_panel=_JUDGING, epilog='Example: wspd simulate afsmc --rail polach-dry --speed "100 km/h"'
+)(simulate.simulate)
+app.command(rich_help_panel=_JUDGING, epilog="Example: wspd compare design.toml afsmc none")(compare.compare)
+app.command(rich_help_panel=_JUDGING, epilog="Example: wspd report design.toml -o report.html --pdf")(
+    report.report
+)
+app.command(rich_help_panel=_KNOWING, epilog="Example: wspd linearize --rail polach-dry")(linearize.linearize)
+app.command(rich_help_panel=_KNOWING, epilog="Example: wspd equations 19")(equations.equations)
+app.command(rich_help_panel=_KNOWING, epilog="Example: wspd sources er24pc")(sources.sources)
+app.command(rich_help_panel=_KNOWING, epilog="Example: wspd doctor")(doctor.doctor)
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command line and return its exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        What follows ``wspd``.
+
+    Returns
+    -------
+    int
+        0 good, 1 a check refuted, 2 wrong use, 3 undecided, 130 interrupted, 70 a fault of the program.
+    """
+    try:
+        code = app(list(arguments), prog_name="wspd", standalone_mode=False)
+    except UserError as error:
+        return _refuse(str(error))
+    except _USAGE_ERROR as error:
+        return _refuse(_usage_sentence(error))
+    except (KeyboardInterrupt, typer.Abort):
+        print("wspd: interrupted.", file=sys.stderr)
+        return INTERRUPTED
+    except Exception:
+        traceback.print_exc()
+        print("wspd: this is a fault of the program; please report it with the lines above.", file=sys.stderr)
+        return BUG
+    return code if isinstance(code, int) else 0
+
+
+def main() -> None:
+    """Entry point of the console script ``wspd``."""
+    if hasattr(signal, "SIGPIPE"):  # end silently, as other filters do, when the reader of a pipe is gone
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a terminal without Unicode loses a sign, not the answer
+    sys.exit(run(sys.argv[1:]))
+
+
+def _refuse(message: str) -> int:
+    sentence = " ".join(message.split())
+    print(f"wspd: {sentence}{'' if sentence.endswith(('.', '?', '!')) else '.'}", file=sys.stderr)
+    return WRONG_USE
+
+
+def _usage_sentence(error: Exception) -> str:
+    """What Typer says about a wrong option, in one sentence with the place to look."""
+    message: str = error.format_message()  # type: ignore[attr-defined]
+    context = getattr(error, "ctx", None)
+    command = context.command_path if context is not None else "wspd"
+    return f"{message.rstrip('.')}; see {command} --help"

@@ -1,0 +1,50 @@
+"""``wspd design``: gains that meet a specification, with their reasons."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from wspd_design.cli import options
+from wspd_design.cli.case import Wishes, check_law, specification
+from wspd_design.cli.console import progress
+from wspd_design.cli.gains import show_design
+from wspd_design.cli.output import check_output
+from wspd_design.design import selection
+from wspd_design.design.file import write_design
+from wspd_design.design.laws import GAINS_OF
+from wspd_design.parameters.loading import load_rail, load_vehicle
+
+
+def design(
+    law: Annotated[str, typer.Option("--law", metavar="LAW", help=f"{' or '.join(GAINS_OF)}.")] = options.LAW,
+    vehicle: options.VehicleOption = None,
+    rail: options.RailOption = None,
+    slip: options.SlipOption = None,
+    tolerance: Annotated[
+        str | None,
+        typer.Option(
+            "--tolerance",
+            metavar="SLIP",
+            help="Band about the slip reference.",
+            show_default=options.TOLERANCE,
+            rich_help_panel="Case",
+        ),
+    ] = None,
+    speeds: options.SpeedsOption = None,
+    sample_time: options.SampleTimeOption = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Design file to write.")
+    ] = Path(options.DESIGN_FILE),
+    force: options.ForceOption = False,
+) -> None:
+    """Choose the gains of a slip controller by rules, say why, and write a design file."""
+    check_output(output, force=force)
+    wanted = specification(Wishes(slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time))
+    chosen = check_law(law)
+    locomotive, friction = load_vehicle(vehicle or options.VEHICLE), load_rail(rail or options.RAIL)
+    with progress() as tell:
+        tell("choosing the gains")
+        made = selection.design(locomotive, friction, wanted, law=chosen)
+    write_design(made, output)
+    show_design(made, output)

@@ -1,0 +1,86 @@
+"""``wspd equations``: what became of every numbered equation of the paper."""
+
+from collections import Counter
+from difflib import get_close_matches
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from wspd_design.cli.console import console, table
+from wspd_design.model.equations import Equation, load_equations
+from wspd_design.parameters.errors import UserError
+
+_STYLES = {"holds": "green", "misprint": "red", "gap": "yellow", "definition": "cyan"}
+
+
+def equations(
+    number: Annotated[
+        str | None, typer.Argument(metavar="[NUMBER]", help='For example 19, B_W or "Table 5".')
+    ] = None,
+    verdict: Annotated[
+        str | None, typer.Option("--verdict", metavar="WORD", help=f"Only {', '.join(_STYLES)}.")
+    ] = None,
+) -> None:
+    """Show every equation of the paper with its verdict, or all about one of them."""
+    known = load_equations()
+    if number is not None:
+        _show_one(_find(number, known))
+        return
+    if verdict is not None and verdict not in _STYLES:
+        near = get_close_matches(verdict, _STYLES, n=1)
+        offer = f' (did you mean "{near[0]}"?)' if near else ""
+        raise UserError(f'--verdict "{verdict}" is unknown{offer}; choose {", ".join(_STYLES)}')
+    _show_all([equation for equation in known if verdict in (None, equation.verdict)])
+
+
+def _find(number: str, known: tuple[Equation, ...]) -> Equation:
+    wanted = number.strip("() ").lower()
+    for equation in known:
+        if equation.number.lower() == wanted:
+            return equation
+    numbers = {equation.number.lower(): equation.number for equation in known}
+    near = get_close_matches(wanted, numbers, n=1, cutoff=0.7)
+    offer = f' (did you mean "{numbers[near[0]]}"?)' if near else ""
+    raise UserError(f'the paper has no equation "{number}"{offer}; "wspd equations" lists all of them')
+
+
+def _label(number: str) -> str:
+    return f"({number})" if number[0].isdigit() else number
+
+
+def _show_all(chosen: list[Equation]) -> None:
+    out = console()
+    shown = table("No.", "Verdict", "Title and corrected form")
+    for equation in chosen:
+        content = Text(equation.title)
+        if equation.corrected:
+            content.append(f"\n{equation.corrected}", style="dim")
+        shown.add_row(
+            _label(equation.number), Text(equation.verdict, style=_STYLES[equation.verdict]), content
+        )
+    out.print(shown)
+    counts = Counter(equation.verdict for equation in chosen)
+    out.print(", ".join(f"{counts[word]} {word}" for word in _STYLES if counts[word]), style="bold")
+    out.print('Details: "wspd equations 19".', style="dim", markup=False)
+
+
+def _show_one(equation: Equation) -> None:
+    out = console()
+    heading = Text(f"{_label(equation.number)} {equation.title}: ", style="bold")
+    out.print(heading.append(equation.verdict, style=f"bold {_STYLES[equation.verdict]}"))
+    shown = table("", "")
+    shown.show_header = False
+    for name, content in (
+        ("printed", equation.printed),
+        ("corrected", equation.corrected),
+        ("residual", equation.residual),
+        ("assumption", equation.assumption),
+        ("remark", equation.remark),
+        ("file", equation.file),
+        ("functions", ", ".join(equation.functions)),
+        ("test", equation.test),
+    ):
+        if content:
+            shown.add_row(Text(name, style="dim"), Text(content))
+    out.print(shown)

@@ -1,0 +1,87 @@
+"""``wspd linearize``: poles and input gain of the slip over speed."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.text import Text
+
+from wspd_design.cli import options
+from wspd_design.cli.case import Wishes, check_plant, parse_speed, specification
+from wspd_design.cli.console import console, print_json, table
+from wspd_design.cli.json_objects import linearization_object
+from wspd_design.parameters.loading import load_rail, load_vehicle
+
+if TYPE_CHECKING:
+    from wspd_design.analysis.linearization import Linearization
+
+SPEEDS_KMH = (120, 100, 80, 60, 40, 30, 20, 10, 5, 3.6)
+
+
+def linearize(
+    speed: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--speed",
+            metavar="SPEED",
+            help="One speed; repeat it for several.",
+            show_default=f"{SPEEDS_KMH[0]} to {SPEEDS_KMH[-1]} km/h",
+            rich_help_panel="Case",
+        ),
+    ] = None,
+    vehicle: options.VehicleOption = None,
+    plant: options.PlantOption = options.PLANT,
+    rail: options.RailOption = None,
+    slip: options.SlipOption = None,
+    as_json: options.JsonOption = False,
+) -> None:
+    """Show open-loop poles, input gain and equilibrium torque of the slip over speed.
+
+    Where the slip pole exceeds 1/tau of the valve, no law without feedback of torque or wheel acceleration
+    can stabilize the equilibrium.
+    """
+    from wspd_design.analysis import linearization
+
+    check_plant(plant)
+    reference = specification(Wishes(slip=slip)).slip
+    locomotive, friction = load_vehicle(vehicle or options.VEHICLE), load_rail(rail or options.RAIL)
+    speeds = [parse_speed(text) for text in speed] if speed else [kmh / 3.6 for kmh in SPEEDS_KMH]
+    points = [linearization.linearize(locomotive, friction, slip=reference, speed=v) for v in speeds]
+    beyond = [point.slip_pole > 1.0 / point.time_constant for point in points]
+    if as_json:
+        print_json(linearization_object(points, plant=plant, beyond_lag=beyond))
+    else:
+        _show(points, beyond)
+
+
+def _show(points: "list[Linearization]", beyond: list[bool]) -> None:
+    out, first = console(), points[0]
+    out.print(f"{first.vehicle} on {first.rail} at slip {first.slip:g}", style="bold", markup=False)
+    headers = (
+        "speed\n[km/h]",
+        "slip pole\n[1/s]",
+        "gain G\n[1/(MN m s)]",
+        "poles, valve\n[1/s]",
+        "torque\n[kN m]",
+        "",
+    )
+    shown = table(*(header.replace("[", "\\[") for header in headers), numeric=headers[:1])
+    for column in shown.columns[1:5]:
+        column.justify = "right"
+    for point, marked in zip(points, beyond, strict=True):
+        shown.add_row(
+            f"{point.speed * 3.6:g}",
+            f"{point.slip_pole:.3f}",
+            f"{point.gain * 1e6:.1f}",
+            ", ".join(f"{pole:.2f}" for pole in point.poles()),
+            f"{point.equilibrium_torque / 1e3:.1f}",
+            Text("! > 1/tau" if marked else "", style="yellow"),
+        )
+    out.print(shown)
+    limit = 1.0 / first.time_constant
+    verdict = (
+        f"At {sum(beyond)} of {len(points)} speeds the slip pole exceeds 1/tau = {limit:.3g} 1/s of the "
+        "valve: no law without feedback of torque or wheel acceleration can stabilize the equilibrium there."
+        if any(beyond)
+        else f"The slip pole stays below 1/tau = {limit:.3g} 1/s of the valve at all of these speeds."
+    )
+    out.print(verdict, style="yellow" if any(beyond) else "")

@@ -1,0 +1,77 @@
+"""``wspd report``: everything about a design in one document."""
+
+import shlex
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from wspd_design.cli import options
+from wspd_design.cli.case import Case, Wishes, check_plant, chosen, parse_speed, resolve
+from wspd_design.cli.console import console, progress
+from wspd_design.cli.output import check_output
+from wspd_design.design.catalog import CONTROLLERS, named_design
+from wspd_design.design.laws import GAINS_OF
+from wspd_design.design.records import Design
+from wspd_design.parameters.errors import UserError
+
+
+def report(
+    name: options.ControllerArgument = None,
+    controller: options.ControllerOption = None,
+    vehicle: options.VehicleOption = None,
+    plant: options.PlantOption = options.PLANT,
+    rail: options.RailOption = None,
+    speed: options.SpeedOption = options.SPEED,
+    slip: options.SlipOption = None,
+    sample_time: options.SampleTimeOption = None,
+    seed: options.SeedOption = 0,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="FILE", help="Report to write, .html or .pdf.")
+    ] = Path("report.html"),
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write the same content as PDF beside it, too.")] = False,
+    force: options.ForceOption = False,
+) -> None:
+    """Write a report: design, poles, certificates, stops and sources."""
+    from wspd_design.design.dossier import dossier
+    from wspd_design.reporting.report import write_report
+
+    check_plant(plant)
+    paths = list(dict.fromkeys([output, output.with_suffix(".pdf")] if pdf else [output]))
+    for path in paths:
+        if path.suffix.lower() not in (".html", ".pdf"):
+            raise UserError(f"report {path} must end in .html or .pdf, which chooses the format")
+        check_output(path, force=force)
+    chosen_name = chosen(name, controller)
+    case = resolve(chosen_name, Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
+    made = _design(chosen_name, case)
+    initial_speed = parse_speed(speed)
+    with progress() as tell:
+        computed = dossier(
+            made,
+            vehicle_name=case.vehicle_name,
+            rail_name=case.rail_name,
+            initial_speed=initial_speed,
+            baselines=[other for other in CONTROLLERS if other != made.name],
+            command=shlex.join(["wspd", *sys.argv[1:]]),
+            seed=seed,
+            progress=tell,
+        )
+        for path in paths:
+            tell(f"writing {path}")
+            write_report(computed, path)
+    for path in paths:
+        console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
+
+
+def _design(name: str, case: Case) -> Design:
+    """Return the design that the report is about."""
+    if case.design is not None:
+        return case.design
+    if name not in GAINS_OF:
+        raise UserError(
+            f"{name} has no design to report on; choose {' or '.join(GAINS_OF)} or a design file, "
+            "which are compared with all others"
+        )
+    return named_design(name, case.vehicle, case.rail, case.specification)

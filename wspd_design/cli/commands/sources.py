@@ -1,0 +1,124 @@
+"""``wspd sources``: every number of a parameter file with where it comes from."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.text import Text
+
+from wspd_design.cli.console import WIDE, console, table
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import read_toml
+from wspd_design.parameters.loading import available, load_entries
+from wspd_design.parameters.loading import sources as known_sources
+from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.schema import Kind, schema_of
+from wspd_design.parameters.units import format_quantity
+
+_KINDS: tuple[Kind, ...] = ("vehicle", "rail", "controller", "track", "constants")
+
+
+def sources(
+    name: Annotated[
+        str | None,
+        typer.Argument(metavar="[NAME]", help="Vehicle, rail, controller or track, or a .toml file."),
+    ] = None,
+) -> None:
+    """Show every number of a parameter set with unit, bounds, status, source and place."""
+    if name is None:
+        _show_names()
+        return
+    _show(load_entries(_kind_of(name), name))
+
+
+def _kind_of(name: str) -> Kind:
+    """Find what a name stands for; the first kind that has it wins."""
+    if name.endswith(".toml"):
+        document = read_toml(Path(name), name)
+        own_rail = document.get("base") in available("rail") or bool(document.keys() & schema_of("rail", ""))
+        return "rail" if own_rail else "vehicle"
+    for kind in _KINDS:
+        if name in available(kind):
+            return kind
+    everything = [known for kind in _KINDS for known in available(kind)]
+    near = get_close_matches(name, everything, n=1)
+    offer = f' (did you mean "{near[0]}"?)' if near else ""
+    raise UserError(f'no parameter set is called "{name}"{offer}; "wspd sources" lists all of them')
+
+
+def _show_names() -> None:
+    out = console()
+    shown = table("Kind", "Name", "Title")
+    for kind in _KINDS:
+        for name in available(kind):
+            shown.add_row(kind, name, load_entries(kind, name).title)
+    out.print(shown)
+
+
+def _show(parameters: ParameterSet) -> None:
+    out = console()
+    out.print(f"{parameters.name}: {parameters.title}", style="bold", markup=False)
+    entries = parameters.entries.values()
+    if out.width >= WIDE:
+        shown = table("Number", "Value", "Bounds", "Status", "Source", "Place")
+        for column in (0, 3, 4):
+            shown.columns[column].no_wrap = True
+        for entry in entries:
+            shown.add_row(
+                entry.name, _value(entry), _bounds(entry), entry.status, entry.source, Text(entry.at)
+            )
+    else:
+        shown = table("Number", "Status", "Source")
+        for entry in entries:
+            number = Text(entry.name, style="bold").append("\n").append(_value(entry))
+            if entry.bounds is not None:
+                number.append("\n").append(_bounds(entry))
+            shown.add_row(number, entry.status, Text(f"{entry.source}\n{entry.at}"))
+    out.print(shown)
+    notes = [(entry.name, entry.note) for entry in entries if entry.note]
+    _list(notes, "Notes")
+    titles = known_sources()
+    keys = dict.fromkeys(entry.source for entry in entries)
+    _list([(key, _citation(key)) for key in keys if key in titles], "Sources")
+
+
+def _list(rows: Iterable[tuple[str, str]], heading: str) -> None:
+    shown = table(heading, "")
+    for name, text in rows:
+        shown.add_row(name, Text(text))
+    if shown.row_count:
+        console().print(shown)
+
+
+def _citation(key: str) -> str:
+    source = known_sources()[key]
+    note = f" {source.note}" if source.note else ""
+    return f"{source.authors} ({source.year}): {source.title} [{source.access}].{note}"
+
+
+def _value(entry: Entry) -> Text:
+    return Text(_quantity(entry.value, entry.unit))
+
+
+def _bounds(entry: Entry) -> Text:
+    if entry.bounds is None:
+        return Text("exact", style="dim")
+    return Text(" to ".join(_number(bound, entry.unit) for bound in entry.bounds))
+
+
+def _quantity(value: Any, unit: str) -> str:
+    if isinstance(value, float):
+        return format_quantity(value, unit)
+    return f"{_number(value, unit)} {'' if unit == '-' else unit}".rstrip()
+
+
+def _number(value: Any, unit: str) -> str:
+    """Write numbers without their unit; words stay as they are."""
+    match value:
+        case str():
+            return value
+        case tuple():
+            return f"[{', '.join(_number(item, unit) for item in value)}]"
+    return format_quantity(value, unit).partition(" ")[0]

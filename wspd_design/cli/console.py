@@ -1,0 +1,68 @@
+"""Where output goes: tables on standard output, progress and errors on standard error."""
+
+import json
+import math
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+WIDE = 96
+"""Columns of a terminal from which on tables put everything side by side."""
+
+
+def program_version() -> str:
+    """Return the version of the installed program."""
+    return version("wspd-design")
+
+
+def console(*, error: bool = False) -> Console:
+    """Return a console as wide as the terminal, also where Rich would assume 80 columns (``TERM=dumb``)."""
+    width = shutil.get_terminal_size((80, 24)).columns
+    return Console(stderr=error, width=width, highlight=False, emoji=False)
+
+
+def table(*headers: str, title: str | None = None, numeric: tuple[str, ...] = ()) -> Table:
+    """Return an empty table without vertical lines; ``numeric`` columns are set flush right."""
+    made = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False, title_style="bold")
+    for header in headers:
+        made.add_column(header, justify="right" if header in numeric else "left", overflow="fold")
+    return made
+
+
+def print_json(value: dict[str, Any]) -> None:
+    """Print one JSON object and nothing else; a number that is not finite becomes null."""
+    print(json.dumps(_finite(value), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+@contextmanager
+def progress() -> Iterator[Callable[[str], None]]:
+    """Show the current stage on standard error while the block runs; nothing where that is no terminal."""
+    stream = console(error=True)
+    if not stream.is_terminal or stream.is_dumb_terminal:
+        yield lambda _stage: None
+        return
+    with stream.status("") as status:
+        yield lambda stage: status.update(f"{stage} ...")
+
+
+def is_interactive() -> bool:
+    """Tell whether somebody sits in front of the program and can answer questions."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _finite(value: Any) -> Any:
+    match value:
+        case float() if not math.isfinite(value):
+            return None
+        case dict():
+            return {key: _finite(item) for key, item in value.items()}
+        case list() | tuple():
+            return [_finite(item) for item in value]
+    return value

@@ -1,0 +1,50 @@
+"""The table of a design's gains with their reasons, for the commands that make designs."""
+
+from pathlib import Path
+
+from rich.text import Text
+
+from wspd_design.cli.console import WIDE, console, table
+from wspd_design.design.records import Design, Gain, GainValue
+
+
+def show_design(made: Design, path: Path) -> None:
+    """Print the gains of a design, and where it was written and what to do with it."""
+    out = console()
+    specification = made.specification
+    low, high = specification.speeds
+    out.print(f"{made.name}", style="bold", markup=False)
+    out.print(
+        f"slip {specification.slip:g} within {specification.slip_tolerance:g}, {low * 3.6:g} to "
+        f"{high * 3.6:g} km/h, sample time {specification.sample_time * 1e3:g} ms"
+    )
+    wide = out.width >= WIDE
+    shown = table("Gain", "Value", "Why") if wide else table("Gain", "Why")
+    for gain in made.gains:
+        name, value, why = Text(gain.name), Text(_quantity(gain)), Text(gain.why)
+        if wide:
+            shown.add_row(name, value, why)
+        else:
+            shown.add_row(name.append("\n= ", style="dim").append(value), why)
+    out.print(shown)
+    out.print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
+    for purpose, command in (
+        ("Prove it", f"wspd verify {path}"),
+        ("Try it", f"wspd simulate {path}"),
+        ("Show it", f"wspd report {path} -o {path.with_suffix('.html')}"),
+    ):
+        out.print(f"{purpose + ':':<10}{command}", markup=False, soft_wrap=True)
+
+
+def _quantity(gain: Gain) -> str:
+    return f"{_number(gain.value)} {'' if gain.unit == '-' else gain.unit}".rstrip()
+
+
+def _number(value: GainValue) -> str:
+    match value:
+        case bool():
+            return "yes" if value else "no"
+        case tuple():
+            same = len(set(value)) == 1
+            return f"{len(value)} x {value[0]:.4g}" if same else ", ".join(f"{item:.4g}" for item in value)
+    return f"{value:.4g}"

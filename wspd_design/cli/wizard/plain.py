@@ -1,0 +1,39 @@
+"""Questions line by line, for terminals that cannot move the cursor (``TERM=dumb``)."""
+
+from wspd_design.cli.console import console
+from wspd_design.cli.wizard.flow import Back
+from wspd_design.cli.wizard.steps import Answers, Step, accept
+from wspd_design.parameters.errors import UserError
+
+BACK = "<"
+
+
+def ask(step: Step, answers: Answers, suggestion: str) -> str | Back:
+    """Ask one question by printing it and reading a line; an empty one takes the suggestion.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        On Ctrl-C, or when the input ends.
+    """
+    out = console()
+    out.print(f"\n{step.title}\n{step.explanation}", markup=False)
+    for number, option in enumerate(step.options, start=1):
+        out.print(f"  {number}  {option.value}: {option.text}", markup=False)
+    while True:
+        try:
+            text = input(f"[{suggestion}] ({BACK} goes back) > ").strip() or suggestion
+        except EOFError:
+            raise KeyboardInterrupt from None
+        if text == BACK:
+            return Back.BACK
+        if text.isdigit() and 1 <= int(text) <= len(step.options):
+            text = step.options[int(text) - 1].value
+        try:
+            understood = accept(step, text, answers)
+        except UserError as error:
+            out.print(str(error), markup=False)
+            continue
+        if understood != text:
+            out.print(f"= {understood}", markup=False)
+        return text
