@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates import domain, laws
-from wspd_design.certificates.checking import certified
+from wspd_design.certificates.checking import OutsideModel, certified
 from wspd_design.certificates.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.search import SOBOL_EXPONENT, STARTS, Maximum, maximize
@@ -89,7 +89,10 @@ def reserve(problem: Problem) -> float:
     In sigma = integral of dt / v the distance to the surface shrinks with eta, and the speed falls no faster
     than v0 exp(-a_max sigma), with a_max from full friction on all wheels.
     """
+    domain.box(problem)
     low, high = problem.speeds
+    if not low < high:
+        raise OutsideModel(f"the speeds {low:g} to {high:g} m/s are one speed, which leaves no time to reach")
     rolling = float(resistance(problem.vehicle, high)) / problem.mass_bounds[0]
     deceleration = problem.mu0_bounds[1] * constants().gravity + rolling
     return deceleration * problem.slip / math.log(high / low)
@@ -103,7 +106,7 @@ def check(problem: Problem) -> Certificate:
         return laws.not_applicable(
             problem,
             NAME,
-            "abs(r) + eta <= rho W0 for a law with a friction model and a switching gain W0",
+            "abs(r) + eta <= rho W0 for a law with a friction model and a switching gain W0.",
             "has no switching gain W0 that stands against a model error",
         )
     eta = reserve(problem)

@@ -1,0 +1,138 @@
+"""V2 of (43) as printed, along the loop of the adaptive fuzzy law in exactly the setting of its proof."""
+
+from typing import TYPE_CHECKING
+
+from wspd_design.certificates import domain, laws
+from wspd_design.certificates.adaptive_error import CHOICE, ideal, signals
+from wspd_design.certificates.checking import certified, series
+from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.proof_run import (
+    ASSUMPTIONS,
+    RELATIVE_TOLERANCE,
+    adaptive_run,
+    largest_rise,
+    numeric_rate,
+)
+from wspd_design.certificates.reaching import reserve
+from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.model.generated import adaptive_fuzzy as generated
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.proof_run import Array
+
+NAME, TITLE = "lyapunov_printed", "V2 of the paper"
+TOLERANCE = 100.0 * RELATIVE_TOLERANCE  # of the largest V2
+RATE_TOLERANCE = 1e-4  # of the largest rate, for a formula against differences
+
+
+@certified(name=NAME, title=TITLE)
+def check(problem: Problem) -> Certificate:
+    """Run the printed law as its proof assumes, and follow V2 and its derivative."""
+    import numpy as np
+
+    law = problem.controller
+    claim = "V2 of (43) does not rise along the closed loop, as (44) says."
+    if not isinstance(law, AdaptiveFuzzy):
+        return laws.not_applicable(
+            problem, NAME, claim, "is not the adaptive fuzzy law, which V2 speaks about"
+        )
+    gains = law.gains
+    if gains.dead_zone:
+        reason = "adapts with a dead zone; its Lyapunov function is the one of lyapunov_repaired"
+        return laws.not_applicable(problem, NAME, claim, reason)
+    domain.box(problem)
+    plant = (problem.vehicle, problem.rail, gains)
+    run = adaptive_run(*plant, speeds=problem.speeds)
+    target = ideal(*plant, run, reserve(problem))
+    rates = (gains.torque_unit * gains.weight_rate, gains.torque_unit * gains.bound_rate)
+
+    def candidate(states: "Array") -> "Array":
+        at = signals(*plant, states, target)
+        value: Array = generated.lyapunov_printed(
+            at.surface, at.gain, at.weight_error_squared, at.bound_error, gains.proportional_gain, *rates
+        )
+        return value
+
+    values = candidate(run.states)
+    rise, start, end = largest_rise(values)
+    rises = not rise <= TOLERANCE * float(values.max())
+    at = signals(*plant, run.states, target)
+    claimed = generated.lyapunov_printed_rate_claimed(at.surface, at.gain, at.approximation_error, at.bound)
+    true = generated.lyapunov_printed_rate_true(
+        at.surface,
+        at.gain,
+        at.gain_rate,
+        at.approximation_error,
+        at.bound,
+        at.weight_error_squared,
+        at.bound_error,
+        *rates,
+    )
+    measured = numeric_rate(candidate, run)
+    # Inside the layer sat(s) replaces the sgn(s) of both formulas.
+    scale = float(np.abs(measured[at.outside]).max(initial=0.0))
+    deviations = [
+        float(np.abs(measured - formula)[at.outside].max(initial=0.0)) for formula in (claimed, true)
+    ]
+    verdicts = [
+        Status.EVIDENCE if deviation <= RATE_TOLERANCE * scale else Status.REFUTED for deviation in deviations
+    ]
+    reason = "The derivative along the run is neither the claimed one nor the one with the terms of G'."
+    if verdicts == [Status.REFUTED, Status.EVIDENCE]:
+        reason = (
+            "The derivative along the run is not (44), which leaves out G'/2 times the squared errors of "
+        )
+        reason += "weights and bound; G' > 0 while the train brakes. The proof fails, whatever the slip does."
+    where = (
+        Point(name="V2 before", value=float(values[start]), unit="-"),
+        Point(name="time before", value=float(run.time[start]), unit="s"),
+        Point(name="V2 after", value=float(values[end]), unit="-"),
+        Point(name="time after", value=float(run.time[end]), unit="s"),
+        Point(name="speed after", value=float(run.speed[end]) * KMH, unit="km/h"),
+        Point(name="slip after", value=float(run.slip[end]), unit="-"),
+    )
+    axes = ("time [s]", "V2 [-]")
+    return Certificate(
+        name=NAME,
+        title=TITLE,
+        claim=f"V2 of (43) does not rise along the closed loop, as (44) says, from "
+        f"{problem.speeds[1] * KMH:.3g} to {problem.speeds[0] * KMH:.3g} km/h on {problem.rail.name}.",
+        status=Status.REFUTED if rises else Status.EVIDENCE,
+        explanation=(
+            f"V2 starts at {values[0]:.3g}, is {values[start]:.3g} at {run.time[start]:.3g} s and then "
+            "rises to "
+            f"{values[end]:.3g} at {run.time[end]:.3g} s. The slip ends at {run.slip[-1]:.4f}, its "
+            "reference is "
+            f"{gains.slip_reference:g}. {reason}"
+            if rises
+            else f"V2 falls from {values[0]:.3g} to {values[-1]:.3g} without rising in this run."
+        ),
+        margin=Range(low=None, high=TOLERANCE - rise / float(values.max()), unit="of max V2"),
+        worst_point=where,
+        witness=where if rises else (),
+        hypotheses=(
+            Hypothesis(
+                text=f"dV2/dt is what (44) says: it differs from the differences of V2 by up to "
+                f"{deviations[0]:.3g} 1/s of {scale:.3g} 1/s",
+                status=verdicts[0],
+            ),
+            Hypothesis(
+                text=f"dV2/dt is (44) plus the terms of G': it differs from the differences of V2 by up to "
+                f"{deviations[1]:.3g} 1/s of {scale:.3g} 1/s",
+                status=verdicts[1],
+            ),
+        ),
+        assumptions=(*ASSUMPTIONS, "continuous adaptation", CHOICE),
+        method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}; derivatives by "
+        "differences along the flow, outside the layer",
+        resolution=f"{len(run.time)} instants; a rise below {TOLERANCE:g} of the maximum counts as rounding",
+        reference="eqs. (39)-(44)",
+        series=(
+            series("V2 as printed", *axes, run.time, values),
+            series("measured", "time [s]", "dV2/dt [1/s]", run.time, measured),
+            series("claimed by (44)", "time [s]", "dV2/dt [1/s]", run.time, claimed),
+            series("with the terms of G'", "time [s]", "dV2/dt [1/s]", run.time, true),
+            series("slip", "time [s]", "slip [-]", run.time, run.slip),
+        ),
+    )

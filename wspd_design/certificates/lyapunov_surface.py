@@ -1,0 +1,91 @@
+"""V = s^2/2 of (24) along the loop of the sliding-mode law: it must not rise outside the boundary layer."""
+
+from itertools import product
+
+from wspd_design.certificates import domain, laws
+from wspd_design.certificates.checking import certified, level, series
+from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.proof_run import (
+    ASSUMPTIONS,
+    RELATIVE_TOLERANCE,
+    ProofRun,
+    largest_rise,
+    sliding_run,
+)
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.model.generated import sliding_surface
+
+NAME, TITLE = "lyapunov_surface", "V of the sliding mode"
+TOLERANCE = 100.0 * RELATIVE_TOLERANCE  # of the largest V
+
+
+@certified(name=NAME, title=TITLE)
+def check(problem: Problem) -> Certificate:
+    """Run the idealized loop from both ends of the slip range, with nominal and extreme parameters."""
+    import numpy as np
+
+    law = problem.controller
+    if not isinstance(law, SlidingMode):
+        reason = "is no sliding mode with a friction model; (24) does not speak about it"
+        return laws.not_applicable(
+            problem, NAME, "V = s^2/2 does not rise outside the boundary layer.", reason
+        )
+    domain.box(problem)
+    nominal = (problem.vehicle.mass, problem.vehicle.wheelset_inertia, problem.rail.mu0)
+    corners = product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
+    parameters = list(dict.fromkeys([nominal, *corners]))
+    edge = float(sliding_surface.lyapunov_surface(law.gains.boundary_layer))
+    curves = []
+    worst: tuple[float, ProofRun, tuple[float, float, float], int, int] | None = None
+    for chosen, slip in product(parameters, problem.slips):
+        vehicle, rail = domain.varied(problem, *chosen)
+        run = sliding_run(vehicle, rail, law, speeds=problem.speeds, slip=slip)
+        error = sliding_surface.slip_error(law.gains.slip_reference, run.slip)
+        surface = sliding_surface.sliding_variable(error, run.integral, 1.0, law.gains.surface_rate)
+        values = sliding_surface.lyapunov_surface(surface)
+        # Inside the layer V may do as it likes, below the value at its edge.
+        rise, start, end = largest_rise(np.maximum(values, edge))
+        rise /= max(float(values.max()), edge)
+        if worst is None or rise > worst[0]:
+            worst = rise, run, chosen, start, end
+        if chosen == nominal:
+            curves.append(series(f"V from slip {slip:g}", "time [s]", "V [-]", run.time, values))
+    assert worst is not None
+    rise, run, (mass, inertia, mu0), start, end = worst
+    rises = not rise <= TOLERANCE
+    where = (
+        Point(name="time", value=float(run.time[end]), unit="s"),
+        Point(name="rising since", value=float(run.time[start]), unit="s"),
+        Point(name="slip", value=float(run.slip[end]), unit="-"),
+        Point(name="speed", value=float(run.speed[end]) * KMH, unit="km/h"),
+        Point(name="mass", value=mass, unit="kg"),
+        Point(name="wheelset inertia", value=inertia, unit="kg m2"),
+        Point(name="mu0", value=mu0, unit="-"),
+    )
+    runs = 2 * len(parameters)
+    return Certificate(
+        name=NAME,
+        title=TITLE,
+        claim=f"V = sbar^2/2, sbar = s/K_P, does not rise while abs(sbar) > {law.gains.boundary_layer:g}, "
+        f"from slip {problem.slips[0]:g} and {problem.slips[1]:g} at {problem.speeds[1] * KMH:.3g} km/h down "
+        f"to {problem.speeds[0] * KMH:.3g} km/h.",
+        status=Status.REFUTED if rises else Status.EVIDENCE,
+        explanation=(
+            f"V rises by {rise:.3g} of its maximum between {run.time[start]:.3g} s and "
+            f"{run.time[end]:.3g} s: "
+            "the switching gain does not outweigh the model error there."
+            if rises
+            else f"In all {runs} runs the distance to the surface only shrinks until the layer is reached, "
+            "and the state stays inside."
+        ),
+        margin=Range(low=None, high=TOLERANCE - rise, unit="of max V"),
+        worst_point=where,
+        witness=where if rises else (),
+        assumptions=(ASSUMPTIONS[0], "quarter locomotive with static wheel load", ASSUMPTIONS[2]),
+        method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}",
+        resolution=f"{runs} runs: nominal parameters and all corners of their bounds, each from two slips; "
+        f"a rise below {TOLERANCE:g} of the maximum counts as rounding",
+        reference="eqs. (24), (25)",
+        series=(*curves, level("edge of the layer", "time [s]", "V [-]", run.time, edge)),
+    )

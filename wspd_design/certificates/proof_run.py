@@ -1,0 +1,187 @@
+"""The closed loop in the setting of the proofs: torque equal to command, no sampling, no limits, no valve.
+
+Speed, slip, the integral of the error and what the law adapts are integrated as one smooth system.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from wspd_design.certificates.checking import OutsideModel
+from wspd_design.controllers.adaptive_fuzzy import (
+    AdaptiveFuzzyGains,
+    adaptation,
+    sliding_variable,
+    torque_demand,
+)
+from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.model.generated import sliding_surface
+from wspd_design.model.number import saturation
+from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.loading import constants
+from wspd_design.parameters.records import Rail, Vehicle
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+RELATIVE_TOLERANCE = 1e-8
+ABSOLUTE_TOLERANCE = 1e-10
+ASSUMPTIONS = (
+    "T = u: torque equals command, without valve lag, sampling or limits of the brake",
+    "quarter locomotive with static wheel load and nominal parameters",
+    "slip reference constant",
+)
+
+State = Any  # (speed, slip, integral of e, what the law adapts ...), one instant or arrays over time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProofRun:
+    """A run of the idealized loop; the states are rows over time."""
+
+    time: "Array"  # s
+    states: "Array"  # speed [m/s], slip [-], integral of e [s], then what the law adapts
+    rates: "Array"  # their time derivatives
+
+    @property
+    def speed(self) -> "Array":
+        """Train speed [m/s]."""
+        row: Array = self.states[0]
+        return row
+
+    @property
+    def slip(self) -> "Array":
+        """Slip ratio [-]."""
+        row: Array = self.states[1]
+        return row
+
+    @property
+    def integral(self) -> "Array":
+        """Integral of the slip error [s]."""
+        row: Array = self.states[2]
+        return row
+
+
+def adaptive_run(
+    vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, *, speeds: tuple[float, float]
+) -> ProofRun:
+    """Brake from rolling with the adaptive fuzzy law and continuous adaptation.
+
+    Parameters
+    ----------
+    vehicle, rail : Vehicle, Rail
+        Plant.
+    gains : AdaptiveFuzzyGains
+        Law.
+    speeds : tuple of float
+        Lowest and highest speed [m/s]; the run goes from the highest down to the lowest.
+    """
+
+    def rates(state: State) -> list[float]:
+        speed, slip, integral, *weights, bound = state
+        error = sliding_surface.slip_error(gains.slip_reference, slip)
+        surface = sliding_variable(gains, error, integral)
+        torque = torque_demand(gains, surface, tuple(weights), bound)
+        plant = slip_dynamics(vehicle, rail, slip, speed)
+        adapted = adaptation(gains, surface)
+        return [
+            -plant.deceleration,
+            plant.drift + plant.gain * torque,
+            error,
+            *adapted.weights,
+            adapted.bound,
+        ]
+
+    return _run(rates, [speeds[1], 0.0, 0.0, *gains.initial_weights, gains.initial_bound], speeds[0])
+
+
+def sliding_run(
+    vehicle: Vehicle, rail: Rail, law: SlidingMode, *, speeds: tuple[float, float], slip: float
+) -> ProofRun:
+    """Brake from an initial slip with the sliding-mode law; parameters as in :func:`adaptive_run`."""
+
+    def rates(state: State) -> list[float]:
+        speed, slip, integral = state
+        plant = slip_dynamics(vehicle, rail, slip, speed)
+        torque = sliding_torque(law, slip, speed, integral)
+        error = sliding_surface.slip_error(law.gains.slip_reference, slip)
+        return [-plant.deceleration, plant.drift + plant.gain * torque, error]
+
+    return _run(rates, [speeds[1], slip, 0.0], speeds[0])
+
+
+def sliding_torque(law: SlidingMode, slip: Any, speed: Any, integral: Any) -> Any:
+    """Torque of eqs. (23), (26) in their corrected form, before the limits of the brake [N m]."""
+    gains = law.gains
+    error = sliding_surface.slip_error(gains.slip_reference, slip)
+    surface = sliding_surface.sliding_variable(error, integral, 1.0, gains.surface_rate)
+    model = slip_dynamics(law.vehicle, law.rail, slip, speed)
+    equivalent = sliding_surface.equivalent_torque(model.drift, model.gain, 0.0, error, gains.surface_rate)
+    return equivalent + gains.switching_gain / speed * saturation(surface / gains.boundary_layer) / model.gain
+
+
+def _run(rates: Callable[[State], list[float]], start: list[float], lowest_speed: float) -> ProofRun:
+    """Integrate until the lowest speed."""
+    import numpy as np
+    from scipy.integrate import solve_ivp
+
+    def derivative(_: float, state: "Array") -> list[float]:
+        return rates(state.tolist())
+
+    def slow_enough(_: float, state: "Array") -> float:
+        return float(state[0]) - lowest_speed
+
+    def inside(_: float, state: "Array") -> float:
+        """Positive while the wheel turns forwards and slips forwards."""
+        return min(float(state[1]) + 1e-3, 1.0 - float(state[1]))
+
+    slow_enough.terminal = inside.terminal = True  # type: ignore[attr-defined]
+    solution = solve_ivp(
+        derivative,
+        (0.0, constants().time_limit),
+        start,
+        method="Radau",
+        rtol=RELATIVE_TOLERANCE,
+        atol=ABSOLUTE_TOLERANCE,
+        events=(slow_enough, inside),
+    )
+    if solution.status == 0:
+        raise OutsideModel(
+            f"the train does not slow down to {lowest_speed:g} m/s within {solution.t[-1]:g} s"
+        )
+    if solution.status < 0:
+        raise OutsideModel(f"the integration failed at t = {solution.t[-1]:.3g} s ({solution.message})")
+    if solution.t_events[1].size:
+        raise OutsideModel(
+            f"the slip leaves the range 0 to 1 at t = {solution.t[-1]:.3g} s, where the wheel locks or turns "
+            "faster than the train"
+        )
+    states = np.asarray(solution.y)
+    derivatives = np.array([rates(column) for column in states.T.tolist()]).T
+    return ProofRun(time=np.asarray(solution.t), states=states, rates=derivatives)
+
+
+def numeric_rate(candidate: Callable[["Array"], "Array"], run: ProofRun) -> "Array":
+    """Derivative of a function of the states along the run, by central differences along the flow.
+
+    It needs no formula of the derivative and no interpolation between the solver's steps.
+    """
+    import numpy as np
+
+    scale = 1e-6 / np.maximum(1.0, np.max(np.abs(run.rates) / np.maximum(np.abs(run.states), 1e-3), axis=0))
+    forward, backward = candidate(run.states + scale * run.rates), candidate(run.states - scale * run.rates)
+    rate: Array = (forward - backward) / (2.0 * scale)
+    return rate
+
+
+def largest_rise(values: "Array") -> tuple[float, int, int]:
+    """Largest rise of a function of time over all earlier values, with both places; zero without any."""
+    import numpy as np
+
+    lowest = np.minimum.accumulate(values)
+    end = int(np.argmax(values - lowest))
+    start = int(np.argmin(values[: end + 1]))
+    return float(values[end] - values[start]), start, end

@@ -1,0 +1,81 @@
+"""The open-loop slip pole dF/dslip at the reference, over speed and the bounds of the parameters."""
+
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+from wspd_design.certificates import domain
+from wspd_design.certificates.checking import level, series
+from wspd_design.certificates.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.records import Problem, Series
+from wspd_design.certificates.search import Maximum, maximize
+from wspd_design.codegen.functions import slip_plant
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.domain import Array
+
+GRID_SPEEDS = 81
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PoleMap:
+    """The slip pole over speed [1/s]."""
+
+    speeds: "Array"  # m/s
+    nominal: "Array"
+    worst: "Array"  # largest over the corners of the parameter box
+    highest: Maximum  # largest found on the domain
+
+
+def pole_map(problem: Problem) -> PoleMap:
+    """Evaluate the pole over speed and search its largest value on the domain."""
+    import numpy as np
+
+    low, high = domain.slip_held(problem)
+    speeds = np.geomspace(low[SPEED], high[SPEED], GRID_SPEEDS)
+    vehicle, rail = problem.vehicle, problem.rail
+
+    def poles(mass: float, inertia: float, mu0: float) -> "Array":
+        points = np.empty((len(speeds), 5))
+        points[:, SLIP], points[:, SPEED] = problem.slip, speeds
+        points[:, MASS], points[:, INERTIA], points[:, MU0] = mass, inertia, mu0
+        found: Array = domain.dynamics(problem, points).pole
+        return found
+
+    corners = product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
+    return PoleMap(
+        speeds=speeds,
+        nominal=poles(vehicle.mass, vehicle.wheelset_inertia, rail.mu0),
+        worst=np.max([poles(*corner) for corner in corners], axis=0),
+        highest=maximize(lambda points: domain.dynamics(problem, points).pole, low, high, seed=problem.seed),
+    )
+
+
+def exact_pole(problem: Problem, point: "Array") -> float:
+    """Pole at one point by CasADi's derivative of the drift: independent of the formula that was searched."""
+    vehicle, rail = domain.varied(problem, *(float(point[column]) for column in (MASS, INERTIA, MU0)))
+    matrix, _ = slip_plant(vehicle, rail).jacobians(float(point[SLIP]), 0.0, float(point[SPEED]), 0.0)
+    return float(matrix[0, 0])
+
+
+def plots(poles: PoleMap, limit_name: str, limit: float) -> tuple[Series, ...]:
+    """Pole over speed beside the limit that it must respect."""
+    speeds = poles.speeds * KMH
+    axes = ("speed [km/h]", "slip pole [1/s]")
+    return (
+        series("nominal", *axes, speeds, poles.nominal),
+        series("worst of the bounds", *axes, speeds, poles.worst),
+        level(limit_name, *axes, speeds, limit),
+    )
+
+
+def unstable_speeds(poles: PoleMap, limit: float) -> str:
+    """Say where the nominal pole exceeds a limit."""
+    import numpy as np
+
+    beyond = np.flatnonzero(poles.nominal >= limit)
+    if beyond.size == 0:
+        return "With the nominal parameters the pole stays below the limit at all speeds"
+    low, high = poles.speeds[beyond[0]] * KMH, poles.speeds[beyond[-1]] * KMH
+    share = f"{beyond.size} of {len(poles.speeds)} speeds between {low:.3g} and {high:.3g} km/h"
+    return f"With the nominal parameters the pole exceeds the limit at {share}"

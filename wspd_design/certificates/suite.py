@@ -1,0 +1,88 @@
+"""All checks of a closed loop, in the order in which an argument would use them."""
+
+from collections.abc import Callable, Collection
+from difflib import get_close_matches
+
+from wspd_design.certificates import (
+    barbalat,
+    brake_authority,
+    gain_positive,
+    lyapunov_printed,
+    lyapunov_repaired,
+    lyapunov_surface,
+    open_loop_pole,
+    reaching,
+    routh_lag,
+    sampling,
+    surface_hurwitz,
+    tracking,
+)
+from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.errors import UserError
+
+MODULES = (
+    surface_hurwitz,
+    gain_positive,
+    brake_authority,
+    reaching,
+    lyapunov_surface,
+    lyapunov_printed,
+    lyapunov_repaired,
+    barbalat,
+    open_loop_pole,
+    sampling,
+    routh_lag,
+    tracking,
+)
+NAMES = tuple(module.NAME for module in MODULES)
+
+
+def verify(
+    problem: Problem,
+    *,
+    only: Collection[str] | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[Certificate, ...]:
+    """Run the checks.
+
+    Parameters
+    ----------
+    problem : Problem
+        Closed loop and domain.
+    only : collection of str, optional
+        Names of the checks to run, from :data:`NAMES`; all by default.
+    progress : callable, optional
+        Told the title of each check before it starts.
+
+    Returns
+    -------
+    tuple of Certificate
+        In the order of :data:`NAMES`.
+
+    Raises
+    ------
+    UserError
+        If a name is unknown, or the problem and its controller state different references or sample times.
+    """
+    for name in only or ():
+        if name not in NAMES:
+            near = get_close_matches(name, NAMES, n=1)
+            offer = f', did you mean "{near[0]}"?' if near else ""
+            raise UserError(f'unknown check "{name}"{offer}; available: {", ".join(NAMES)}')
+    _agree("sample time", problem.sample_time, problem.controller.sample_time)
+    if isinstance(problem.controller, (AdaptiveFuzzy, SlidingMode)):
+        _agree("slip reference", problem.slip, problem.controller.gains.slip_reference)
+    certificates = []
+    for module in MODULES:
+        if only is None or module.NAME in only:
+            progress(module.TITLE)
+            certificates.append(module.check(problem))
+    return tuple(certificates)
+
+
+def _agree(name: str, stated: float, used: float) -> None:
+    """Refuse a problem that speaks about another loop than its controller."""
+    if stated != used:
+        raise UserError(f"the problem states {name} {stated:g}, its controller {used:g}; make them the same")
