@@ -1,5 +1,7 @@
 """The Knorr-Bremse controller: regions of eq. (18) and every cell of both decision tables."""
 
+from itertools import pairwise
+
 import pytest
 
 from wspd_design.controllers.protocol import Measurement
@@ -7,7 +9,7 @@ from wspd_design.controllers.protocol import Measurement
 RADIUS, PERIOD = 0.55, 0.1
 SHARE = {0: 0.0, 1: 0.33, 2: 0.5, 3: 1.0}  # Section 4.2
 
-# Data book sections 13 and 6: rising limits of the wheel acceleration, then one row for each band between them.
+# Data book sections 13 and 6: rising limits of the wheel acceleration, then a row for each band between them.
 TABLES = {
     "calibrated": (
         (-8.39, -4.47, -0.54, 2.83, 7.32),
@@ -59,7 +61,7 @@ def test_every_cell(make_controller, preset, speed):
     controller = make_controller("knorr-bremse", preset=preset)
     limits, rows = TABLES[preset]
     inside = [limits[0] - 1.0]
-    inside += [0.5 * (a + b) for a, b in zip(limits, limits[1:], strict=False)]
+    inside += [0.5 * (a + b) for a, b in pairwise(limits)]
     inside.append(limits[-1] + 1.0)
     one, two, three = regions(speed)
     slides = (0.5 * one, 0.5 * (one + two), 0.5 * (two + three), three + 1.0)
@@ -71,7 +73,7 @@ def test_every_cell(make_controller, preset, speed):
 
 @pytest.mark.parametrize("speed", [15.0, 30.0, 59.9, 60.1, 140.0])
 def test_regions_of_eq_18(make_controller, speed):
-    # In the row of the textbook table around zero acceleration every region has its own decision: 3, 1, 0, -2.
+    # In the row of the textbook table around zero acceleration the regions decide: 3, 1, 0, -2.
     controller = make_controller("knorr-bremse", preset="textbook")
     for limit, below, above in zip(regions(speed), (3, 1, 0), (1, 0, -2), strict=True):
         assert tuple(decide(controller, speed, limit - 0.01, 0.0)) == expected(below)

@@ -13,10 +13,18 @@ from wspd_design.simulation.stop import simulate
 RADIUS, PERIOD = 0.55, 0.1
 
 # Table 5 as printed. Rows from BNB to BPB, columns SZO, SPS, SPM, SPB.
-TABLE_5 = ["IB", "IB", "IS", "IS", "IM", "IM", "IS", "IS", "IS", "IS", "IS", "IS", "ZO", "ZO", "ZO", "IS", "DS", "ZO", "DS", "DM", "DS", "DS", "DM", "DM", "DM", "DM", "DM", "DB"]
+TABLE_5 = (
+    "IB IB IS IS",
+    "IM IM IS IS",
+    "IS IS IS IS",
+    "ZO ZO ZO IS",
+    "DS ZO DS DM",
+    "DS DS DM DM",
+    "DM DM DM DB",
+)
 ROWS, COLUMNS = 7, 4
 TEXTBOOK = {"DB": 0.0, "DM": 0.25, "DS": 0.5, "ZO": 0.8, "IS": 0.88, "IM": 0.95, "IB": 1.0}  # data book 7
-CALIBRATED = {word: k / 3.0 for word, k in zip(["DB", "DM", "DS", "ZO", "IS", "IM", "IB"], range(-3, 4), strict=True)}
+CALIBRATED = {"DB": -1, "DM": -2 / 3, "DS": -1 / 3, "ZO": 0, "IS": 1 / 3, "IM": 2 / 3, "IB": 1}  # section 13
 
 
 def decide(controller, slide, rate, speed=25.0):
@@ -34,7 +42,7 @@ def decide(controller, slide, rate, speed=25.0):
 def test_every_rule_alone(make_controller, preset, row, column):
     # At the peak of one membership of each input no other rule fires.
     controller = make_controller("mitsubishi", preset=preset)
-    table, word = controller.table, TABLE_5[COLUMNS * row + column]
+    table, word = controller.table, TABLE_5[row].split()[column]
     # Data book section 13: absolute duty = .841 + 1.831 y clipped to [0, 1].
     duty = TEXTBOOK[word] if preset == "textbook" else min(max(0.841 + 1.831 * CALIBRATED[word], 0.0), 1.0)
     got = decide(controller, table.slide_centres[column], table.rate_centres[row])
