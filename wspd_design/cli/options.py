@@ -1,6 +1,6 @@
 """The options that several commands share, each defined once; the defaults are the paper's case."""
 
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import typer
 
@@ -23,77 +23,60 @@ SAMPLE_TIME = format_quantity(_PAPER.sample_time, "ms")
 TOLERANCE = format_quantity(_PAPER.slip_tolerance, "-")
 DESIGN_FILE = "design.toml"
 
-_CASE = "Case"
-_CONTROLLERS = f"{', '.join(CONTROLLERS)} or a design file."
+CASE = "Case"
+_CONTROLLERS = f"{', '.join(CONTROLLERS)} or a design file, which brings its own case."
 
 
 def _names(names: list[str]) -> str:
     return f"{', '.join(names)} or a .toml file."
 
 
+def case_option(flag: str, metavar: str, meaning: str, default: str) -> Any:
+    """Describe an option of the case that is None when it is not given, so that its default shows here."""
+    return typer.Option(
+        flag,
+        metavar=metavar,
+        help=f"{meaning} Default: {default}.",
+        show_default=False,
+        rich_help_panel=CASE,
+    )
+
+
 ControllerArgument: TypeAlias = Annotated[
     str | None,
-    typer.Argument(metavar="[CONTROLLER]", help=_CONTROLLERS, show_default=CONTROLLER),
+    typer.Argument(metavar="CONTROLLER", help=f"{_CONTROLLERS} Default: {CONTROLLER}.", show_default=False),
 ]
 ControllersArgument: TypeAlias = Annotated[
     list[str] | None,
-    typer.Argument(metavar="[CONTROLLER]...", help=_CONTROLLERS, show_default=", ".join(CONTROLLERS)),
+    typer.Argument(metavar="CONTROLLER", help=f"{_CONTROLLERS} Default: all names.", show_default=False),
 ]
 ControllerOption: TypeAlias = Annotated[
     str | None,
     typer.Option("--controller", metavar="NAME", help="The same as the argument.", show_default=False),
 ]
 VehicleOption: TypeAlias = Annotated[
-    str | None,
-    typer.Option(
-        "--vehicle",
-        metavar="NAME",
-        help=_names(available("vehicle")),
-        show_default=VEHICLE,
-        rich_help_panel=_CASE,
-    ),
+    str | None, case_option("--vehicle", "NAME", _names(available("vehicle")), VEHICLE)
 ]
-RailOption: TypeAlias = Annotated[
-    str | None,
-    typer.Option(
-        "--rail", metavar="NAME", help=_names(available("rail")), show_default=RAIL, rich_help_panel=_CASE
-    ),
-]
+RailOption: TypeAlias = Annotated[str | None, case_option("--rail", "NAME", _names(available("rail")), RAIL)]
 PlantOption: TypeAlias = Annotated[
-    str, typer.Option("--plant", metavar="NAME", help="Model of the vehicle: quarter.", rich_help_panel=_CASE)
+    str, typer.Option("--plant", metavar="NAME", help="Model of the vehicle.", rich_help_panel=CASE)
 ]
 SpeedOption: TypeAlias = Annotated[
-    str,
-    typer.Option("--speed", metavar="SPEED", help="Initial speed with its unit.", rich_help_panel=_CASE),
+    str, typer.Option("--speed", metavar="SPEED", help="Initial speed with its unit.", rich_help_panel=CASE)
 ]
 SpeedsOption: TypeAlias = Annotated[
-    tuple[str, str] | None,
-    typer.Option(
-        "--speeds",
-        metavar="LOW HIGH",
-        help="Range of speeds of the specification.",
-        show_default=SPEEDS,
-        rich_help_panel=_CASE,
-    ),
+    tuple[str, str] | None, case_option("--speeds", "LOW HIGH", "Range of operation.", SPEEDS)
 ]
 SlipOption: TypeAlias = Annotated[
-    str | None,
-    typer.Option(
-        "--slip", metavar="SLIP", help="Slip reference in (0, 1).", show_default=SLIP, rich_help_panel=_CASE
-    ),
+    str | None, case_option("--slip", "SLIP", "Slip reference in (0, 1).", SLIP)
 ]
 SampleTimeOption: TypeAlias = Annotated[
     str | None,
-    typer.Option(
-        "--sample-time",
-        metavar="TIME",
-        help="Of the controller.",
-        show_default=SAMPLE_TIME,
-        rich_help_panel=_CASE,
-    ),
+    case_option("--sample-time", "TIME", "Of the controller.", SAMPLE_TIME),
 ]
 SeedOption: TypeAlias = Annotated[
-    int, typer.Option("--seed", min=0, help="Seed of all random numbers.", rich_help_panel=_CASE)
+    int,
+    typer.Option("--seed", min=0, metavar="NUMBER", help="Seed of all random numbers.", rich_help_panel=CASE),
 ]
 JsonOption: TypeAlias = Annotated[
     bool, typer.Option("--json", help="Print one JSON object and nothing else (docs/json.md).")

@@ -23,13 +23,7 @@ def design(
     slip: options.SlipOption = None,
     tolerance: Annotated[
         str | None,
-        typer.Option(
-            "--tolerance",
-            metavar="SLIP",
-            help="Band about the slip reference.",
-            show_default=options.TOLERANCE,
-            rich_help_panel="Case",
-        ),
+        options.case_option("--tolerance", "SLIP", "Band about the slip reference.", options.TOLERANCE),
     ] = None,
     speeds: options.SpeedsOption = None,
     sample_time: options.SampleTimeOption = None,

@@ -16,7 +16,7 @@ _STYLES = {"holds": "green", "misprint": "red", "gap": "yellow", "definition": "
 
 def equations(
     number: Annotated[
-        str | None, typer.Argument(metavar="[NUMBER]", help='For example 19, B_W or "Table 5".')
+        str | None, typer.Argument(metavar="NUMBER", help='For example 19, B_W or "Table 5".')
     ] = None,
     verdict: Annotated[
         str | None, typer.Option("--verdict", metavar="WORD", help=f"Only {', '.join(_STYLES)}.")

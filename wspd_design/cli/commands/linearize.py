@@ -23,9 +23,9 @@ def linearize(
         typer.Option(
             "--speed",
             metavar="SPEED",
-            help="One speed; repeat it for several.",
-            show_default=f"{SPEEDS_KMH[0]} to {SPEEDS_KMH[-1]} km/h",
-            rich_help_panel="Case",
+            help=f"One speed; repeat it for several. Default: {SPEEDS_KMH[0]} to {SPEEDS_KMH[-1]} km/h.",
+            show_default=False,
+            rich_help_panel=options.CASE,
         ),
     ] = None,
     vehicle: options.VehicleOption = None,

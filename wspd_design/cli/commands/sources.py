@@ -23,7 +23,7 @@ _KINDS: tuple[Kind, ...] = ("vehicle", "rail", "controller", "track", "constants
 def sources(
     name: Annotated[
         str | None,
-        typer.Argument(metavar="[NAME]", help="Vehicle, rail, controller or track, or a .toml file."),
+        typer.Argument(metavar="NAME", help="Vehicle, rail, controller or track, or a .toml file."),
     ] = None,
 ) -> None:
     """Show every number of a parameter set with unit, bounds, status, source and place."""

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from typing import Annotated
 
 import typer
+from rich.console import Group
+from rich.padding import Padding
 from rich.text import Text
 
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
@@ -54,7 +56,7 @@ def verify(
     )
     problem = stability_problem(case.vehicle, case.rail, case.controller, case.specification, seed=seed)
     with progress() as tell:
-        certificates = suite.verify(problem, only=only, progress=tell)
+        certificates = suite.verify(problem, only=only or None, progress=tell)
     code = exit_code(certificates)
     if as_json:
         print_json(verification_object(problem, certificates, plant=plant, verdict=_VERDICTS[code]))
@@ -76,36 +78,38 @@ def _show(problem: Problem, certificates: Sequence[Certificate]) -> None:
     low, high = problem.speeds
     out.print(
         f"{problem.controller.name} on {problem.rail.name}, {problem.vehicle.name}: "
-        f"slip {problem.slips[0]:g} to {problem.slips[1]:g}, {low * 3.6:g} to {high * 3.6:g} km/h, sample time "
-        f"{problem.sample_time * 1e3:g} ms",
+        f"slip {problem.slips[0]:g} to {problem.slips[1]:g}, {low * 3.6:g} to {high * 3.6:g} km/h, "
+        f"sample time {problem.sample_time * 1e3:g} ms",
         style="bold",
         markup=False,
     )
-    shown = table("Status", "Check and claim", "Margin")
     for certificate in certificates:
-        sign, style = _SIGNS[certificate.status]
-        mark = Text(f"{sign} {_word(certificate.status)}", style=style)
-        shown.add_row(mark, _claim(certificate), Text(_margin(certificate.margin)))
+        out.print(_claim(certificate))
+    shown = table("Status", "Check", "Margin")
+    for certificate in certificates:
+        shown.add_row(_status(certificate.status), certificate.name, Text(_margin(certificate.margin)))
     out.print(shown)
     counts = Counter(certificate.status for certificate in certificates)
-    tally = Text(", ").join(
-        Text(f"{counts[status]} {_word(status)}", style=_SIGNS[status][1])
-        for status in _SIGNS
-        if counts[status]
-    )
-    out.print(tally)
-    for status in _SIGNS:
-        if counts[status]:
-            out.print(f"{_word(status)}: {status.value}.", style="dim")
+    present = [status for status in _SIGNS if counts[status]]
+    out.print(Text(", ").join(Text(f"{counts[s]} {_word(s)}", style=_SIGNS[s][1]) for s in present))
+    for status in present:
+        out.print(f"{_word(status)}: {status.value}.", style="dim")
 
 
-def _claim(certificate: Certificate) -> Text:
-    text = Text(certificate.name, style="bold").append(f"\n{certificate.claim}", style="not bold")
-    if certificate.status in (Status.REFUTED, Status.UNDECIDED):
-        text.append(f"\n{certificate.explanation}", style="not bold italic")
+def _claim(certificate: Certificate) -> Group:
+    """What is claimed and, unless it holds, why not; indented below the name of the check."""
+    lines = [Text(certificate.claim)]
+    if certificate.status in (Status.REFUTED, Status.UNDECIDED, Status.VACUOUS):
+        lines.append(Text(certificate.explanation, style="italic"))
     if certificate.witness:
-        text.append(f"\nwitness: {_place(certificate.witness)}", style="not bold red")
-    return text
+        lines.append(Text(f"Witness: {_place(certificate.witness)}", style="red"))
+    heading = Text(f"\n{certificate.name}: ", style="bold").append(_status(certificate.status))
+    return Group(heading, Padding(Group(*lines), (0, 0, 0, 2)))
+
+
+def _status(status: Status) -> Text:
+    sign, style = _SIGNS[status]
+    return Text(f"{sign} {_word(status)}", style=style)
 
 
 def _word(status: Status) -> str:
@@ -124,7 +128,8 @@ def _margin(margin: Range | None) -> str:
         case None, high:
             return f"<= {high:.3g}{unit}"
         case low, high:
-            return f"{low:.3g}{unit}" if low == high else f"{low:.3g} to {high:.3g}{unit}"
+            same = f"{low:.3g}" == f"{high:.3g}"
+            return f"{low:.3g}{unit}" if same else f"{low:.3g} to {high:.3g}{unit}"
 
 
 def _place(points: Sequence[Point]) -> str:

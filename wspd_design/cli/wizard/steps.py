@@ -47,14 +47,15 @@ def steps() -> tuple[Step, ...]:
     """Return all questions in their order."""
     return (
         _parameter_set(
-            "vehicle", "Vehicle", options.VEHICLE, "The paper's locomotive with its strong brakes."
+            "vehicle", "Vehicle", options.VEHICLE, f"{options.VEHICLE} is the paper's locomotive."
         ),
         _own_file("vehicle", 'The same format as the shipped vehicles; it may start with base = "er24pc".'),
         _parameter_set(
             "rail",
             "Rail",
             options.RAIL,
-            "The controller is designed for this rail and can be tried on all others.",
+            "The controller is designed for this rail and can be tried on all others. "
+            f"{options.RAIL} is the paper's harder case.",
         ),
         _own_file("rail", 'The same format as the shipped rails; it may start with base = "polach-wet".'),
         Step(
