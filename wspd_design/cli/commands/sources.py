@@ -71,6 +71,7 @@ def _show(parameters: ParameterSet) -> None:
             )
     else:
         shown = table("Number", "Status", "Source")
+        shown.columns[0].min_width = min(max(len(entry.name) for entry in entries), out.width // 2)
         for entry in entries:
             number = Text(entry.name, style="bold").append("\n").append(_value(entry))
             if entry.bounds is not None:

@@ -1,0 +1,149 @@
+"""What people read: tables that fit the terminal, with and without color, and say what they must."""
+
+import csv
+import re
+import subprocess
+import sys
+
+import pytest
+
+from wspd_design.model.equations import load_equations
+from wspd_design.parameters.loading import available, load_entries
+from wspd_design.parameters.schema import CONTROLLER_SCHEMAS
+
+SLOW = ("--speed", "20 km/h")
+SETS = [*available("vehicle"), *available("rail"), *CONTROLLER_SCHEMAS, *available("track"), "constants"]
+TABLES = {
+    "help": ("--help",),
+    "help of a command": ("simulate", "--help"),
+    "equations": ("equations",),
+    "one equation": ("equations", "19"),
+    "sources": ("sources",),
+    **{f"sources {name}": ("sources", name) for name in SETS},
+    "linearize": ("linearize", "--rail", "polach-dry"),
+    "simulate": ("simulate", "none", *SLOW),
+    "compare": ("compare", "none", "knorr-bremse", *SLOW),
+    "verify": ("verify", "smc", "--only", "surface_hurwitz", "--only", "open_loop_pole"),
+    "design": ("design", "--law", "smc"),
+    "doctor": ("doctor",),
+}
+
+
+@pytest.mark.parametrize("columns", [60, 100])
+@pytest.mark.parametrize("name", TABLES)
+def test_fits_the_terminal(name, columns, wspd, monkeypatch):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    outcome = wspd(*TABLES[name])
+    assert outcome.out
+    assert max(map(len, outcome.out.splitlines())) <= columns
+
+
+@pytest.mark.parametrize(
+    "changes", [{"NO_COLOR": "1"}, {"TERM": "dumb"}, {}], ids=["NO_COLOR", "dumb", "piped"]
+)
+def test_no_escape_sequences(changes, wspd, monkeypatch):
+    monkeypatch.delenv("FORCE_COLOR", raising=False)
+    for key, value in changes.items():
+        monkeypatch.setenv(key, value)
+    outcome = wspd("verify", "smc", "--only", "gain_positive")
+    assert "\x1b" not in outcome.out
+    assert "✓ PROVED" in outcome.out
+
+
+def test_color_where_the_user_asks_for_it(wspd, monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    outcome = wspd("equations")
+    assert "\x1b[31mmisprint" in outcome.out
+
+
+def test_every_equation_is_listed_with_its_verdict(wspd):
+    out = wspd("equations").out
+    for equation in load_equations():
+        label = f"({equation.number})" if equation.number[0].isdigit() else equation.number
+        assert re.search(rf"^ {re.escape(label)} +{equation.verdict} ", out, re.MULTILINE), label
+
+
+def test_equations_of_one_verdict(wspd):
+    numbers = {e.number for e in load_equations() if e.verdict == "misprint"}
+    out = wspd("equations", "--verdict", "misprint").out
+    listed = re.findall(r"^ (?:\((\d+)\)|(\S.*?)) +misprint ", out, re.MULTILINE)
+    assert {a or b for a, b in listed} == numbers
+
+
+@pytest.mark.parametrize("number", ["14", "(14)", "b_w", "table 5"])
+def test_one_equation_shows_its_parts(number, wspd):
+    out = wspd("equations", number).out
+    equation = next(e for e in load_equations() if e.number.lower() == number.strip("()"))
+    squeezed = re.sub(r"\s", "", out)
+    for part in (equation.title, equation.printed, equation.corrected, equation.file, equation.test):
+        assert re.sub(r"\s", "", part) in squeezed
+
+
+@pytest.mark.parametrize("columns", ["60", "120"])
+def test_sources_list_every_number(columns, wspd, monkeypatch):
+    monkeypatch.setenv("COLUMNS", columns)
+    out = wspd("sources", "er24pc").out
+    for entry in load_entries("vehicle", "er24pc").entries.values():
+        assert entry.name in out
+        assert entry.status in out
+        assert entry.source in out
+    assert "76841 kg" in out
+    assert "61473 to 92209" in out
+
+
+def test_sources_of_an_own_file(wspd, tmp_path):
+    (tmp_path / "mine.toml").write_text('base = "polach-wet"\n[mu0]\nvalue = 33\nunit = "%"\n')
+    out = wspd("sources", "mine.toml").out
+    assert "33 %" in out
+    assert "own file" in out
+
+
+def test_linearize_marks_what_the_valve_cannot_stabilize(wspd):
+    """Findings, section 2: on the dry rail the pole exceeds 1/tau from 20 to 1 m/s, not at 33.3."""
+    out = wspd("linearize", "--rail", "polach-dry").out
+    marked = [float(line.split()[0]) for line in out.splitlines() if "! > 1/tau" in line]
+    assert 120.0 not in marked
+    assert {60.0, 40.0, 20.0, 10.0, 5.0} <= set(marked)
+    assert "! > 1/tau" not in wspd("linearize", "--rail", "table10-dry").out
+
+
+def test_traces_are_written(wspd, tmp_path):
+    outcome = wspd("simulate", "none", *SLOW, "--output", "run.csv")
+    assert outcome.code == 0
+    with (tmp_path / "run.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert list(rows[0])[:3] == ["time_s", "speed_m_s", "distance_m"]
+    assert float(rows[0]["speed_m_s"]) == pytest.approx(20.0 / 3.6, rel=1e-8)
+    assert f"{float(rows[-1]['distance_m']):.1f} " in outcome.out
+    assert list(tmp_path.iterdir()) == [tmp_path / "run.csv"]
+
+
+def test_design_is_written_and_can_be_used(wspd, tmp_path):
+    made = wspd("design", "--law", "smc", "--slip", "16 %", "--speeds", "15 km/h", "100 km/h", "-o", "a.toml")
+    assert made.code == 0
+    assert "switching_gain" in made.out
+    assert "wspd verify a.toml" in made.out
+    assert "slip rms about 0.16" in wspd("simulate", "a.toml", *SLOW).out
+    assert wspd("design", "-o", "a.toml").code == 2
+    assert wspd("design", "-o", "a.toml", "--force").code == 0
+    assert list(tmp_path.iterdir()) == [tmp_path / "a.toml"]
+
+
+def test_help_and_import_load_nothing_heavy():
+    """Neither ``wspd --help`` nor ``import wspd_design``; a real command does, so the test can fail."""
+    program = (
+        "import sys; import wspd_design; from wspd_design.cli.app import run; "
+        "run({arguments}); heavy = {{'sympy', 'casadi', 'control', 'matplotlib', 'scipy', 'numpy', 'typst', "
+        "'jinja2', 'prompt_toolkit'}}; print(sorted(heavy & set(sys.modules)), file=sys.stderr)"
+    )
+
+    def loaded(arguments):
+        code = program.format(arguments=arguments)
+        return subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
+        ).stderr
+
+    assert loaded(["--help"]) == "[]\n"
+    assert loaded(["verify", "--help"]) == "[]\n"
+    assert "casadi" in loaded(["linearize", "--speed", "10 km/h"])
