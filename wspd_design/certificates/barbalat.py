@@ -3,10 +3,10 @@
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, laws
-from wspd_design.certificates.checking import certified, level, series
+from wspd_design.certificates.checking import OutsideModel, certified, level, series
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.lyapunov_repaired import repaired_run
-from wspd_design.certificates.proof_run import ASSUMPTIONS, sliding_run
+from wspd_design.certificates.proof_run import ASSUMPTIONS, ProofRun, sliding_run
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
@@ -46,9 +46,8 @@ def check(problem: Problem) -> Certificate:
         "uniformly continuous.",
         status=Status.VACUOUS,
         explanation=f"The train has slowed down to {problem.speeds[0] * KMH:.3g} km/h after "
-        f"{time[-1]:.3g} s: "
-        "there is no t to infinity in a stop, and a limit says nothing about the error at its end. "
-        f"In its place stands the integral of abs(s_D), here {integral:.3g} s against a bound of "
+        f"{time[-1]:.3g} s: there is no t to infinity in a stop, and a limit says nothing about the error "
+        f"at its end. In its place stands the integral of abs(s_D), here {integral:.3g} s against a bound of "
         f"{bound:.3g} s.",
         margin=Range(low=None, high=bound - integral, unit="s"),
         worst_point=(
@@ -83,6 +82,7 @@ def check(problem: Problem) -> Certificate:
 def _adaptive(problem: Problem, law: AdaptiveFuzzy) -> tuple["Array", "Array", float, str]:
     """Time, s_D and the bound V(0)/eta of its integral for the repaired law."""
     found = repaired_run(problem, law)
+    _complete(found.run)
     gain_times_speed = float(found.signals.gain[0] * found.signals.speed[0])
     decrease = reserve(problem) / gain_times_speed  # psi exceeds the approximation error by it
     return found.run.time, found.signals.dead_zone, float(found.values[0]) / decrease, "V(0) g/eta"
@@ -91,9 +91,16 @@ def _adaptive(problem: Problem, law: AdaptiveFuzzy) -> tuple["Array", "Array", f
 def _sliding(problem: Problem, law: SlidingMode) -> tuple["Array", "Array", float, str]:
     """Time, s_D and the bound of its integral: abs(s_D) falls with eta in sigma, and dt <= v0 d sigma."""
     run = sliding_run(problem.vehicle, problem.rail, law, speeds=problem.speeds, slip=problem.slips[0])
+    _complete(run)
     error = sliding_surface.slip_error(law.gains.slip_reference, run.slip)
     surface = sliding_surface.sliding_variable(error, run.integral, 1.0, law.gains.surface_rate)
     layer = law.gains.boundary_layer
     dead_zone = surface - layer * saturation(surface / layer)
     bound = problem.speeds[1] * float(dead_zone[0]) ** 2 / (2.0 * reserve(problem))
     return run.time, dead_zone, bound, "v0 s_D(0)^2/(2 eta)"
+
+
+def _complete(run: ProofRun) -> None:
+    """Refuse a run that ends before the stop does: nothing can be said about its end."""
+    if run.cut:
+        raise OutsideModel(run.cut)

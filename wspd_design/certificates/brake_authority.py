@@ -76,9 +76,8 @@ def check(problem: Problem) -> Certificate:
         name=NAME,
         title=TITLE,
         claim="The torque u* that holds the surface leaves room to release, u* >= eta/g with eta = "
-        f"{eta:.3g} "
-        f"m/s2 and g = R/(2 I), and room to apply, u* <= {limit / 1e3:g} kN m - eta/g, except where the "
-        f"operation is brake-limited; on {domain.described(problem)}.",
+        f"{eta:.3g} m/s2 and g = R/(2 I), and room to apply, u* <= {limit / 1e3:g} kN m - eta/g, except "
+        f"where the operation is brake-limited; on {domain.described(problem)}.",
         status=status,
         explanation=lower + upper,
         margin=Range(low=None, high=-release.value, unit="N m"),

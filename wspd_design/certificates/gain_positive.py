@@ -54,8 +54,7 @@ def check(problem: Problem) -> Certificate:
         claim=claim,
         status=Status.PROVED,
         explanation="More torque means more slip wherever the train is. G is smallest at the highest "
-        "speed and "
-        f"inertia, {float(smallest) * 1e6:.4g} 1/s per MN m.",
+        f"speed and inertia, {float(smallest) * 1e6:.4g} 1/s per MN m.",
         margin=enclosure(smallest, smallest, "1/(N m s)"),
         worst_point=(
             Point(name="wheelset inertia", value=problem.inertia_bounds[1], unit="kg m2"),

@@ -10,8 +10,10 @@ from wspd_design.certificates.proof_run import (
     ASSUMPTIONS,
     RELATIVE_TOLERANCE,
     adaptive_run,
+    cut_short,
     largest_rise,
     numeric_rate,
+    verdict,
 )
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
@@ -78,12 +80,12 @@ def check(problem: Problem) -> Certificate:
     verdicts = [
         Status.EVIDENCE if deviation <= RATE_TOLERANCE * scale else Status.REFUTED for deviation in deviations
     ]
+    if not at.outside.any():
+        verdicts = [Status.UNDECIDED, Status.UNDECIDED]
     reason = "The derivative along the run is neither the claimed one nor the one with the terms of G'."
     if verdicts == [Status.REFUTED, Status.EVIDENCE]:
-        reason = (
-            "The derivative along the run is not (44), which leaves out G'/2 times the squared errors of "
-        )
-        reason += "weights and bound; G' > 0 while the train brakes. The proof fails, whatever the slip does."
+        reason = "The derivative along the run is not (44), which leaves out G'/2 times the squared errors "
+        reason += "of weights and bound; G' > 0 while braking. The proof fails, whatever the slip does."
     where = (
         Point(name="V2 before", value=float(values[start]), unit="-"),
         Point(name="time before", value=float(run.time[start]), unit="s"),
@@ -98,16 +100,15 @@ def check(problem: Problem) -> Certificate:
         title=TITLE,
         claim=f"V2 of (43) does not rise along the closed loop, as (44) says, from "
         f"{problem.speeds[1] * KMH:.3g} to {problem.speeds[0] * KMH:.3g} km/h on {problem.rail.name}.",
-        status=Status.REFUTED if rises else Status.EVIDENCE,
+        status=verdict(rises, [run]),
         explanation=(
             f"V2 starts at {values[0]:.3g}, is {values[start]:.3g} at {run.time[start]:.3g} s and then "
-            "rises to "
-            f"{values[end]:.3g} at {run.time[end]:.3g} s. The slip ends at {run.slip[-1]:.4f}, its "
-            "reference is "
-            f"{gains.slip_reference:g}. {reason}"
+            f"rises to {values[end]:.3g} at {run.time[end]:.3g} s. The slip ends at {run.slip[-1]:.4f}, its "
+            f"reference is {gains.slip_reference:g}. {reason}"
             if rises
             else f"V2 falls from {values[0]:.3g} to {values[-1]:.3g} without rising in this run."
-        ),
+        )
+        + cut_short([run]),
         margin=Range(low=None, high=TOLERANCE - rise / float(values.max()), unit="of max V2"),
         worst_point=where,
         witness=where if rises else (),

@@ -12,8 +12,10 @@ from wspd_design.certificates.proof_run import (
     RELATIVE_TOLERANCE,
     ProofRun,
     adaptive_run,
+    cut_short,
     largest_rise,
     numeric_rate,
+    verdict,
 )
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
@@ -109,15 +111,16 @@ def check(problem: Problem) -> Certificate:
         title=TITLE,
         claim=f"{claim} of the repaired law, from {problem.speeds[1] * KMH:.3g} to "
         f"{problem.speeds[0] * KMH:.3g} km/h on {problem.rail.name}.",
-        status=Status.REFUTED if rises else Status.EVIDENCE,
+        status=verdict(rises, [run]),
         explanation=(
             f"V rises from {values[start]:.4g} to {values[end]:.4g} N m s between {run.time[start]:.3g} s "
             f"and {run.time[end]:.3g} s."
             if rises
             else f"V falls from {values[0]:.4g} to {values[-1]:.4g} N m s and never rises, so that "
-            "weights and "
-            "bound stay bounded. Divided by G, the falling speed helps V to fall instead of making it rise."
-        ),
+            "weights and bound stay bounded. Divided by G, the falling speed helps V to fall instead of "
+            "making it rise."
+        )
+        + cut_short([run]),
         margin=Range(low=None, high=TOLERANCE - rise / largest, unit="of max V"),
         worst_point=where,
         witness=where if rises else (),

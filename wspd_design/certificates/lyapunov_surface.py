@@ -9,10 +9,12 @@ from wspd_design.certificates.proof_run import (
     ASSUMPTIONS,
     RELATIVE_TOLERANCE,
     ProofRun,
+    cut_short,
     largest_rise,
     sliding_run,
+    verdict,
 )
-from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.certificates.records import Certificate, Point, Problem, Range
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
 
@@ -36,11 +38,12 @@ def check(problem: Problem) -> Certificate:
     corners = product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
     parameters = list(dict.fromkeys([nominal, *corners]))
     edge = float(sliding_surface.lyapunov_surface(law.gains.boundary_layer))
-    curves = []
+    curves, runs = [], []
     worst: tuple[float, ProofRun, tuple[float, float, float], int, int] | None = None
     for chosen, slip in product(parameters, problem.slips):
         vehicle, rail = domain.varied(problem, *chosen)
         run = sliding_run(vehicle, rail, law, speeds=problem.speeds, slip=slip)
+        runs.append(run)
         error = sliding_surface.slip_error(law.gains.slip_reference, run.slip)
         surface = sliding_surface.sliding_variable(error, run.integral, 1.0, law.gains.surface_rate)
         values = sliding_surface.lyapunov_surface(surface)
@@ -63,29 +66,28 @@ def check(problem: Problem) -> Certificate:
         Point(name="wheelset inertia", value=inertia, unit="kg m2"),
         Point(name="mu0", value=mu0, unit="-"),
     )
-    runs = 2 * len(parameters)
     return Certificate(
         name=NAME,
         title=TITLE,
         claim=f"V = sbar^2/2, sbar = s/K_P, does not rise while abs(sbar) > {law.gains.boundary_layer:g}, "
         f"from slip {problem.slips[0]:g} and {problem.slips[1]:g} at {problem.speeds[1] * KMH:.3g} km/h down "
         f"to {problem.speeds[0] * KMH:.3g} km/h.",
-        status=Status.REFUTED if rises else Status.EVIDENCE,
+        status=verdict(rises, runs),
         explanation=(
             f"V rises by {rise:.3g} of its maximum between {run.time[start]:.3g} s and "
-            f"{run.time[end]:.3g} s: "
-            "the switching gain does not outweigh the model error there."
+            f"{run.time[end]:.3g} s: the switching gain does not outweigh the model error there."
             if rises
-            else f"In all {runs} runs the distance to the surface only shrinks until the layer is reached, "
-            "and the state stays inside."
-        ),
+            else f"In all {len(runs)} runs the distance to the surface only shrinks until the layer is "
+            "reached, and the state stays inside."
+        )
+        + cut_short(runs),
         margin=Range(low=None, high=TOLERANCE - rise, unit="of max V"),
         worst_point=where,
         witness=where if rises else (),
         assumptions=(ASSUMPTIONS[0], "quarter locomotive with static wheel load", ASSUMPTIONS[2]),
         method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}",
-        resolution=f"{runs} runs: nominal parameters and all corners of their bounds, each from two slips; "
-        f"a rise below {TOLERANCE:g} of the maximum counts as rounding",
+        resolution=f"{len(runs)} runs: nominal parameters and all corners of their bounds, each from two "
+        f"slips; a rise below {TOLERANCE:g} of the maximum counts as rounding",
         reference="eqs. (24), (25)",
         series=(*curves, level("edge of the layer", "time [s]", "V [-]", run.time, edge)),
     )

@@ -45,8 +45,7 @@ def check(problem: Problem) -> Certificate:
         name=NAME,
         title=TITLE,
         claim=f"The open-loop slip pole p stays below 1/tau = {limit:.3g} 1/s at slip {problem.slip:g}, "
-        "as any "
-        f"law without feedback of torque or acceleration needs; on {domain.described(problem)}.",
+        f"as any law without feedback of torque or acceleration needs; on {domain.described(problem)}.",
         status=status,
         explanation=f"{meaning}: {spot}. {slip_pole.unstable_speeds(poles, limit)}.",
         margin=Range(low=None, high=limit - highest.value, unit="1/s"),

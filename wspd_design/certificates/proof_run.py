@@ -3,11 +3,11 @@
 Speed, slip, the integral of the error and what the law adapts are integrated as one smooth system.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.certificates.checking import OutsideModel
+from wspd_design.certificates.records import Status
 from wspd_design.controllers.adaptive_fuzzy import (
     AdaptiveFuzzyGains,
     adaptation,
@@ -40,11 +40,15 @@ State = Any  # (speed, slip, integral of e, what the law adapts ...), one instan
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProofRun:
-    """A run of the idealized loop; the states are rows over time."""
+    """A run of the idealized loop; the states are rows over time.
+
+    A run that does not reach its lowest speed says why in ``cut``: what happened before still counts.
+    """
 
     time: "Array"  # s
     states: "Array"  # speed [m/s], slip [-], integral of e [s], then what the law adapts
     rates: "Array"  # their time derivatives
+    cut: str = ""
 
     @property
     def speed(self) -> "Array":
@@ -148,20 +152,16 @@ def _run(rates: Callable[[State], list[float]], start: list[float], lowest_speed
         atol=ABSOLUTE_TOLERANCE,
         events=(slow_enough, inside),
     )
+    end, cut = f"{solution.t[-1]:.3g} s", ""
     if solution.status == 0:
-        raise OutsideModel(
-            f"the train does not slow down to {lowest_speed:g} m/s within {solution.t[-1]:g} s"
-        )
-    if solution.status < 0:
-        raise OutsideModel(f"the integration failed at t = {solution.t[-1]:.3g} s ({solution.message})")
-    if solution.t_events[1].size:
-        raise OutsideModel(
-            f"the slip leaves the range 0 to 1 at t = {solution.t[-1]:.3g} s, where the wheel locks or turns "
-            "faster than the train"
-        )
+        cut = f"the train does not slow down to {lowest_speed:g} m/s within {end}"
+    elif solution.status < 0:
+        cut = f"the integration fails at {end}"
+    elif solution.t_events[1].size:
+        cut = f"the slip leaves the range 0 to 1 at {end}, where the wheel locks or outruns the train"
     states = np.asarray(solution.y)
     derivatives = np.array([rates(column) for column in states.T.tolist()]).T
-    return ProofRun(time=np.asarray(solution.t), states=states, rates=derivatives)
+    return ProofRun(time=np.asarray(solution.t), states=states, rates=derivatives, cut=cut)
 
 
 def numeric_rate(candidate: Callable[["Array"], "Array"], run: ProofRun) -> "Array":
@@ -185,3 +185,16 @@ def largest_rise(values: "Array") -> tuple[float, int, int]:
     end = int(np.argmax(values - lowest))
     start = int(np.argmin(values[: end + 1]))
     return float(values[end] - values[start]), start, end
+
+
+def verdict(rises: bool, runs: Iterable[ProofRun]) -> Status:
+    """Verdict on a function that must not rise: a run that was cut short can refute, but not support."""
+    if rises:
+        return Status.REFUTED
+    return Status.UNDECIDED if any(run.cut for run in runs) else Status.EVIDENCE
+
+
+def cut_short(runs: Iterable[ProofRun]) -> str:
+    """Say which runs were cut short, as a sentence that follows others."""
+    reasons = dict.fromkeys(run.cut for run in runs if run.cut)
+    return "".join(f" A run was cut short: {reason}." for reason in reasons)

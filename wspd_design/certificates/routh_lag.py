@@ -83,8 +83,8 @@ def check(problem: Problem) -> Certificate:
         status=Status.REFUTED if failed else Status.EVIDENCE,
         explanation=(
             f"Unstable at {unstable} of {len(speeds)} speeds. Worst at {speed * KMH:.3g} km/h, where "
-            "these are "
-            f"violated: {'; '.join(failed)}. The slip cannot settle inside the layer and swings through it."
+            f"these are violated: {'; '.join(failed)}. The slip cannot settle inside the layer and swings "
+            "through it."
             if failed
             else f"Tightest at {speed * KMH:.3g} km/h. Small deviations of the slip die out despite the lag."
         ),

@@ -76,7 +76,7 @@ def check(problem: Problem) -> Certificate:
         f"at slip {problem.slip:g} on {domain.described(problem)}.",
         status=status,
         explanation=f"{meaning} At {highest.point[SPEED] * KMH:.3g} km/h a deviation of the slip grows by a "
-        f"factor of {growth:.3g} within one sample and {over_lag:.3g} within sample and valve lag. "
+        f"factor of {growth:.4g} within one sample and {over_lag:.4g} within sample and valve lag. "
         f"{slip_pole.unstable_speeds(poles, limit)}.",
         margin=Range(low=None, high=limit - highest.value, unit="1/s"),
         worst_point=where,

@@ -40,14 +40,14 @@ def check(problem: Problem) -> Certificate:
         )
     rate = Fraction(numerator) / Fraction(denominator)
     proved = rate > 0
+    halving = math.log(2.0) / float(rate) if float(rate) > 0.0 else math.inf  # c may underflow
     return Certificate(
         name=NAME,
         title=TITLE,
         claim=f"On the surface e' + c e = 0 with c = K_I/K_P = {float(rate):.4g} 1/s the slip error decays.",
         status=Status.PROVED if proved else Status.REFUTED,
         explanation=(
-            f"The error halves every {math.log(2.0) / float(rate):.3g} s while the state stays on the "
-            "surface."
+            f"The error halves every {halving:.3g} s while the state stays on the surface."
             if proved
             else "The error does not decay on the surface: K_I and K_P must have the same sign."
         ),

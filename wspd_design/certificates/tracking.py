@@ -52,9 +52,8 @@ def check(problem: Problem) -> Certificate:
         f"{problem.speeds[0] * KMH:.3g} km/h on {problem.rail.name}.",
         status=Status.EVIDENCE if stays else Status.REFUTED,
         explanation=f"The slip strays as far as {run.slip[worst, 0]:.3f} from its reference "
-        f"{reference:g} and is "
-        f"outside the bound at {outside:.0%} of the recorded instants; its rms about the reference above "
-        f"{JUDGING_SPEED * KMH:.0f} km/h is {figures.slip_rms:.3f}. The wheels lock for "
+        f"{reference:g} and is outside the bound at {outside:.0%} of the judged instants; its rms about "
+        f"the reference above {JUDGING_SPEED * KMH:.0f} km/h is {figures.slip_rms:.3f}. The wheels lock for "
         f"{figures.lock_time:.2g} s; {run.ending.value}.",
         margin=Range(low=None, high=bound - float(errors[worst]), unit="-"),
         worst_point=where,
@@ -65,7 +64,7 @@ def check(problem: Problem) -> Certificate:
             "the integral of the error has decayed: 2 Phi/K_P bounds the error only after the transient",
         ),
         method="simulation of one stop, valve edge to valve edge",
-        resolution=f"one run; {judged.size} recorded instants are judged",
+        resolution=f"one run; {judged.size} instants are judged",
         reference="eqs. (25), (37); findings, sections 1 and 3",
         series=(
             series("slip", "time [s]", "slip [-]", run.time, run.slip[:, 0]),

@@ -1,0 +1,98 @@
+"""Closed loops to make statements about."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from wspd_design.certificates.records import Problem
+from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.parameters.loading import load_rail, load_vehicle
+
+PUBLISHED_RAILS = ("polach-dry", "polach-wet")
+
+
+def _problem(controller, *, rail="polach-dry", vehicle=None, **changes):
+    vehicle, friction = vehicle or load_vehicle("er24pc"), load_rail(rail)
+    stated = {
+        "vehicle": vehicle,
+        "rail": friction,
+        "controller": controller,
+        "slip": 0.14,
+        "speeds": (10.0 / 3.6, 120.0 / 3.6),
+        "slips": (0.02, 0.6),
+        "mass_bounds": vehicle.mass_bounds,
+        "inertia_bounds": vehicle.wheelset_inertia_bounds,
+        "mu0_bounds": friction.mu0_bounds,
+        "sample_time": controller.sample_time,
+    }
+    return Problem(**{**stated, **changes})
+
+
+@pytest.fixture(scope="session")
+def make_problem():
+    """Make a problem about a controller, with changes by keyword."""
+    return _problem
+
+
+@pytest.fixture(scope="session")
+def make_reference_problem():
+    """Make the problem whose supremum is known to three decimals from an interval proof, for a gain W0."""
+
+    def make(switching_gain=0.0):
+        mass = 76841.0
+        vehicle = load_vehicle("er24pc")
+        # Only the product of the contact's numbers counts: 84 GPa, a b = 36 mm2, c11 4.12.
+        contact = replace(
+            vehicle.contact,
+            shear_modulus=84e9,
+            semi_axis_rolling=9e-3,
+            semi_axis_lateral=4e-3,
+            kalker_c11=4.12,
+            reference_load=mass * 9.81 / 8.0,
+        )
+        vehicle = replace(
+            vehicle,
+            mass=mass,
+            wheel_radius=0.55,
+            wheelset_inertia=662.0,
+            wheel_damping=1.0,
+            resistance_constant=2000.0,
+            resistance_linear=30.0,
+            resistance_quadratic=6.0,
+            contact=contact,
+        )
+        rail = replace(
+            load_rail("polach-dry"),
+            mu0=0.4,
+            friction_ratio=0.4,
+            friction_decay=0.6,
+            adhesion_reduction=1.0,
+            slip_reduction=0.4,
+        )
+        gains = SlidingModeGains(
+            slip_reference=0.14, surface_rate=0.3, switching_gain=switching_gain, boundary_layer=0.02
+        )
+        law = SlidingMode(name="reference", sample_time=0.1, vehicle=vehicle, rail=rail, gains=gains)
+        return Problem(
+            vehicle=vehicle,
+            rail=rail,
+            controller=law,
+            slip=0.14,
+            speeds=(2.0, 33.4),
+            slips=(0.02, 0.6),
+            mass_bounds=(0.8 * mass, 1.2 * mass),
+            inertia_bounds=(662.0, 662.0),
+            mu0_bounds=(0.2, 0.6),
+            sample_time=0.1,
+            contact_grows_with_load=False,
+        )
+
+    assert math.isclose(math.pi * 84e9 * 36e-6 * 4.12 / 4.0, 9.785e6, rel_tol=1e-4)
+    return make
+
+
+@pytest.fixture(scope="session")
+def fast_vehicle(er24pc):
+    """Return the locomotive with a valve that is thirty times faster than the paper's."""
+    return replace(er24pc, brake=replace(er24pc.brake, fill_time=0.02, vent_time=0.02, supply_rate=5.0))

@@ -1,0 +1,57 @@
+"""The limits of the brake against the torque that holds the surface."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wspd_design.certificates import brake_authority, domain, reaching
+from wspd_design.certificates.domain import SLIP, SPEED
+from wspd_design.certificates.records import Status
+
+
+def _with_torque(vehicle, torque):
+    return replace(vehicle, brake=replace(vehicle.brake, max_torque=torque))
+
+
+def test_printed_law_can_always_release_and_is_brake_limited_somewhere(make_problem, make_controller):
+    verdict = brake_authority.check(make_problem(make_controller("afsmc")))
+    assert verdict.status is Status.EVIDENCE
+    assert "Brake-limited" in verdict.explanation
+
+
+def test_margin_is_not_above_any_random_point(make_problem, make_controller):
+    law = make_controller("smc")
+    problem = make_problem(law)
+    points = np.random.default_rng(3).uniform(*domain.box(problem), (5000, 5))
+    plant = domain.dynamics(problem, points)
+    ideal = (-plant.drift + law.gains.surface_rate * (0.14 - points[:, SLIP])) / plant.gain
+    slack = ideal - reaching.reserve(problem) / (plant.gain * points[:, SPEED])
+    assert brake_authority.check(problem).margin.high <= slack.min()
+
+
+def test_strong_brake_is_never_the_limit(make_problem, make_controller, er24pc):
+    problem = make_problem(make_controller("afsmc"), vehicle=_with_torque(er24pc, 200e3))
+    verdict = brake_authority.check(problem)
+    assert verdict.status is Status.EVIDENCE
+    assert "never the limit" in verdict.explanation
+
+
+def test_weak_brake_makes_the_claim_vacuous(make_problem, make_controller, er24pc):
+    problem = make_problem(make_controller("afsmc"), vehicle=_with_torque(er24pc, 2e3))
+    assert brake_authority.check(problem).status is Status.VACUOUS
+
+
+def test_surface_faster_than_a_vented_wheel_is_refuted(make_problem, make_controller):
+    law = make_controller("smc")
+    demanding = replace(law, gains=replace(law.gains, surface_rate=4.0))
+    verdict = brake_authority.check(make_problem(demanding))
+    assert verdict.status is Status.REFUTED
+    at = {point.name: point.value for point in verdict.witness}
+    assert at["u* - eta/g"] < 0.0
+    assert at["slip"] == pytest.approx(0.6)
+
+
+def test_rule_tables_have_no_ideal_torque(make_problem, make_controller):
+    problem = make_problem(make_controller("knorr-bremse"))
+    assert brake_authority.check(problem).status is Status.NOT_APPLICABLE

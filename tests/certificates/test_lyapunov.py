@@ -1,0 +1,159 @@
+"""The three Lyapunov functions along the loops that their proofs speak about."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from wspd_design.certificates import lyapunov_printed, lyapunov_repaired, lyapunov_surface
+from wspd_design.certificates.records import Status
+from wspd_design.controllers import adaptive_fuzzy as law_module
+from wspd_design.model.generated import adaptive_fuzzy as generated
+
+RAILS = ("polach-dry", "polach-wet")
+
+
+@pytest.fixture
+def printed(make_problem, make_controller):
+    return make_problem(make_controller("afsmc"), speeds=(2.0, 120.0 / 3.6))
+
+
+@pytest.mark.parametrize("rail", RAILS)
+def test_printed_v2_rises_while_the_slip_converges(make_problem, make_controller, rail):
+    problem = make_problem(make_controller("afsmc"), rail=rail, speeds=(2.0, 120.0 / 3.6))
+    verdict = lyapunov_printed.check(problem)
+    assert verdict.status is Status.REFUTED
+    at = {point.name: point.value for point in verdict.witness}
+    assert at["V2 after"] > 10.0 * at["V2 before"]
+    assert at["time before"] < at["time after"]
+    assert at["slip after"] == pytest.approx(0.14, abs=2e-3)
+
+
+def test_derivative_is_the_true_one_and_not_the_claimed_one(printed):
+    claimed, true = lyapunov_printed.check(printed).hypotheses
+    assert claimed.status is Status.REFUTED
+    assert true.status is Status.EVIDENCE
+
+
+def test_printed_v2_falls_as_long_as_the_gain_hardly_changes(make_problem, make_controller):
+    """The check can also find nothing: in the first tenth of a second the gain is nearly constant."""
+    problem = make_problem(make_controller("afsmc"), speeds=(33.1, 120.0 / 3.6))
+    assert lyapunov_printed.check(problem).status is Status.EVIDENCE
+
+
+def test_printed_v2_rises_in_a_run_that_shares_no_code(er24pc, printed_gains):
+    """Equations (19), (22), (31), (36), (41)-(43) written out, another solver, other ideal weights."""
+    gains = printed_gains()
+    mass, inertia, radius, load = 76841.0, er24pc.wheel_inertia, er24pc.wheel_radius, 76841.0 * 9.81 / 8.0
+    contact = er24pc.contact
+    stiffness = np.pi * contact.shear_modulus * contact.semi_axis_rolling * contact.semi_axis_lateral
+    stiffness *= contact.kalker_c11 / 4.0 * (load / contact.reference_load) ** (2.0 / 3.0)
+    centres, widths = np.array(gains.centres), np.array(gains.widths)
+
+    def plant(v, slip):
+        mu = 0.55 * (0.6 * np.exp(-0.6 * slip * v) + 0.4)
+        epsilon = stiffness * slip / (load * mu)
+        force = 2.0 / np.pi * load * mu * (epsilon / (1.0 + epsilon**2) + np.arctan(0.4 * epsilon))
+        resisting = 8.0 * force + er24pc.resistance_constant + er24pc.resistance_linear * v
+        deceleration = (resisting + er24pc.resistance_quadratic * v**2) / mass
+        drift = -(radius**2 * force / inertia + (1.0 - slip) * deceleration) / v
+        drift += er24pc.wheel_damping * (1.0 - slip) / inertia
+        return deceleration, drift, 1000.0 * radius / (2.0 * inertia * v)  # gain per kN m
+
+    def weights_of(s):
+        memberships = np.exp(-(((s - centres) / widths) ** 2))
+        return memberships / memberships.sum()
+
+    def rates(_, state):
+        v, slip, integral, *b, psi = state
+        s = 1800.0 * (0.14 - slip) + 550.0 * integral
+        w = weights_of(s)
+        deceleration, drift, gain = plant(v, slip)
+        torque = w @ b + psi * np.clip(s, -1.0, 1.0)
+        return [-deceleration, drift + gain * torque, 0.14 - slip, *(10.0 * s * w), 0.85 * abs(s)]
+
+    def slow(_, state):
+        return state[0] - 2.0
+
+    slow.terminal = True
+    start = [120.0 / 3.6, 0.0, 0.0, -1.0, -0.5, 0.0, 0.5, 1.0, 1.0]
+    run = solve_ivp(rates, (0.0, 60.0), start, method="BDF", rtol=1e-7, atol=1e-9, events=slow)
+    v, slip, integral = run.y[:3]
+    surface = 1800.0 * (0.14 - slip) + 550.0 * integral
+    _, drift, gain = plant(v, slip)
+    ideal = (-drift + 550.0 / 1800.0 * (0.14 - slip)) / gain
+    w = np.array([weights_of(s) for s in surface]).T
+    for level in (0.0, ideal.min(), ideal.mean(), ideal.max()):
+        bound = np.abs(ideal - level * w.sum(axis=0)).max() + 0.1
+        weights = np.sum((level - run.y[3:8]) ** 2, axis=0)
+        v2 = surface**2 / 3600.0 + gain * (weights / 10.0 + (bound - run.y[8]) ** 2 / 0.85) / 2.0
+        assert v2.max() > 4.0 * v2.min()
+        assert v2.argmax() > v2.argmin()
+    assert slip[-1] == pytest.approx(0.14, abs=2e-3)
+
+
+@pytest.mark.parametrize("rail", RAILS)
+@pytest.mark.parametrize("name", ["afsmc", "afsmc-repaired"])
+def test_repaired_v_does_not_rise(make_problem, make_controller, name, rail):
+    verdict = lyapunov_repaired.check(
+        make_problem(make_controller(name), rail=rail, speeds=(2.0, 120.0 / 3.6))
+    )
+    assert verdict.status is Status.EVIDENCE
+    assert all(hypothesis.status is Status.EVIDENCE for hypothesis in verdict.hypotheses)
+
+
+def test_repaired_law_is_not_judged_by_the_printed_v2(make_problem, make_controller):
+    problem = make_problem(make_controller("afsmc-repaired"))
+    assert lyapunov_printed.check(problem).status is Status.NOT_APPLICABLE
+
+
+def _wrong_sign_of_the_weights(s_d, speed, gain_speed, weights, bound, alpha1, alpha2):
+    return bound**2 / (2.0 * alpha2) + s_d**2 * speed / (2.0 * gain_speed) - weights / (2.0 * alpha1)
+
+
+def _without_speed(s_d, _, gain_speed, weights, bound, alpha1, alpha2):
+    return bound**2 / (2.0 * alpha2) + s_d**2 / (2.0 * gain_speed) + weights / (2.0 * alpha1)
+
+
+@pytest.mark.parametrize("wrong", [_wrong_sign_of_the_weights, _without_speed])
+def test_wrong_v_is_refuted(printed, monkeypatch, wrong):
+    monkeypatch.setattr(generated, "lyapunov_repaired", wrong)
+    verdict = lyapunov_repaired.check(printed)
+    assert Status.REFUTED in {verdict.status, *(hypothesis.status for hypothesis in verdict.hypotheses)}
+    assert verdict.status is Status.REFUTED
+
+
+def test_wrong_sign_of_the_adaptation_is_refuted(printed, monkeypatch):
+    right = law_module.adaptation
+
+    def wrong(gains, surface):
+        rates = right(gains, surface)
+        return rates._replace(weights=tuple(-rate for rate in rates.weights))
+
+    monkeypatch.setattr("wspd_design.certificates.proof_run.adaptation", wrong)
+    assert lyapunov_repaired.check(printed).status is Status.REFUTED
+
+
+def test_sliding_mode_with_enough_gain_reaches_its_layer(make_problem, make_controller):
+    law = make_controller("smc")
+    strong = replace(law, gains=replace(law.gains, switching_gain=25.0))
+    verdict = lyapunov_surface.check(make_problem(strong))
+    assert verdict.status is Status.EVIDENCE
+    assert {series.name for series in verdict.series} >= {"V from slip 0.02", "V from slip 0.6"}
+
+
+def test_sliding_mode_with_too_little_gain_is_refuted(make_problem, make_controller):
+    law = make_controller("smc")
+    weak = replace(law, gains=replace(law.gains, switching_gain=0.5))
+    verdict = lyapunov_surface.check(make_problem(weak))
+    assert verdict.status is Status.REFUTED
+    at = {point.name: point.value for point in verdict.witness}
+    assert at["rising since"] < at["time"]
+
+
+def test_each_v_speaks_about_its_own_law(make_problem, make_controller):
+    sliding, adaptive = make_problem(make_controller("smc")), make_problem(make_controller("afsmc"))
+    assert lyapunov_surface.check(adaptive).status is Status.NOT_APPLICABLE
+    assert lyapunov_printed.check(sliding).status is Status.NOT_APPLICABLE
+    assert lyapunov_repaired.check(sliding).status is Status.NOT_APPLICABLE

@@ -1,0 +1,159 @@
+"""The slip pole against valve, sampling and boundary layer."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from scipy.signal import cont2discrete
+
+from wspd_design.certificates import open_loop_pole, routh_lag, sampling
+from wspd_design.certificates.records import Status
+from wspd_design.certificates.slip_pole import pole_map
+from wspd_design.controllers.protocol import pulse_width
+from wspd_design.model.generated.slip import slip_gain
+from wspd_design.model.slip import slip_dynamics
+
+FINDINGS = {  # nominal pole at slip 0.14 and 33.3, 20, 10, 5 m/s on the calibrated vehicle [1/s]
+    "polach-dry": (1.00, 3.01, 6.79, 9.92),
+    "polach-wet": (0.97, 1.27, 1.25, 0.49),
+}
+
+
+@pytest.mark.parametrize("rail", FINDINGS)
+def test_pole_over_speed_agrees_with_the_findings(make_problem, make_controller, rail):
+    poles = pole_map(make_problem(make_controller("afsmc"), rail=rail))
+    found = np.interp((33.3, 20.0, 10.0, 5.0), poles.speeds, poles.nominal)
+    assert found == pytest.approx(FINDINGS[rail], rel=0.03)
+    assert np.all(poles.worst >= poles.nominal)
+    assert poles.highest.value >= poles.worst.max() - 1e-9
+
+
+def test_pole_above_the_valve_is_refuted_on_dry_rail(make_problem, make_controller):
+    problem = make_problem(make_controller("afsmc"))
+    verdict = open_loop_pole.check(problem)
+    assert verdict.status is Status.REFUTED
+    at = {point.name: point.value for point in verdict.witness}
+    vehicle = replace(problem.vehicle, mass=at["mass"], wheelset_inertia=at["wheelset inertia"])
+    rail = replace(problem.rail, mu0=at["mu0"])
+    step, speed = 1e-6, at["speed"] / 3.6
+    drifts = [slip_dynamics(vehicle, rail, 0.14 + side * step, speed).drift for side in (1.0, -1.0)]
+    by_differences = (drifts[0] - drifts[1]) / (2.0 * step)
+    assert by_differences == pytest.approx(at["slip pole"], rel=1e-5)
+    assert by_differences > 1.0 / problem.vehicle.brake.fill_time
+
+
+def test_rail_without_falling_friction_passes(make_problem, make_controller):
+    verdict = open_loop_pole.check(make_problem(make_controller("afsmc"), rail="table10-dry"))
+    assert verdict.status is Status.EVIDENCE
+    assert verdict.margin.high > 0.0
+
+
+def test_fast_valve_passes(make_problem, make_controller, fast_vehicle):
+    problem = make_problem(make_controller("afsmc"), vehicle=fast_vehicle)
+    assert open_loop_pole.check(problem).status is Status.EVIDENCE
+    assert sampling.check(replace(problem, sample_time=0.01)).status is Status.EVIDENCE
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TorqueFeedback:
+    """A law that the limit does not bind."""
+
+    name: str = "torque feedback"
+    sample_time: float = 0.1
+
+    def start(self, _):
+        return ()
+
+    def step(self, state, measurement):
+        return state, pulse_width(0.5 if measurement.torque > 20e3 else 1.0)
+
+
+@pytest.mark.parametrize("name", ["trenitalia", "knorr-bremse", "mitsubishi"])
+def test_laws_that_use_acceleration_are_not_bound(make_problem, make_controller, name):
+    problem = make_problem(make_controller(name))
+    assert open_loop_pole.check(problem).status is Status.NOT_APPLICABLE
+    assert sampling.check(problem).status is Status.NOT_APPLICABLE
+
+
+def test_law_that_uses_torque_is_not_bound(make_problem):
+    verdict = open_loop_pole.check(make_problem(TorqueFeedback()))
+    assert verdict.status is Status.NOT_APPLICABLE
+    assert verdict.hypotheses[0].status is Status.REFUTED
+
+
+def _stabilizable(pole, sample_time, lag):
+    """Search a stabilizing gain among many by eigenvalues."""
+    plant = (
+        np.array([[pole, 1.0], [0.0, -1.0 / lag]]),
+        np.array([[0.0], [1.0 / lag]]),
+        np.array([[1.0, 0.0]]),
+        np.zeros((1, 1)),
+    )
+    transition, entry, *_ = cont2discrete(plant, sample_time)
+    gains = np.geomspace(pole * (1.0 + 1e-6), 50.0 * pole, 4001)
+    closed = transition - gains[:, None, None] * (entry @ plant[2])
+    return bool((np.abs(np.linalg.eigvals(closed)).max(axis=1) < 1.0).any())
+
+
+@pytest.mark.parametrize(("sample_time", "lag"), [(0.1, 0.6), (0.02, 0.6), (0.3, 0.2), (1.0, 0.1)])
+def test_largest_pole_parts_what_a_gain_can_stabilize(sample_time, lag):
+    limit = sampling.largest_pole(sample_time, lag)
+    assert limit < 1.0 / lag
+    assert _stabilizable(0.99 * limit, sample_time, lag)
+    assert not _stabilizable(1.01 * limit, sample_time, lag)
+
+
+def test_largest_pole_counts_half_a_sample_as_lag():
+    assert sampling.largest_pole(0.1, 0.6) == pytest.approx(1.0 / 0.65, rel=1e-4)
+
+
+def test_slow_sampling_is_refuted_where_fast_sampling_passes(make_problem, make_controller, fast_vehicle):
+    law = make_controller("smc")
+    problem = make_problem(law, vehicle=fast_vehicle)
+    assert sampling.check(replace(problem, sample_time=0.02)).status is Status.EVIDENCE
+    assert sampling.check(replace(problem, sample_time=0.5)).status is Status.REFUTED
+
+
+def _eigenvalues(problem, law, speed):
+    """Closed loop of slip, torque and integral by differences of the law and the plant."""
+    vehicle = problem.vehicle
+    plant = slip_dynamics(vehicle, problem.rail, 0.14, speed)
+    gain = slip_gain(speed, vehicle.wheel_inertia, vehicle.wheel_radius)
+    if hasattr(law.gains, "switching_gain"):
+        layer_rate = law.gains.switching_gain / speed / law.gains.boundary_layer
+        by_error = (plant.pole + law.gains.surface_rate + layer_rate) / gain
+        by_integral = layer_rate * law.gains.surface_rate / gain
+    else:
+        slope = routh_lag.torque_per_surface(law)
+        by_error, by_integral = slope * law.gains.proportional_gain, slope * law.gains.integral_gain
+    lag = vehicle.brake.fill_time
+    return np.linalg.eigvals(
+        [
+            [plant.pole, gain, 0.0],
+            [-by_error / lag, -1.0 / lag, by_integral / lag],
+            [-1.0, 0.0, 0.0],
+        ]
+    )
+
+
+@pytest.mark.parametrize("name", ["afsmc", "smc"])
+@pytest.mark.parametrize("rail", ["polach-dry", "polach-wet", "table10-wet"])
+def test_routh_agrees_with_eigenvalues(make_problem, make_controller, name, rail):
+    law = make_controller(name, rail)
+    problem = make_problem(law, rail=rail)
+    margins = routh_lag.check(problem).series[0]
+    for speed, margin in zip(margins.x[::8], margins.y[::8], strict=True):
+        stable = bool(_eigenvalues(problem, law, speed / 3.6).real.max() < 0.0)
+        assert stable is bool(margin > 0.0)
+
+
+def test_layer_with_the_papers_valve_is_refuted_on_dry_rail(make_problem, make_controller):
+    verdict = routh_lag.check(make_problem(make_controller("smc")))
+    assert verdict.status is Status.REFUTED
+    assert {point.name for point in verdict.witness} == {"speed", "slip pole", "k"}
+
+
+def test_layer_with_a_fast_valve_passes(make_problem, make_controller, fast_vehicle):
+    problem = make_problem(make_controller("smc"), vehicle=fast_vehicle)
+    assert routh_lag.check(problem).status is Status.EVIDENCE
+    assert routh_lag.check(make_problem(make_controller("none"))).status is Status.NOT_APPLICABLE

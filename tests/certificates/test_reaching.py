@@ -1,0 +1,93 @@
+"""The reaching condition against the reference problem, whose supremum is known from an interval proof."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wspd_design.certificates import domain, proof_run, reaching
+from wspd_design.certificates.domain import INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.records import Status
+from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.errors import UserError
+
+KNOWN_SUPREMUM = 24.7935  # m/s2, enclosed by 24.793 and 24.794
+PLACE = {"slip": 0.121, "speed": 2.0 * 3.6, "mass": 1.2 * 76841.0, "mu0": 0.6}
+
+
+def _random_points(problem, count, seed=0):
+    low, high = domain.box(problem)
+    return np.random.default_rng(seed).uniform(low, high, (count, 5))
+
+
+def test_supremum_of_the_reference_problem(make_reference_problem):
+    found = reaching.supremum(make_reference_problem())
+    assert found.value == pytest.approx(KNOWN_SUPREMUM, abs=1e-3)
+    at = {point.name: point.value for point in found.point}
+    for name, value in PLACE.items():
+        assert at[name] == pytest.approx(value, rel=3e-3)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_supremum_does_not_depend_on_the_seed(make_reference_problem, seed):
+    found = reaching.supremum(replace(make_reference_problem(), seed=seed))
+    assert found.value == pytest.approx(KNOWN_SUPREMUM, abs=1e-3)
+
+
+def test_gain_that_satisfies_100_000_random_points_is_refuted(make_reference_problem):
+    """Sampling alone would certify a false bound; climbing from the samples finds the counterexample."""
+    problem = make_reference_problem()
+    sampled = np.abs(
+        reaching.mismatch(problem, problem.controller, _random_points(problem, 100_000)).residual
+    )
+    assert sampled.max() < KNOWN_SUPREMUM - 0.5
+    reserve = reaching.reserve(problem)
+    for gain in (sampled.max() + reserve + 0.01, KNOWN_SUPREMUM + reserve - 0.01):
+        verdict = reaching.check(make_reference_problem(gain))
+        assert verdict.status is Status.REFUTED
+        at = {point.name: point.value for point in verdict.witness}
+        assert at["abs(r)"] + reserve > gain  # the inertia is known, so rho = 1
+        assert verdict.margin.low is None
+        assert verdict.margin.high == pytest.approx(gain - KNOWN_SUPREMUM - reserve, abs=2e-3)
+
+
+def test_gain_above_the_supremum_is_evidence(make_reference_problem):
+    problem = make_reference_problem(KNOWN_SUPREMUM + reaching.reserve(make_reference_problem()) + 0.01)
+    verdict = reaching.check(problem)
+    assert verdict.status is Status.EVIDENCE
+    assert 0.0 < verdict.margin.high < 0.02
+
+
+def test_mismatch_is_what_the_plant_does_under_the_law(make_problem, make_controller):
+    """v sbar' = r - rho W0 sat(sbar / layer), with sbar' from the plant under the torque of the law."""
+    law = make_controller("smc")
+    problem = make_problem(law)
+    points = _random_points(problem, 50, seed=4)
+    known = reaching.mismatch(problem, law, points)
+    for row, residual, ratio in zip(points, known.residual, known.inertia_ratio, strict=True):
+        vehicle, rail = domain.varied(problem, row[MASS], row[INERTIA], row[MU0])
+        plant = slip_dynamics(vehicle, rail, row[SLIP], row[SPEED])
+        error = 0.14 - row[SLIP]
+        for surface in (0.5, 0.01, -0.3):
+            integral = (surface - error) / law.gains.surface_rate
+            torque = proof_run.sliding_torque(law, row[SLIP], row[SPEED], integral)
+            surface_rate = -(plant.drift + plant.gain * torque) + law.gains.surface_rate * error
+            switching = (
+                ratio * law.gains.switching_gain * np.clip(surface / law.gains.boundary_layer, -1.0, 1.0)
+            )
+            assert row[SPEED] * surface_rate == pytest.approx(residual - switching, rel=1e-9, abs=1e-9)
+
+
+def test_unknown_inertia_asks_for_more_gain(make_problem, make_controller):
+    law = make_controller("smc")
+    known = make_problem(law, inertia_bounds=(law.vehicle.wheelset_inertia,) * 2)
+    assert reaching.required_gain(make_problem(law)).value > reaching.required_gain(known).value
+    expected = reaching.supremum(known).value + reaching.reserve(known)
+    assert reaching.required_gain(known).value == pytest.approx(expected, abs=1e-4)
+
+
+def test_laws_without_friction_model_have_no_reaching_condition(make_problem, make_controller):
+    problem = make_problem(make_controller("afsmc"))
+    assert reaching.check(problem).status is Status.NOT_APPLICABLE
+    with pytest.raises(UserError, match="friction model"):
+        reaching.supremum(problem)

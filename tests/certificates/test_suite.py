@@ -1,0 +1,112 @@
+"""The whole set: order, completeness, honesty and what it refuses."""
+
+from dataclasses import replace
+
+import pytest
+
+from wspd_design.certificates.records import Status
+from wspd_design.certificates.suite import NAMES, verify
+from wspd_design.parameters.errors import UserError
+
+EXACT = {"surface_hurwitz", "gain_positive"}
+
+
+@pytest.fixture(scope="module", params=[("afsmc", "polach-dry"), ("smc", "polach-wet")])
+def certificates(request, make_problem, make_controller):
+    name, rail = request.param
+    return verify(make_problem(make_controller(name, rail), rail=rail))
+
+
+def test_order(certificates):
+    assert NAMES == (
+        "surface_hurwitz",
+        "gain_positive",
+        "brake_authority",
+        "reaching",
+        "lyapunov_surface",
+        "lyapunov_printed",
+        "lyapunov_repaired",
+        "barbalat",
+        "open_loop_pole",
+        "sampling",
+        "routh_lag",
+        "tracking",
+    )
+    assert tuple(certificate.name for certificate in certificates) == NAMES
+
+
+def test_only_exact_arithmetic_proves(certificates):
+    assert {c.name for c in certificates if c.status is Status.PROVED} == EXACT
+
+
+def test_every_certificate_is_complete(certificates):
+    for certificate in certificates:
+        assert certificate.title
+        assert certificate.claim.endswith(".")
+        assert certificate.explanation.endswith(".")
+        assert certificate.method
+        assert len(certificate.model_hash) == 64
+        assert certificate.seconds >= 0.0
+        if certificate.status in (Status.EVIDENCE, Status.REFUTED, Status.VACUOUS):
+            assert certificate.assumptions
+            assert certificate.resolution
+            assert certificate.reference
+            assert certificate.margin is not None
+        if certificate.status is Status.REFUTED:
+            assert certificate.witness
+            assert certificate.margin.high <= 0.0
+        if certificate.status is Status.EVIDENCE:
+            assert not certificate.witness
+            assert certificate.margin.high >= 0.0
+        for series in certificate.series:
+            assert 2 <= len(series.x) == len(series.y) <= 502
+
+
+def test_printed_law_on_dry_rail(make_problem, make_controller):
+    """The statuses that the findings establish by other means."""
+    verdicts = {c.name: c.status for c in verify(make_problem(make_controller("afsmc")))}
+    assert verdicts == {
+        "surface_hurwitz": Status.PROVED,
+        "gain_positive": Status.PROVED,
+        "brake_authority": Status.EVIDENCE,
+        "reaching": Status.NOT_APPLICABLE,
+        "lyapunov_surface": Status.NOT_APPLICABLE,
+        "lyapunov_printed": Status.REFUTED,
+        "lyapunov_repaired": Status.EVIDENCE,
+        "barbalat": Status.VACUOUS,
+        "open_loop_pole": Status.REFUTED,
+        "sampling": Status.REFUTED,
+        "routh_lag": Status.REFUTED,
+        "tracking": Status.REFUTED,
+    }
+
+
+def test_selected_checks_and_progress(make_problem, make_controller):
+    told = []
+    problem = make_problem(make_controller("none"))
+    found = verify(problem, only=("gain_positive", "surface_hurwitz"), progress=told.append)
+    assert [certificate.name for certificate in found] == ["surface_hurwitz", "gain_positive"]
+    assert told == [certificate.title for certificate in found]
+
+
+def test_unknown_check_is_refused_with_the_nearest_name(make_problem, make_controller):
+    with pytest.raises(UserError, match='"reching", did you mean "reaching"'):
+        verify(make_problem(make_controller("none")), only=("reching",))
+
+
+def test_problem_about_another_loop_is_refused(make_problem, make_controller):
+    problem = make_problem(make_controller("afsmc"))
+    with pytest.raises(UserError, match="sample time"):
+        verify(replace(problem, sample_time=0.02))
+    with pytest.raises(UserError, match="slip reference"):
+        verify(replace(problem, slip=0.2))
+
+
+@pytest.mark.parametrize("name", ["afsmc", "smc"])
+@pytest.mark.parametrize("changes", [{"inertia_bounds": (0.0, 860.0)}, {"speeds": (0.0, 30.0)}])
+def test_box_outside_the_model_leaves_the_rest_undecided(make_problem, make_controller, name, changes):
+    found = {c.name: c for c in verify(make_problem(make_controller(name), **changes))}
+    assert found["gain_positive"].status is Status.REFUTED
+    for undecided in ("brake_authority", "open_loop_pole", "sampling", "routh_lag"):
+        assert found[undecided].status is Status.UNDECIDED
+        assert "not positive" in found[undecided].claim

@@ -1,0 +1,90 @@
+"""Records: what a problem refuses, and what the fingerprint of a model sees."""
+
+from dataclasses import fields, replace
+from fractions import Fraction
+
+import pytest
+
+from wspd_design.certificates.checking import enclosure, model_hash
+from wspd_design.certificates.records import Problem
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_rail
+
+
+@pytest.fixture
+def problem(er24pc, make_controller):
+    return Problem(
+        vehicle=er24pc,
+        rail=load_rail("polach-dry"),
+        controller=make_controller("afsmc"),
+        slip=0.14,
+        speeds=(2.0, 33.0),
+        slips=(0.02, 0.6),
+        mass_bounds=(6e4, 9e4),
+        inertia_bounds=(640.0, 860.0),
+        mu0_bounds=(0.4, 0.6),
+        sample_time=0.1,
+    )
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"speeds": (33.0, 2.0)},
+        {"mass_bounds": (float("nan"), 9e4)},
+        {"mu0_bounds": (0.4, float("inf"))},
+        {"slip": 1.4},
+        {"slip": float("nan")},
+        {"sample_time": 0.0},
+    ],
+)
+def test_ranges_that_are_none_are_refused(problem, changes):
+    with pytest.raises(UserError, match=next(iter(changes)).split("_")[0]):
+        replace(problem, **changes)
+
+
+def test_hash_is_the_same_for_the_same_numbers(problem):
+    assert model_hash(problem) == model_hash(replace(problem))
+    assert model_hash(problem) == model_hash(replace(problem, speeds=(2.0 + 0.0, 33.0)))
+
+
+def test_hash_sees_every_field_of_a_problem(problem):
+    known = {model_hash(problem)}
+    other = {
+        "vehicle": replace(problem.vehicle, brake=replace(problem.vehicle.brake, fill_time=0.61)),
+        "rail": replace(problem.rail, friction_decay=0.61),
+        "controller": replace(
+            problem.controller, gains=replace(problem.controller.gains, centres=(1.0, 2.0, 3.0, 4.0, 5.0))
+        ),
+        "slip": 0.15,
+        "speeds": (2.0, 33.000000000000007),
+        "slips": (0.02, 0.61),
+        "mass_bounds": (6e4, 9.1e4),
+        "inertia_bounds": (641.0, 860.0),
+        "mu0_bounds": (0.41, 0.6),
+        "sample_time": 0.11,
+        "seed": 1,
+        "contact_grows_with_load": False,
+    }
+    assert set(other) == {field.name for field in fields(Problem)}
+    for name, value in other.items():
+        changed = model_hash(replace(problem, **{name: value}))
+        assert changed not in known
+        known.add(changed)
+
+
+def test_hash_tells_users_own_controllers_apart(problem):
+    class Own:
+        def __init__(self, gain):
+            self.name, self.sample_time, self.gain = "own", 0.1, gain
+
+    hashes = {model_hash(replace(problem, controller=Own(gain))) for gain in (1.0, 2.0)}
+    assert len(hashes) == 2
+    assert model_hash(replace(problem, controller=Own(1.0))) in hashes
+
+
+@pytest.mark.parametrize("number", [Fraction(1, 3), Fraction(-1, 3), Fraction(1, 2), Fraction(1, 10**400)])
+def test_enclosure_contains_the_exact_number(number):
+    found = enclosure(number, number, "-")
+    assert Fraction(found.low) <= number <= Fraction(found.high)
+    assert (found.low == found.high) is (number == Fraction(1, 2))
