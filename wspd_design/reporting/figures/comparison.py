@@ -1,0 +1,114 @@
+"""The same stop with several controllers."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from wspd_design.design.records import Specification
+from wspd_design.reporting.figure_style import INK, SERIES
+from wspd_design.reporting.figures.drawing import note
+from wspd_design.reporting.figures.stop import slip_panel
+from wspd_design.reporting.published import PublishedStop
+from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.records import Ending
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def distance_bars(
+    figure: "Figure",
+    trials: Sequence[Trial],
+    lag_distances: Sequence[float],
+    published: Mapping[str, PublishedStop],
+) -> "Figure":
+    """Draw the stopping distances, split into brake build-up and plateau.
+
+    Parameters
+    ----------
+    figure : Figure
+        Empty figure.
+    trials : sequence of Trial
+        Stops; one without standstill has a bar without parts.
+    lag_distances : sequence of float
+        Part of each distance that the build-up costs [m].
+    published : mapping of str to PublishedStop
+        The paper's stops by controller, marked by a line.
+    """
+    axes = figure.subplots()
+    for row, (trial, lag) in enumerate(zip(trials, lag_distances, strict=True)):
+        distance = trial.metrics.distance
+        theirs = published.get(trial.run.controller)
+        end = distance if theirs is None else max(distance, theirs.distance_m)
+        if trial.run.ending is Ending.STOPPED:
+            axes.barh(row, lag, color=SERIES[1], height=0.6, label=None if row else "lag")
+            axes.barh(
+                row,
+                distance - lag,
+                left=lag,
+                color=SERIES[0],
+                height=0.6,
+                alpha=0.45,
+                label=None if row else "plateau",
+            )
+            note(axes, f"{distance:.1f} m", end, row, xytext=(4, 0), va="center")
+        else:
+            axes.barh(row, distance, color=SERIES[6], height=0.6, alpha=0.4)
+            note(axes, f"{distance:.0f} m, still moving", end, row, xytext=(4, 0), va="center")
+        if theirs is not None:
+            axes.plot(
+                [theirs.distance_m] * 2, [row - 0.42, row + 0.42], color=INK, linestyle="-", linewidth=1.6
+            )
+    axes.set_yticks(range(len(trials)), [trial.run.controller for trial in trials])
+    axes.invert_yaxis()
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0)
+    axes.grid(visible=False, axis="y")
+    axes.set(xlabel="distance [m]", xlim=(0.0, 1.15 * max(trial.metrics.distance for trial in trials)))
+    return figure
+
+
+def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specification) -> "Figure":
+    """Draw the slip of every stop over time, on the same axes.
+
+    Parameters
+    ----------
+    figure : Figure
+        Empty figure.
+    trials : sequence of Trial
+        Stops.
+    specification : Specification
+        Slip reference and tolerance.
+    """
+    columns = 3 if len(trials) > 4 else 2
+    rows = -(-len(trials) // columns)
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes, trial in zip(grid.flat, trials, strict=False):
+        slip_panel(axes, trial.run, specification, top=1.05)
+        axes.set_title(trial.run.controller)
+        axes.label_outer()
+    for axes in grid.flat[len(trials) :]:
+        axes.remove()
+    last = max(float(trial.run.time[-1]) for trial in trials)
+    for index, axes in enumerate(grid.flat[: len(trials)]):
+        axes.set_xlim(0.0, last)
+        axes.tick_params(labelbottom=index + columns >= len(trials))
+    figure.supxlabel("time [s]", fontsize="medium")
+    return figure
+
+
+def distances_alt(trials: Sequence[Trial], lag_distances: Sequence[float]) -> str:
+    """Say in words what the bars show."""
+    said = (
+        f"{trial.run.controller} {trial.metrics.distance:.1f} m"
+        + (f", {lag:.1f} m of it brake build-up" if trial.run.ending is Ending.STOPPED else ", still moving")
+        for trial, lag in zip(trials, lag_distances, strict=True)
+    )
+    return f"Stopping distances: {'; '.join(said)}."
+
+
+def slips_alt(trials: Sequence[Trial], specification: Specification) -> str:
+    """Say in words what the slips show."""
+    said = (
+        f"{trial.run.controller} rms {trial.metrics.slip_rms:.3f}, locked {trial.metrics.lock_time:.2f} s"
+        for trial in trials
+    )
+    return f"Slip over time about the reference {specification.slip:g}: {'; '.join(said)}."

@@ -1,0 +1,68 @@
+"""What the figures share: the report's style, thinned curves, and labels on the curve instead of a legend."""
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from wspd_design.reporting.figure_style import LINE_STYLES, SERIES, figure_style, figure_svg, new_figure
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    Trace = NDArray[np.float64]
+
+MOST_POINTS = 2000
+"""A curve with more points is thinned: print and screen show no more."""
+
+KMH = 3.6
+KILO = 1e3
+
+
+def picture(draw: Callable[["Figure"], "Figure"], *, height: float) -> str:
+    """Return what a function draws on an empty figure of this height [in] as SVG, in the report's style."""
+    with figure_style():
+        return figure_svg(draw(new_figure(height=height)))
+
+
+def thinned(x: "Trace", y: "Trace", most: int = MOST_POINTS) -> tuple["Trace", "Trace"]:
+    """Thin a curve without losing an extreme: of each stretch its lowest and its highest point stay.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        The curve, in drawing order.
+    most : int
+        Number of points that may remain, at least 6.
+
+    Returns
+    -------
+    tuple of ndarray
+        The curve itself if it is short enough, else a part of its points in the same order, with both ends.
+    """
+    import numpy as np
+
+    if len(x) <= most:
+        return x, y
+    edges = np.linspace(0, len(x), (most - 2) // 2 + 1).astype(int)
+    keep = {0, len(x) - 1}
+    for start, end in pairwise(edges):
+        keep |= {start + int(np.argmin(y[start:end])), start + int(np.argmax(y[start:end]))}
+    kept = sorted(keep)
+    return x[kept], y[kept]
+
+
+def curve(axes: "Axes", x: "Trace", y: "Trace", index: int, **options: Any) -> None:
+    """Draw a thinned curve in one color and line style of the report."""
+    import numpy as np
+
+    thin_x, thin_y = thinned(np.asarray(x), np.asarray(y))
+    axes.plot(thin_x, thin_y, color=SERIES[index], linestyle=LINE_STYLES[index], **options)
+
+
+def note(axes: "Axes", text: str, x: float, y: float, **options: Any) -> None:
+    """Write beside a curve, a few points away from the data point (x, y)."""
+    placed: dict[str, Any] = {"xytext": (0, 3), "ha": "left", "va": "bottom", "fontsize": 7.5} | options
+    axes.annotate(text, (x, y), textcoords="offset points", **placed)

@@ -1,0 +1,86 @@
+"""Numbers as people read them: few digits, a real minus sign, powers of ten written out."""
+
+import math
+from collections.abc import Sequence
+
+from wspd_design.certificates.records import Point, Range
+from wspd_design.parameters.units import format_quantity
+
+MINUS, NONE = "\N{MINUS SIGN}", "\N{EN DASH}"
+_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+_UNITS = str.maketrans({"2": "²", "3": "³"})
+_LARGEST, _SMALLEST = 1e7, 1e-4
+
+
+def decimals(value: float, places: int) -> str:
+    """Write a number with fixed decimals; a dash where there is none."""
+    if not math.isfinite(value):
+        return NONE
+    return _minus(f"{value:.{places}f}")
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """Write a number with at most so many significant digits; a dash where there is none."""
+    if not math.isfinite(value):
+        return NONE
+    if value == 0.0:
+        return "0"
+    mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
+    if _SMALLEST <= abs(value) < _LARGEST:
+        return _minus(_trimmed(f"{value:.{max(digits - 1 - int(exponent), 0)}f}"))
+    return _minus(f"{_trimmed(mantissa)}·10") + str(int(exponent)).translate(_SUPERSCRIPTS)
+
+
+def unit(spelling: str) -> str:
+    """Write a unit with superscripts: ``m/s^2`` and ``m/s2`` become ``m/s²``; a ratio has none."""
+    return "" if spelling == "-" else spelling.replace("^", "").translate(_UNITS)
+
+
+def quantity(value: float, spelling: str, digits: int = 4) -> str:
+    """Write a number with its unit."""
+    return f"{significant(value, digits)} {unit(spelling)}".rstrip()
+
+
+def quantity_in(value_si: float, spelling: str) -> str:
+    """Write an SI number in a unit of the parameter files, with its unit."""
+    number, _, rest = format_quantity(value_si, spelling).partition(" ")
+    return f"{_minus(number)} {unit(rest)}".rstrip()
+
+
+def margin(enclosure: Range | None) -> str:
+    """Write an enclosure: one number where its ends agree, a bound where one end is open."""
+    if enclosure is None:
+        return NONE
+    low, high = enclosure.low, enclosure.high
+    if low is None and high is None:
+        return NONE
+    if low is None or high is None:
+        sign, bound = ("≤", high) if low is None else ("≥", low)
+        assert bound is not None
+        return f"{sign} {quantity(bound, enclosure.unit)}"
+    if significant(low) == significant(high):
+        return quantity(low, enclosure.unit)
+    return f"{significant(low)} to {quantity(high, enclosure.unit)}"
+
+
+def point(coordinates: Sequence[Point]) -> str:
+    """Write a point of a domain: names, values and units."""
+    return ", ".join(f"{each.name} {quantity(each.value, each.unit)}" for each in coordinates)
+
+
+def count(number: int, noun: str) -> str:
+    """Write a number of things: ``1 check``, ``2 checks``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def listing(words: Sequence[str]) -> str:
+    """Join words: ``a``, ``a and b``, ``a, b and c``."""
+    return " and ".join((", ".join(words[:-1]), words[-1])) if len(words) > 1 else "".join(words)
+
+
+def _trimmed(text: str) -> str:
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def _minus(text: str) -> str:
+    return text.replace("-", MINUS)

@@ -1,0 +1,94 @@
+"""The report of a design: a dossier in, one HTML or PDF file out."""
+
+import json
+import os
+from datetime import UTC, datetime
+from pathlib import Path
+
+from wspd_design.design.dossier import Dossier
+from wspd_design.design.file import design_text
+from wspd_design.parameters.errors import UserError
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Attachment, Document
+from wspd_design.reporting.output import write_document
+from wspd_design.reporting.record import report_record
+from wspd_design.reporting.sections.case import LAWS, case
+from wspd_design.reporting.sections.checks import checks
+from wspd_design.reporting.sections.comparison import comparison
+from wspd_design.reporting.sections.design import design
+from wspd_design.reporting.sections.limits import limits, provenance
+from wspd_design.reporting.sections.linearization import linearization
+from wspd_design.reporting.sections.slip_equation import slip_equation
+from wspd_design.reporting.sections.sources import sources
+from wspd_design.reporting.sections.stop import stop
+from wspd_design.reporting.sections.summary import summary, verdict
+
+SECTIONS = (case, slip_equation, design, linearization, checks, stop, comparison, sources, limits)
+
+
+def write_report(dossier: Dossier, *paths: str | Path) -> None:
+    """Write the report of a design to files; the ending of a name, ``.html`` or ``.pdf``, chooses its format.
+
+    The date in the report is now, or that of the environment variable ``SOURCE_DATE_EPOCH`` [s]; all else
+    follows from the dossier.
+
+    Parameters
+    ----------
+    dossier : Dossier
+        What :func:`wspd_design.design.dossier.dossier` returned.
+    *paths : str or Path
+        One file for each format wanted.
+
+    Raises
+    ------
+    UserError
+        If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is no number of seconds.
+    """
+    document = report_document(dossier, _now())
+    for path in paths:
+        write_document(document, path)
+
+
+def report_document(dossier: Dossier, timestamp: datetime) -> Document:
+    """Return the report of a design, not yet rendered."""
+    made = dossier.design
+    version = dict(dossier.provenance.versions)["wspd-design"]
+    speed = numbers.quantity_in(dossier.initial_speed, "km/h")
+    record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
+    return Document(
+        title=f"Wheel slide protection: {made.name}",
+        subtitle=f"{LAWS[made.law]}, for {dossier.vehicle.name} on {dossier.rail.name}, from {speed}",
+        status_line=f"wspd {version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {dossier.provenance.seed} · "
+        f"inputs {dossier.provenance.input_hash[:12]}",
+        verdict=verdict(dossier),
+        summary=summary(dossier),
+        blocks=tuple(block for section in SECTIONS for block in section(dossier)),
+        provenance=provenance(dossier),
+        attachments=(
+            Attachment(
+                name="design.toml",
+                media_type="application/toml",
+                content=design_text(made),
+                description="the design, which every command takes in place of a controller's name",
+            ),
+            Attachment(
+                name="report.json",
+                media_type="application/json",
+                content=f"{record}\n",
+                description="all numbers of this report",
+            ),
+        ),
+        timestamp=timestamp,
+    )
+
+
+def _now() -> datetime:
+    stated = os.environ.get("SOURCE_DATE_EPOCH")
+    if stated is None:
+        return datetime.now(UTC).replace(microsecond=0)
+    try:
+        return datetime.fromtimestamp(int(stated), UTC)
+    except (ValueError, OverflowError, OSError):
+        raise UserError(
+            f'SOURCE_DATE_EPOCH = "{stated}" must be a whole number of seconds since 1970; unset it'
+        ) from None

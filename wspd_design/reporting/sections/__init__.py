@@ -1,0 +1,1 @@
+"""Sections of the report: each turns the records of a dossier into blocks, and computes nothing."""

@@ -1,0 +1,59 @@
+"""The vehicle, the rail and the controller in short."""
+
+from wspd_design.design.dossier import Dossier
+from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.units import format_quantity
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
+from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.text import Text, rich
+
+LAWS = {
+    "afsmc": "Adaptive fuzzy sliding mode, eqs. (29) to (42)",
+    "smc": "Sliding mode with a friction model, eqs. (22) to (26)",
+}
+
+
+def case(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about what was designed, for what."""
+    design, vehicle, rail = dossier.design, dossier.vehicle, dossier.rail
+    specification = design.specification
+    low, high = (numbers.significant(speed * KMH) for speed in specification.speeds)
+    slip_low, slip_high = specification.slips
+    brake = (
+        f"{_value(vehicle, 'brake.max_torque')} per wheelset; fills with a time constant of "
+        f"{_value(vehicle, 'brake.fill_time')}, vents with {_value(vehicle, 'brake.vent_time')}"
+    )
+    friction = (
+        f"{rail.title} ({rail.name}): friction coefficient {_value(rail, 'mu0')} without sliding, "
+        f"{_value(rail, 'friction_ratio')} of it at large sliding speed, decay "
+        f"{_value(rail, 'friction_decay')}"
+    )
+    rows: tuple[tuple[Text, Text], ...] = (
+        ("Vehicle", f"{vehicle.title} ({vehicle.name})"),
+        ("Mass", _value(vehicle, "mass")),
+        ("Rotating inertia", f"{_value(vehicle, 'wheelset_inertia')} per wheelset"),
+        ("Wheel radius", _value(vehicle, "wheel_radius")),
+        ("Brake", brake),
+        ("Rail of the stops", friction),
+        ("Controller", f"{LAWS[design.law]}; design {design.name}, made on rail {design.rail}"),
+        ("Slip reference", f"{specification.slip:g}, tolerance {specification.slip_tolerance:g}"),
+        ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),
+        ("Sample time", format_quantity(specification.sample_time, "ms")),
+        ("Plant of the stops", f"{dossier.trials[0].run.plant} locomotive"),
+    )
+    return (
+        Heading(text="Vehicle, rail and controller", anchor="case"),
+        Definitions(rows=tuple(Definition(term=term, text=text) for term, text in rows)),
+        Paragraph(text=rich("Every number with its unit, bounds, status and source stands in [](#sources).")),
+    )
+
+
+def _value(parameters: ParameterSet, name: str) -> str:
+    entry: Entry = parameters.entries[name]
+    assert isinstance(entry.value, float)
+    text = numbers.quantity_in(entry.value, entry.unit)
+    if entry.bounds is None:
+        return text
+    low, high = (numbers.quantity_in(bound, entry.unit) for bound in entry.bounds)
+    return f"{text} ({low} to {high})"

@@ -1,0 +1,116 @@
+"""Every check in full: claim, finding, margin, worst point, hypotheses, assumptions, method and curves."""
+
+from functools import partial
+
+from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.records import Status as Finding
+from wspd_design.design.dossier import Dossier
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import (
+    Block,
+    Cell,
+    Column,
+    Definition,
+    Definitions,
+    Figure,
+    Heading,
+    Paragraph,
+    Status,
+    Table,
+    Verdict,
+)
+from wspd_design.reporting.figures.drawing import picture
+from wspd_design.reporting.figures.series import certificate_curves, panels, series_alt
+
+PANEL_HEIGHT = 1.9  # in
+
+FINDINGS = (
+    Finding.REFUTED,
+    Finding.UNDECIDED,
+    Finding.EVIDENCE,
+    Finding.PROVED,
+    Finding.VACUOUS,
+    Finding.NOT_APPLICABLE,
+)
+"""From the worst finding to those that say nothing."""
+
+
+def check_anchor(certificate: Certificate) -> str:
+    """Return the anchor of the section of a check."""
+    return f"check-{certificate.name.replace('_', '-')}"
+
+
+def checks(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about the stability checks."""
+    found: list[Block] = [
+        Heading(text="Stability checks", anchor="stability-checks"),
+        Paragraph(
+            text="Each check states a claim on the range of slip and speed of the specification and within "
+            "the bounds of mass, inertia and friction, with the assumptions that it names. The worst "
+            "findings stand first."
+        ),
+    ]
+    for finding in FINDINGS:
+        group = [each for each in dossier.certificates if each.status is finding]
+        if group:
+            word = Status[finding.name].word.capitalize()
+            found += [
+                Heading(text=word, anchor=f"finding-{word.lower().replace(' ', '-')}", level=2),
+                Paragraph(text=f"{word}: {finding.value}."),
+            ]
+        for certificate in group:
+            found += _check(certificate)
+    return tuple(found)
+
+
+def _check(certificate: Certificate) -> list[Block]:
+    anchor = check_anchor(certificate)
+    found: list[Block] = [
+        Heading(text=certificate.title, anchor=anchor, level=3),
+        Verdict(status=Status[certificate.status.name], sentence=certificate.claim),
+        Paragraph(text=certificate.explanation),
+    ]
+    if certificate.hypotheses:
+        found.append(
+            Table(
+                columns=(Column(title="Hypothesis"), Column(title="Finding")),
+                rows=tuple(
+                    (each.text, Cell(status=Status[each.status.name])) for each in certificate.hypotheses
+                ),
+                caption="What the claim needs.",
+                anchor=f"{anchor}-hypotheses",
+            )
+        )
+    if certificate.status is not Finding.NOT_APPLICABLE:
+        found.append(Definitions(rows=_details(certificate)))
+    if certificate.series:
+        found.append(
+            Figure(
+                svg=picture(
+                    partial(certificate_curves, certificate=certificate),
+                    height=0.5 + PANEL_HEIGHT * len(panels(certificate.series)),
+                ),
+                caption=f"{certificate.title}: {_axes(certificate)}.",
+                alt=series_alt(certificate.series),
+                anchor=f"{anchor}-curves",
+            )
+        )
+    return found
+
+
+def _axes(certificate: Certificate) -> str:
+    return numbers.listing([f"{y_label} over {x_label}" for x_label, y_label in panels(certificate.series)])
+
+
+def _details(certificate: Certificate) -> tuple[Definition, ...]:
+    rows = (
+        ("Margin", "" if certificate.margin is None else numbers.margin(certificate.margin)),
+        ("Tightest point", numbers.point(certificate.worst_point)),
+        ("Witness", numbers.point(certificate.witness)),
+        ("Assumptions", "; ".join(certificate.assumptions)),
+        ("Method", certificate.method),
+        ("Resolution", certificate.resolution),
+        ("Reference", certificate.reference),
+        ("Name, model", f"{certificate.name}, {certificate.model_hash[:16]}"),
+    )
+    return tuple(Definition(term=term, text=text) for term, text in rows if text)

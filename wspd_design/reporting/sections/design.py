@@ -1,0 +1,47 @@
+"""The design: every gain with its unit and its reason."""
+
+from wspd_design.design.dossier import Dossier
+from wspd_design.design.records import Design, GainValue
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Block, Column, Heading, Paragraph, Table
+from wspd_design.reporting.text import rich
+
+
+def design(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about the gains."""
+    return (
+        Heading(text="The design", anchor="design"),
+        Paragraph(
+            text=rich(
+                "The gains, each with the rule that chose it. The attached `design.toml` holds the same "
+                "numbers in full length and stands in place of a controller's name in every command."
+            )
+        ),
+        gain_table(
+            dossier.design, caption=f"Gains of {dossier.design.name} with their reasons.", anchor="gains"
+        ),
+    )
+
+
+def gain_table(design: Design, *, caption: str, anchor: str) -> Table:
+    """Return the gains of a design as a table."""
+    return Table(
+        columns=(Column(title="Gain"), Column(title="Value"), Column(title="Unit"), Column(title="Why")),
+        rows=tuple(
+            (gain.name.replace("_", " "), value_text(gain.value), numbers.unit(gain.unit) or "-", gain.why)
+            for gain in design.gains
+        ),
+        caption=caption,
+        anchor=anchor,
+    )
+
+
+def value_text(value: GainValue) -> str:
+    """Write the value of a gain; equal numbers of a list are written once."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, tuple):
+        if len(set(value)) == 1:
+            return f"{len(value)} × {numbers.significant(value[0])}"
+        return ", ".join(numbers.significant(each) for each in value)
+    return numbers.significant(value)

@@ -1,0 +1,53 @@
+"""What the report does not show, and how to make it again."""
+
+from wspd_design.design.dossier import Dossier
+from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
+from wspd_design.reporting.text import CodeSpan, Text, rich
+from wspd_design.simulation.records import Run
+
+EVERYWHERE: tuple[str, ...] = (
+    "Level, straight track in one condition from end to end; no patches, no cleaning of the rail by the "
+    "wheels ahead, no sand.",
+    "Train and wheel speed are measured without error, delay or quantization, and the train speed is known.",
+    "The valve follows its time constants; dead times, leakage, and a limit of the air supply are not "
+    "modeled.",
+    "Friction of the pads is constant; heat, wear and flats are not modeled.",
+    "Stops and checks sit on reconstructed data: the agreement with a real locomotive is unknown.",
+    "EN 15595 and other standards are not checked: no statement about conformity is made.",
+    "Sampled checks prove nothing between their samples; see the resolution of each.",
+)
+
+OF_PLANT = {
+    "quarter": "One wheelset stands for all four, with the same load: weight transfer, and wheelsets that "
+    "slide differently, are not shown."
+}
+
+
+def limits(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about limits."""
+    run: Run = dossier.trials[0].run
+    items: list[Text] = [OF_PLANT[run.plant]] if run.plant in OF_PLANT else []
+    return (
+        Heading(text="What this report does not show", anchor="limits"),
+        Bullets(items=(*items, *EVERYWHERE)),
+    )
+
+
+def provenance(dossier: Dossier) -> tuple[Definition, ...]:
+    """Return how the report was made."""
+    made = dossier.provenance
+    return (
+        Definition(term="Command", text=(CodeSpan(text=made.command),)),
+        Definition(
+            term="To make it again",
+            text=rich(
+                "Save the attached `design.toml` and run the command with the versions below. With "
+                "`SOURCE_DATE_EPOCH` set, the same inputs give the same file, byte for byte. The attached "
+                "`report.json` holds the numbers in full length."
+            ),
+        ),
+        Definition(term="Versions", text=", ".join(f"{name} {number}" for name, number in made.versions)),
+        Definition(term="Seed", text=str(made.seed)),
+        Definition(term="Inputs, sha256", text=made.input_hash),
+        Definition(term="Vehicle, fingerprint in the design", text=dossier.design.vehicle_hash),
+    )

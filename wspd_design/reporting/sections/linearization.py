@@ -1,0 +1,79 @@
+"""The linearized slip dynamics over speed."""
+
+from functools import partial
+
+from wspd_design.analysis.linearization import Linearization
+from wspd_design.design.dossier import Dossier
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Block, Column, Figure, Heading, Paragraph, Table
+from wspd_design.reporting.figures.drawing import KILO, KMH, picture
+from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
+from wspd_design.reporting.text import rich
+
+TABLE_ROWS = 9
+MEGA = 1e6
+
+
+def linearization(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about the slip pole."""
+    points, specification = dossier.linearizations, dossier.design.specification
+    limit = 1.0 / points[0].time_constant
+    beyond = [point for point in points if point.slip_pole > limit]
+    unstable = [point for point in points if point.slip_pole > 0.0]
+    return (
+        Heading(text="Linearization", anchor="linearization"),
+        Paragraph(
+            text=rich(
+                f"At the slip reference {specification.slip:g} and a frozen train speed the slip has the "
+                "pole $p = partial F\\/partial lambda$. The valve, a first-order lag, adds a pole at "
+                "$-1\\/tau$ and leaves $p$ where it is. A law that feeds back the slip alone leaves the sum "
+                "of the poles at $p - 1\\/tau$: where $p > 1\\/tau$ one of them is unstable whatever the "
+                "gains."
+            )
+        ),
+        Paragraph(
+            text=f"The slip pole is positive at {len(unstable)} and beyond 1/τ at {len(beyond)} of "
+            f"{len(points)} speeds from {numbers.significant(points[0].speed * KMH)} to "
+            f"{numbers.significant(points[-1].speed * KMH)} km/h, for the nominal parameters."
+        ),
+        Figure(
+            svg=picture(partial(pole_map, points=points, speeds=specification.speeds), height=3.1),
+            caption=rich(
+                "Open-loop poles over train speed on the rail of the stops. Above the dashed line $1\\/tau$ "
+                "no law without feedback of torque or wheel acceleration has a stable equilibrium. Dotted: "
+                "range of the specification."
+            ),
+            alt=pole_map_alt(points, specification.speeds),
+            anchor="pole-map",
+        ),
+        _table(points),
+    )
+
+
+def _table(points: tuple[Linearization, ...]) -> Table:
+    last = len(points) - 1
+    rows = dict.fromkeys(round(last * row / (TABLE_ROWS - 1)) for row in range(TABLE_ROWS))
+    return Table(
+        columns=(
+            Column(title="At a train speed of"),
+            Column(title="Slip pole", unit="1/s", align="right"),
+            Column(title="Poles with valve", unit="1/s", align="right"),
+            Column(title=rich("Gain $G$"), unit="1/(MN m s)", align="right"),
+            Column(title="Torque", unit="kN m", align="right"),
+            Column(title="Duty", unit="-", align="right"),
+        ),
+        rows=tuple(
+            (
+                f"{numbers.decimals(point.speed * KMH, 1)} km/h",
+                numbers.decimals(point.slip_pole, 3),
+                "; ".join(numbers.decimals(pole, 3) for pole in point.poles()),
+                numbers.decimals(point.gain * MEGA, 1),
+                numbers.decimals(point.equilibrium_torque / KILO, 2),
+                numbers.decimals(point.equilibrium_duty, 3),
+            )
+            for point in (points[row] for row in rows)
+        ),
+        caption="Linearization at the slip reference. The torque per wheelset and the duty hold the slip "
+        "there; a duty above 1 is beyond the brake.",
+        anchor="linearization-table",
+    )

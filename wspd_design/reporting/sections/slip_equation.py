@@ -1,0 +1,76 @@
+"""Equation (19) and what became of the equations that the design rests on."""
+
+from wspd_design.design.dossier import Dossier
+from wspd_design.model.equations import Equation as PaperEquation
+from wspd_design.model.equations import load_equations
+from wspd_design.reporting.blocks import Block, Cell, Column, Equation, Heading, Paragraph, Status, Table
+from wspd_design.reporting.text import escape, rich
+
+PLANT = ("1", "2", "3", "5", "6", "7", "8", "9", "10", "13", "14", "15", "19", "B_W")
+SLIDING_MODE = ("20", "22", "23", "24", "25", "26", "27", "28")
+ADAPTIVE = tuple(str(number) for number in range(29, 49))
+USED_BY = {"smc": (*PLANT, *SLIDING_MODE), "afsmc": (*PLANT, *SLIDING_MODE, *ADAPTIVE)}
+"""Numbers of the equations that each law rests on."""
+
+TONES = {"holds": Status.GOOD, "definition": Status.NEUTRAL, "misprint": Status.BAD, "gap": Status.UNDECIDED}
+
+
+def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about the equations."""
+    equations = load_equations()
+    slip = next(each for each in equations if each.number == "19")
+    used = [each for each in equations if each.number in USED_BY[dossier.design.law]]
+    faulty = [each for each in used if each.verdict in ("misprint", "gap")]
+    return (
+        Heading(text="The slip dynamics", anchor="slip-equation"),
+        Paragraph(
+            text=rich(
+                "Everything below speaks about equation (19) of the paper, here with the drift $F$ and the "
+                "gain $G$ apart: the slip $lambda$ of a wheelset at train speed $v$ under its braking torque "
+                "$T$."
+            )
+        ),
+        Equation(
+            source=slip.typst_corrected or slip.typst_printed,
+            description="The rate of the slip equals the drift F, a function of slip, speed and time, plus "
+            "the gain G = R / (2 v I) times the braking torque T; in plain text: "
+            f"{slip.corrected or slip.printed}.",
+            number="19",
+            anchor="eq19",
+        ),
+        Paragraph(
+            text=rich(
+                f"*Verdict: {slip.verdict}.* {escape(slip.remark)} It is derived from equations (1) to (3) "
+                f"in `{slip.file}`, and shown by the test `{slip.test.partition('::')[2]}`."
+            )
+        ),
+        Paragraph(
+            text=f"Of the {len(used)} equations of the paper that this design rests on, {len(faulty)} are "
+            "misprinted or true only under an assumption that the paper does not state. The program uses the "
+            "corrected forms."
+        ),
+        Table(
+            columns=(
+                Column(title="Eq."),
+                Column(title="Subject"),
+                Column(title="Verdict"),
+                Column(title="What is wrong, and what is assumed instead"),
+            ),
+            rows=tuple(
+                (
+                    each.number,
+                    each.title,
+                    Cell(status=TONES[each.verdict], text=each.verdict),
+                    _explained(each),
+                )
+                for each in faulty
+            ),
+            caption="Misprints and gaps that matter for this design; wspd equations prints all equations.",
+            anchor="misprints",
+        ),
+    )
+
+
+def _explained(equation: PaperEquation) -> str:
+    needs = f"Needs: {equation.assumption}" if equation.assumption else ""
+    return " ".join(part for part in (equation.remark, needs) if part)

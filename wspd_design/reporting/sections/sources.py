@@ -1,0 +1,107 @@
+"""Where every number comes from."""
+
+from wspd_design.design.dossier import Dossier
+from wspd_design.parameters.loading import sources as known_sources
+from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Block, Column, Definition, Definitions, Heading, Paragraph, Table
+from wspd_design.reporting.sections.design import gain_table
+
+WEAK = ("calibrated", "assumed")
+
+
+def sources(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section that traces every number of vehicle, rails, controllers and constants."""
+    sets = (dossier.vehicle, dossier.rail, *dossier.other_parameters)
+    entries = [entry for each in sets for entry in each.entries.values()]
+    weak = sum(entry.status in WEAK for entry in entries)
+    found: list[Block] = [
+        Heading(text="Sources", anchor="sources"),
+        Paragraph(
+            text=f"All {len(entries)} numbers that the stops and the checks rest on, besides the gains of "
+            f"the design. {weak} of them are calibrated or assumed. A number without bounds is taken as "
+            "exactly known; the checks vary mass, inertia and friction within their bounds and hold the rest "
+            "at its value."
+        ),
+    ]
+    found += [_table(each) for each in sets]
+    found += [
+        gain_table(made, caption=f"Gains of {made.name}, compared.", anchor=f"gains-{index}")
+        for index, made in enumerate(dossier.compared_designs, start=1)
+    ]
+    known = known_sources()
+    keys = [key for key in dict.fromkeys(entry.source for entry in entries) if key in known]
+    found.append(
+        Paragraph(
+            text="The sources. Seen: read in a public source; recalled: general knowledge of the field, not "
+            "read; inferred: derived or computed from others."
+        )
+    )
+    found.append(
+        Definitions(
+            rows=tuple(
+                Definition(
+                    term=key,
+                    text=f"{known[key].authors} ({known[key].year}): {known[key].title} "
+                    f"[{known[key].access}]. {known[key].note}".rstrip(),
+                )
+                for key in keys
+            )
+        )
+    )
+    return tuple(found)
+
+
+def _table(parameters: ParameterSet) -> Table:
+    return Table(
+        columns=(
+            Column(title="Number"),
+            Column(title="Value"),
+            Column(title="Bounds"),
+            Column(title="Unit"),
+            Column(title="Status"),
+            Column(title="Source, place"),
+        ),
+        rows=tuple(
+            (
+                _name(entry.name),
+                _value(entry.value, entry.unit),
+                _bounds(entry),
+                numbers.unit(entry.unit) or "-",
+                entry.status,
+                f"{entry.source}: {entry.at}" + (f". {entry.note}" if entry.note else ""),
+            )
+            for entry in parameters.entries.values()
+        ),
+        caption=f"{' '.join(dict.fromkeys((parameters.kind, parameters.name))).capitalize()}: "
+        f"{parameters.title}.",
+        anchor=_anchor(parameters),
+    )
+
+
+def _name(key: str) -> str:
+    """Write a key in words, which can break over lines."""
+    return key.replace(".", ": ").replace("_", " ")
+
+
+def _anchor(parameters: ParameterSet) -> str:
+    """Return an anchor from a name that may hold anything."""
+    name = "".join(c if c.isascii() and c.isalnum() else "-" for c in parameters.name.lower())
+    return f"sources-{parameters.kind}-{name}"
+
+
+def _bounds(entry: Entry) -> str:
+    if entry.bounds is None:
+        return ""
+    return " to ".join(_value(bound, entry.unit) for bound in entry.bounds)
+
+
+def _value(value: object, unit: str) -> str:
+    """Write numbers in the unit of the file, without it; words stay as they are."""
+    if isinstance(value, tuple):
+        separator = "; " if value and isinstance(value[0], tuple) else ", "
+        return separator.join(_value(each, unit) for each in value)
+    if isinstance(value, str):
+        return value
+    assert isinstance(value, float)
+    return numbers.quantity_in(value, unit).partition(" ")[0]

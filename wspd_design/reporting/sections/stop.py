@@ -1,0 +1,92 @@
+"""The stop of this design: traces, Lyapunov functions and phase planes."""
+
+from functools import partial
+
+from wspd_design.certificates.records import Certificate
+from wspd_design.design.dossier import Dossier
+from wspd_design.parameters.records import ParameterSet
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
+from wspd_design.reporting.figures.drawing import KMH, picture
+from wspd_design.reporting.figures.phase import phase_alt, phase_planes
+from wspd_design.reporting.figures.series import lyapunov_functions, series_alt
+from wspd_design.reporting.figures.stop import stop_alt, stop_traces
+from wspd_design.reporting.sections.checks import check_anchor
+from wspd_design.reporting.text import Inline, Link, rich
+from wspd_design.simulation.stop import JUDGING_SPEED
+
+LYAPUNOV = "lyapunov"
+"""Checks of a Lyapunov function have names that begin so; the function is their first series."""
+
+
+def stop(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about the simulated stop."""
+    own, specification = dossier.trials[0], dossier.design.specification
+    run, figures = own.run, own.metrics
+    radius, limit = (_number(dossier.vehicle, name) for name in ("wheel_radius", "brake.max_torque"))
+    draw = partial(stop_traces, trial=own, specification=specification, wheel_radius=radius, max_torque=limit)
+    start = numbers.significant(run.initial_speed * KMH)
+    judged = numbers.significant(JUDGING_SPEED * KMH)
+    return (
+        Heading(text="The stop", anchor="stop"),
+        Paragraph(
+            text=f"From {start} km/h on {run.rail}, sampled every {run.sample_time * 1e3:g} ms: "
+            f"{run.ending.value}, after {numbers.decimals(figures.distance, 1)} m and "
+            f"{numbers.decimals(figures.stopping_time, 2)} s. Above {judged} km/h the mean slip is "
+            f"{numbers.decimals(figures.slip_mean, 3)} and the largest "
+            f"{numbers.decimals(figures.slip_max, 3)}; the wheels are locked for "
+            f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and the valve changes its state "
+            f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
+            "the samples it fills or vents throughout; a relay would do so in all."
+        ),
+        Figure(
+            svg=picture(draw, height=7.0),
+            caption="The stop over time. Green: tolerance about the reference (dashed). Gray: below "
+            f"{judged} km/h, where the slip is not judged. A bar at the upper edge marks a locked wheel.",
+            alt=stop_alt(own, specification),
+            anchor="stop-traces",
+        ),
+        Figure(
+            svg=picture(
+                partial(phase_planes, run=run, plane=dossier.phase_plane, specification=specification),
+                height=3.0,
+            ),
+            caption=rich(
+                "Phase planes of the stop above 10 km/h. Left: what the law steers, at its samples; on the "
+                "dashed surface the error would decay, and the band is the boundary layer. Right: slip and "
+                "torque of the wheel; closed loops are a limit cycle of slip and valve."
+            ),
+            alt=phase_alt(run, dossier.phase_plane),
+            anchor="phase-plane",
+        ),
+        *_lyapunov(dossier.certificates),
+    )
+
+
+def _lyapunov(certificates: tuple[Certificate, ...]) -> tuple[Block, ...]:
+    shown = [each for each in certificates if each.name.startswith(LYAPUNOV) and each.series]
+    silent = [each for each in certificates if each.name.startswith(LYAPUNOV) and not each.series]
+    left_out: list[Inline] = []
+    for each in silent:
+        link = Link(anchor=check_anchor(each), text=each.title)
+        left_out += [" Not drawn: ", link, f" ({each.status.value})."]
+    if not shown:
+        return ()
+    return (
+        Figure(
+            svg=picture(partial(lyapunov_functions, certificates=shown), height=2.8),
+            caption=(
+                "Lyapunov functions over time, each in the setting of its proof, not in the stop above. "
+                "Each check says where its function must not rise.",
+                *left_out,
+            ),
+            alt=" ".join(series_alt(each.series[:1]) for each in shown),
+            anchor="lyapunov",
+        ),
+    )
+
+
+def _number(parameters: ParameterSet, name: str) -> float:
+    value = parameters.entries[name].value
+    assert isinstance(value, float)
+    return value

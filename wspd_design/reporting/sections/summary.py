@@ -1,0 +1,169 @@
+"""Page one: the verdict in one sentence, four key numbers and the table of checks."""
+
+from collections import Counter
+
+from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.records import Status as Finding
+from wspd_design.design.dossier import Dossier
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumbers, Status, Table, Verdict
+from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.sections.checks import check_anchor
+from wspd_design.reporting.text import Inline, Link, Text
+from wspd_design.simulation.records import Ending
+
+COUNTED = {
+    Finding.REFUTED: "refuted",
+    Finding.UNDECIDED: "undecided",
+    Finding.EVIDENCE: "sampled only",
+    Finding.PROVED: "proved",
+    Finding.VACUOUS: "vacuous",
+    Finding.NOT_APPLICABLE: "not applicable",
+}
+"""Findings from the worst to those that say nothing, in words that follow a number."""
+
+
+def verdict(dossier: Dossier) -> Verdict:
+    """Return the judgment of the whole report; the worst finding decides."""
+    certificates = dossier.certificates
+    counts = Counter(certificate.status for certificate in certificates)
+    total = len(certificates)
+    stop, stop_is_good = _stop(dossier)
+    spoken: tuple[Inline, ...]
+    if named := _of(certificates, Finding.REFUTED):
+        status = Status.REFUTED
+        spoken = (
+            f"Not fit as it stands: {len(named)} of {numbers.count(total, 'check')} refuted (",
+            *_links(named),
+            "). ",
+        )
+    elif not stop_is_good:
+        status = Status.BAD
+        spoken = ("Not fit as it stands: no check is refuted, but the simulated stop is not as specified. ",)
+    elif named := _of(certificates, Finding.UNDECIDED):
+        status = Status.UNDECIDED
+        spoken = (
+            f"Not decided: {len(named)} of {numbers.count(total, 'check')} neither shown nor refuted (",
+            *_links(named),
+            "). ",
+        )
+    elif named := _of(certificates, Finding.EVIDENCE):
+        status = Status.EVIDENCE
+        spoken = (
+            f"Nothing speaks against it, but {len(named)} of {numbers.count(total, 'check')} hold at samples "
+            "only, which proves nothing between them. ",
+        )
+    elif counts[Finding.PROVED]:
+        status = Status.PROVED
+        spoken = ("Every check that speaks about this controller is proved under its stated assumptions. ",)
+    else:
+        status = Status.VACUOUS
+        spoken = ("No check says anything about this controller. ",)
+    assumptions = {text for each in certificates for text in each.assumptions}
+    tally = numbers.listing([f"{counts[each]} {word}" for each, word in COUNTED.items() if counts[each]])
+    counted = f" Checks: {tally}; {numbers.count(len(assumptions), 'assumption')}."
+    return Verdict(status=status, sentence=(*spoken, stop, counted if tally else ""))
+
+
+def _of(certificates: tuple[Certificate, ...], finding: Finding) -> list[Certificate]:
+    return [each for each in certificates if each.status is finding]
+
+
+def _links(certificates: list[Certificate]) -> list[Inline]:
+    links: list[Inline] = []
+    for each in certificates:
+        links += [", "] if links else []
+        links.append(Link(anchor=check_anchor(each), text=_lowered(each.title)))
+    return links
+
+
+def _lowered(title: str) -> str:
+    """Begin a title in lower case, unless it begins with a symbol or a name in capitals."""
+    return title if title[1:2].isupper() or not title[1:2].isalpha() else title[0].lower() + title[1:]
+
+
+def _stop(dossier: Dossier) -> tuple[str, bool]:
+    """Say how the design's own stop went, and whether it kept to the specification."""
+    own, specification = dossier.trials[0], dossier.design.specification
+    run, figures = own.run, own.metrics
+    start = f"The simulated stop from {numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+    if run.ending is not Ending.STOPPED:
+        return f"{start} does not end: {run.ending.value}.", False
+    inside = figures.slip_rms <= specification.slip_tolerance
+    side = "within" if inside else "beyond"
+    said = (
+        f"{start} takes {numbers.decimals(figures.distance, 1)} m; the slip is off its reference of "
+        f"{specification.slip:g} by {numbers.decimals(figures.slip_rms, 3)} rms, {side} the tolerance of "
+        f"{specification.slip_tolerance:g}."
+    )
+    return said, inside
+
+
+def summary(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the key numbers and the table of checks."""
+    return (KeyNumbers(numbers=_key_numbers(dossier)), _checks(dossier.certificates))
+
+
+def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
+    own, specification = dossier.trials[0], dossier.design.specification
+    run, figures = own.run, own.metrics
+    stopped = run.ending is Ending.STOPPED
+    start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+    in_range = [
+        point
+        for point in dossier.linearizations
+        if specification.speeds[0] <= point.speed <= specification.speeds[1]
+    ]
+    worst = max(in_range, key=lambda point: point.slip_pole)
+    return (
+        KeyNumber(
+            label="Stopping distance" if stopped else "Distance, still moving",
+            value=numbers.decimals(figures.distance, 1),
+            unit="m",
+            note=start,
+        ),
+        KeyNumber(
+            label="Stopping time" if stopped else "Time, still moving",
+            value=numbers.decimals(figures.stopping_time, 2),
+            unit="s",
+            note=f"{numbers.decimals(figures.lag, 2)} s of build-up, then "
+            f"{numbers.decimals(figures.plateau, 2)} m/s²",
+        ),
+        KeyNumber(
+            label="Slip about its reference, rms",
+            value=numbers.decimals(figures.slip_rms, 3),
+            note=f"reference {specification.slip:g}, tolerance {specification.slip_tolerance:g}; above 10 "
+            "km/h",
+        ),
+        KeyNumber(
+            label="Largest slip pole",
+            value=numbers.decimals(worst.slip_pole, 2),
+            unit="1/s",
+            note=f"nominal, at {numbers.significant(worst.speed * KMH, 3)} km/h; valve: 1/τ = "
+            f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s",
+        ),
+    )
+
+
+def _checks(certificates: tuple[Certificate, ...]) -> Table:
+    rows: list[tuple[Text | Cell, ...]] = [
+        (
+            (Link(anchor=check_anchor(each), text=each.name),),
+            each.title,
+            numbers.margin(each.margin),
+            Cell(status=Status[each.status.name]),
+        )
+        for each in certificates
+    ]
+    return Table(
+        columns=(
+            Column(title="Check"),
+            Column(title="What is checked"),
+            Column(title="Margin", align="right"),
+            Column(title="Finding"),
+        ),
+        rows=tuple(rows),
+        caption="All checks. A margin is positive where the claim holds; ≤: sampling bounds it from above "
+        "only.",
+        anchor="checks",
+    )
