@@ -74,7 +74,7 @@ def _interview(questions: tuple[Step, ...], answers: dict[str, str], target: Pat
         kept = draft_path(target)
         write_draft(answers, kept)
         console().print(
-            f"The answers are kept. Go on with: wspd new --resume {kept}", markup=False, soft_wrap=True
+            f"The answers are kept. Go on with:\nwspd new --resume {kept}", markup=False, soft_wrap=True
         )
         raise typer.Exit(INTERRUPTED) from None
 

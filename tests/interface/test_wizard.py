@@ -1,0 +1,158 @@
+"""The wizard, driven by keys through a pipe, as a terminal would send them."""
+
+from contextlib import contextmanager
+
+import pytest
+from prompt_toolkit.application import create_app_session
+from prompt_toolkit.input import create_pipe_input
+from prompt_toolkit.output import DummyOutput
+
+from wspd_design.cli.commands import new
+from wspd_design.design.file import read_design
+from wspd_design.design.records import Specification
+
+ENTER, DOWN, UP, BACK, ESCAPE, LEAVE = "\r", "\x1b[B", "\x1b[A", "\x02", "\x1b", "\x03"
+ERASE = "\x15"  # Ctrl-U, the whole line
+STEPS = 8  # vehicle, rail, law, slip, speeds, sample time, tolerance, review
+
+
+@pytest.fixture
+def answer(wspd, monkeypatch):
+    """Start the wizard and send keys; returns the outcome of the command."""
+    monkeypatch.setattr(new, "is_interactive", lambda: True)
+    monkeypatch.setenv("TERM", "xterm")
+
+    @contextmanager
+    def terminal(keys):
+        with create_pipe_input() as pipe, create_app_session(input=pipe, output=DummyOutput()):
+            pipe.send_text(keys)
+            yield
+
+    def call(keys, *arguments):
+        with terminal(keys):
+            return wspd(*arguments)
+
+    return call
+
+
+def test_defaults_give_what_wspd_design_gives(answer, wspd, tmp_path):
+    outcome = answer(ENTER * STEPS)
+    assert (outcome.code, outcome.err) == (0, "")
+    assert read_design(tmp_path / "design.toml").specification == Specification()
+    for name, arguments in (("a.toml", ("design",)), ("b.toml", ("new", "--yes"))):
+        assert wspd(*arguments, "-o", name).code == 0
+        assert (tmp_path / name).read_bytes() == (tmp_path / "design.toml").read_bytes()
+    for command in ("wspd verify design.toml", "wspd report design.toml"):
+        assert command in outcome.out
+
+
+def test_answers_reach_the_design(answer, tmp_path):
+    keys = ENTER + UP + ENTER + DOWN + ENTER
+    keys += f"{ERASE}12 %{ENTER}{ERASE}20 to 100 km/h{ENTER}{ERASE}50 ms{ENTER}{ERASE}0,04{ENTER}{ENTER}"
+    outcome = answer(keys, "new", "-o", "mine.toml")
+    assert outcome.code == 0
+    made = read_design(tmp_path / "mine.toml")
+    assert (made.vehicle, made.rail, made.law) == ("er24pc", "polach-dry", "smc")
+    specification = made.specification
+    assert (specification.slip, specification.sample_time) == (0.12, 0.05)
+    assert specification.slip_tolerance == 0.04
+    assert specification.speeds == pytest.approx((20.0 / 3.6, 100.0 / 3.6))
+
+
+def test_a_wrong_number_is_not_accepted(answer, tmp_path):
+    keys = f"{ENTER * 3}{ERASE}1.4{ENTER}{ENTER}{ERASE}0.2{ENTER}{ENTER * 4}"
+    assert answer(keys).code == 0
+    assert read_design(tmp_path / "design.toml").specification.slip == 0.2
+
+
+@pytest.mark.parametrize("back", [BACK, pytest.param(ESCAPE, id="escape")])
+def test_back(back, answer, tmp_path):
+    """From the speed range back to the slip, which is changed, and on."""
+    keys = f"{ENTER * 4}{back}"
+    if back == ESCAPE:
+        keys += BACK  # two steps back, so that Esc is followed by another key and not by a sequence
+        keys += ENTER
+    keys += f"{ERASE}0.2{ENTER}{ENTER * 4}"
+    outcome = answer(keys)
+    assert outcome.code == 0
+    assert "back from Speed range" in outcome.out
+    assert read_design(tmp_path / "design.toml").specification.slip == 0.2
+
+
+def test_branches_are_evaluated_again(answer, tmp_path):
+    """An own rail file is asked for, and no longer asked for after going back and choosing a shipped rail."""
+    (tmp_path / "mine.toml").write_text('base = "polach-wet"\n[mu0]\nvalue = 0.33\nunit = "-"\n')
+    to_own = DOWN * 3
+    own = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{ENTER * 6}", "new", "-o", "own.toml")
+    assert own.code == 0
+    assert read_design(tmp_path / "own.toml").rail == "mine"
+    back = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{BACK}{BACK}{UP * 3}{ENTER}{ENTER * 6}")
+    assert back.code == 0
+    assert read_design(tmp_path / "design.toml").rail == "polach-wet"
+
+
+def test_missing_own_file_is_not_accepted(answer, tmp_path):
+    keys = f"{ENTER}{DOWN * 3}{ENTER}nowhere.toml{ENTER}{LEAVE}"
+    assert answer(keys).code == 130
+    assert "nowhere" not in (tmp_path / "design.toml.part").read_text()
+
+
+def test_again_goes_through_the_questions_with_the_answers(answer, tmp_path):
+    keys = f"{ENTER * 3}{ERASE}0.2{ENTER}{ENTER * 3}{DOWN}{ENTER}{ENTER * STEPS}"
+    assert answer(keys).code == 0
+    assert read_design(tmp_path / "design.toml").specification.slip == 0.2
+
+
+def test_leaving_keeps_the_answers_and_resume_goes_on(answer, tmp_path):
+    left = answer(f"{ENTER}{UP}{ENTER}{ENTER}{ERASE}0.2{ENTER}{LEAVE}")
+    assert left.code == 130
+    assert left.err == ""
+    assert "wspd new --resume design.toml.part" in left.out
+    assert [path.name for path in tmp_path.iterdir()] == ["design.toml.part"]
+    resumed = answer(ENTER * 4, "new", "--resume", "design.toml.part")
+    assert resumed.code == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["design.toml"]
+    made = read_design(tmp_path / "design.toml")
+    assert (made.rail, made.specification.slip) == ("polach-dry", 0.2)
+
+
+def test_resume_asks_again_for_an_answer_that_no_longer_holds(answer, tmp_path):
+    answer(f"{ENTER * 7}{LEAVE}")
+    draft = tmp_path / "design.toml.part"
+    draft.write_text(draft.read_text().replace('slip = "0.14"', 'slip = "14"'))
+    outcome = answer(f"{ERASE}0.15{ENTER}{ENTER * 4}", "new", "--resume", "design.toml.part")
+    assert outcome.code == 0
+    assert read_design(tmp_path / "design.toml").specification.slip == 0.15
+
+
+def test_existing_output_is_refused_before_the_first_question(answer, tmp_path):
+    (tmp_path / "design.toml").write_text("mine")
+    outcome = answer("", "new")
+    assert outcome.code == 2
+    assert "--force" in outcome.err
+    assert (tmp_path / "design.toml").read_text() == "mine"
+
+
+def test_a_terminal_that_cannot_move_the_cursor(wspd, monkeypatch, tmp_path):
+    """With ``TERM=dumb`` the questions come line by line, without an escape sequence."""
+    lines = iter(["", "3", "smc", "1.4", "20 %", "<", "0.16", "", "", "", ""])
+    monkeypatch.setattr(new, "is_interactive", lambda: True)
+    monkeypatch.setattr("builtins.input", lambda _prompt: next(lines))
+    monkeypatch.setenv("TERM", "dumb")
+    outcome = wspd("new")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert "\x1b" not in outcome.out
+    assert "must lie in (0, 1)" in " ".join(outcome.out.split())
+    made = read_design(tmp_path / "design.toml")
+    assert (made.rail, made.law, made.specification.slip) == ("polach-dry", "smc", 0.16)
+
+
+def test_input_that_ends_is_like_leaving(wspd, monkeypatch, tmp_path):
+    def ended(_prompt):
+        raise EOFError
+
+    monkeypatch.setattr(new, "is_interactive", lambda: True)
+    monkeypatch.setattr("builtins.input", ended)
+    monkeypatch.setenv("TERM", "dumb")
+    assert wspd("new").code == 130
+    assert (tmp_path / "design.toml.part").exists()

@@ -1,0 +1,103 @@
+"""The wizard on a real pseudo-terminal: what stands on the screen of a user."""
+
+import os
+import sys
+import time
+
+import pexpect
+import pyte
+import pytest
+
+ROWS, COLUMNS = 30, 60
+PATIENCE = 30.0  # s
+
+pytestmark = [
+    pytest.mark.terminal,
+    pytest.mark.skipif(not os.path.exists("/dev/ptmx"), reason="this machine has no pseudo-terminals"),
+]
+
+
+class Terminal:
+    """A process in a pseudo-terminal, with the screen that its user would see."""
+
+    def __init__(self, arguments, folder):
+        root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+        environment = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "LINES", "NO_COLOR")}
+        self.child = pexpect.spawn(
+            sys.executable,
+            ["-c", "from wspd_design.cli import main; main()", *arguments],
+            cwd=str(folder),
+            env=environment | {"TERM": "xterm-256color", "PYTHONPATH": root},
+            dimensions=(ROWS, COLUMNS),
+        )
+        self.screen = pyte.Screen(COLUMNS, ROWS)
+        # prompt_toolkit asks where the cursor is and draws nothing below the prompt until it is told.
+        self.screen.write_process_input = self.child.send
+        self.stream = pyte.ByteStream(self.screen)
+
+    @property
+    def text(self):
+        return "\n".join(line.rstrip() for line in self.screen.display)
+
+    def wait_for(self, words):
+        """Feed the screen until it shows the words."""
+        deadline = time.monotonic() + PATIENCE
+        while words not in self.text:
+            assert time.monotonic() < deadline, f"no {words!r} on the screen:\n{self.text}"
+            try:
+                self.stream.feed(self.child.read_nonblocking(4096, timeout=0.2))
+            except pexpect.TIMEOUT:
+                continue
+            except pexpect.EOF:
+                assert words in self.text, self.text
+
+    def exit_code(self):
+        self.child.expect(pexpect.EOF, timeout=PATIENCE)
+        self.stream.feed(self.child.before)
+        self.child.close()
+        return self.child.exitstatus
+
+
+@pytest.fixture
+def terminal(tmp_path):
+    opened = []
+
+    def start(*arguments):
+        opened.append(Terminal(arguments, tmp_path))
+        return opened[-1]
+
+    yield start
+    for each in opened:
+        each.child.close(force=True)
+
+
+def test_wizard_on_a_screen(terminal, tmp_path):
+    screen = terminal()
+    screen.wait_for("> er24pc ")
+    assert "Ctrl-C leaves and keeps the answers." in screen.text
+    screen.child.send("\r")
+    screen.wait_for("> polach-wet ")
+    screen.child.send("\x1b[A")
+    screen.wait_for("> polach-dry ")
+    screen.child.send("\r")
+    screen.wait_for("> afsmc ")
+    screen.child.send("\r")
+    screen.wait_for("> 0.14")
+    screen.wait_for("= 0.14")
+    screen.child.send("\x151.4")  # the preview stands right below the number
+    screen.wait_for("> 1.4\nslip = 1.4 must lie in (0, 1)")
+    screen.child.send("\x1520 %\r")
+    screen.wait_for("= 2.778 m/s to 33.33 m/s")
+    screen.child.send("\x1b")  # a lonely Esc goes back
+    screen.wait_for("> 20 %\n= 0.2")
+    screen.child.send("\x03")
+    assert screen.exit_code() == 130
+    assert "wspd new --resume design.toml.part" in screen.text
+    assert 'rail = "polach-dry"' in (tmp_path / "design.toml.part").read_text()
+
+
+def test_progress_leaves_no_trace(terminal):
+    screen = terminal("simulate", "none", "--speed", "20 km/h")
+    assert screen.exit_code() == 0
+    assert screen.text.lstrip().startswith("none on polach-wet")
+    assert "stop with none" not in screen.text

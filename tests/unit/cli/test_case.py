@@ -1,0 +1,108 @@
+"""From options to records."""
+
+import pytest
+
+from wspd_design.cli.case import Wishes, check_law, chosen, resolve, resolve_all, specification
+from wspd_design.design.file import write_design
+from wspd_design.design.records import Specification
+from wspd_design.design.selection import design
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_rail, load_vehicle
+
+SPECIFICATION = Specification(slip=0.2, slips=(0.02, 0.6), sample_time=0.05)
+
+
+def written(folder, name="made.toml", vehicle="er24pc", rail="polach-dry"):
+    path = folder / name
+    write_design(design(load_vehicle(vehicle), load_rail(rail), SPECIFICATION, law="smc"), path)
+    return str(path)
+
+
+def test_nothing_written_is_the_papers_case():
+    assert specification(Wishes()) == Specification()
+    case = resolve("trenitalia", Wishes())
+    assert (case.vehicle.name, case.rail.name) == ("er24pc", "polach-wet")
+    assert case.design is None
+
+
+@pytest.mark.parametrize("slip", ["0.001", "1 %", "0.14", "0.6", "0.75", "0.97", "0.999"])
+def test_ranges_give_way_to_any_slip_reference_in_the_open_interval(slip):
+    made = specification(Wishes(slip=slip))
+    assert made.slips[0] < made.slip < made.slips[1] <= 1.0
+    assert made.slip + made.slip_tolerance < 1.0
+
+
+def test_an_explicit_tolerance_does_not_give_way():
+    with pytest.raises(UserError, match="tolerance"):
+        specification(Wishes(slip="0.97", tolerance="0.05"))
+
+
+def test_chosen():
+    assert chosen(None, None) == "afsmc"
+    assert chosen("smc", None) == chosen(None, "smc") == chosen("smc", "smc") == "smc"
+    with pytest.raises(UserError, match="leave one out"):
+        chosen("smc", "none")
+
+
+def test_check_law():
+    assert check_law("smc") == "smc"
+    with pytest.raises(UserError, match="afsmc or smc"):
+        check_law("pid")
+
+
+def test_design_file_brings_its_own_case(tmp_path):
+    case = resolve(written(tmp_path), Wishes())
+    assert case.rail.name == "polach-dry"
+    assert case.specification == SPECIFICATION
+    assert case.controller.sample_time == 0.05
+
+
+def test_design_file_on_another_rail_keeps_its_friction_model(tmp_path):
+    case = resolve(written(tmp_path), Wishes(rail="polach-wet"))
+    assert case.rail.name == "polach-wet"
+    assert case.controller.rail.name == "polach-dry"
+
+
+def test_the_same_number_in_another_unit_is_no_contradiction(tmp_path):
+    wishes = Wishes(slip="20 %", sample_time="50 ms", speeds=("10 km/h", "120 km/h"))
+    assert resolve(written(tmp_path), wishes).specification == SPECIFICATION
+
+
+@pytest.mark.parametrize(
+    "wishes",
+    [Wishes(slip="0.2001"), Wishes(sample_time="51 ms"), Wishes(speeds=("10 km/h", "121 km/h"))],
+)
+def test_contradiction(wishes, tmp_path):
+    with pytest.raises(UserError, match="contradicts"):
+        resolve(written(tmp_path), wishes)
+
+
+def test_design_for_an_own_vehicle_needs_its_file(tmp_path):
+    own = tmp_path / "mine.toml"
+    own.write_text('base = "er24pc"\n')
+    path = written(tmp_path, vehicle=own)
+    with pytest.raises(UserError, match="give its file with --vehicle"):
+        resolve(path, Wishes())
+    assert resolve(path, Wishes(vehicle=str(own))).vehicle.name == "mine"
+
+
+def test_design_on_an_own_rail_can_be_rebuilt_with_its_file(tmp_path):
+    own = tmp_path / "mine.toml"
+    own.write_text('base = "polach-wet"\n')
+    path = written(tmp_path, rail=own)
+    with pytest.raises(UserError, match="give its file with --rail"):
+        resolve(path, Wishes())
+    assert resolve(path, Wishes(rail=str(own))).controller.rail.name == "mine"
+
+
+def test_all_in_a_comparison_follow_the_first_design_file(tmp_path):
+    cases = resolve_all(["none", written(tmp_path), "trenitalia"], Wishes())
+    assert {case.rail.name for case in cases} == {"polach-dry"}
+    assert {case.controller.sample_time for case in cases} == {0.05}
+    assert {case.specification.slip for case in cases} == {0.2}
+
+
+def test_all_in_a_comparison_follow_the_options():
+    cases = resolve_all(["none", "trenitalia"], Wishes(rail="low-adhesion", sample_time="20 ms"))
+    assert {case.rail.name for case in cases} == {"low-adhesion"}
+    assert {case.controller.sample_time for case in cases} == {0.02}

@@ -1,0 +1,32 @@
+"""Output that programs read, and streams that are no terminal."""
+
+import json
+
+import pytest
+
+from wspd_design.cli.console import console, print_json, progress
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
+def test_a_number_that_is_not_finite_becomes_null(value, capsys):
+    print_json({"a": value, "b": [value, 1.0], "c": {"d": (value,)}, "e": 0.1})
+    found = json.loads(capsys.readouterr().out)
+    assert found == {"a": None, "b": [None, 1.0], "c": {"d": [None]}, "e": 0.1}
+
+
+def test_numbers_survive(capsys):
+    print_json({"x": 0.1 + 0.2})
+    assert json.loads(capsys.readouterr().out)["x"] == 0.1 + 0.2
+
+
+@pytest.mark.parametrize("term", ["dumb", "xterm"])
+def test_width_is_that_of_the_terminal(term, monkeypatch):
+    monkeypatch.setenv("TERM", term)
+    monkeypatch.setenv("COLUMNS", "60")
+    assert console().width == 60
+
+
+def test_progress_is_silent_without_a_terminal(capsys):
+    with progress() as tell:
+        tell("stage")
+    assert capsys.readouterr() == ("", "")

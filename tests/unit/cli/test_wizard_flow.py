@@ -1,0 +1,160 @@
+"""The way through the questions, with answers from a script in place of a terminal."""
+
+import pytest
+
+from wspd_design.cli.wizard.draft import read_draft, write_draft
+from wspd_design.cli.wizard.flow import Back, complete, walk
+from wspd_design.cli.wizard.steps import AGAIN, OWN, SAVE, accept, split_speeds, steps, wanted
+from wspd_design.design.records import Specification
+from wspd_design.parameters.errors import UserError
+
+ALL = steps()
+TITLES = ["vehicle", "rail", "law", "slip", "speeds", "sample_time", "tolerance", "review"]
+
+
+def step(key):
+    return next(each for each in ALL if each.key == key)
+
+
+def script(*replies):
+    """Ask with prepared replies; None takes the suggestion. Records which question was asked."""
+    asked, left = [], list(replies)
+
+    def ask(question, _answers, suggestion):
+        asked.append(question.key)
+        reply = left.pop(0) if left else None
+        return suggestion if reply is None else reply
+
+    return ask, asked
+
+
+def test_all_defaults():
+    ask, asked = script()
+    answers = walk(ALL, {}, ask)
+    assert asked == TITLES
+    assert answers == complete(ALL, {})
+    assert wanted(answers) == Specification()
+
+
+def test_own_file_is_asked_for_only_where_it_was_chosen():
+    ask, asked = script(OWN, "mine.toml")
+    answers = walk(ALL, {}, ask)
+    assert asked[:3] == ["vehicle", "vehicle_file", "rail"]
+    assert answers["vehicle_file"] == "mine.toml"
+
+
+def test_back_goes_to_the_question_that_was_asked_before():
+    ask, asked = script(OWN, "mine.toml", Back.BACK, Back.BACK, "er24pc", Back.BACK)
+    answers = walk(ALL, {}, ask)
+    assert asked[:8] == [
+        "vehicle",
+        "vehicle_file",
+        "rail",
+        "vehicle_file",
+        "vehicle",
+        "rail",
+        "vehicle",
+        "rail",
+    ]
+    assert "vehicle_file" not in answers
+
+
+def test_back_at_the_first_question_stays_there():
+    ask, asked = script(Back.BACK, Back.BACK)
+    walk(ALL, {}, ask)
+    assert asked == ["vehicle", "vehicle", *TITLES]
+
+
+def test_back_from_the_review_and_again():
+    replies = [None] * 7 + [Back.BACK, "0.03", AGAIN] + [None] * 7 + [SAVE]
+    ask, asked = script(*replies)
+    answers = walk(ALL, {}, ask)
+    assert asked == [*TITLES, "tolerance", "review", *TITLES]
+    assert answers["tolerance"] == "0.03"
+
+
+def test_interruption_leaves_the_answers_with_the_caller():
+    def ask(question, _answers, suggestion):
+        if question.key == "law":
+            raise KeyboardInterrupt
+        return suggestion
+
+    answers = {}
+    with pytest.raises(KeyboardInterrupt):
+        walk(ALL, answers, ask)
+    assert answers == {"vehicle": "er24pc", "rail": "polach-wet"}
+
+
+def test_resume_begins_at_the_first_open_or_wrong_answer():
+    ask, asked = script()
+    walk(ALL, {"vehicle": "er24pc", "rail": "polach-wet"}, ask)
+    assert asked[0] == "law"
+    ask, asked = script("0.2")
+    walk(ALL, complete(ALL, {}) | {"slip": "2"}, ask)
+    assert asked[0] == "slip"
+    ask, asked = script(Back.BACK)
+    walk(ALL, complete(ALL, {}), ask)
+    assert asked == ["review", "tolerance", "review"]
+
+
+def test_draft_round_trip(tmp_path):
+    answers = {"vehicle": OWN, "vehicle_file": 'C:\\a "b".toml', "slip": "14 %"}
+    write_draft(answers, tmp_path / "a.part")
+    assert read_draft(tmp_path / "a.part", ALL) == answers
+
+
+def test_complete_refuses_a_wrong_answer():
+    with pytest.raises(UserError, match="vehicle"):
+        complete(ALL, {"vehicle": "er24cp"})
+    with pytest.raises(UserError, match=r"\.toml"):
+        complete(ALL, {"rail": OWN})
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("10 km/h to 120 km/h", ("10 km/h", "120 km/h")),
+        ("10 to 120 km/h", ("10 km/h", "120 km/h")),
+        ("2,5 to 33,3 m/s", ("2,5 m/s", "33,3 m/s")),
+        ("3 m/s to 120 km/h", ("3 m/s", "120 km/h")),
+    ],
+)
+def test_split_speeds(text, parts):
+    assert split_speeds(text) == parts
+
+
+@pytest.mark.parametrize(
+    ("key", "text", "words"),
+    [
+        ("slip", "1.4", r"\(0, 1\)"),
+        ("slip", "", "plain number or %"),
+        ("speeds", "10 km/h", "two speeds"),
+        ("speeds", "120 to 10 km/h", "rise"),
+        ("speeds", "10 to 120", "no unit"),
+        ("sample_time", "100", "no unit"),
+        ("sample_time", "5 s", "1 ms and 1 s"),
+        ("tolerance", "0.9", "tolerance"),
+        ("law", "pid", "afsmc, smc"),
+        ("vehicle_file", "er24pc", r"\.toml"),
+        ("rail_file", "missing.toml", "does not exist"),
+    ],
+)
+def test_what_is_not_accepted(key, text, words):
+    with pytest.raises(UserError, match=words):
+        accept(step(key), text, complete(ALL, {}))
+
+
+def test_preview_shows_si_units():
+    answers = complete(ALL, {})
+    assert accept(step("slip"), "14 %", answers) == "0.14"
+    assert accept(step("speeds"), "36 to 72 km/h", answers) == "10 m/s to 20 m/s"
+    assert accept(step("sample_time"), "20 ms", answers) == "0.02 s"
+    assert accept(step("tolerance"), "4 %", answers) == "slip 0.1 to 0.18"
+
+
+def test_an_early_answer_is_not_refused_for_a_later_one():
+    """A slip near 1 is accepted although the tolerance given before no longer fits; that is asked again."""
+    answers = complete(ALL, {})
+    assert accept(step("slip"), "0.97", answers) == "0.97"
+    with pytest.raises(UserError, match="tolerance"):
+        accept(step("tolerance"), answers["tolerance"], answers | {"slip": "0.97"})
