@@ -58,6 +58,14 @@ def test_gain_above_the_supremum_is_evidence(make_reference_problem):
     assert 0.0 < verdict.margin.high < 0.02
 
 
+def test_plot_shows_the_needed_gain_below_its_supremum(make_reference_problem):
+    verdict = reaching.check(make_reference_problem(30.0))
+    needed, chosen = verdict.series
+    assert max(needed.y) <= 30.0 - verdict.margin.high
+    assert max(needed.y) == pytest.approx(30.0 - verdict.margin.high, rel=0.01)
+    assert chosen.y == (30.0, 30.0)
+
+
 def test_mismatch_is_what_the_plant_does_under_the_law(make_problem, make_controller):
     """v sbar' = r - rho W0 sat(sbar / layer), with sbar' from the plant under the torque of the law."""
     law = make_controller("smc")

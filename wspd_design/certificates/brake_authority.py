@@ -3,19 +3,21 @@
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, laws
-from wspd_design.certificates.checking import certified
+from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH, SLIP, SPEED
 from wspd_design.certificates.reaching import reserve
-from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Series, Status
 from wspd_design.certificates.search import SOBOL_EXPONENT, STARTS, maximize
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
+from wspd_design.model.slip import slip_dynamics
 
 if TYPE_CHECKING:
     from wspd_design.certificates.domain import Array
 
 NAME, TITLE = "brake_authority", "Authority of the brake"
+PLOT_SPEEDS = 60
 
 
 @certified(name=NAME, title=TITLE)
@@ -88,4 +90,19 @@ def check(problem: Problem) -> Certificate:
         resolution=f"{release.evaluations + force.evaluations + least.evaluations} evaluations: three times "
         f"2^{SOBOL_EXPONENT} Sobol points with the corners and {STARTS} local climbs",
         reference="eqs. (23), (27); findings, section 2, existence of sliding",
+        series=_plots(problem, rate),
+    )
+
+
+def _plots(problem: Problem, rate: float) -> tuple[Series, ...]:
+    """Ideal torque at the slip reference over speed, with nominal parameters, beside the brake's limit."""
+    import numpy as np
+
+    speeds = np.geomspace(*problem.speeds, PLOT_SPEEDS)
+    plant = slip_dynamics(problem.vehicle, problem.rail, problem.slip, speeds)
+    ideal = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, 0.0, rate)
+    axes = ("speed [km/h]", "torque per wheelset [kN m]")
+    return (
+        series("u* at the slip reference", *axes, speeds * KMH, ideal / 1e3),
+        level("T_max", *axes, speeds * KMH, problem.vehicle.brake.max_torque / 1e3),
     )

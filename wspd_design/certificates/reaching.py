@@ -5,13 +5,15 @@ v sbar' = r - rho W0 sat(sbar / layer), r = (1 - rho) v c e - Psi + rho Psi_hat 
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates import domain, laws
-from wspd_design.certificates.checking import OutsideModel, certified
+from wspd_design.certificates.checking import OutsideModel, certified, level, series
 from wspd_design.certificates.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
-from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Series, Status
 from wspd_design.certificates.search import SOBOL_EXPONENT, STARTS, Maximum, maximize
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from wspd_design.certificates.domain import Array
 
 NAME, TITLE = "reaching", "Reaching the sliding surface"
+PLOT_SPEEDS, PLOT_SLIPS = 60, 60
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +69,7 @@ def supremum(problem: Problem) -> Supremum:
         In m/s2. A lower bound of the true supremum, since it is found by sampling and climbing.
     """
     law = _sliding_mode(problem)
-    found = _search(problem, law, reserve=0.0, weighted=False)
+    found = _search(problem, law, lambda error: abs(error.residual))
     return Supremum(value=found.value, point=domain.readable(found.point), evaluations=found.evaluations)
 
 
@@ -79,7 +82,8 @@ def required_gain(problem: Problem) -> Supremum:
         In m/s2. A lower bound of the gain that is needed.
     """
     law = _sliding_mode(problem)
-    found = _search(problem, law, reserve=reserve(problem), weighted=True)
+    eta = reserve(problem)
+    found = _search(problem, law, lambda error: _needed_gain(error, eta))
     return Supremum(value=found.value, point=domain.readable(found.point), evaluations=found.evaluations)
 
 
@@ -111,7 +115,7 @@ def check(problem: Problem) -> Certificate:
         )
     eta = reserve(problem)
     gain = law.gains.switching_gain
-    found = _search(problem, law, reserve=eta, weighted=True)
+    found = _search(problem, law, lambda error: _needed_gain(error, eta))
     at = mismatch(problem, law, found.point[None, :])
     residual, ratio = float(at.residual[0]), float(at.inertia_ratio[0])
     slack = gain - found.value
@@ -147,18 +151,40 @@ def check(problem: Problem) -> Certificate:
         resolution=f"{found.evaluations} evaluations: 2^{SOBOL_EXPONENT} Sobol points and the corners, "
         f"{STARTS} local climbs; sampling bounds the margin only from above",
         reference="eqs. (20), (23)-(25) with W = W0/v; findings, section 2",
+        series=_plots(problem, law, eta),
     )
 
 
-def _search(problem: Problem, law: SlidingMode, *, reserve: float, weighted: bool) -> Maximum:
-    """Maximize abs(r) + reserve, divided by rho if ``weighted``."""
+def _plots(problem: Problem, law: SlidingMode, reserve: float) -> tuple[Series, ...]:
+    """Gain that is needed over speed, the worst of a grid over slip and the corners of the parameters."""
+    import numpy as np
 
-    def needed(points: "Array") -> "Array":
-        error = mismatch(problem, law, points)
-        total: Array = abs(error.residual) + reserve
-        return total / error.inertia_ratio if weighted else total
+    low, high = domain.box(problem)
+    speeds = np.geomspace(low[SPEED], high[SPEED], PLOT_SPEEDS)
+    corners = product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
+    grid = product(speeds, np.linspace(low[SLIP], high[SLIP], PLOT_SLIPS), corners)
+    points = np.array([(slip, speed, *corner) for speed, slip, corner in grid])
+    needed = _needed_gain(mismatch(problem, law, points), reserve).reshape(PLOT_SPEEDS, -1).max(axis=1)
+    axes = ("speed [km/h]", "W0 [m/s2]")
+    return (
+        series("needed", *axes, speeds * KMH, needed),
+        level("chosen", *axes, speeds * KMH, law.gains.switching_gain),
+    )
 
-    return maximize(needed, *domain.box(problem), seed=problem.seed)
+
+def _needed_gain(error: Mismatch, reserve: float) -> "Array":
+    """Switching gain that outweighs a model error with a reserve, (abs(r) + eta) / rho."""
+    needed: Array = (abs(error.residual) + reserve) / error.inertia_ratio
+    return needed
+
+
+def _search(problem: Problem, law: SlidingMode, objective: "Callable[[Mismatch], Array]") -> Maximum:
+    """Maximize a function of the model error on the domain."""
+
+    def values(points: "Array") -> "Array":
+        return objective(mismatch(problem, law, points))
+
+    return maximize(values, *domain.box(problem), seed=problem.seed)
 
 
 def _sliding_mode(problem: Problem) -> SlidingMode:
