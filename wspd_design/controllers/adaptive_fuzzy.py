@@ -110,5 +110,6 @@ def adaptation(gains: AdaptiveFuzzyGains, surface: Number) -> Adaptation:
         driving = surface - gains.boundary_layer * saturation(surface / gains.boundary_layer)
     strengths = firing_strengths(gains, surface)
     return Adaptation(
-        weights=tuple(gains.weight_rate * driving * w for w in strengths), bound=gains.bound_rate * abs(driving)
+        weights=tuple(gains.weight_rate * driving * w for w in strengths),
+        bound=gains.bound_rate * abs(driving),
     )

@@ -43,7 +43,9 @@ class SlidingMode:
         error = sliding_surface.slip_error(gains.slip_reference, slip)
         surface = sliding_surface.sliding_variable(error, integral, 1.0, gains.surface_rate)
         model = slip_dynamics(self.vehicle, self.rail, maximum(slip, 0.0), speed)
-        equivalent = sliding_surface.equivalent_torque(model.drift, model.gain, 0.0, error, gains.surface_rate)
+        equivalent = sliding_surface.equivalent_torque(
+            model.drift, model.gain, 0.0, error, gains.surface_rate
+        )
         switching = gains.switching_gain / speed * saturation(surface / gains.boundary_layer) / model.gain
         duty = clip((equivalent + switching) / self.vehicle.brake.max_torque, 0.0, 1.0)
         return (integral + self.sample_time * error,), pulse_width(duty)

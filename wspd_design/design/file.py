@@ -82,7 +82,9 @@ def read_design(path: str | Path) -> Design:
     for key, value in values.items():
         pair = key in ("speeds", "slips")
         if isinstance(value, bool) or isinstance(value, tuple) != pair or (pair and len(value) != 2):
-            raise UserError(f"specification.{key} in {where} must be {'two numbers' if pair else 'one number'}")
+            raise UserError(
+                f"specification.{key} in {where} must be {'two numbers' if pair else 'one number'}"
+            )
     gains = _table(document["gains"], "gains", where)
     _check_keys(gains, tuple(GAINS_OF[law]), where, "gains.")
     return Design(

@@ -7,7 +7,8 @@ that goes with a gain repeats it with its numbers.
 import math
 
 from wspd_design.certificates.reaching import supremum
-from wspd_design.design.problem import design_problem
+from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Gain, Law, Specification, vehicle_hash
 from wspd_design.model.slip import resistance, slip_dynamics, static_wheel_load
 from wspd_design.parameters.loading import load_paper_gains
@@ -15,7 +16,9 @@ from wspd_design.parameters.records import Rail, Vehicle
 
 LAG_SEPARATION = 4.0  # the surface is this many times slower than valve and sampling
 RULES = 5  # membership functions, as in the paper
-ADAPTATION_SHARE = 0.1  # of the brake torque, that adaptation may move within one time constant of the surface
+ADAPTATION_SHARE = (
+    0.1  # of the brake torque, that adaptation may move within one time constant of the surface
+)
 SWITCHING_RESERVE = 1.02  # on the sampled supremum, which is a lower bound of the true one
 
 
@@ -83,8 +86,21 @@ def _switching_gain(vehicle: Vehicle, rail: Rail, specification: Specification, 
     low, high = specification.speeds
     deceleration = deceleration_limit(vehicle, rail, high)
     reserve = deceleration * specification.slip / math.log(high / low)
-    problem = design_problem(vehicle, rail, specification)
-    worst = supremum(problem, surface_rate=rate.value)
+    # The supremum depends on surface and design model alone, so the law may still lack its switching gain.
+    unfinished = SlidingMode(
+        name="unfinished",
+        sample_time=specification.sample_time,
+        vehicle=vehicle,
+        rail=rail,
+        gains=SlidingModeGains(
+            slip_reference=specification.slip,
+            surface_rate=rate.value,
+            switching_gain=0.0,
+            boundary_layer=specification.slip_tolerance / 2.0,
+        ),
+    )
+    problem = stability_problem(vehicle, rail, unfinished, specification)
+    worst = supremum(problem)
     ratio = vehicle.wheelset_inertia / problem.inertia_bounds[1]
     value = SWITCHING_RESERVE * (worst.value + reserve) / ratio
     place = ", ".join(f"{point.name} {point.value:.4g} {point.unit}".rstrip(" -") for point in worst.point)

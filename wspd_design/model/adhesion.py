@@ -28,7 +28,9 @@ def contact_stiffness(contact: Contact, wheel_load: Number) -> Number:
     return at_reference * (wheel_load / contact.reference_load) ** (2.0 / 3.0)
 
 
-def creep_force(slip: Number, sliding_speed: Number, wheel_load: Number, rail: Rail, stiffness: Number) -> Number:
+def creep_force(
+    slip: Number, sliding_speed: Number, wheel_load: Number, rail: Rail, stiffness: Number
+) -> Number:
     """Longitudinal creep force of one wheel by Polach's method, eqs. (5)-(7).
 
     Parameters
@@ -86,7 +88,9 @@ def creep_force_slip_derivative(
     )
 
 
-def adhesion_coefficient(slip: Number, speed: Number, wheel_load: Number, rail: Rail, contact: Contact) -> Number:
+def adhesion_coefficient(
+    slip: Number, speed: Number, wheel_load: Number, rail: Rail, contact: Contact
+) -> Number:
     """Used adhesion f/Q at a slip ratio and a train speed [-]."""
     stiffness = contact_stiffness(contact, wheel_load)
     return creep_force(slip, speed * slip, wheel_load, rail, stiffness) / wheel_load

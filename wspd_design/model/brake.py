@@ -1,9 +1,10 @@
 """Pressure and torque of the electro-pneumatic brake, eqs. (8)-(14), for the records of a brake."""
 
+import math
 from enum import Enum
 
 from wspd_design.model.generated import brake as generated
-from wspd_design.model.number import Number
+from wspd_design.model.number import Number, exp, sin
 from wspd_design.parameters.records import Brake
 
 
@@ -15,7 +16,9 @@ class Valve(Enum):
     HOLD = (0.0, 0.0)
 
 
-def pressure_after(brake: Brake, valve: Valve, time: Number, start_time: Number, start_pressure: Number) -> Number:
+def pressure_after(
+    brake: Brake, valve: Valve, time: Number, start_time: Number, start_pressure: Number
+) -> Number:
     """Cylinder pressure while the valve stays in one state since ``start_time``: the exact solution of (8), (9).
 
     Parameters
@@ -48,3 +51,9 @@ def pressure_after(brake: Brake, valve: Valve, time: Number, start_time: Number,
 def braking_torque(brake: Brake, pressure: Number) -> Number:
     """Torque per wheelset of a cylinder pressure [Pa], eq. (12) with constant pad friction [N m]."""
     return generated.braking_torque(pressure, brake.max_torque, brake.max_pressure)
+
+
+def torque_disturbance(brake: Brake, time: Number) -> Number:
+    """Vibration of the pads at the onset of braking, T_d / T of Section 7 [-]."""
+    decay = exp(-brake.disturbance_decay * time)
+    return brake.disturbance_gain * decay * sin(2.0 * math.pi * brake.disturbance_frequency * time)

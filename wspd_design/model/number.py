@@ -37,6 +37,14 @@ def atan(x: Number) -> Number:
     return library.atan(x) if hasattr(library, "atan") else x.atan()
 
 
+def sin(x: Number) -> Number:
+    """Sine."""
+    if isinstance(x, float):
+        return math.sin(x)
+    library = _library(x)
+    return library.sin(x) if hasattr(library, "sin") else x.sin()
+
+
 def maximum(x: Number, y: Number) -> Number:
     """Return the larger of two numbers."""
     return _extremum(x, y, largest=True)
@@ -69,7 +77,9 @@ def where(condition: Number, x: Number, y: Number) -> Number:
     if isinstance(condition, (bool, int, float)):
         return x if condition else y
     library = _library(condition)
-    return library.if_else(condition, x, y) if library.__name__ == "casadi" else library.where(condition, x, y)
+    return (
+        library.if_else(condition, x, y) if library.__name__ == "casadi" else library.where(condition, x, y)
+    )
 
 
 def clip(x: Number, low: Number, high: Number) -> Number:

@@ -29,14 +29,14 @@ def slip_ratio(speed: Number, wheel_speed: Number, wheel_radius: Number) -> Numb
     return generated.slip_ratio(speed, wheel_speed, wheel_radius, reference_speed)
 
 
-def resistance(vehicle: Vehicle, speed: Number) -> Number:
-    """Running resistance f_d on level, straight track, eq. (4) [N]."""
+def resistance(vehicle: Vehicle, speed: Number, grade_force: Number = 0.0) -> Number:
+    """Running resistance f_d on straight track, eq. (4) [N]; the grade force is positive uphill."""
     return motion.running_resistance(
         speed,
         vehicle.resistance_constant,
         vehicle.resistance_linear,
         vehicle.resistance_quadratic,
-        0.0,
+        grade_force,
         0.0,
         0.0,
     )

@@ -71,6 +71,9 @@ class Brake:
     supply_rate: float  # 1/s, build-up of the supply pressure, eq. (8)
     fill_time: float  # s, T_F
     vent_time: float  # s, T_V
+    disturbance_gain: float  # -, of T_d, the vibration of the pads at the onset of braking
+    disturbance_decay: float  # 1/s
+    disturbance_frequency: float  # Hz
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -30,7 +30,7 @@ def compare(
     scenario: Scenario,
     *,
     slip_reference: float,
-    progress: Callable[[str], None] = lambda name: None,
+    progress: Callable[[str], object] = str,
 ) -> tuple[Trial, ...]:
     """Simulate the same stop with each controller.
 

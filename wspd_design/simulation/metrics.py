@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.records import Ending, Run
@@ -98,4 +99,4 @@ def _switches(commands: list[tuple[float, float]]) -> int:
     for fill, vent in commands:
         shares = (("fill", fill), ("vent", vent), ("hold", 1.0 - fill - vent))
         states += [state for state, share in shares if share > 1e-9]
-    return sum(a != b for a, b in zip(states, states[1:], strict=False))
+    return sum(a != b for a, b in pairwise(states))

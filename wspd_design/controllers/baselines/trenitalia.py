@@ -37,5 +37,6 @@ class Trenitalia:
             where(rim < table.lower_speed_ratio * measurement.speed, -1.0, inside),
         )
         return (rim,), Command(
-            fill=where(decision > 0.0, table.fill_pulse, 0.0), vent=where(decision < 0.0, table.vent_pulse, 0.0)
+            fill=where(decision > 0.0, table.fill_pulse, 0.0),
+            vent=where(decision < 0.0, table.vent_pulse, 0.0),
         )

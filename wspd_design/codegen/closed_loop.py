@@ -1,0 +1,319 @@
+"""The compiled closed loop: assembled from kernels and templates, loaded, and run on arrays of numbers.
+
+One lane is one wheelset of one stop: lane ``axle * stops + stop``. Arrays over lanes or stops have them as their
+last axis.
+"""
+
+import ctypes
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, Protocol
+
+from wspd_design.codegen.compiler import load_library
+from wspd_design.codegen.emitter import emit
+from wspd_design.codegen.kernels import PARAMETERS, closed_loop_kernels
+from wspd_design.controllers.protocol import Command, Controller, Measurement
+from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.plants.four_axle import AXLES
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+LANE_TOTALS = (
+    "torque",
+    "damping_impulse",
+    "brake_work",
+    "sliding_work",
+    "damping_work",
+    "slip",
+    "slip_squared",
+    "lock_time",
+    "slip_max",
+)
+STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
+RAIL_NUMBERS = 5
+GOOD, BUFFER_FULL, BAD_COMMAND = range(3)
+_DOUBLES = ctypes.POINTER(ctypes.c_double)
+
+
+class Settings(ctypes.Structure):
+    """Numbers of the run that are the same for all stops, in SI units."""
+
+    _fields_ = tuple(
+        (name, ctypes.c_double)
+        for name in (
+            "sample_time",
+            "dead_time",
+            "longest_step",
+            "creep_rate",
+            "stop_speed",
+            "regularization_speed",
+            "time_limit",
+            "judging_speed",
+            "record_interval",
+        )
+    )
+
+
+class _Head(ctypes.Structure):
+    """What the caller sets in the C structure ``Loop``; its state follows."""
+
+    _fields_ = (
+        ("set", Settings),
+        ("measured", _DOUBLES),
+        ("patch_start", _DOUBLES),
+        ("patch_rail", _DOUBLES),
+        ("patches", ctypes.c_long),
+        ("load_factor", _DOUBLES),
+        ("load_points", ctypes.c_long),
+        ("load_spacing", ctypes.c_double),
+        ("hold", _DOUBLES),
+        ("hold_points", ctypes.c_long),
+        ("hold_first", ctypes.c_double),
+        ("hold_spacing", ctypes.c_double),
+        ("trace", _DOUBLES),
+        ("trace_rows", ctypes.c_long),
+        ("trace_used", ctypes.c_long),
+        ("quantum", ctypes.c_double),
+        ("reference_factor", ctypes.c_double),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopInput:
+    """Everything that the loop takes, as numbers."""
+
+    stop_parameters: "Array"  # (PARAMETERS, stops)
+    lane_parameters: "Array"  # (PARAMETERS, lanes)
+    speeds: "Array"  # (stops,), initial [m/s]
+    settings: Settings
+    patch_starts: "Array | None" = None  # (patches,) [m]
+    patch_rails: "Array | None" = None  # (patches, axles, RAIL_NUMBERS)
+    wheel_noise: "Array | None" = None  # (samples, lanes) [rad/s]
+    quantum: float = 0.0  # rad/s
+    reference_factor: float = 1.0
+    load_factors: "Array | None" = None  # (axles, points)
+    load_spacing: float = 1.0  # m
+    held_slips: "Array | None" = None  # (axles, points), what an ideal brake never exceeds
+    held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
+    trace_rows: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopOutput:
+    """What the loop gives back, as numbers."""
+
+    result: int
+    stopped: "NDArray[np.bool_]"  # (stops,)
+    lane_totals: dict[str, "Array"]  # (lanes,) each
+    stop_totals: dict[str, "Array"]  # (stops,) each
+    wheel_speeds: "Array"  # (lanes,)
+    trace: "Array"  # (rows, 3 + 5 axles)
+    samples: "Array"  # (samples, 1 + (states + 2) lanes)
+    bad_command: tuple[float, float, float]  # time, fill, vent
+    steps: int
+
+
+class ClosedLoop:
+    """A compiled loop of a number of stops side by side; without a controller it is driven from Python."""
+
+    def __init__(self, library: ctypes.CDLL, stops: int, states: int) -> None:
+        self.stops, self.states = stops, states
+        self._library = library
+        for name in ("wspd_lane_totals", "wspd_stop_totals", "wspd_wheel_speeds", "wspd_bad_command"):
+            getattr(library, name).restype = _DOUBLES
+        for name in ("wspd_size", "wspd_steps", "wspd_samples"):
+            getattr(library, name).restype = ctypes.c_long
+
+    def run(self, given: LoopInput, *, sample_rows: int = 0) -> LoopOutput:
+        """Run all stops with the compiled controller."""
+        import numpy as np
+
+        buffer, trace, keep = self._begin(given)
+        samples = np.zeros((sample_rows, 1 + (self.states + 2) * AXLES * self.stops))
+        rows = ctypes.c_long(sample_rows)
+        result = self._library.wspd_run(buffer, _pointer(samples) if sample_rows else None, rows)
+        del keep
+        return self._output(buffer, result, trace, samples)
+
+    def run_with(self, given: LoopInput, controller: Controller, *, sample_rows: int) -> LoopOutput:
+        """Run a single stop with a controller that stays in Python."""
+        buffer, trace, keep = self._begin(given)
+        result, samples = drive(_Plant(self._library, buffer), controller, sample_rows)
+        del keep
+        return self._output(buffer, result, trace, samples)
+
+    def _begin(self, given: LoopInput) -> tuple[Any, "Array", list[Any]]:
+        import numpy as np
+
+        buffer = ctypes.create_string_buffer(self._library.wspd_size())
+        head = _Head.from_buffer(buffer)
+        trace = np.zeros((given.trace_rows, 3 + 5 * AXLES * self.stops))
+        head.set = given.settings
+        head.quantum, head.reference_factor = given.quantum, given.reference_factor
+        head.trace_rows = given.trace_rows
+        arrays = {
+            "measured": given.wheel_noise,
+            "patch_start": given.patch_starts,
+            "patch_rail": given.patch_rails,
+            "load_factor": given.load_factors,
+            "hold": given.held_slips,
+            "trace": trace if given.trace_rows else None,
+        }
+        keep = [np.ascontiguousarray(a, dtype=np.float64) for a in arrays.values() if a is not None]
+        for name, array in zip((n for n, a in arrays.items() if a is not None), keep, strict=True):
+            setattr(head, name, _pointer(array))
+        if given.patch_starts is not None:
+            head.patches = len(given.patch_starts)
+        if given.load_factors is not None:
+            head.load_points, head.load_spacing = given.load_factors.shape[1], given.load_spacing
+        if given.held_slips is not None:
+            first, second = given.held_speeds
+            head.hold_points = given.held_slips.shape[1]
+            head.hold_first, head.hold_spacing = math.log(first), math.log(second / first)
+        given_blocks = (given.stop_parameters, given.lane_parameters, given.speeds)
+        blocks = [np.ascontiguousarray(block, dtype=np.float64) for block in given_blocks]
+        self._library.wspd_begin(buffer, *(_pointer(block) for block in blocks))
+        return buffer, trace, [keep, blocks]
+
+    def _output(self, buffer: Any, result: int, trace: "Array", samples: "Array") -> LoopOutput:
+        import numpy as np
+
+        library, lanes = self._library, AXLES * self.stops
+
+        def block(name: str, rows: int, columns: int) -> "Array":
+            return np.ctypeslib.as_array(getattr(library, name)(buffer), (rows, columns)).copy()
+
+        lane = block("wspd_lane_totals", len(LANE_TOTALS), lanes)
+        stop = block("wspd_stop_totals", len(STOP_TOTALS), self.stops)
+        settings = _Head.from_buffer(buffer)
+        totals = dict(zip(STOP_TOTALS, stop, strict=True))
+        bad = block("wspd_bad_command", 1, 3)[0]
+        return LoopOutput(
+            result=result,
+            stopped=totals["end_speed"] <= settings.set.stop_speed * (1.0 + 1e-6),
+            lane_totals=dict(zip(LANE_TOTALS, lane, strict=True)),
+            stop_totals=totals,
+            wheel_speeds=block("wspd_wheel_speeds", 1, lanes)[0],
+            trace=trace[: settings.trace_used],
+            samples=samples[: library.wspd_samples(buffer)],
+            bad_command=(float(bad[0]), float(bad[1]), float(bad[2])),
+            steps=library.wspd_steps(buffer),
+        )
+
+
+class SampledPlant(Protocol):
+    """One stop that is advanced from sample to sample."""
+
+    def running(self) -> bool:
+        """Tell whether the train moves and the time limit is not reached."""
+
+    def measure(self) -> list[Measurement]:
+        """Return what the controller of each axle sees."""
+
+    def advance(self, commands: list[Command]) -> int:
+        """Run to the next sample; 0 when all went well."""
+
+
+def drive(plant: SampledPlant, controller: Controller, sample_rows: int) -> tuple[int, "Array"]:
+    """Close the loop in Python: one controller per axle. Returns the result code and the samples."""
+    import numpy as np
+
+    states = [controller.start(measurement) for measurement in plant.measure()]
+    rows: list[list[float]] = []
+    result = GOOD
+    while plant.running() and result == GOOD:
+        if len(rows) == sample_rows:
+            result = BUFFER_FULL
+            break
+        decided = [controller.step(state, m) for state, m in zip(states, plant.measure(), strict=True)]
+        states, commands = [state for state, _ in decided], [command for _, command in decided]
+        by_element = zip(*states, strict=True) if states[0] else ()
+        fills, vents = [c.fill for c in commands], [c.vent for c in commands]
+        numbers = [x for element in by_element for x in element] + fills + vents
+        rows.append([len(rows) * controller.sample_time, *(float(x) for x in numbers)])
+        result = plant.advance(commands)
+    width = 1 + AXLES * (len(states[0]) + 2)
+    return result, np.asarray(rows, dtype=np.float64).reshape(len(rows), width)
+
+
+class _Plant:
+    """The compiled plant behind the interface of :class:`SampledPlant`."""
+
+    def __init__(self, library: ctypes.CDLL, buffer: Any) -> None:
+        self._library, self._buffer = library, buffer
+
+    def running(self) -> bool:
+        return bool(self._library.wspd_running(self._buffer))
+
+    def measure(self) -> list[Measurement]:
+        seen = (ctypes.c_double * (3 * AXLES))()
+        self._library.wspd_measure(self._buffer, seen)
+        return [Measurement(*(seen[row * AXLES + axle] for row in range(3))) for axle in range(AXLES)]
+
+    def advance(self, commands: list[Command]) -> int:
+        fill = (ctypes.c_double * AXLES)(*(command.fill for command in commands))
+        vent = (ctypes.c_double * AXLES)(*(command.vent for command in commands))
+        return int(self._library.wspd_sample(self._buffer, fill, vent))
+
+
+@lru_cache(maxsize=32)
+def load_closed_loop(
+    vehicle: Vehicle, rail: Rail, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
+) -> ClosedLoop:
+    """Trace, emit, compile and load the loop of a controller.
+
+    Parameters
+    ----------
+    vehicle, rail : Vehicle, Rail
+        Of the kind to be simulated; their numbers are inputs of the loop.
+    controller : Controller or None
+        Law of every wheelset; None for a loop that is driven from Python.
+    stops : int
+        Stops side by side.
+    disturbed : bool
+        With the vibration of the pads, T_d.
+
+    Raises
+    ------
+    NoCompilerError
+        Without a working C compiler.
+    UntraceableError
+        If ``step`` contains what CasADi cannot trace or the emitter cannot translate.
+    """
+    source, states = closed_loop_source(vehicle, rail, controller, stops=stops, disturbed=disturbed)
+    return ClosedLoop(load_library(source), stops, states)
+
+
+def closed_loop_source(
+    vehicle: Vehicle, rail: Rail, controller: Controller | None, *, stops: int, disturbed: bool
+) -> tuple[str, int]:
+    """Return the C source of the loop and the number of controller states."""
+    kernels = closed_loop_kernels(vehicle, rail, controller, disturbed=disturbed)
+    places = {
+        "STOPS": stops,
+        "STATES": kernels.states,
+        "PARAMETERS": len(PARAMETERS),
+        "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
+        "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
+        "OFFSET": PARAMETERS.index(("surroundings", "axle_offset")),
+        "FIRST_RAIL": next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail"),
+    }
+    folder = files("wspd_design").joinpath("codegen", "templates")
+    lanes = f"({AXLES} * STOPS)"
+    parts = [f"#define {name} {value}\n" for name, value in places.items()]
+    parts.append(folder.joinpath("elementary.h").read_text())
+    parts += [emit(kernels.loads, "STOPS"), emit(kernels.train, "STOPS")]
+    per_lane = (kernels.condition, kernels.axle, kernels.actuator, kernels.start, kernels.step)
+    parts += [emit(kernel, lanes) for kernel in per_lane]
+    parts.append(folder.joinpath("closed_loop.c").read_text())
+    return "".join(parts), kernels.states
+
+
+def _pointer(array: "Array") -> Any:
+    return array.ctypes.data_as(_DOUBLES)

@@ -1,0 +1,122 @@
+"""Stops that no controller can beat or that a perfect one would give: the yardsticks of every simulated stop.
+
+An ideal brake never lets the slip exceed a given one. It fills until the slip gets there and from then on passes
+on what keeps it there, unless even the filling brake cannot give that. At the slip of the adhesion peak this is
+the bound for every controller.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from wspd_design.controllers.baselines.unprotected import Unprotected
+from wspd_design.model import adhesion
+from wspd_design.model.slip import static_wheel_load
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import constants
+from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.plants.four_axle import AXLES
+from wspd_design.simulation.engine import loop_input, run_loop
+from wspd_design.simulation.records import Scenario
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_SPEEDS, _SLIPS = 481, 4001  # grid of the table of peak slips
+_AT_ONCE = 1e9  # 1/s: a supply that is there at once
+_INSTANT = 1e-6  # s: a cylinder that fills at once
+_SAMPLE_TIME = 0.1  # s: the unprotected brake fills whatever it samples
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IdealStop:
+    """Time and distance of an idealized stop."""
+
+    name: str
+    distance: float  # m
+    stopping_time: float  # s
+
+
+def ideal_stop(
+    vehicle: Vehicle,
+    scenario: Scenario,
+    *,
+    slip: float | None = None,
+    instantaneous: bool = False,
+    plant: str = "quarter",
+) -> IdealStop:
+    """Stop at the adhesion peak or at a constant slip.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+    scenario : Scenario
+        Rails, initial speed and grade.
+    slip : float, optional
+        Slip that is not exceeded; that of the adhesion peak at each speed by default.
+    instantaneous : bool
+        Full torque from the start, in place of the build-up of eqs. (8), (9).
+    plant : {"quarter", "four-axle"}
+        Without or with load transfer.
+
+    Returns
+    -------
+    IdealStop
+        Without ``slip`` its distance is the bound for every controller.
+
+    Raises
+    ------
+    UserError
+        For a change of rail along the track: its peak slip is not known in advance.
+    """
+    if scenario.patches:
+        raise UserError("the bound is not known for a change of rail along the track; leave the patches out")
+    if instantaneous:
+        brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
+        vehicle = replace(vehicle, brake=brake)
+    filling = Unprotected(name="ideal", sample_time=_SAMPLE_TIME)
+    given = loop_input(vehicle, filling, scenario, plant=plant, refinement=1)
+    rails = scenario.axle_rails or (scenario.rail,) * AXLES
+    speeds = _speeds(scenario.initial_speed)
+    import numpy as np
+
+    slips = {rail: _held_slips(vehicle, rail, speeds, slip) for rail in set(rails)}
+    given = replace(
+        given,
+        held_slips=np.array([slips[rail] for rail in rails]),
+        held_speeds=(float(speeds[0]), float(speeds[1])),
+    )
+    rows = math.ceil(constants().time_limit / _SAMPLE_TIME) + 2
+    output, _ = run_loop(vehicle, filling, scenario, given, rows)
+    what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
+    build_up = "full torque at once" if instantaneous else "with brake build-up"
+    return IdealStop(
+        name=f"{what}, {build_up}",
+        distance=float(output.stop_totals["distance"][0]),
+        stopping_time=float(output.stop_totals["time"][0]),
+    )
+
+
+def _speeds(initial_speed: float) -> "Array":
+    import numpy as np
+
+    return np.geomspace(0.5 * constants().stop_speed, 1.01 * initial_speed, _SPEEDS)
+
+
+def _held_slips(vehicle: Vehicle, rail: Rail, speeds: "Array", slip: float | None) -> "Array":
+    """Slip to be held over speed: constant, or where the adhesion under the static load is greatest."""
+    import numpy as np
+
+    if slip is not None:
+        return np.full(len(speeds), slip)
+    load = float(static_wheel_load(vehicle))
+    stiffness = adhesion.contact_stiffness(vehicle.contact, load)
+    slips = np.geomspace(1e-4, 1.0, _SLIPS)
+    v, s = speeds[:, np.newaxis], slips[np.newaxis, :]
+    # Near standstill the slip is referred to the regularization speed, as in the plant.
+    referred = s * np.minimum(v / constants().slip_regularization_speed, 1.0)
+    return slips[adhesion.creep_force(referred, v * s, load, rail, stiffness).argmax(axis=1)]
