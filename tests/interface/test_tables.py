@@ -29,6 +29,13 @@ TABLES = {
 }
 
 
+def test_numbers_of_a_comparison_are_never_broken(wspd, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "60")
+    out = wspd("compare", "none", "knorr-bremse", *SLOW).out
+    (row,) = (line for line in out.splitlines() if line.startswith("knorr-bremse"))
+    assert len(row.split()) == 8
+
+
 @pytest.mark.parametrize("columns", [60, 100])
 @pytest.mark.parametrize("name", TABLES)
 def test_fits_the_terminal(name, columns, wspd, monkeypatch):
@@ -61,13 +68,13 @@ def test_every_equation_is_listed_with_its_verdict(wspd):
     out = wspd("equations").out
     for equation in load_equations():
         label = f"({equation.number})" if equation.number[0].isdigit() else equation.number
-        assert re.search(rf"^ {re.escape(label)} +{equation.verdict} ", out, re.MULTILINE), label
+        assert re.search(rf"^{re.escape(label)} +{equation.verdict} ", out, re.MULTILINE), label
 
 
 def test_equations_of_one_verdict(wspd):
     numbers = {e.number for e in load_equations() if e.verdict == "misprint"}
     out = wspd("equations", "--verdict", "misprint").out
-    listed = re.findall(r"^ (?:\((\d+)\)|(\S.*?)) +misprint ", out, re.MULTILINE)
+    listed = re.findall(r"^(?:\((\d+)\)|(\S.*?)) +misprint ", out, re.MULTILINE)
     assert {a or b for a, b in listed} == numbers
 
 
@@ -102,10 +109,10 @@ def test_sources_of_an_own_file(wspd, tmp_path):
 def test_linearize_marks_what_the_valve_cannot_stabilize(wspd):
     """Findings, section 2: on the dry rail the pole exceeds 1/tau from 20 to 1 m/s, not at 33.3."""
     out = wspd("linearize", "--rail", "polach-dry").out
-    marked = [float(line.split()[0]) for line in out.splitlines() if "! > 1/tau" in line]
+    marked = [float(line.split()[0]) for line in out.splitlines() if line.rstrip().endswith(" !")]
     assert 120.0 not in marked
     assert {60.0, 40.0, 20.0, 10.0, 5.0} <= set(marked)
-    assert "! > 1/tau" not in wspd("linearize", "--rail", "table10-dry").out
+    assert "!" not in wspd("linearize", "--rail", "table10-dry").out
 
 
 def test_traces_are_written(wspd, tmp_path):

@@ -11,7 +11,9 @@ from typing import Any
 
 from rich import box
 from rich.console import Console
+from rich.padding import Padding
 from rich.table import Table
+from rich.text import Text
 
 WIDE = 96
 """Columns of a terminal from which on tables put everything side by side."""
@@ -28,12 +30,18 @@ def console(*, error: bool = False) -> Console:
     return Console(stderr=error, width=width, highlight=False, emoji=False)
 
 
-def table(*headers: str, title: str | None = None, numeric: tuple[str, ...] = ()) -> Table:
-    """Return an empty table without vertical lines; ``numeric`` columns are set flush right."""
-    made = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", pad_edge=False, title_style="bold")
+def table(*headers: str, numeric: tuple[str, ...] = ()) -> Table:
+    """Return an empty table without vertical lines; ``numeric`` columns are flush right and never broken."""
+    made = Table(box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0))
     for header in headers:
-        made.add_column(header, justify="right" if header in numeric else "left", overflow="fold")
+        right = header in numeric
+        made.add_column(Text(header), justify="right" if right else "left", no_wrap=right, overflow="fold")
     return made
+
+
+def spaced(shown: Table) -> Padding:
+    """Set a table apart from the text around it."""
+    return Padding(shown, (1, 0), expand=False)
 
 
 def print_json(value: dict[str, Any]) -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rich.text import Text
 
-from wspd_design.cli.console import WIDE, console, table
+from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.design.records import Design, Gain, GainValue
 
 
@@ -26,7 +26,7 @@ def show_design(made: Design, path: Path) -> None:
             shown.add_row(name, value, why)
         else:
             shown.add_row(name.append("\n= ", style="dim").append(value), why)
-    out.print(shown)
+    out.print(spaced(shown))
     out.print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
     for purpose, command in (
         ("Prove it", f"wspd verify {path}"),

@@ -2,7 +2,7 @@
 
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, check_plant, parse_speed, resolve_all
-from wspd_design.cli.console import console, print_json, progress, table
+from wspd_design.cli.console import console, print_json, progress, spaced, table
 from wspd_design.cli.json_objects import comparison_object, stop_object
 from wspd_design.design.catalog import CONTROLLERS
 from wspd_design.simulation.comparison import Trial, trial
@@ -53,13 +53,13 @@ def _show(trials: list[Trial]) -> None:
     )
     headers = (
         "Controller",
-        "d\n\\[m]",
-        "t\n\\[s]",
-        "lag\n\\[s]",
+        "d\n[m]",
+        "t\n[s]",
+        "lag\n[s]",
         "slip\nrms",
         "slip\nmax",
-        "lock\n\\[s]",
-        "valve\nswitches",
+        "lock\n[s]",
+        "valve\n[-]",
     )
     shown = table(*headers, numeric=headers[1:])
     stopped = [made.metrics.distance for made in trials if made.run.ending is Ending.STOPPED]
@@ -76,9 +76,10 @@ def _show(trials: list[Trial]) -> None:
             f"{figures.valve_switches}",
             style="bold" if stopped and not still_moving and figures.distance == min(stopped) else "",
         )
-    out.print(shown)
+    out.print(spaced(shown))
     out.print(
-        "d distance, t time, lag 2 d/v0 - t; slip figures count above 10 km/h, rms about the reference.",
+        "d distance, t time, lag 2 d/v0 - t; slip above 10 km/h, rms about the reference; lock: how long the "
+        "wheels were locked; valve: changes of its state.",
         style="dim",
     )
     if len(stopped) < len(trials):

@@ -13,7 +13,7 @@ from importlib.metadata import PackageNotFoundError, requires, version
 import typer
 from rich.text import Text
 
-from wspd_design.cli.console import console, is_interactive, program_version, table
+from wspd_design.cli.console import console, is_interactive, program_version, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED
 
 COMPILERS = ("cc", "gcc", "clang", "cl")
@@ -44,7 +44,7 @@ def doctor() -> None:
             found.append(f"\n{finding.remedy}", style="italic")
         shown.add_row(Text(sign, style=style), finding.name, found)
     out = console()
-    out.print(shown)
+    out.print(spaced(shown))
     missing = [finding.name for finding in findings if finding.needed and not finding.good]
     out.print(
         f"Missing: {', '.join(missing)}." if missing else "All that is needed is there.",

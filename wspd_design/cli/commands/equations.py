@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from wspd_design.cli.console import console, table
+from wspd_design.cli.console import console, spaced, table
 from wspd_design.model.equations import Equation, load_equations
 from wspd_design.parameters.errors import UserError
 
@@ -59,7 +59,7 @@ def _show_all(chosen: list[Equation]) -> None:
         shown.add_row(
             _label(equation.number), Text(equation.verdict, style=_STYLES[equation.verdict]), content
         )
-    out.print(shown)
+    out.print(spaced(shown))
     counts = Counter(equation.verdict for equation in chosen)
     out.print(", ".join(f"{counts[word]} {word}" for word in _STYLES if counts[word]), style="bold")
     out.print('Details: "wspd equations 19".', style="dim", markup=False)
@@ -83,4 +83,4 @@ def _show_one(equation: Equation) -> None:
     ):
         if content:
             shown.add_row(Text(name, style="dim"), Text(content))
-    out.print(shown)
+    out.print(spaced(shown))

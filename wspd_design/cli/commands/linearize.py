@@ -7,7 +7,7 @@ from rich.text import Text
 
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, check_plant, parse_speed, specification
-from wspd_design.cli.console import console, print_json, table
+from wspd_design.cli.console import console, print_json, spaced, table
 from wspd_design.cli.json_objects import linearization_object
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
@@ -60,13 +60,10 @@ def _show(points: "list[Linearization]", beyond: list[bool]) -> None:
         "speed\n[km/h]",
         "slip pole\n[1/s]",
         "gain G\n[1/(MN m s)]",
-        "poles, valve\n[1/s]",
+        "with valve\n[1/s]",
         "torque\n[kN m]",
-        "",
     )
-    shown = table(*(header.replace("[", "\\[") for header in headers), numeric=headers[:1])
-    for column in shown.columns[1:5]:
-        column.justify = "right"
+    shown = table(*headers, "", numeric=headers)
     for point, marked in zip(points, beyond, strict=True):
         shown.add_row(
             f"{point.speed * 3.6:g}",
@@ -74,12 +71,12 @@ def _show(points: "list[Linearization]", beyond: list[bool]) -> None:
             f"{point.gain * 1e6:.1f}",
             ", ".join(f"{pole:.2f}" for pole in point.poles()),
             f"{point.equilibrium_torque / 1e3:.1f}",
-            Text("! > 1/tau" if marked else "", style="yellow"),
+            Text("!" if marked else "", style="yellow"),
         )
-    out.print(shown)
+    out.print(spaced(shown))
     limit = 1.0 / first.time_constant
     verdict = (
-        f"At {sum(beyond)} of {len(points)} speeds the slip pole exceeds 1/tau = {limit:.3g} 1/s of the "
+        f"!: at {sum(beyond)} of {len(points)} speeds the slip pole exceeds 1/tau = {limit:.3g} 1/s of the "
         "valve: no law without feedback of torque or wheel acceleration can stabilize the equilibrium there."
         if any(beyond)
         else f"The slip pole stays below 1/tau = {limit:.3g} 1/s of the valve at all of these speeds."

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from wspd_design.cli import options
 from wspd_design.cli.case import check_law
-from wspd_design.cli.console import console, is_interactive, progress, table
+from wspd_design.cli.console import console, is_interactive, progress, spaced, table
 from wspd_design.cli.exit_codes import INTERRUPTED
 from wspd_design.cli.gains import show_design
 from wspd_design.cli.output import check_output
@@ -109,7 +109,7 @@ def _review(answers: Answers) -> None:
     for step in steps():
         if step.key in answers:
             shown.add_row(step.title, Text(answers[step.key]))
-    console().print(shown)
+    console().print(spaced(shown))
 
 
 def _design(answers: Answers, target: Path) -> None:

@@ -58,9 +58,8 @@ def report(
             seed=seed,
             progress=tell,
         )
-        for path in paths:
-            tell(f"writing {path}")
-            write_report(computed, path)
+        tell("typesetting")
+        write_report(computed, *paths)
     for path in paths:
         console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
 

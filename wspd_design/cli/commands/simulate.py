@@ -7,7 +7,7 @@ import typer
 
 from wspd_design.cli import options
 from wspd_design.cli.case import Case, Wishes, check_plant, chosen, parse_speed, resolve
-from wspd_design.cli.console import console, print_json, progress, table
+from wspd_design.cli.console import console, print_json, progress, spaced, table
 from wspd_design.cli.json_objects import stop_object
 from wspd_design.cli.output import check_output, write_text
 from wspd_design.simulation.comparison import Trial, trial
@@ -96,5 +96,5 @@ def _show(case: Case, made: Trial) -> None:
     shown.add_row("samples at a limit", f"{100.0 * figures.saturated_share:.0f}", "%")
     shown.add_row("momentum balance, relative", f"{figures.momentum_residual:.1e}", "-")
     shown.add_row("energy balance, relative", f"{figures.energy_residual:.1e}", "-")
-    out.print(shown)
+    out.print(spaced(shown))
     out.print("Slip figures count above 10 km/h.", style="dim")

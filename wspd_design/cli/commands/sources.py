@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
-from wspd_design.cli.console import WIDE, console, table
+from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
 from wspd_design.parameters.loading import available, load_entries
@@ -54,7 +54,7 @@ def _show_names() -> None:
     for kind in _KINDS:
         for name in available(kind):
             shown.add_row(kind, name, load_entries(kind, name).title)
-    out.print(shown)
+    out.print(spaced(shown))
 
 
 def _show(parameters: ParameterSet) -> None:
@@ -77,7 +77,7 @@ def _show(parameters: ParameterSet) -> None:
             if entry.bounds is not None:
                 number.append("\n").append(_bounds(entry))
             shown.add_row(number, entry.status, Text(f"{entry.source}\n{entry.at}"))
-    out.print(shown)
+    out.print(spaced(shown))
     notes = [(entry.name, entry.note) for entry in entries if entry.note]
     _list(notes, "Notes")
     titles = known_sources()
@@ -90,7 +90,7 @@ def _list(rows: Iterable[tuple[str, str]], heading: str) -> None:
     for name, text in rows:
         shown.add_row(name, Text(text))
     if shown.row_count:
-        console().print(shown)
+        console().print(spaced(shown))
 
 
 def _citation(key: str) -> str:

@@ -12,7 +12,7 @@ from rich.text import Text
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, check_plant, chosen, resolve
-from wspd_design.cli.console import console, print_json, progress, table
+from wspd_design.cli.console import console, print_json, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.json_objects import verification_object
 
@@ -88,7 +88,7 @@ def _show(problem: Problem, certificates: Sequence[Certificate]) -> None:
     shown = table("Status", "Check", "Margin")
     for certificate in certificates:
         shown.add_row(_status(certificate.status), certificate.name, Text(_margin(certificate.margin)))
-    out.print(shown)
+    out.print(spaced(shown))
     counts = Counter(certificate.status for certificate in certificates)
     present = [status for status in _SIGNS if counts[status]]
     out.print(Text(", ").join(Text(f"{counts[s]} {_word(s)}", style=_SIGNS[s][1]) for s in present))

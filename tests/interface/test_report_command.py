@@ -1,0 +1,56 @@
+"""``wspd report``: what it asks the package for; the report itself is tested elsewhere."""
+
+import pytest
+
+from wspd_design.design import dossier as dossier_module
+from wspd_design.reporting import report as report_module
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Record what the command asks for, and write a stand-in for the report."""
+    recorded = {}
+
+    def dossier(made, **options):
+        recorded["design"], recorded["options"] = made, options
+        return "dossier"
+
+    def write_report(computed, *paths):
+        assert computed == "dossier"
+        recorded["paths"] = [path.name for path in paths]
+        for path in paths:
+            path.write_text("new")
+
+    monkeypatch.setattr(dossier_module, "dossier", dossier)
+    monkeypatch.setattr(report_module, "write_report", write_report)
+    return recorded
+
+
+def test_report_of_a_design_file(wspd, smc_file, calls):
+    outcome = wspd("report", smc_file.name, "--speed", "100 km/h", "--seed", "4", "-o", "a.html", "--pdf")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert calls["paths"] == ["a.html", "a.pdf"]
+    assert "a.html" in outcome.out
+    assert "a.pdf" in outcome.out
+    assert calls["design"].name == "smc-er24pc-polach-wet"
+    options = calls["options"]
+    assert (options["vehicle_name"], options["rail_name"], options["seed"]) == ("er24pc", "polach-wet", 4)
+    assert options["initial_speed"] == pytest.approx(100.0 / 3.6)
+    assert options["baselines"] == ["afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none"]
+
+
+def test_report_of_a_named_controller_compares_it_with_the_others(wspd, calls):
+    assert wspd("report", "smc", "--rail", "polach-dry", "--slip", "0.1", "-o", "a.pdf", "--pdf").code == 0
+    assert calls["paths"] == ["a.pdf"]
+    assert (calls["design"].name, calls["design"].rail) == ("smc", "polach-dry")
+    assert calls["design"].specification.slip == 0.1
+    assert calls["options"]["baselines"] == ["afsmc", "trenitalia", "knorr-bremse", "mitsubishi", "none"]
+
+
+@pytest.mark.usefixtures("calls")
+def test_an_existing_report_is_replaced_only_by_force(wspd, smc_file, tmp_path):
+    (tmp_path / "report.html").write_text("old")
+    assert wspd("report", smc_file.name).code == 2
+    assert (tmp_path / "report.html").read_text() == "old"
+    assert wspd("report", smc_file.name, "--force").code == 0
+    assert (tmp_path / "report.html").read_text() == "new"
