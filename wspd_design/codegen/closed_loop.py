@@ -114,7 +114,7 @@ class LoopOutput:
     stop_totals: dict[str, "Array"]  # (stops,) each
     wheel_speeds: "Array"  # (lanes,)
     trace: "Array"  # (rows, 3 + 5 axles)
-    samples: "Array"  # (samples, 1 + (states + 2) lanes)
+    samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
     bad_command: tuple[float, float, float]  # time, fill, vent
     steps: int
 
@@ -135,7 +135,7 @@ class ClosedLoop:
         import numpy as np
 
         buffer, trace, keep = self._begin(given)
-        samples = np.zeros((sample_rows, 1 + (self.states + 2) * AXLES * self.stops))
+        samples = np.zeros((sample_rows, 1 + (self.states + 5) * AXLES * self.stops))
         rows = ctypes.c_long(sample_rows)
         result = self._library.wspd_run(buffer, _pointer(samples) if sample_rows else None, rows)
         del keep
@@ -231,14 +231,14 @@ def drive(plant: SampledPlant, controller: Controller, sample_rows: int) -> tupl
         if len(rows) == sample_rows:
             result = BUFFER_FULL
             break
-        decided = [controller.step(state, m) for state, m in zip(states, plant.measure(), strict=True)]
+        seen = plant.measure()
+        decided = [controller.step(state, m) for state, m in zip(states, seen, strict=True)]
         states, commands = [state for state, _ in decided], [command for _, command in decided]
         by_element = zip(*states, strict=True) if states[0] else ()
-        fills, vents = [c.fill for c in commands], [c.vent for c in commands]
-        numbers = [x for element in by_element for x in element] + fills + vents
-        rows.append([len(rows) * controller.sample_time, *(float(x) for x in numbers)])
+        lists = [*by_element, *zip(*commands, strict=True), *zip(*seen, strict=True)]
+        rows.append([len(rows) * controller.sample_time, *(float(x) for element in lists for x in element)])
         result = plant.advance(commands)
-    width = 1 + AXLES * (len(states[0]) + 2)
+    width = 1 + AXLES * (len(states[0]) + 5)
     return result, np.asarray(rows, dtype=np.float64).reshape(len(rows), width)
 
 

@@ -20,7 +20,7 @@ from wspd_design.codegen.closed_loop import (
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.kernels import Surroundings, parameter_values
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
@@ -213,8 +213,8 @@ def _run_record(
     start = _first_row(vehicle, scenario, output)
     trace = np.vstack([start, output.trace])
     wheel, slip, passed, load = (trace[:, 3 + k * AXLES : 3 + k * AXLES + columns] for k in range(4))
-    states = (output.samples.shape[1] - 1) // AXLES - 2
-    by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 2, AXLES)
+    states = (output.samples.shape[1] - 1) // AXLES - 5
+    by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 5, AXLES)
     times = output.samples[:, 0]
     return Run(
         controller=controller.name,
@@ -233,7 +233,13 @@ def _run_record(
         wheel_load=load,
         axle_samples=tuple(
             tuple(
-                Sample(time=t, fill=row[states], vent=row[states + 1], state=tuple(row[:states]))
+                Sample(
+                    time=t,
+                    fill=row[states],
+                    vent=row[states + 1],
+                    state=tuple(row[:states]),
+                    seen=Measurement(*row[states + 2 :]),
+                )
                 for t, row in zip(times.tolist(), by_axle[:, :, axle].tolist(), strict=True)
             )
             for axle in range(columns)

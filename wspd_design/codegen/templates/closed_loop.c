@@ -414,9 +414,10 @@ int wspd_run(Loop *loop, double *samples, long sample_rows)
         memcpy(state, command, STATES * LANES * sizeof *state);
         if (samples) {
             if (loop->sample == sample_rows) return BUFFER_FULL;
-            double *row = samples + loop->sample * (1 + (STATES + 2) * LANES);
+            double *row = samples + loop->sample * (1 + (STATES + 5) * LANES);
             row[0] = loop->sample * loop->set.sample_time;
             memcpy(row + 1, command, sizeof command);
+            memcpy(row + 1 + (STATES + 2) * LANES, in, sizeof in);
         }
         result = wspd_sample(loop, command + STATES * LANES, command + (STATES + 1) * LANES);
     }
