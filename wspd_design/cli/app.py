@@ -98,7 +98,6 @@ def run(arguments: Sequence[str]) -> int:
     except _USAGE_ERROR as error:
         return _refuse(_usage_sentence(error))
     except (KeyboardInterrupt, typer.Abort):
-        print("wspd: interrupted.", file=sys.stderr)
         return INTERRUPTED
     except Exception:
         traceback.print_exc()

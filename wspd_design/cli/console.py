@@ -26,8 +26,8 @@ def program_version() -> str:
 
 def console(*, error: bool = False) -> Console:
     """Return a console as wide as the terminal, also where Rich would assume 80 columns (``TERM=dumb``)."""
-    width = shutil.get_terminal_size((80, 24)).columns
-    return Console(stderr=error, width=width, highlight=False, emoji=False)
+    width, height = shutil.get_terminal_size((80, 24))
+    return Console(stderr=error, width=width, height=height, highlight=False, emoji=False)
 
 
 def table(*headers: str, numeric: tuple[str, ...] = ()) -> Table:

@@ -21,8 +21,11 @@ def test_numbers_survive(capsys):
 
 @pytest.mark.parametrize("term", ["dumb", "xterm"])
 def test_width_is_that_of_the_terminal(term, monkeypatch):
+    """Rich alone assumes 80 columns where ``TERM=dumb``."""
     monkeypatch.setenv("TERM", term)
     monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setenv("FORCE_COLOR", "1")  # Rich then takes the stream for a terminal
+    assert console().is_dumb_terminal == (term == "dumb")
     assert console().width == 60
 
 

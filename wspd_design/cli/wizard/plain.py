@@ -23,7 +23,8 @@ def ask(step: Step, answers: Answers, suggestion: str) -> str | Back:
     while True:
         try:
             text = input(f"[{suggestion}] ({BACK} goes back) > ").strip() or suggestion
-        except EOFError:
+        except (EOFError, KeyboardInterrupt):
+            out.print()  # leave the line of the prompt
             raise KeyboardInterrupt from None
         if text == BACK:
             return Back.BACK
