@@ -24,7 +24,7 @@ from wspd_design.cli.console import program_version
 from wspd_design.cli.exit_codes import BUG, INTERRUPTED, WRONG_USE
 from wspd_design.parameters.errors import UserError
 
-# Typer carries its own copy of Click since 0.26; the parent of this class is the usage error of either.
+# Newer versions of Typer carry their own copy of Click; the parent of this class is the usage error of either.
 _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 
 app = typer.Typer(
