@@ -1,0 +1,125 @@
+"""Figures of a stop, on runs whose answers are known by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from wspd_design.simulation.comparison import compare
+from wspd_design.simulation.metrics import metrics
+from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
+
+ZERO = dict.fromkeys(
+    ("torque", "resistance_impulse", "damping_impulse", "brake_work", "sliding_work", "resistance_work"), 0.0
+) | dict.fromkeys(("damping_work", "lock_time", "judged_time", "slip", "slip_squared"), 0.0)
+
+
+def made_up(
+    *,
+    initial_speed=30.0,
+    end_time=10.0,
+    distance=100.0,
+    commands=((1.0, 0.0),),
+    ending=Ending.STOPPED,
+    **totals,
+):
+    one = np.zeros(2)
+    return Run(
+        controller="made up",
+        vehicle="er24pc",
+        rail="none",
+        plant="quarter",
+        sample_time=0.1,
+        initial_speed=initial_speed,
+        ending=ending,
+        time=np.array([0.0, end_time]),
+        speed=np.array([initial_speed, 0.0]),
+        distance=np.array([0.0, distance]),
+        wheel_speed=one[:, None],
+        slip=one[:, None],
+        torque=one[:, None],
+        samples=tuple(Sample(time=0.1 * k, fill=f, vent=v, state=()) for k, (f, v) in enumerate(commands)),
+        totals=Totals(**{**ZERO, "distance": distance, **totals}),
+        final_wheel_speed=0.0,
+        slip_max=0.5,
+    )
+
+
+@pytest.mark.parametrize(("dead_time", "deceleration"), [(1.0, 3.9), (0.0, 2.5), (2.25, 0.7)])
+def test_lag_and_plateau_of_a_dead_time_and_a_constant_deceleration(er24pc, dead_time, deceleration):
+    # v0 for the dead time, then constant deceleration: both numbers come back exactly.
+    v0 = 120.0 / 3.6
+    run = made_up(
+        initial_speed=v0,
+        end_time=dead_time + v0 / deceleration,
+        distance=v0 * dead_time + v0**2 / (2.0 * deceleration),
+    )
+    judged = metrics(run, er24pc, slip_reference=0.14)
+    assert judged.lag == pytest.approx(dead_time, abs=1e-12)
+    assert judged.plateau == pytest.approx(deceleration, rel=1e-12)
+
+
+def test_table_10_decomposed_as_in_the_data_book(er24pc):
+    # Data book section 13: AFSMC dry 184.03 m in 9.8 s: lag 1.24 s, plateau .397 g.
+    judged = metrics(
+        made_up(initial_speed=120 / 3.6, end_time=9.8, distance=184.03), er24pc, slip_reference=0.14
+    )
+    assert judged.lag == pytest.approx(1.24, abs=0.005)
+    assert judged.plateau / 9.81 == pytest.approx(0.397, abs=0.0005)
+
+
+def test_slip_statistics(er24pc):
+    # Two seconds at slip .1, one second at .4: mean .2, mean square .06, about .14 rms sqrt(.0236).
+    run = made_up(judged_time=3.0, slip=0.6, slip_squared=2 * 0.01 + 0.16)
+    judged = metrics(run, er24pc, slip_reference=0.14)
+    assert judged.slip_mean == pytest.approx(0.2)
+    assert judged.slip_rms == pytest.approx(math.sqrt((2 * 0.04**2 + 0.26**2) / 3))
+    assert judged.slip_max == 0.5
+
+
+def test_slip_statistics_match_the_traces(er24pc, stop):
+    run = stop("trenitalia", "polach-wet")
+    judged = metrics(run, er24pc, slip_reference=0.14)
+    fast = run.speed > 10 / 3.6
+    t, slip = run.time[fast], run.slip[fast, 0]
+    span = t[-1] - t[0]
+    assert judged.slip_mean == pytest.approx(np.trapezoid(slip, t) / span, rel=2e-3)
+    assert judged.slip_rms == pytest.approx(math.sqrt(np.trapezoid((slip - 0.14) ** 2, t) / span), rel=2e-3)
+    assert judged.slip_max == pytest.approx(slip.max(), rel=1e-2)
+    assert judged.distance == pytest.approx(np.trapezoid(run.speed, run.time), rel=1e-6)
+    assert judged.torque_integral == pytest.approx(4 * np.trapezoid(run.torque[:, 0], run.time), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("commands", "switches", "saturated"),
+    [
+        ([(1.0, 0.0), (1.0, 0.0)], 0, 1.0),
+        ([(1.0, 0.0), (0.0, 1.0), (1.0, 0.0)], 2, 1.0),
+        ([(0.4, 0.6), (0.4, 0.6)], 3, 0.0),  # fill vent fill vent
+        ([(0.5, 0.0), (0.0, 0.33)], 3, 0.0),  # fill hold vent hold
+        ([(0.0, 0.0), (0.0, 0.0)], 0, 0.0),
+        ([(0.0, 0.0), (1.0, 0.0), (0.3, 0.3), (0.0, 1.0)], 4, 0.5),  # hold fill (fill vent hold) vent
+    ],
+)
+def test_valve_switches_and_saturation(er24pc, commands, switches, saturated):
+    judged = metrics(made_up(commands=commands), er24pc, slip_reference=0.14)
+    assert judged.valve_switches == switches
+    assert judged.saturated_share == saturated
+
+
+def test_a_run_without_standstill_has_no_lag(er24pc):
+    judged = metrics(made_up(ending=Ending.TIME_LIMIT), er24pc, slip_reference=0.14)
+    assert math.isnan(judged.lag)
+    assert math.isnan(judged.plateau)
+
+
+def test_comparison_keeps_the_order_and_tells_its_progress(er24pc, make_controller):
+    from wspd_design.parameters.loading import load_rail
+
+    told, names = [], ("none", "trenitalia")
+    scenario = Scenario(rail=load_rail("table10-dry"), initial_speed=5.0)
+    trials = compare(
+        er24pc, [make_controller(n) for n in names], scenario, slip_reference=0.14, progress=told.append
+    )
+    assert tuple(t.run.controller for t in trials) == names == tuple(told)
+    assert trials[0].metrics == metrics(trials[0].run, er24pc, slip_reference=0.14)
