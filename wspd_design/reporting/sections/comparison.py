@@ -28,7 +28,7 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
         Heading(text="Comparison", anchor="comparison"),
         Figure(
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
-            caption="Stopping distances. Dark: what the brake build-up costs, initial speed times lag; "
+            caption="Stopping distances. Dark: initial speed times lag, what the brake build-up costs; "
             f"light: the rest, at the plateau deceleration.{marked}",
             alt=distances_alt(trials, dossier.lag_distances),
             anchor="distances",
@@ -68,19 +68,19 @@ def _ranking(dossier: Dossier) -> Text:
         for trial, lag in zip(dossier.trials, dossier.lag_distances, strict=True)
         if trial.run.ending is Ending.STOPPED
     ]
-    falling = dossier.rail.entries["friction_decay"].value != 0.0 and dossier.rail.entries[
-        "friction_ratio"
-    ].value not in (1.0,)
+    decay, ratio = (dossier.rail.entries[name].value for name in ("friction_decay", "friction_ratio"))
     world = (
         "On this rail the friction falls with the sliding speed, so that adhesion is lost by sliding."
-        if falling
-        else "On this rail the friction does not fall with the sliding speed: a locked wheel brakes as well as "
-        "a controlled one, and the ranking says nothing about the control of slip. It needs a rail with a peak."
+        if decay != 0.0 and ratio != 1.0
+        else "On this rail the friction does not fall with the sliding speed: a locked wheel brakes at least "
+        "as well as a controlled one, and the ranking says nothing about the control of slip. It needs a rail "
+        "with a peak."
     )
     meaning = (
-        "The lag is the time by which the whole stop is late, mostly brake build-up; the plateau is the "
-        "deceleration after it, the use of adhesion. A law that never releases has the shortest lag, "
-        "whatever it does later. "
+        "Lag and plateau are the dead time and the constant deceleration that together give the same "
+        "distance and time. They part the build-up of the brake from the use of adhesion as long as the "
+        "deceleration stays about the same; where it falls during the stop, as with wheels locked on "
+        "falling friction, the lag comes out too small and the plateau too low. "
     )
     if len(stopped) < 2:
         return meaning + world

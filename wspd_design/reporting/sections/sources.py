@@ -18,8 +18,8 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
     found: list[Block] = [
         Heading(text="Sources", anchor="sources"),
         Paragraph(
-            text=f"All {len(entries)} numbers that the stops and the checks rest on, besides the gains of "
-            f"the design. {weak} of them are calibrated or assumed. A number without bounds is taken as "
+            text=f"All {len(entries)} numbers of the vehicle, the rails, the compared controllers and the "
+            f"constants; {weak} of them are calibrated or assumed. A number without bounds is taken as "
             "exactly known; the checks vary mass, inertia and friction within their bounds and hold the rest "
             "at its value."
         ),

@@ -33,7 +33,7 @@ def verdict(dossier: Dossier) -> Verdict:
     if named := _of(certificates, Finding.REFUTED):
         status = Status.REFUTED
         spoken = (
-            f"Not fit as it stands: {len(named)} of {numbers.count(total, 'check')} refuted (",
+            f"Not fit as it stands: {len(named)} of {total} checks refuted (",
             *_links(named),
             "). ",
         )
@@ -43,14 +43,14 @@ def verdict(dossier: Dossier) -> Verdict:
     elif named := _of(certificates, Finding.UNDECIDED):
         status = Status.UNDECIDED
         spoken = (
-            f"Not decided: {len(named)} of {numbers.count(total, 'check')} neither shown nor refuted (",
+            f"Not decided: {len(named)} of {total} checks neither shown nor refuted (",
             *_links(named),
             "). ",
         )
     elif named := _of(certificates, Finding.EVIDENCE):
         status = Status.EVIDENCE
         spoken = (
-            f"Nothing speaks against it, but {len(named)} of {numbers.count(total, 'check')} hold at samples "
+            f"Nothing speaks against it, but {len(named)} of {total} checks hold at samples "
             "only, which proves nothing between them. ",
         )
     elif counts[Finding.PROVED]:
@@ -149,18 +149,18 @@ def _checks(certificates: tuple[Certificate, ...]) -> Table:
     rows: list[tuple[Text | Cell, ...]] = [
         (
             (Link(anchor=check_anchor(each), text=each.name),),
+            Cell(status=Status[each.status.name]),
             each.title,
             numbers.margin(each.margin),
-            Cell(status=Status[each.status.name]),
         )
         for each in certificates
     ]
     return Table(
         columns=(
             Column(title="Check"),
+            Column(title="Finding"),
             Column(title="What is checked"),
             Column(title="Margin", align="right"),
-            Column(title="Finding"),
         ),
         rows=tuple(rows),
         caption="All checks. A margin is positive where the claim holds; ≤: sampling bounds it from above "

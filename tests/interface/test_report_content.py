@@ -1,0 +1,123 @@
+"""The report of a real design, from the gains to the files, as a reader gets it."""
+
+import io
+import json
+import re
+from dataclasses import replace
+
+import pypdf
+import pytest
+
+from wspd_design.certificates.records import Status
+from wspd_design.design.catalog import named_design
+from wspd_design.design.dossier import dossier
+from wspd_design.design.records import Specification
+from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.reporting.report import write_report
+from wspd_design.reporting.sections.summary import verdict
+from wspd_design.reporting.text import plain
+
+
+@pytest.fixture(scope="module")
+def made():
+    vehicle, rail = load_vehicle("er24pc"), load_rail("table10-dry")
+    return dossier(
+        named_design("afsmc", vehicle, rail, Specification()),
+        vehicle_name="er24pc",
+        rail_name="table10-dry",
+        initial_speed=120.0 / 3.6,
+        baselines=("trenitalia", "none"),
+        command="wspd report afsmc --rail table10-dry",
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(made, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", "1790000000")
+        write_report(made, folder / "report.html", folder / "report.pdf")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def html(folder):
+    return (folder / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def pdf(folder):
+    return pypdf.PdfReader(io.BytesIO((folder / "report.pdf").read_bytes()))
+
+
+def test_the_page_needs_no_network(html):
+    assert not re.findall(r"""(?:src|href|action)\s*=\s*["'](?!#|data:)""", html)
+    assert not re.findall(r"url\((?!#)", html)
+    assert "https://" not in html
+    assert "<script" not in html
+
+
+def test_the_page_stays_small(html):
+    assert len(html) < 1_000_000
+
+
+def test_every_parameter_name_is_there(made, html):
+    for each in (made.vehicle, made.rail, *made.other_parameters):
+        for name in each.entries:
+            assert f'<td class="left">{name.replace(".", ": ").replace("_", " ")}</td>' in html
+    for gain in made.design.gains:
+        assert gain.name.replace("_", " ") in html
+
+
+def test_every_check_leads_to_its_section(made, html):
+    for each in made.certificates:
+        anchor = f"check-{each.name.replace('_', '-')}"
+        assert f'href="#{anchor}">{each.name}</a>' in html
+        assert f'id="{anchor}"' in html
+
+
+def test_printed_and_repaired_v_stand_side_by_side(html):
+    figure = re.search(r'<figure id="lyapunov">.*?</figure>', html, re.DOTALL)
+    assert figure is not None
+    assert "V2 as printed" in figure[0]
+    assert "V repaired" in figure[0]
+
+
+def test_equation_19_is_set_and_spoken(html):
+    assert re.search(r'<div class="equation" id="eq19">.*?aria-label="The rate of the slip', html, re.DOTALL)
+
+
+def test_the_first_pdf_page_is_enough_to_decide(made, pdf):
+    first = re.sub(r"\s+", " ", pdf.pages[0].extract_text())
+    refuted = sum(each.status is Status.REFUTED for each in made.certificates)
+    assert f"{refuted} of {len(made.certificates)} checks refuted" in first
+    for each in made.certificates:
+        assert each.name in first
+    assert f"{made.trials[0].metrics.distance:.1f}" in first
+    assert "Provenance" in first  # the contents end on the first page
+
+
+def test_the_files_travel_with_the_report(made, pdf):
+    attached = {name: contents[0] for name, contents in pdf.attachments.items()}
+    record = json.loads(attached["report.json"])
+    assert record["stops"][0]["distance"] == made.trials[0].metrics.distance
+    assert record["provenance"]["input_hash"] == made.provenance.input_hash
+    assert b"[gains.integral_gain]" in attached["design.toml"]
+
+
+def test_a_planted_refutation_reaches_the_reader(made, tmp_path):
+    proved = next(each for each in made.certificates if each.status is Status.PROVED)
+    planted = tuple(
+        replace(each, status=Status.REFUTED) if each is proved else each for each in made.certificates
+    )
+    said = plain(verdict(replace(made, certificates=planted)).sentence)
+    assert said != plain(verdict(made).sentence)
+    write_report(replace(made, certificates=planted), tmp_path / "planted.html")
+    text = (tmp_path / "planted.html").read_text(encoding="utf-8")
+    first = text[text.index('class="sentence"') :].partition("</p>")[0]
+    assert f'href="#check-{proved.name.replace("_", "-")}"' in first
+
+
+def test_the_papers_stops_stand_beside_ours(html):
+    assert "184.03" in html
+    assert "Table 10 of the paper beside the same stops here" in html

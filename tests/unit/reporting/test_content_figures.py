@@ -1,0 +1,142 @@
+"""Figures: labeled with units, reproducible, and thinned without losing what matters."""
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.unit.reporting.sample_dossier import certificate, sample_dossier
+from wspd_design.certificates.records import Series, Status
+from wspd_design.reporting.figure_style import figure_style, new_figure
+from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
+from wspd_design.reporting.figures.drawing import picture, thinned
+from wspd_design.reporting.figures.phase import phase_planes
+from wspd_design.reporting.figures.poles import pole_map
+from wspd_design.reporting.figures.series import certificate_curves, lyapunov_functions
+from wspd_design.reporting.figures.stop import stop_traces
+from wspd_design.reporting.published import load_table10
+
+DOSSIER = sample_dossier(rail="table10-dry")
+SPECIFICATION = DOSSIER.design.specification
+DRAWN = {
+    "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds),
+    "stop": lambda figure: stop_traces(
+        figure, DOSSIER.trials[0], SPECIFICATION, wheel_radius=0.55, max_torque=60e3
+    ),
+    "phase planes": lambda figure: phase_planes(
+        figure, DOSSIER.trials[0].run, DOSSIER.phase_plane, SPECIFICATION
+    ),
+    "series": lambda figure: certificate_curves(figure, DOSSIER.certificates[0]),
+    "lyapunov": lambda figure: lyapunov_functions(figure, DOSSIER.certificates[:2]),
+    "slips": lambda figure: slip_of_all(figure, DOSSIER.trials, SPECIFICATION),
+}
+UNIT = re.compile(r".+ \[(-|[A-Za-z0-9/ ^²]+)\]$")
+
+
+@pytest.fixture(params=DRAWN)
+def figure(request):
+    with figure_style():
+        drawn = new_figure(height=4.0)
+        assert DRAWN[request.param](drawn) is drawn
+        drawn.draw_without_rendering()
+    return drawn
+
+
+def test_axes_have_labels_with_units(figure):
+    shared = figure.get_supxlabel()
+    for axes in figure.axes:
+        spec = axes.get_subplotspec()
+        if spec.is_last_row():
+            assert UNIT.match(axes.get_xlabel() or shared)
+        if spec.is_first_col():
+            assert UNIT.match(axes.get_ylabel())
+
+
+def test_text_is_large_enough(figure):
+    for axes in figure.axes:
+        sizes = [text.get_fontsize() for text in axes.findobj(lambda a: hasattr(a, "get_fontsize"))]
+        assert min(sizes) >= 7.0
+
+
+def test_lines_differ_without_color(figure):
+    for axes in figure.axes:
+        labeled = [line for line in axes.get_lines() if not line.get_label().startswith("_")]
+        looks = {(line.get_linestyle(), line.get_marker()) for line in labeled}
+        assert len(looks) == len(labeled)
+
+
+def test_distances_show_both_parts_and_the_paper():
+    with figure_style():
+        figure = distance_bars(
+            new_figure(height=3.0), DOSSIER.trials, DOSSIER.lag_distances, load_table10().on("table10-dry")
+        )
+    axes = figure.axes[0]
+    assert axes.get_xlabel() == "distance [m]"
+    widths = [patch.get_width() for patch in axes.patches]
+    for index, (trial, lag) in enumerate(zip(DOSSIER.trials, DOSSIER.lag_distances, strict=True)):
+        assert widths[2 * index] == pytest.approx(lag)
+        assert widths[2 * index] + widths[2 * index + 1] == pytest.approx(trial.metrics.distance)
+    (mark,) = axes.get_lines()
+    assert set(mark.get_xdata()) == {184.63}
+
+
+def test_the_region_without_stable_equilibrium_is_marked():
+    with figure_style():
+        axes = pole_map(new_figure(height=3.0), DOSSIER.linearizations, SPECIFICATION.speeds).axes[0]
+    levels = [line.get_ydata()[0] for line in axes.get_lines()]
+    assert any(level == pytest.approx(1.0 / 0.6) for level in levels)
+    assert any("no stable equilibrium" in text.get_text() for text in axes.texts)
+
+
+def test_lock_intervals_and_tolerance_are_marked():
+    with figure_style():
+        figure = DRAWN["stop"](new_figure(height=6.0))
+    slip = figure.axes[0]
+    (bars,) = slip.collections
+    bar, _standstill = bars.get_paths()
+    times = DOSSIER.trials[0].run.time
+    assert bar.vertices[:, 0].min() == pytest.approx(times[200])
+    assert bar.vertices[:, 0].max() == pytest.approx(times[239])
+    heights = [(patch.get_y(), patch.get_y() + patch.get_height()) for patch in slip.patches]
+    assert any(span == pytest.approx((0.09, 0.19)) for span in heights)
+
+
+def test_pictures_are_reproducible():
+    first = picture(DRAWN["stop"], height=5.0)
+    assert first == picture(DRAWN["stop"], height=5.0)
+    assert "DejaVu Sans" in first
+
+
+def test_a_lyapunov_function_over_decades_is_drawn_on_a_logarithmic_scale():
+    steep = Series(name="V", x_label="time [s]", y_label="V [-]", x=(0.0, 1.0), y=(1e-3, 10.0))
+    flat = Series(name="speed", x_label="time [s]", y_label="speed [km/h]", x=(0.0, 1.0), y=(1e-3, 10.0))
+    with figure_style():
+        figure = certificate_curves(
+            new_figure(height=4.0), certificate("one", Status.PROVED, series=(steep, flat))
+        )
+    assert [axes.get_yscale() for axes in figure.axes] == ["log", "linear"]
+
+
+@given(
+    st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=400),
+    st.integers(6, 60),
+)
+def test_thinning_keeps_extremes_ends_and_order(values, most):
+    y = np.array(values)
+    x = np.arange(len(y), dtype=float)
+    thin_x, thin_y = thinned(x, y, most)
+    assert len(thin_x) <= max(most, 0) or len(y) <= most
+    assert (thin_y.min(), thin_y.max()) == (y.min(), y.max())
+    assert (thin_x[0], thin_x[-1]) == (x[0], x[-1])
+    assert (np.diff(thin_x) > 0).all()
+    assert (y[thin_x.astype(int)] == thin_y).all()
+
+
+def test_thinning_keeps_a_spike_that_every_nth_point_would_lose():
+    y = np.zeros(100_000)
+    y[54_321] = 1.0
+    _, thin_y = thinned(np.arange(100_000.0), y)
+    assert len(thin_y) <= 2000
+    assert thin_y.max() == 1.0

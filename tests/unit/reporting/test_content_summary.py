@@ -1,0 +1,112 @@
+"""Page one: the verdict is that of the checks and of the stop, and each number is that of a record."""
+
+import math
+import re
+from dataclasses import replace
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
+from wspd_design.certificates.records import Status
+from wspd_design.reporting.blocks import Cell, KeyNumbers, Table
+from wspd_design.reporting.blocks import Status as Shown
+from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.text import Link, plain
+from wspd_design.simulation.records import Ending
+
+STATUSES = st.lists(st.sampled_from(Status), max_size=9).map(tuple)
+GOOD_STOP = {"slip_rms": 0.01}
+
+
+def _good(*statuses):
+    return sample_dossier(statuses, trials=(trial("mine", **GOOD_STOP),))
+
+
+@given(STATUSES)
+def test_a_refuted_check_always_shows(statuses):
+    for dossier in (_good(*statuses), sample_dossier(statuses)):
+        said = verdict(dossier)
+        refuted = [each for each in dossier.certificates if each.status is Status.REFUTED]
+        assert (said.status is Shown.REFUTED) == bool(refuted)
+        if refuted:
+            total = len(statuses)
+            assert f"Not fit as it stands: {len(refuted)} of {total} checks refuted" in plain(said.sentence)
+            for each in refuted:
+                anchor = f"check-{each.name.replace('_', '-')}"
+                assert anchor in [part.anchor for part in said.sentence if isinstance(part, Link)]
+        else:
+            assert not re.search(r"checks refuted|[1-9] refuted", plain(said.sentence))
+
+
+@given(STATUSES)
+def test_every_check_is_counted(statuses):
+    sentence = plain(verdict(_good(*statuses)).sentence)
+    _, _, tally = sentence.partition("Checks: ")
+    counted = re.findall(r"(\d+) (refuted|undecided|sampled only|proved|vacuous|not applicable)", tally)
+    assert sum(int(number) for number, _ in counted) == len(statuses)
+    proved = {word: int(number) for number, word in counted}.get("proved", 0)
+    assert proved == statuses.count(Status.PROVED)
+
+
+@given(STATUSES)
+def test_the_worst_finding_wins(statuses):
+    order = (Status.REFUTED, Status.UNDECIDED, Status.EVIDENCE, Status.PROVED)
+    worst = next((status for status in order if status in statuses), Status.VACUOUS)
+    assert verdict(_good(*statuses)).status is Shown[worst.name]
+
+
+def test_changing_one_status_changes_the_sentence():
+    proved = _good(Status.PROVED, Status.PROVED)
+    planted = replace(proved, certificates=(proved.certificates[0], certificate("two", Status.REFUTED)))
+    assert verdict(proved).status is Shown.PROVED
+    assert verdict(planted).status is Shown.REFUTED
+    assert "1 of 2 checks refuted (check two)" in plain(verdict(planted).sentence)
+
+
+def test_a_stop_outside_the_tolerance_spoils_a_proof():
+    dossier = sample_dossier((Status.PROVED,), trials=(trial("mine", slip_rms=0.051),))
+    assert verdict(dossier).status is Shown.BAD
+    assert "0.051 rms, beyond the tolerance of 0.05" in plain(verdict(dossier).sentence)
+    inside = sample_dossier((Status.PROVED,), trials=(trial("mine", slip_rms=0.049),))
+    assert verdict(inside).status is Shown.PROVED
+    assert "0.049 rms, within the tolerance" in plain(verdict(inside).sentence)
+
+
+def test_a_train_that_does_not_stop_is_not_fit():
+    endless = trial("mine", ending=Ending.TIME_LIMIT, lag=math.nan, plateau=math.nan, slip_rms=0.0)
+    dossier = sample_dossier((Status.PROVED,), trials=(endless,))
+    assert verdict(dossier).status is Shown.BAD
+    assert "still moving" in plain(verdict(dossier).sentence)
+    tiles = summary(dossier)[0]
+    assert isinstance(tiles, KeyNumbers)
+    assert tiles.numbers[0].label == "Distance, still moving"
+    assert "nan" not in str(tiles)
+
+
+def test_key_numbers_are_those_of_the_records():
+    dossier = sample_dossier()
+    tiles, _ = summary(dossier)
+    assert isinstance(tiles, KeyNumbers)
+    figures = dossier.trials[0].metrics
+    low, high = dossier.design.specification.speeds
+    poles = [each.slip_pole for each in dossier.linearizations if low <= each.speed <= high]
+    shown = [float(each.value.replace("\N{MINUS SIGN}", "-")) for each in tiles.numbers]
+    wanted = (figures.distance, figures.stopping_time, figures.slip_rms, max(poles))
+    for value, record, places in zip(shown, wanted, (1, 2, 3, 2), strict=True):
+        assert abs(value - record) <= 0.5 * 10.0**-places * 1.0000001
+    assert [each.unit for each in tiles.numbers] == ["m", "s", "", "1/s"]
+    assert "1/τ = 1.67" in plain(tiles.numbers[3].note)
+
+
+def test_the_table_names_every_check_with_its_finding():
+    dossier = sample_dossier()
+    _, table = summary(dossier)
+    assert isinstance(table, Table)
+    assert len(table.rows) == len(dossier.certificates)
+    for row, each in zip(table.rows, dossier.certificates, strict=True):
+        finding = row[1]
+        assert plain(row[0]) == each.name
+        assert isinstance(finding, Cell)
+        assert finding.status.name == each.status.name
+        assert row[3] == "≤ −1.25 1/s"
