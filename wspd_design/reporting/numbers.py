@@ -1,6 +1,7 @@
 """Numbers as people read them: few digits, a real minus sign, powers of ten written out."""
 
 import math
+import re
 from collections.abc import Sequence
 
 from wspd_design.certificates.records import Point, Range
@@ -8,7 +9,6 @@ from wspd_design.parameters.units import format_quantity
 
 MINUS, NONE = "\N{MINUS SIGN}", "\N{EN DASH}"
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-_UNITS = str.maketrans({"2": "²", "3": "³"})
 _LARGEST, _SMALLEST = 1e7, 1e-4
 
 
@@ -32,8 +32,13 @@ def significant(value: float, digits: int = 4) -> str:
 
 
 def unit(spelling: str) -> str:
-    """Write a unit with superscripts: ``m/s^2`` and ``m/s2`` become ``m/s²``; a ratio has none."""
-    return "" if spelling == "-" else spelling.replace("^", "").translate(_UNITS)
+    """Write a unit with superscripts: ``m/s^2`` and ``m/s2`` become ``m/s²``; a ratio has none.
+
+    A digit after a capital belongs to a name, as in ``of max V2``.
+    """
+    if spelling == "-":
+        return ""
+    return re.sub(r"(?<=[a-z])\^?([23])", lambda power: power[1].translate(_SUPERSCRIPTS), spelling)
 
 
 def quantity(value: float, spelling: str, digits: int = 4) -> str:

@@ -39,6 +39,8 @@ def test_decimals_and_units():
     assert numbers.decimals(math.nan, 1) == "–"
     assert numbers.quantity(3.5, "m/s^2") == "3.5 m/s²"
     assert numbers.quantity(3.5, "-") == "3.5"
+    assert numbers.unit("N s2/m2") == "N s²/m²"
+    assert numbers.unit("of max V2") == "of max V2"
     assert numbers.quantity_in(120.0 / 3.6, "km/h") == "120 km/h"
     assert numbers.point((Point(name="mu0", value=0.3, unit="-"),)) == "mu0 0.3"
 

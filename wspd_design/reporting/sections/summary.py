@@ -11,6 +11,7 @@ from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.sections.checks import check_anchor
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.simulation.records import Ending
+from wspd_design.simulation.stop import JUDGING_SPEED
 
 COUNTED = {
     Finding.REFUTED: "refuted",
@@ -130,16 +131,15 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             f"{numbers.decimals(figures.plateau, 2)} m/s²",
         ),
         KeyNumber(
-            label="Slip about its reference, rms",
+            label=f"Slip rms above {numbers.quantity_in(JUDGING_SPEED, 'km/h')}",
             value=numbers.decimals(figures.slip_rms, 3),
-            note=f"reference {specification.slip:g}, tolerance {specification.slip_tolerance:g}; above 10 "
-            "km/h",
+            note=f"reference {specification.slip:g}, tolerance {specification.slip_tolerance:g}",
         ),
         KeyNumber(
-            label="Largest slip pole",
+            label="Largest nominal slip pole",
             value=numbers.decimals(worst.slip_pole, 2),
             unit="1/s",
-            note=f"nominal, at {numbers.significant(worst.speed * KMH, 3)} km/h; valve: 1/τ = "
+            note=f"at {numbers.significant(worst.speed * KMH, 3)} km/h; 1/τ = "
             f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s",
         ),
     )
