@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _PITCH = 6
+_SHORTEST = 1e-9  # s: edges closer together than this are one
 _MOTION = 1 + AXLES + _PITCH  # speed, wheel speeds, pitch
 _INTEGRATED = LANE_TOTALS[:7]  # the lane totals that are integrals
 _OFFSET = PARAMETERS.index(("surroundings", "axle_offset"))
@@ -176,6 +177,7 @@ class _VirtualPlant:
         self.fill_end, self.vent_end = np.zeros(AXLES), np.zeros(AXLES)
         self.torque = np.zeros((AXLES, 2), order="F")  # pressure and torque at the present time
         self.time = self.window = 0.0
+        self.edge = math.inf
         self.recorded = -1.0
         self.sample = self.steps = 0
         self.patch = [0] * AXLES
@@ -229,6 +231,7 @@ class _VirtualPlant:
             self.fill_end[axle] = present + fill * h
             whole = 1.0 - fill - vent < 1e-12
             self.vent_end[axle] = present + h if whole else self.fill_end[axle] + vent * h
+        self.edge = self.time  # that is, look for the next one
         self.sample += 1
         return result or self._advance_to(self.sample * h)
 
@@ -257,6 +260,11 @@ class _VirtualPlant:
         return soonest
 
     def _step_length(self, until: float) -> float:
+        if self.edge <= self.time + _SHORTEST:
+            edges = (*self.fill_end.tolist(), *self.vent_end.tolist())
+            self.edge = min((edge for edge in edges if edge > self.time + _SHORTEST), default=math.inf)
+        if self.edge < until - _SHORTEST:
+            until = self.edge
         change = self._lay_rails()
         slowest = max(float(self.motion[0]), self.set.regularization_speed)
         wanted = min(slowest / self.set.creep_rate, self.set.longest_step)

@@ -7,6 +7,7 @@ and in Python, slower, with the same numbers.
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -73,9 +74,9 @@ def simulate(
         If the controller returns a command outside [0, 1] or one that is not a number, if there is no such
         plant, or if the scenario asks for what the plant does not have.
     """
-    given = loop_input(vehicle, controller, scenario, plant=plant, refinement=refinement)
-    rows = math.ceil(constants().time_limit / controller.sample_time) + 2
-    output, engine = run_loop(vehicle, controller, scenario, given, rows)
+    given = loop_input([(vehicle, scenario)], controller, plant=plant, refinement=refinement)
+    given = replace(given, trace_rows=math.ceil(1.1 * constants().time_limit / RECORD_INTERVAL))
+    output, engine = run_loop(vehicle, controller, scenario, given)
     if output.result == BAD_COMMAND:
         time, fill, vent = output.bad_command
         raise UserError(
@@ -86,9 +87,10 @@ def simulate(
 
 
 def run_loop(
-    vehicle: Vehicle, controller: Controller, scenario: Scenario, given: LoopInput, rows: int
+    vehicle: Vehicle, controller: Controller, scenario: Scenario, given: LoopInput
 ) -> tuple[LoopOutput, str]:
     """Run a single stop on the fastest engine that can; returns also its name."""
+    rows = sample_rows(controller)
     disturbed = scenario.pad_vibration
     try:
         try:
@@ -111,46 +113,66 @@ def run_loop(
 
 
 def loop_input(
-    vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str, refinement: int
+    cases: Sequence[tuple[Vehicle, Scenario]], controller: Controller, *, plant: str, refinement: int = 1
 ) -> LoopInput:
-    """Numbers of one stop for the closed loop."""
+    """Numbers of one or several stops for the closed loop.
+
+    Stops side by side may differ in the numbers of vehicle, rail, initial speed and seed; patches, grade,
+    sensing and load irregularity are those of the first.
+    """
     import numpy as np
 
-    if plant not in PLANTS:
-        raise UserError(f'unknown plant "{plant}"; available: {", ".join(PLANTS)}')
+    scenario = cases[0][1]
     sensing = scenario.sensing
-    if not 0.0 <= sensing.dead_time <= controller.sample_time:
-        raise UserError(
-            f"dead time = {sensing.dead_time:g} s must lie between 0 and the sample time "
-            f"of {controller.sample_time:g} s"
-        )
-    if plant == "quarter":
-        if scenario.axle_rails is not None or scenario.load_irregularity is not None:
-            raise UserError('rails and loads of single axles need the plant "four-axle"')
-        vehicle = replace(vehicle, body_height=0.0, bogie_height=0.0, traction_rod_height=0.0)
-    rails = scenario.axle_rails or (scenario.rail,) * AXLES
-    grade_force = vehicle.mass * constants().gravity * scenario.grade
-    lanes = [
-        parameter_values(vehicle, rail, Surroundings(grade_force=grade_force, axle_offset=offset))
-        for rail, offset in zip(rails, axle_offsets(vehicle, plant), strict=True)
+    _check(scenario, controller, plant)
+    placed = [(_flat(vehicle) if plant == "quarter" else vehicle, each) for vehicle, each in cases]
+    grade = constants().gravity * scenario.grade
+    columns = [
+        [
+            parameter_values(
+                vehicle, rail, Surroundings(grade_force=vehicle.mass * grade, axle_offset=offset)
+            )
+            for vehicle, each in placed
+            for rail, offset in [(_rails(each)[axle], axle_offsets(vehicle, plant)[axle])]
+        ]
+        for axle in range(AXLES)
     ]
     irregularity = scenario.load_irregularity
+    pulses = sensing.pulses_per_turn * controller.sample_time
     return LoopInput(
-        stop_parameters=np.array(lanes[0])[:, np.newaxis],
-        lane_parameters=np.array(lanes).T,
-        speeds=np.array([scenario.initial_speed]),
-        settings=_settings(vehicle, controller, scenario, rails, refinement),
+        stop_parameters=np.array(columns[0]).T,
+        lane_parameters=np.array([row for axle in columns for row in axle]).T,
+        speeds=np.array([each.initial_speed for _, each in cases]),
+        settings=_settings(cases, controller, refinement),
         patch_starts=np.array([patch.start for patch in scenario.patches]) if scenario.patches else None,
         patch_rails=_patch_rails(scenario) if scenario.patches else None,
-        wheel_noise=_wheel_noise(vehicle, controller, scenario) if sensing.speed_noise else None,
-        quantum=2.0 * math.pi / (sensing.pulses_per_turn * controller.sample_time)
-        if sensing.pulses_per_turn
-        else 0.0,
+        wheel_noise=_wheel_noise(cases, controller) if sensing.speed_noise else None,
+        quantum=2.0 * math.pi / pulses if pulses else 0.0,
         reference_factor=1.0 + sensing.reference_error,
         load_factors=np.array(irregularity.factors) if irregularity else None,
         load_spacing=irregularity.spacing if irregularity else 1.0,
-        trace_rows=math.ceil(1.1 * constants().time_limit / RECORD_INTERVAL),
     )
+
+
+def _check(scenario: Scenario, controller: Controller, plant: str) -> None:
+    if plant not in PLANTS:
+        raise UserError(f'unknown plant "{plant}"; available: {", ".join(PLANTS)}')
+    if not 0.0 <= scenario.sensing.dead_time <= controller.sample_time:
+        raise UserError(
+            f"dead time = {scenario.sensing.dead_time:g} s must lie between 0 and the sample time "
+            f"of {controller.sample_time:g} s"
+        )
+    if plant == "quarter" and (scenario.axle_rails is not None or scenario.load_irregularity is not None):
+        raise UserError('rails and loads of single axles need the plant "four-axle"')
+
+
+def _flat(vehicle: Vehicle) -> Vehicle:
+    """Take the heights out: no load is transferred."""
+    return replace(vehicle, body_height=0.0, bogie_height=0.0, traction_rod_height=0.0)
+
+
+def _rails(scenario: Scenario) -> tuple[Rail, ...]:
+    return scenario.axle_rails or (scenario.rail,) * AXLES
 
 
 def axle_offsets(vehicle: Vehicle, plant: str) -> tuple[float, float, float, float]:
@@ -161,15 +183,16 @@ def axle_offsets(vehicle: Vehicle, plant: str) -> tuple[float, float, float, flo
     return (0.0, base, spacing, spacing + base)
 
 
-def _settings(
-    vehicle: Vehicle, controller: Controller, scenario: Scenario, rails: tuple[Rail, ...], refinement: int
-) -> Settings:
-    passed = (*rails, *(patch.rail for patch in scenario.patches))
-    steepest = max(quarter(vehicle, rail).creep_rate(1.0) for rail in passed)
+def _settings(cases: Sequence[tuple[Vehicle, Scenario]], controller: Controller, refinement: int) -> Settings:
+    steepest = max(
+        quarter(vehicle, rail).creep_rate(1.0)
+        for vehicle, scenario in cases
+        for rail in {*_rails(scenario), *(patch.rail for patch in scenario.patches)}
+    )
     fixed = constants()
     return Settings(
         sample_time=controller.sample_time,
-        dead_time=scenario.sensing.dead_time,
+        dead_time=cases[0][1].sensing.dead_time,
         longest_step=LONGEST_STEP / refinement,
         creep_rate=steepest * LOAD_MARGIN ** (2.0 / 3.0) * STEPS_PER_CREEP_TIME * refinement,
         stop_speed=fixed.stop_speed,
@@ -190,12 +213,22 @@ def _patch_rails(scenario: Scenario) -> "NDArray[np.float64]":
     return np.repeat(np.array(rows)[:, np.newaxis, :], AXLES, axis=1)
 
 
-def _wheel_noise(vehicle: Vehicle, controller: Controller, scenario: Scenario) -> "NDArray[np.float64]":
+def _wheel_noise(cases: Sequence[tuple[Vehicle, Scenario]], controller: Controller) -> "NDArray[np.float64]":
+    """Noise of the measured wheel speeds [rad/s]; each stop draws from its own seed."""
     import numpy as np
 
-    generator = np.random.default_rng(np.random.SeedSequence([scenario.seed, 0]))
-    rows = math.ceil(constants().time_limit / controller.sample_time) + 2
-    return generator.standard_normal((rows, AXLES)) * scenario.sensing.speed_noise / vehicle.wheel_radius
+    rows = sample_rows(controller)
+    draws = [
+        np.random.default_rng(np.random.SeedSequence([scenario.seed, 0])).standard_normal((rows, AXLES))
+        * (scenario.sensing.speed_noise / vehicle.wheel_radius)
+        for vehicle, scenario in cases
+    ]
+    return np.stack(draws, axis=2).reshape(rows, AXLES * len(cases))
+
+
+def sample_rows(controller: Controller) -> int:
+    """Most samples that a run can take."""
+    return math.ceil(constants().time_limit / controller.sample_time) + 2
 
 
 def _run_record(

@@ -5,7 +5,6 @@ on what keeps it there, unless even the filling brake cannot give that. At the s
 the bound for every controller.
 """
 
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -79,7 +78,7 @@ def ideal_stop(
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
     filling = Unprotected(name="ideal", sample_time=_SAMPLE_TIME)
-    given = loop_input(vehicle, filling, scenario, plant=plant, refinement=1)
+    given = loop_input([(vehicle, scenario)], filling, plant=plant)
     rails = scenario.axle_rails or (scenario.rail,) * AXLES
     speeds = _speeds(scenario.initial_speed)
     import numpy as np
@@ -90,8 +89,7 @@ def ideal_stop(
         held_slips=np.array([slips[rail] for rail in rails]),
         held_speeds=(float(speeds[0]), float(speeds[1])),
     )
-    rows = math.ceil(constants().time_limit / _SAMPLE_TIME) + 2
-    output, _ = run_loop(vehicle, filling, scenario, given, rows)
+    output, _ = run_loop(vehicle, filling, scenario, given)
     what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
     build_up = "full torque at once" if instantaneous else "with brake build-up"
     return IdealStop(

@@ -2,12 +2,12 @@
 
    Lane a * STOPS + s is axle a of stop s; element k of a vector over lanes stands at k * LANES + lane. Between two
    samples the cylinder pressure has a closed form; speed, wheel speeds and pitch are integrated by Runge-Kutta of
-   order four with a step that the creep stiffness allows; the torque has a kink at a valve edge but no jump, so
-   that a step may cross one. Wheel lock is a state: a locked wheel passes on what the
+   order four with a step that the creep stiffness allows and that ends at every valve edge. Wheel lock is a state: a locked wheel passes on what the
    rail gives, until the brake gives less. A stop ends with a step that is cut at the stop speed. */
 #define AXLES 4
 #define LANES (AXLES * STOPS)
 #define PITCH 6
+#define SHORTEST 1e-9 /* s: edges closer together than this are one */
 #define RAIL 5 /* numbers of a rail, side by side in the parameter vector from FIRST_RAIL on */
 
 enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, LOCK_TIME, SLIP_MAX, LANE_TOTALS };
@@ -49,7 +49,7 @@ typedef struct {
     Motion now;
     double locked[LANES], held[LANES], pressure[LANES], fill_end[LANES], vent_end[LANES], window; /* of the valve pattern */
     double torque[2 * LANES];   /* pressure and torque at the present time */
-    double step[STOPS], active[STOPS], time, recorded;
+    double step[STOPS], active[STOPS], time, edge, recorded;
     double lane[LANE_TOTALS * LANES], stop[STOP_TOTALS * STOPS], bad[3];
     long sample, patch[LANES], steps;
     int running;
@@ -218,8 +218,23 @@ static double lay_rails(Loop *loop)
     return soonest;
 }
 
+/* The next edge of any valve of a moving stop. */
+static double next_edge(const Loop *loop)
+{
+    double next = 1e300;
+    for (int l = 0; l < LANES; l++) {
+        if (loop->active[l % STOPS] == 0.0) continue;
+        double a = loop->fill_end[l], b = loop->vent_end[l], after = loop->time + SHORTEST;
+        if (a > after && a < next) next = a;
+        if (b > after && b < next) next = b;
+    }
+    return next;
+}
+
 static double step_length(Loop *loop, double until)
 {
+    if (loop->edge <= loop->time + SHORTEST) loop->edge = next_edge(loop);
+    if (loop->edge < until - SHORTEST) until = loop->edge;
     const Settings *set = &loop->set;
     double change = lay_rails(loop), slowest = 1e300, span = until - loop->time;
     for (int s = 0; s < STOPS; s++)
@@ -397,6 +412,7 @@ int wspd_sample(Loop *loop, const double *fill, const double *vent)
         loop->fill_end[l] = present + a * h;
         loop->vent_end[l] = 1.0 - a - b < 1e-12 ? present + h : loop->fill_end[l] + b * h;
     }
+    loop->edge = loop->time; /* that is, look for the next one */
     loop->sample++;
     return result == GOOD ? advance_to(loop, to) : result;
 }

@@ -1,0 +1,95 @@
+"""The check that every run carries: what changes when all integration steps are halved.
+
+A run that changes is repeated with shorter steps until it does not. Rule tables and relays on falling friction can
+be chaotic: they amplify the last digit of anything until it moves the result, and no step makes them accurate. Such
+a run says so and gives the spread over slightly different initial speeds in place of a digit that it does not have.
+"""
+
+from dataclasses import dataclass, replace
+
+from wspd_design.controllers.protocol import Controller
+from wspd_design.parameters.records import Vehicle
+from wspd_design.simulation.engine import simulate
+from wspd_design.simulation.records import Run, Scenario
+
+DISTANCE_TOLERANCE = 1e-6  # relative
+SLIP_TOLERANCE = 1e-4
+LOWEST_SPEED = 0.3  # m/s, below it the slip is not compared
+REFINEMENTS = (1, 2, 4, 8)
+PERTURBATION = 1e-6  # relative, of the initial speed: far below what anybody can measure
+PERTURBED_RUNS = 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepCheck:
+    """Difference between a run and the same run with half the steps."""
+
+    distance: float  # -, relative
+    slip: float  # -, largest at any sample above 0.3 m/s
+    refinement: int  # by which the steps were divided
+    chaotic: bool  # no step is short enough: the closed loop amplifies the last digits
+    spread: float  # m, of the distance over slightly perturbed runs; 0 unless chaotic
+
+    @property
+    def passed(self) -> bool:
+        """Tell whether the steps are short enough."""
+        return self.distance <= DISTANCE_TOLERANCE and self.slip <= SLIP_TOLERANCE
+
+
+def simulate_checked(
+    vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str = "four-axle"
+) -> tuple[Run, StepCheck]:
+    """Simulate a stop with steps that are short enough, as far as that is possible.
+
+    Parameters
+    ----------
+    vehicle, controller, scenario, plant
+        As in :func:`simulate`.
+
+    Returns
+    -------
+    run : Run
+        The run whose steps passed, or the one with the shortest steps.
+    check : StepCheck
+        How far it can be trusted.
+    """
+    run = simulate(vehicle, controller, scenario, plant=plant)
+    for refinement in REFINEMENTS:
+        finer = simulate(vehicle, controller, scenario, plant=plant, refinement=2 * refinement)
+        check = StepCheck(
+            distance=abs(finer.totals.distance / run.totals.distance - 1.0),
+            slip=slip_difference(vehicle, run, finer),
+            refinement=refinement,
+            chaotic=False,
+            spread=0.0,
+        )
+        if check.passed:
+            return run, check
+        run = finer
+    spread = perturbed_spread(vehicle, controller, scenario, plant=plant)
+    return run, replace(check, chaotic=True, spread=spread)
+
+
+def perturbed_spread(vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str) -> float:
+    """Range of the distance over slightly different initial speeds [m]."""
+    distances = [
+        simulate(
+            vehicle,
+            controller,
+            replace(scenario, initial_speed=scenario.initial_speed * (1.0 + PERTURBATION * k)),
+            plant=plant,
+        ).totals.distance
+        for k in range(PERTURBED_RUNS + 1)
+    ]
+    return max(distances) - min(distances)
+
+
+def slip_difference(vehicle: Vehicle, run: Run, other: Run) -> float:
+    """Largest difference of the slip that the controllers saw, at samples above the lowest speed."""
+    worst = 0.0
+    for mine, theirs in zip(run.axle_samples, other.axle_samples, strict=True):
+        for a, b in zip(mine, theirs, strict=False):
+            if min(a.seen.speed, b.seen.speed) > LOWEST_SPEED:
+                difference = a.seen.wheel_speed / a.seen.speed - b.seen.wheel_speed / b.seen.speed
+                worst = max(worst, vehicle.wheel_radius * abs(difference))
+    return worst
