@@ -8,7 +8,7 @@ from wspd_design.reporting.blocks import Block, Column, Figure, Heading, Paragra
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all, slips_alt
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.published import PublishedStop, load_table10
-from wspd_design.reporting.text import CodeSpan, Text, rich
+from wspd_design.reporting.text import CodeSpan, Text
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
 
@@ -127,10 +127,8 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
             )
             for each in trials
         ),
-        caption=rich(
-            "Stops; this design first. Slip about its reference above 10 km/h. Lag $2 d \\/ v_0 - t$, "
-            "plateau $v_0 \\/ (2 (t - d \\/ v_0))$, with distance $d$ and time $t$ from speed $v_0$."
-        ),
+        caption="Stops; this design first. Slip about its reference above 10 km/h. Lag 2 d/v0 − t and plateau "
+        "v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
         anchor="stops-table",
     )
 

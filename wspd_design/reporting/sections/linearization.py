@@ -58,7 +58,7 @@ def _table(points: tuple[Linearization, ...]) -> Table:
             Column(title="At a train speed of"),
             Column(title="Slip pole", unit="1/s", align="right"),
             Column(title="Poles with valve", unit="1/s", align="right"),
-            Column(title=rich("Gain $G$"), unit="1/(MN m s)", align="right"),
+            Column(title="Gain G", unit="1/(MN m s)", align="right"),
             Column(title="Torque", unit="kN m", align="right"),
             Column(title="Duty", unit="-", align="right"),
         ),
