@@ -10,7 +10,10 @@ from wspd_design.simulation.records import Run
 from wspd_design.simulation.stop import JUDGING_SPEED
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from wspd_design.simulation.records import Trace
 
 
 def phase_planes(figure: "Figure", run: Run, plane: PhasePlane, specification: Specification) -> "Figure":
@@ -64,7 +67,7 @@ def phase_alt(run: Run, plane: PhasePlane) -> str:
     )
 
 
-def _start_and_end(axes, x, y) -> None:  # type: ignore[no-untyped-def]
+def _start_and_end(axes: "Axes", x: "Trace", y: "Trace") -> None:
     axes.plot(x[0], y[0], "o", color=INK, markersize=4, label="start")
     axes.plot(x[-1], y[-1], "s", color=INK, markersize=4, label="10 km/h")
     axes.legend(loc="best")

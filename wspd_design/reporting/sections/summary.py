@@ -8,7 +8,7 @@ from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.sections.checks import check_anchor
+from wspd_design.reporting.sections.checks import FINDINGS, check_anchor
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.simulation.records import Ending
 from wspd_design.simulation.stop import JUDGING_SPEED
@@ -21,7 +21,7 @@ COUNTED = {
     Finding.VACUOUS: "vacuous",
     Finding.NOT_APPLICABLE: "not applicable",
 }
-"""Findings from the worst to those that say nothing, in words that follow a number."""
+"""Each finding in words that follow a number."""
 
 
 def verdict(dossier: Dossier) -> Verdict:
@@ -61,7 +61,7 @@ def verdict(dossier: Dossier) -> Verdict:
         status = Status.VACUOUS
         spoken = ("No check says anything about this controller. ",)
     assumptions = {text for each in certificates for text in each.assumptions}
-    tally = numbers.listing([f"{counts[each]} {word}" for each, word in COUNTED.items() if counts[each]])
+    tally = numbers.listing([f"{counts[each]} {COUNTED[each]}" for each in FINDINGS if counts[each]])
     counted = f" Checks: {tally}; {numbers.count(len(assumptions), 'assumption')}."
     return Verdict(status=status, sentence=(*spoken, stop, counted if tally else ""))
 
