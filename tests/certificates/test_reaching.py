@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import domain, proof_run, reaching
+from wspd_design.certificates import domain, reaching
 from wspd_design.certificates.domain import INERTIA, MASS, MU0, SLIP, SPEED
 from wspd_design.certificates.records import Status
+from wspd_design.controllers.sliding_mode import sliding_torque
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.errors import UserError
 
@@ -78,7 +79,7 @@ def test_mismatch_is_what_the_plant_does_under_the_law(make_problem, make_contro
         error = 0.14 - row[SLIP]
         for surface in (0.5, 0.01, -0.3):
             integral = (surface - error) / law.gains.surface_rate
-            torque = proof_run.sliding_torque(law, row[SLIP], row[SPEED], integral)
+            torque = sliding_torque(law, row[SLIP], row[SPEED], integral)
             surface_rate = -(plant.drift + plant.gain * torque) + law.gains.surface_rate * error
             switching = (
                 ratio * law.gains.switching_gain * np.clip(surface / law.gains.boundary_layer, -1.0, 1.0)

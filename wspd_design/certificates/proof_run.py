@@ -14,9 +14,8 @@ from wspd_design.controllers.adaptive_fuzzy import (
     sliding_variable,
     torque_demand,
 )
-from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.controllers.sliding_mode import SlidingMode, sliding_torque
 from wspd_design.model.generated import sliding_surface
-from wspd_design.model.number import saturation
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
@@ -115,16 +114,6 @@ def sliding_run(
         return [-plant.deceleration, plant.drift + plant.gain * torque, error]
 
     return _run(rates, [speeds[1], slip, 0.0], speeds[0])
-
-
-def sliding_torque(law: SlidingMode, slip: Any, speed: Any, integral: Any) -> Any:
-    """Torque of eqs. (23), (26) in their corrected form, before the limits of the brake [N m]."""
-    gains = law.gains
-    error = sliding_surface.slip_error(gains.slip_reference, slip)
-    surface = sliding_surface.sliding_variable(error, integral, 1.0, gains.surface_rate)
-    model = slip_dynamics(law.vehicle, law.rail, slip, speed)
-    equivalent = sliding_surface.equivalent_torque(model.drift, model.gain, 0.0, error, gains.surface_rate)
-    return equivalent + gains.switching_gain / speed * saturation(surface / gains.boundary_layer) / model.gain
 
 
 def _run(rates: Callable[[State], list[float]], start: list[float], lowest_speed: float) -> ProofRun:

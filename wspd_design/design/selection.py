@@ -6,7 +6,7 @@ that goes with a gain repeats it with its numbers.
 
 import math
 
-from wspd_design.certificates.reaching import supremum
+from wspd_design.certificates.reaching import required_gain, reserve
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Gain, Law, Specification, vehicle_hash
@@ -16,9 +16,7 @@ from wspd_design.parameters.records import Rail, Vehicle
 
 LAG_SEPARATION = 4.0  # the surface is this many times slower than valve and sampling
 RULES = 5  # membership functions, as in the paper
-ADAPTATION_SHARE = (
-    0.1  # of the brake torque, that adaptation may move within one time constant of the surface
-)
+ADAPTATION_SHARE = 0.1  # of the brake torque that adaptation may move in one time constant of the surface
 SWITCHING_RESERVE = 1.02  # on the sampled supremum, which is a lower bound of the true one
 
 
@@ -83,10 +81,7 @@ def _boundary_layer(specification: Specification) -> Gain:
 
 def _switching_gain(vehicle: Vehicle, rail: Rail, specification: Specification, rate: Gain) -> Gain:
     assert isinstance(rate.value, float)
-    low, high = specification.speeds
-    deceleration = deceleration_limit(vehicle, rail, high)
-    reserve = deceleration * specification.slip / math.log(high / low)
-    # The supremum depends on surface and design model alone, so the law may still lack its switching gain.
+    # What is needed depends on surface and design model alone, so the law may still lack its switching gain.
     unfinished = SlidingMode(
         name="unfinished",
         sample_time=specification.sample_time,
@@ -100,17 +95,15 @@ def _switching_gain(vehicle: Vehicle, rail: Rail, specification: Specification, 
         ),
     )
     problem = stability_problem(vehicle, rail, unfinished, specification)
-    worst = supremum(problem)
-    ratio = vehicle.wheelset_inertia / problem.inertia_bounds[1]
-    value = SWITCHING_RESERVE * (worst.value + reserve) / ratio
-    place = ", ".join(f"{point.name} {point.value:.4g} {point.unit}".rstrip(" -") for point in worst.point)
+    needed = required_gain(problem)
+    place = ", ".join(f"{point.name} {point.value:.4g} {point.unit}".rstrip(" -") for point in needed.point)
     return Gain(
         name="switching_gain",
-        value=value,
+        value=SWITCHING_RESERVE * needed.value,
         unit="m/s^2",
-        why=f"W0 = W v = {SWITCHING_RESERVE:g} (sup abs(r) + eta)/rho with sup abs(r) = {worst.value:.4g} m/s^2 "
-        f"at {place}; eta = {reserve:.3g} m/s^2 lets the surface be reached above {low * 3.6:.3g} km/h; "
-        f"rho = {ratio:.3g} is the smallest inertia ratio",
+        why=f"W0 = W v = {SWITCHING_RESERVE:g} sup (abs(r) + eta)/rho, the reaching condition; it is tightest with "
+        f"{needed.value:.4g} m/s^2 at {place}; eta = {reserve(problem):.3g} m/s^2 lets the surface be reached above "
+        f"{specification.speeds[0] * 3.6:.3g} km/h",
     )
 
 
@@ -193,4 +186,4 @@ def _adaptive_gains(
 def deceleration_limit(vehicle: Vehicle, rail: Rail, speed: float) -> float:
     """Upper bound of the deceleration: full friction on all wheels plus resistance at a speed [m/s2]."""
     friction = 2 * vehicle.wheelsets * rail.mu0 * static_wheel_load(vehicle)
-    return (friction + float(resistance(vehicle, speed))) / vehicle.mass
+    return float((friction + resistance(vehicle, speed)) / vehicle.mass)

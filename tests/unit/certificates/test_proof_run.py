@@ -13,11 +13,11 @@ from wspd_design.certificates.proof_run import (
     largest_rise,
     numeric_rate,
     sliding_run,
-    sliding_torque,
     verdict,
 )
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.protocol import Measurement
+from wspd_design.controllers.sliding_mode import sliding_torque
 from wspd_design.parameters.loading import load_rail
 
 
