@@ -28,7 +28,8 @@ def check(problem: Problem) -> Certificate:
         raise OutsideModel(f"the speeds {problem.speeds[0]:g} to {problem.speeds[1]:g} m/s must be positive")
     bound = 2.0 * laws.layer(law)
     reference = law.gains.slip_reference
-    run = simulate(problem.vehicle, law, Scenario(rail=problem.rail, initial_speed=problem.speeds[1]))
+    scenario = Scenario(rail=problem.rail, initial_speed=problem.speeds[1])
+    run = simulate(problem.vehicle, law, scenario, plant="quarter")
     settled = SETTLED_SHARE * problem.speeds[1]
     errors = np.abs(run.slip[:, 0] - reference)
     judged = np.flatnonzero((run.speed <= settled) & (run.speed >= problem.speeds[0]))
@@ -36,7 +37,7 @@ def check(problem: Problem) -> Certificate:
         judged = np.array([len(run.time) - 1])
     worst = int(judged[np.argmax(errors[judged])])
     stays = float(errors[worst]) <= bound and run.ending is Ending.STOPPED
-    figures = metrics(run, problem.vehicle, slip_reference=reference)
+    figures = metrics(run, problem.vehicle, scenario, slip_reference=reference)
     outside = float(np.mean(errors[judged] > bound))
     where = (
         Point(name="time", value=float(run.time[worst]), unit="s"),

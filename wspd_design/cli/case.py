@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
-from wspd_design.cli.options import CONTROLLER, PLANT, RAIL, VEHICLE
+from wspd_design.cli.options import CONTROLLER, RAIL, VEHICLE
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.catalog import controller as build_controller
 from wspd_design.design.catalog import is_design_file
@@ -16,6 +16,7 @@ from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import parse_quantity
+from wspd_design.simulation.records import PLANTS
 
 _CLOSE = 1e-9  # relative: the same number written in another unit
 
@@ -93,13 +94,11 @@ def chosen(argument: str | None, option: str | None) -> str:
 
 
 def check_plant(name: str) -> None:
-    """Refuse a plant that does not exist yet."""
-    if name == "four-axle":
-        raise UserError(
-            f"plant four-axle comes with the simulation engine of a later version; use --plant {PLANT}"
-        )
-    if name != PLANT:
-        raise UserError(f'unknown plant "{name}"; available: {PLANT}')
+    """Refuse a plant that does not exist."""
+    if name not in PLANTS:
+        near = get_close_matches(name, PLANTS, n=1)
+        offer = f', did you mean "{near[0]}"?' if near else ""
+        raise UserError(f'unknown plant "{name}"{offer}; available: {", ".join(PLANTS)}')
 
 
 def check_law(name: str) -> Law:

@@ -6,6 +6,7 @@ last axis.
 
 import ctypes
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -34,6 +35,7 @@ LANE_TOTALS = (
     "slip_squared",
     "lock_time",
     "slip_max",
+    "vented_pressure",
 )
 STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
 RAIL_NUMBERS = 5
@@ -262,7 +264,6 @@ class _Plant:
         return int(self._library.wspd_sample(self._buffer, fill, vent))
 
 
-@lru_cache(maxsize=32)
 def load_closed_loop(
     vehicle: Vehicle, rail: Rail, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
 ) -> ClosedLoop:
@@ -286,8 +287,19 @@ def load_closed_loop(
     UntraceableError
         If ``step`` contains what CasADi cannot trace or the emitter cannot translate.
     """
+    if isinstance(controller, Hashable):
+        return _load_once(vehicle, rail, controller, stops, disturbed)
+    return _load(vehicle, rail, controller, stops, disturbed)
+
+
+def _load(
+    vehicle: Vehicle, rail: Rail, controller: Controller | None, stops: int, disturbed: bool
+) -> ClosedLoop:
     source, states = closed_loop_source(vehicle, rail, controller, stops=stops, disturbed=disturbed)
     return ClosedLoop(load_library(source), stops, states)
+
+
+_load_once = lru_cache(maxsize=32)(_load)
 
 
 def closed_loop_source(

@@ -70,7 +70,9 @@ class Kernels(NamedTuple):
     condition: Any  # (p, [time, load]) -> [stiffness, damping]
     axle: Any  # (p, [speed, wheel speed, load, torque, stiffness, damping]) -> [force, acceleration, slip, damping]
     train: Any  # (p, [speed, force[4], pitch[6]]) -> [acceleration, resistance, pitch'[6]]
-    actuator: Any  # (p, [time, start time, start pressure, fill end, vent end]) -> [pressure, torque]
+    actuator: (
+        Any  # (p, [time, start, start pressure, fill end, vent end]) -> [pressure, torque, filled pressure]
+    )
     start: Any  # ([speed, wheel speed, torque]) -> state
     step: Any  # (state, [speed, wheel speed, torque]) -> [state, fill, vent]
     states: int  # length of the controller state
@@ -148,7 +150,7 @@ def closed_loop_kernels(
         train=ca.Function(
             "train_kernel", [p, y], [ca.vertcat(train.acceleration, train.resistance, *train.pitch)]
         ),
-        actuator=ca.Function("actuator_kernel", [p, z], [ca.vertcat(reached, torque)]),
+        actuator=ca.Function("actuator_kernel", [p, z], [ca.vertcat(reached, torque, filled)]),
         start=start_kernel,
         step=step_kernel,
         states=states,

@@ -76,7 +76,8 @@ def step_function(vehicle: Vehicle, rail: Rail, *, disturbed: bool) -> Any:
     casadi.Function
         (parameters (PARAMETERS, axles), motion, locked, torque, [time, step, window], pressure, fill end,
         vent end, load factors (axles, 3)) -> (motion after the step, lane totals (axles, 7), stop totals (4),
-        last stage (axles, 4: force, slip, load, passed torque), actuator (axles, 2: pressure, torque)).
+        last stage (axles, 4: force, slip, load, passed torque), actuator (axles, 3: pressure, torque,
+        pressure before venting)).
     """
     import casadi as ca
 
@@ -175,7 +176,7 @@ class _VirtualPlant:
         self.motion = np.concatenate([[speed], speed / radius, np.zeros(_PITCH)])
         self.locked, self.pressure = np.zeros(AXLES), np.zeros(AXLES)
         self.fill_end, self.vent_end = np.zeros(AXLES), np.zeros(AXLES)
-        self.torque = np.zeros((AXLES, 2), order="F")  # pressure and torque at the present time
+        self.torque = np.zeros((AXLES, 3))  # pressure, torque, pressure before venting at the present time
         self.time = self.window = 0.0
         self.edge = math.inf
         self.recorded = -1.0
@@ -222,6 +223,7 @@ class _VirtualPlant:
         start = self.sample * h
         result = self._advance_to(start + self.set.dead_time)
         present = self.time
+        self.lane_totals[9] += self.torque[:, 2] - self.torque[:, 0]
         self.pressure[:] = self.torque[:, 0]
         self.window = present
         for axle, (fill, vent) in enumerate(commands):
@@ -311,7 +313,8 @@ class _VirtualPlant:
             self._evaluate(h)
         lane = self._outputs[1].reshape((len(_INTEGRATED), AXLES))
         force, slip, load, passed = self._outputs[3].reshape((4, AXLES))
-        pressure, torque = self._outputs[4].reshape((2, AXLES))
+        actuator = self._outputs[4].reshape((3, AXLES))
+        torque = actuator[1]
         self.motion[:] = reached
         self.lane_totals[: len(_INTEGRATED)] += lane
         self.lane_totals[7] += self.locked * h
@@ -326,7 +329,7 @@ class _VirtualPlant:
                 self.locked[axle] = 1.0
             elif self.locked[axle] and torque[axle] < 2.0 * self.parameters[_RADIUS, axle] * force[axle]:
                 self.locked[axle] = 0.0
-        self.torque[:, 0], self.torque[:, 1] = pressure, torque
+        self.torque[:] = actuator.T
         self.time = following
         self.steps += 1
         self.stop_totals[4] += h

@@ -74,6 +74,7 @@ def dossier(
     initial_speed: float,
     baselines: Sequence[str],
     command: str,
+    plant: str = "four-axle",
     seed: int = 0,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
@@ -91,6 +92,8 @@ def dossier(
         Controllers to compare with.
     command : str
         The command line, for the record.
+    plant : {"four-axle", "quarter"}
+        Of the stops; the certificates speak about the quarter locomotive.
     seed : int
         Of the sampled checks.
     progress : callable, optional
@@ -114,8 +117,15 @@ def dossier(
     others = [_baseline(name, vehicle, rail, specification) for name in baselines]
     scenario = Scenario(rail=rail, initial_speed=initial_speed, seed=seed)
     controllers = [own, *(law for law, _ in others)]
-    trials = compare(vehicle, controllers, scenario, slip_reference=specification.slip, progress=progress)
-    inputs = "\n".join((design_text(made), repr(vehicle), repr(rail), repr(scenario)))
+    trials = compare(
+        vehicle,
+        controllers,
+        scenario,
+        slip_reference=specification.slip,
+        plant=plant,
+        progress=progress,
+    )
+    inputs = "\n".join((design_text(made), repr(vehicle), repr(rail), repr(scenario), plant))
     return Dossier(
         design=made,
         vehicle=load_entries("vehicle", vehicle_name),

@@ -11,9 +11,9 @@ from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
-from wspd_design.simulation.engine import loop_input, run_loop
+from wspd_design.parameters.records import ParameterSet, Vehicle
 from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.stop import loop_input, run_loop
 
 if TYPE_CHECKING:
     import numpy as np
@@ -117,7 +117,7 @@ def _cases(
     drawn = low + (high - low) * generator.random((runs, len(varied)))
     cases = []
     for run, row in enumerate(drawn.tolist()):
-        values = {"vehicle": {}, "rail": {}}
+        values: dict[str, dict[str, float]] = {"vehicle": {}, "rail": {}}
         for (kind, name, _), value in zip(varied, row, strict=True):
             values[kind][name] = value
         rails = None

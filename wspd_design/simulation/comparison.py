@@ -7,21 +7,29 @@ from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.metrics import Metrics, metrics
 from wspd_design.simulation.records import Run, Scenario
-from wspd_design.simulation.stop import simulate
+from wspd_design.simulation.self_check import StepCheck, simulate_checked
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trial:
-    """A stop and its figures."""
+    """A stop, its figures and how far the integration can be trusted."""
 
     run: Run
     metrics: Metrics
+    check: StepCheck
 
 
-def trial(vehicle: Vehicle, controller: Controller, scenario: Scenario, *, slip_reference: float) -> Trial:
-    """Simulate one stop and judge it."""
-    run = simulate(vehicle, controller, scenario)
-    return Trial(run=run, metrics=metrics(run, vehicle, slip_reference=slip_reference))
+def trial(
+    vehicle: Vehicle,
+    controller: Controller,
+    scenario: Scenario,
+    *,
+    slip_reference: float,
+    plant: str = "four-axle",
+) -> Trial:
+    """Simulate one stop, check its steps and judge it."""
+    run, check = simulate_checked(vehicle, controller, scenario, plant=plant)
+    return Trial(run=run, metrics=metrics(run, vehicle, scenario, slip_reference=slip_reference), check=check)
 
 
 def compare(
@@ -30,6 +38,7 @@ def compare(
     scenario: Scenario,
     *,
     slip_reference: float,
+    plant: str = "four-axle",
     progress: Callable[[str], object] = str,
 ) -> tuple[Trial, ...]:
     """Simulate the same stop with each controller.
@@ -44,6 +53,8 @@ def compare(
         Rail and initial speed.
     slip_reference : float
         Reference of ``slip_rms`` for all of them [-].
+    plant : {"four-axle", "quarter"}
+        With or without load transfer.
     progress : callable, optional
         Told the name of each controller before its stop.
 
@@ -55,5 +66,5 @@ def compare(
     trials = []
     for controller in controllers:
         progress(controller.name)
-        trials.append(trial(vehicle, controller, scenario, slip_reference=slip_reference))
+        trials.append(trial(vehicle, controller, scenario, slip_reference=slip_reference, plant=plant))
     return tuple(trials)

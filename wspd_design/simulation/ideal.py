@@ -6,6 +6,7 @@ the bound for every controller.
 """
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from wspd_design.controllers.baselines.unprotected import Unprotected
@@ -15,8 +16,8 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.four_axle import AXLES
-from wspd_design.simulation.engine import loop_input, run_loop
 from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.stop import loop_input, run_loop
 
 if TYPE_CHECKING:
     import numpy as np
@@ -39,13 +40,14 @@ class IdealStop:
     stopping_time: float  # s
 
 
+@lru_cache(maxsize=64)
 def ideal_stop(
     vehicle: Vehicle,
     scenario: Scenario,
     *,
     slip: float | None = None,
     instantaneous: bool = False,
-    plant: str = "quarter",
+    plant: str = "four-axle",
 ) -> IdealStop:
     """Stop at the adhesion peak or at a constant slip.
 
@@ -59,8 +61,8 @@ def ideal_stop(
         Slip that is not exceeded; that of the adhesion peak at each speed by default.
     instantaneous : bool
         Full torque from the start, in place of the build-up of eqs. (8), (9).
-    plant : {"quarter", "four-axle"}
-        Without or with load transfer.
+    plant : {"four-axle", "quarter"}
+        With or without load transfer.
 
     Returns
     -------
@@ -72,6 +74,8 @@ def ideal_stop(
     UserError
         For a change of rail along the track: its peak slip is not known in advance.
     """
+    import numpy as np
+
     if scenario.patches:
         raise UserError("the bound is not known for a change of rail along the track; leave the patches out")
     if instantaneous:
@@ -81,8 +85,6 @@ def ideal_stop(
     given = loop_input([(vehicle, scenario)], filling, plant=plant)
     rails = scenario.axle_rails or (scenario.rail,) * AXLES
     speeds = _speeds(scenario.initial_speed)
-    import numpy as np
-
     slips = {rail: _held_slips(vehicle, rail, speeds, slip) for rail in set(rails)}
     given = replace(
         given,
@@ -109,12 +111,24 @@ def _held_slips(vehicle: Vehicle, rail: Rail, speeds: "Array", slip: float | Non
     """Slip to be held over speed: constant, or where the adhesion under the static load is greatest."""
     import numpy as np
 
-    if slip is not None:
-        return np.full(len(speeds), slip)
+    return np.full(len(speeds), slip) if slip is not None else peak_adhesion(vehicle, rail, speeds)[0]
+
+
+def peak_adhesion(vehicle: Vehicle, rail: Rail, speeds: "Array") -> "tuple[Array, Array]":
+    """Slip at which the rail gives most, and the adhesion f/Q there, over train speed under the static load.
+
+    Below the regularization speed the slip is referred to that speed, as in the plant.
+    """
+    import numpy as np
+
     load = float(static_wheel_load(vehicle))
     stiffness = adhesion.contact_stiffness(vehicle.contact, load)
+    table = _speeds(max(float(np.max(speeds)), 1.0))
     slips = np.geomspace(1e-4, 1.0, _SLIPS)
-    v, s = speeds[:, np.newaxis], slips[np.newaxis, :]
-    # Near standstill the slip is referred to the regularization speed, as in the plant.
+    v, s = table[:, np.newaxis], slips[np.newaxis, :]
     referred = s * np.minimum(v / constants().slip_regularization_speed, 1.0)
-    return slips[adhesion.creep_force(referred, v * s, load, rail, stiffness).argmax(axis=1)]
+    forces = adhesion.creep_force(referred, v * s, load, rail, stiffness)
+    best = forces.argmax(axis=1)
+    peaks = forces[np.arange(len(table)), best] / load
+    logs = np.log(np.maximum(speeds, table[0]))
+    return np.interp(logs, np.log(table), slips[best]), np.interp(logs, np.log(table), peaks)

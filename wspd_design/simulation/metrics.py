@@ -1,12 +1,14 @@
 """What a stop is judged by, worked out from its integrals."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
-from wspd_design.simulation.records import Ending, Run
-from wspd_design.simulation.stop import WHEELS
+from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
+from wspd_design.simulation.records import Ending, Run, Scenario
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,12 +25,16 @@ class Metrics:
     slip_rms: float  # -, about the reference
     lock_time: float  # s
     saturated_share: float  # -, samples that fill or vent for the whole sample time
-    valve_switches: int  # changes of the valve state
+    valve_switches: int  # changes of the valve state, mean of the wheelsets
+    vented_air: float  # -, full brake cylinders let out, mean of the wheelsets
+    adhesion_utilization: float  # -, creep force over the force at the adhesion peak, mean over time
+    bound: float  # m, no controller stops shorter; NaN where it is not known
+    efficiency: float  # -, bound over distance
     momentum_residual: float  # -, relative to the initial momentum
     energy_residual: float  # -, relative to the initial energy
 
 
-def metrics(run: Run, vehicle: Vehicle, *, slip_reference: float) -> Metrics:
+def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: float) -> Metrics:
     """Judge a stop.
 
     Parameters
@@ -37,6 +43,8 @@ def metrics(run: Run, vehicle: Vehicle, *, slip_reference: float) -> Metrics:
         The stop.
     vehicle : Vehicle
         The vehicle it was simulated with.
+    scenario : Scenario
+        The stop it was.
     slip_reference : float
         Reference of ``slip_rms`` [-].
 
@@ -52,22 +60,46 @@ def metrics(run: Run, vehicle: Vehicle, *, slip_reference: float) -> Metrics:
     square = (
         totals.slip_squared / judged - 2.0 * slip_reference * mean + slip_reference**2 if judged else math.nan
     )
-    commands = [(sample.fill, sample.vent) for sample in run.samples]
+    bound = math.nan if scenario.patches else ideal_stop(vehicle, scenario, plant=run.plant).distance
+    per_axle = [[(sample.fill, sample.vent) for sample in samples] for samples in run.axle_samples]
+    commands = [command for axle in per_axle for command in axle]
     return Metrics(
         distance=totals.distance,
         stopping_time=time,
         torque_integral=totals.torque,
         lag=2.0 * totals.distance / run.initial_speed - time if stopped else math.nan,
-        plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed)) if stopped else math.nan,
+        plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed))
+        if stopped
+        else math.nan,
         slip_mean=mean,
         slip_max=run.slip_max,
         slip_rms=math.sqrt(max(square, 0.0)),
         lock_time=totals.lock_time,
         saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands),
-        valve_switches=_switches(commands),
+        valve_switches=round(sum(_switches(axle) for axle in per_axle) / len(per_axle)),
+        vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
+        adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
+        bound=bound,
+        efficiency=bound / totals.distance if stopped else math.nan,
         momentum_residual=momentum_residual(run, vehicle),
         energy_residual=energy_residual(run, vehicle),
     )
+
+
+def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> float:
+    """Impulse of the creep forces over that of the adhesion peak at each speed, under the static load [-].
+
+    NaN for a change of rail along the track.
+    """
+    import numpy as np
+
+    if scenario.patches:
+        return math.nan
+    rails = scenario.axle_rails or (scenario.rail,)
+    peak = np.mean([peak_adhesion(vehicle, rail, run.speed)[1] for rail in rails], axis=0)
+    available = vehicle.mass * constants().gravity * float(np.trapezoid(peak, run.time))
+    used = vehicle.mass * (run.initial_speed - float(run.speed[-1])) - run.totals.resistance_impulse
+    return used / available
 
 
 def momentum_residual(run: Run, vehicle: Vehicle) -> float:
@@ -75,22 +107,27 @@ def momentum_residual(run: Run, vehicle: Vehicle) -> float:
 
     sum of the torque integrals = R m (v0 - v) + 8 I (omega0 - omega) - R int f_d dt - 8 int B omega dt.
     """
-    radius, inertia = vehicle.wheel_radius, WHEELS * vehicle.wheel_inertia
-    initial = radius * vehicle.mass * run.initial_speed + inertia * run.initial_speed / radius
-    final = radius * vehicle.mass * float(run.speed[-1]) + inertia * run.final_wheel_speed
+    radius, inertia = vehicle.wheel_radius, vehicle.wheelset_inertia
+    rolling = run.initial_speed / radius
+    initial = radius * vehicle.mass * run.initial_speed + inertia * rolling * len(run.final_wheel_speeds)
+    final = radius * vehicle.mass * float(run.speed[-1]) + inertia * sum(run.final_wheel_speeds)
     taken = run.totals.torque + radius * run.totals.resistance_impulse + run.totals.damping_impulse
     return (initial - final - taken) / initial
 
 
 def energy_residual(run: Run, vehicle: Vehicle) -> float:
     """What is missing in the balance of kinetic energy and work, relative to the initial energy."""
-    inertia = WHEELS * vehicle.wheel_inertia
-    initial = 0.5 * vehicle.mass * run.initial_speed**2
-    initial += 0.5 * inertia * (run.initial_speed / vehicle.wheel_radius) ** 2
-    final = 0.5 * vehicle.mass * float(run.speed[-1]) ** 2 + 0.5 * inertia * run.final_wheel_speed**2
+    rolling = [run.initial_speed / vehicle.wheel_radius] * len(run.final_wheel_speeds)
+    initial = _kinetic_energy(vehicle, run.initial_speed, rolling)
+    final = _kinetic_energy(vehicle, float(run.speed[-1]), run.final_wheel_speeds)
     totals = run.totals
     work = totals.brake_work + totals.sliding_work + totals.resistance_work + totals.damping_work
     return (initial - final - work) / initial
+
+
+def _kinetic_energy(vehicle: Vehicle, speed: float, wheel_speeds: Sequence[float]) -> float:
+    turning = sum(0.5 * vehicle.wheelset_inertia * wheel_speed**2 for wheel_speed in wheel_speeds)
+    return 0.5 * vehicle.mass * speed**2 + turning
 
 
 def _switches(commands: list[tuple[float, float]]) -> int:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
+from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail
 
@@ -13,22 +14,62 @@ if TYPE_CHECKING:
 
     Trace = NDArray[np.float64]
 
+PLANTS = ("four-axle", "quarter")
+"""The four-axle plant transfers load; the quarter locomotive is its case without heights and with equal rails."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Patch:
+    """A change of rail: from ``start`` on, every wheel that passes runs on ``rail``."""
+
+    start: float  # m
+    rail: Rail
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sensing:
+    """What disturbs a real WSP; everything is off by default."""
+
+    speed_noise: float = 0.0  # m/s rms of the measured rim speed, independent at each sample and axle
+    pulses_per_turn: int = 0  # of the pulse wheel; the speed is counted over one sample time, 0 for exact
+    reference_error: float = 0.0  # -, relative error of the train speed that the controller knows
+    dead_time: float = 0.0  # s, from the command to the valve; at most one sample time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadIrregularity:
+    """Relative wheel load of each axle over distance, from track irregularity or measurement."""
+
+    spacing: float  # m
+    factors: tuple[tuple[float, ...], ...]  # per axle, at multiples of the spacing; the last value stays
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario:
-    """A stop on level, straight track."""
+    """A stop on straight track."""
 
     rail: Rail
     initial_speed: float  # m/s
     seed: int = 0
+    axle_rails: tuple[Rail, Rail, Rail, Rail] | None = None  # front axle first, in place of ``rail``
+    patches: tuple[Patch, ...] = ()
+    grade: float = 0.0  # -, rise over run, positive uphill
+    pad_vibration: bool = False  # T_d of Section 7
+    sensing: Sensing = Sensing()
+    load_irregularity: LoadIrregularity | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a speed that is no speed."""
+        """Refuse what is no stop."""
         if not 0.0 < self.initial_speed < 150.0:
             raise UserError(
                 f"initial speed = {self.initial_speed:g} m/s must be above 0 and below 150 m/s (540 km/h); "
                 'give it with its unit, for example "120 km/h"'
             )
+        if not -0.1 <= self.grade <= 0.1:
+            raise UserError(f"grade = {self.grade:g} must lie in [-0.1, 0.1]; for 10 per mille write 0.01")
+        starts = [patch.start for patch in self.patches]
+        if starts != sorted(starts) or any(start < 0.0 for start in starts):
+            raise UserError(f"patches start at {starts} m; their starts must rise and not be negative")
 
     @classmethod
     def stop(cls, *, from_kmh: float, rail: Rail, seed: int = 0) -> "Scenario":
@@ -54,6 +95,7 @@ class Sample:
     fill: float  # share of the sample time
     vent: float
     state: tuple[float, ...]
+    seen: Measurement
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,13 +112,17 @@ class Totals:
     damping_work: float  # J
     lock_time: float  # s, longest of the wheelsets
     judged_time: float  # s, above the judging speed
-    slip: float  # s, integral of the slip over the judged time
+    slip: float  # s, integral of the slip over the judged time, mean of the wheelsets
     slip_squared: float  # s
+    vented_pressure: float  # Pa, sum over all vents of all wheelsets of the pressure let out
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """A simulated stop. Traces are arrays over time; those of a wheelset have a second axis."""
+    """A simulated stop. Traces are arrays over time; those of a wheelset have a second axis, front axle first.
+
+    The quarter plant has one wheelset that stands for all.
+    """
 
     controller: str
     vehicle: str
@@ -91,7 +137,14 @@ class Run:
     wheel_speed: "Trace"  # rad/s, per wheelset
     slip: "Trace"  # -, per wheelset
     torque: "Trace"  # N m, per wheelset, transmitted
-    samples: tuple[Sample, ...]
+    wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
+    axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset
     totals: Totals
-    final_wheel_speed: float  # rad/s
+    final_wheel_speeds: tuple[float, ...]  # rad/s, of four wheelsets
     slip_max: float  # -, above the judging speed
+    engine: str  # what computed it
+
+    @property
+    def samples(self) -> tuple[Sample, ...]:
+        """Samples of the first wheelset."""
+        return self.axle_samples[0]

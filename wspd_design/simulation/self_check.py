@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import Vehicle
-from wspd_design.simulation.engine import simulate
 from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.stop import simulate
 
 DISTANCE_TOLERANCE = 1e-6  # relative
 SLIP_TOLERANCE = 1e-4

@@ -34,7 +34,7 @@ def compare(
         for case in cases:
             tell(f"stop {len(trials) + 1} of {len(cases)}: {case.controller.name}")
             reference = case.specification.slip
-            made = trial(case.vehicle, case.controller, scenario, slip_reference=reference)
+            made = trial(case.vehicle, case.controller, scenario, slip_reference=reference, plant=plant)
             trials.append((made, reference))
     if as_json:
         print_json(

@@ -55,6 +55,7 @@ def report(
             initial_speed=initial_speed,
             baselines=[other for other in CONTROLLERS if other != made.name],
             command=shlex.join(["wspd", *sys.argv[1:]]),
+            plant=plant,
             seed=seed,
             progress=tell,
         )

@@ -44,7 +44,7 @@ def simulate(
     reference = case.specification.slip
     with progress() as tell:
         tell(f"stop with {case.controller.name}")
-        made = trial(case.vehicle, case.controller, scenario, slip_reference=reference)
+        made = trial(case.vehicle, case.controller, scenario, slip_reference=reference, plant=plant)
     if output is not None:
         write_text(output, trace_csv(made.run), force=force)
     if as_json:

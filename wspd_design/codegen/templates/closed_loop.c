@@ -10,7 +10,7 @@
 #define SHORTEST 1e-9 /* s: edges closer together than this are one */
 #define RAIL 5 /* numbers of a rail, side by side in the parameter vector from FIRST_RAIL on */
 
-enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, LOCK_TIME, SLIP_MAX, LANE_TOTALS };
+enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, LOCK_TIME, SLIP_MAX, VENTED, LANE_TOTALS };
 enum { DISTANCE, RESISTANCE, RESISTANCE_WORK, JUDGED, TIME, END_SPEED, STOP_TOTALS };
 enum { GOOD, BUFFER_FULL, BAD_COMMAND };
 
@@ -48,7 +48,7 @@ typedef struct {
     double sp[PARAMETERS * STOPS], lp[PARAMETERS * LANES];
     Motion now;
     double locked[LANES], held[LANES], pressure[LANES], fill_end[LANES], vent_end[LANES], window; /* of the valve pattern */
-    double torque[2 * LANES];   /* pressure and torque at the present time */
+    double torque[3 * LANES];   /* pressure, torque, and pressure before venting at the present time */
     double step[STOPS], active[STOPS], time, edge, recorded;
     double lane[LANE_TOTALS * LANES], stop[STOP_TOTALS * STOPS], bad[3];
     long sample, patch[LANES], steps;
@@ -265,7 +265,7 @@ static int advance(Loop *loop, double until)
 {
     Motion at[3], reached;
     Stage stage[4];
-    double middle[2 * LANES], end[2 * LANES], condition[2 * LANES], lane_step[LANES], speed[LANES];
+    double middle[3 * LANES], end[3 * LANES], condition[2 * LANES], lane_step[LANES], speed[LANES];
     const Settings *set = &loop->set;
     double *step = loop->step, h = step_length(loop, until), next = loop->time + h;
     if (next > until - 1e-12) next = until, h = until - loop->time;
@@ -398,6 +398,9 @@ int wspd_sample(Loop *loop, const double *fill, const double *vent)
     int result = advance_to(loop, from + loop->set.dead_time); /* the valves still follow the last command */
     double present = loop->time;
     actuate(loop, present, loop->torque);
+    for (int l = 0; l < LANES; l++) /* a finished stop vents no more */
+        if (loop->active[l % STOPS] != 0.0)
+            loop->lane[VENTED * LANES + l] += loop->torque[2 * LANES + l] - loop->torque[l];
     memcpy(loop->pressure, loop->torque, sizeof loop->pressure);
     loop->window = present;
     for (int l = 0; l < LANES; l++) {
