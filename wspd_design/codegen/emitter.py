@@ -4,6 +4,7 @@ A lane is a wheelset or a stop. Every element of an input or output is an array 
 turns the loop into vector instructions.
 """
 
+import math
 from typing import Any
 
 _BINARY = {"OP_ADD": "+", "OP_SUB": "-", "OP_MUL": "*", "OP_DIV": "/"}
@@ -93,4 +94,8 @@ def _right_side(function: Any, k: int, operation: str, inputs: list[int], lanes:
 
 def _constant(value: float) -> str:
     """C literal of a double, exact."""
-    return float(value).hex() if value == value and abs(value) != float("inf") else f"({value} / 0.0)"
+    if math.isnan(value):
+        return "NAN"
+    if math.isinf(value):
+        return "INFINITY" if value > 0.0 else "-INFINITY"
+    return float(value).hex()
