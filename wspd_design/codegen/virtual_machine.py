@@ -313,6 +313,7 @@ class _VirtualPlant:
             self._evaluate(h)
         lane = self._outputs[1].reshape((len(_INTEGRATED), AXLES))
         force, slip, load, passed = self._outputs[3].reshape((4, AXLES))
+        slip = slip.clip(max=1.0)  # the last stage may turn a stopping wheel back
         actuator = self._outputs[4].reshape((3, AXLES))
         torque = actuator[1]
         self.motion[:] = reached

@@ -310,6 +310,7 @@ static int advance(Loop *loop, double until)
     for (int l = 0; l < LANES; l++) {
         double *most = &loop->lane[SLIP_MAX * LANES + l];
         loop->lane[LOCK_TIME * LANES + l] += loop->locked[l] * lane_step[l];
+        if (stage[3].slip[l] > 1.0) stage[3].slip[l] = 1.0; /* the last stage may turn a stopping wheel back */
         if (speed[l] > set->judging_speed && stage[3].slip[l] > *most) *most = stage[3].slip[l];
         if (loop->locked[l] == 0.0 && reached.wheel[l] < 0.0) {
             /* The wheel stopped within the step: take back the torque that the brake could not pass on since. */
