@@ -20,6 +20,7 @@ from wspd_design.parameters.loading import (
     load_vehicle,
 )
 from wspd_design.parameters.records import PaperGains
+from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
@@ -86,11 +87,23 @@ def make_controller():
 
 @pytest.fixture(scope="session")
 def stop(er24pc):
-    """Simulate a stop from 120 km/h by the names of controller and rail; each is simulated once."""
+    """Simulate a stop of the quarter locomotive from 120 km/h by the names of controller and rail, once each."""
 
     @cache
     def simulated(controller, rail):
         scenario = Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED)
-        return simulate(er24pc, _controller(controller, rail), scenario)
+        return simulate(er24pc, _controller(controller, rail), scenario, plant="quarter")
 
     return simulated
+
+
+@pytest.fixture(scope="session")
+def judged(er24pc, stop):
+    """Judge such a stop."""
+
+    @cache
+    def judge(controller, rail):
+        scenario = Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED)
+        return metrics(stop(controller, rail), er24pc, scenario, slip_reference=SLIP_REFERENCE)
+
+    return judge

@@ -59,7 +59,7 @@ def shortest_distance(vehicle, rail, speed):
 @given(**cases)
 def test_bounds(er24pc, make_controller, rail, speed, mass_factor, name):
     vehicle = replace(er24pc, mass=mass_factor * er24pc.mass)
-    run = simulate(vehicle, make_controller(name), Scenario(rail=rail, initial_speed=speed))
+    run = simulate(vehicle, make_controller(name), Scenario(rail=rail, initial_speed=speed), plant="quarter")
     assert run.ending is Ending.STOPPED
     assert run.totals.distance > shortest_distance(vehicle, rail, speed)
     assert (run.torque >= 0.0).all()
@@ -83,29 +83,14 @@ def test_the_bound_on_the_distance_can_be_missed(er24pc, stop):
     )
 
 
-class Watch:
-    """A controller that keeps the torques it is told, which show the cylinder pressure also of a locked wheel."""
-
-    def __init__(self, controller):
-        self.controller, self.torques = controller, []
-        self.name, self.sample_time = controller.name, controller.sample_time
-
-    def start(self, measurement):
-        return self.controller.start(measurement)
-
-    def step(self, state, measurement):
-        self.torques.append(measurement.torque)
-        return self.controller.step(state, measurement)
-
-
 @settings(max_examples=6, deadline=None)
 @given(**cases)
 def test_pressure_stays_between_zero_and_the_supply(er24pc, make_controller, rail, speed, mass_factor, name):
     vehicle = replace(er24pc, mass=mass_factor * er24pc.mass)
-    watch = Watch(make_controller(name))
-    simulate(vehicle, watch, Scenario(rail=rail, initial_speed=speed))
-    shares = np.array(watch.torques) / vehicle.brake.max_torque
-    supply = -np.expm1(-vehicle.brake.supply_rate * watch.sample_time * np.arange(len(shares)))
+    run = simulate(vehicle, make_controller(name), Scenario(rail=rail, initial_speed=speed), plant="quarter")
+    # The controllers see the torque of the cylinder pressure, also at a locked wheel.
+    shares = np.array([sample.seen.torque for sample in run.samples]) / vehicle.brake.max_torque
+    supply = -np.expm1(-vehicle.brake.supply_rate * run.sample_time * np.arange(len(shares)))
     assert (shares >= 0.0).all()
     assert (shares <= supply + 1e-12).all()
 
@@ -113,7 +98,9 @@ def test_pressure_stays_between_zero_and_the_supply(er24pc, make_controller, rai
 @pytest.mark.parametrize("name", ["afsmc", "smc", "mitsubishi"])
 def test_the_same_stop_twice_is_the_same_to_the_bit(er24pc, make_controller, name):
     scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=15.0)
-    one, other = (simulate(er24pc, make_controller(name, "polach-wet"), scenario) for _ in range(2))
+    one, other = (
+        simulate(er24pc, make_controller(name, "polach-wet"), scenario, plant="quarter") for _ in range(2)
+    )
     for trace in ("time", "speed", "distance", "wheel_speed", "slip", "torque"):
         np.testing.assert_array_equal(getattr(one, trace), getattr(other, trace))
     assert one.totals == other.totals
@@ -147,8 +134,8 @@ def scaled(vehicle, factor, *, contact):
 def test_kinematics_do_not_know_the_unit_of_mass(er24pc, make_controller, name):
     # A factor of two is exact in binary, so that nothing at all may change.
     scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=15.0)
-    one = simulate(er24pc, make_controller(name), scenario)
-    double = simulate(scaled(er24pc, 2.0, contact=True), make_controller(name), scenario)
+    one = simulate(er24pc, make_controller(name), scenario, plant="quarter")
+    double = simulate(scaled(er24pc, 2.0, contact=True), make_controller(name), scenario, plant="quarter")
     for trace in ("time", "speed", "distance", "wheel_speed", "slip"):
         np.testing.assert_array_equal(getattr(one, trace), getattr(double, trace))
     np.testing.assert_array_equal(2.0 * one.torque, double.torque)
@@ -158,6 +145,8 @@ def test_kinematics_do_not_know_the_unit_of_mass(er24pc, make_controller, name):
 def test_a_heavier_train_on_the_same_contact_moves_otherwise(er24pc, make_controller):
     # The counterpart: with the contact left as it is, the creep does not scale.
     scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=15.0)
-    one = simulate(er24pc, make_controller("trenitalia"), scenario)
-    double = simulate(scaled(er24pc, 2.0, contact=False), make_controller("trenitalia"), scenario)
+    one = simulate(er24pc, make_controller("trenitalia"), scenario, plant="quarter")
+    double = simulate(
+        scaled(er24pc, 2.0, contact=False), make_controller("trenitalia"), scenario, plant="quarter"
+    )
     assert not math.isclose(one.totals.distance, double.totals.distance, rel_tol=1e-5)

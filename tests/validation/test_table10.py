@@ -5,8 +5,6 @@ The quarter locomotive has no weight transfer, so this is a band of 4 % and no f
 
 import pytest
 
-from wspd_design.simulation.metrics import metrics
-
 # Distance [m], stopping time [s] and sum of the torque integrals [kN m s], as printed.
 TABLE_10 = {
     ("trenitalia", "dry"): (184.63, 9.9, 1572.48),
@@ -21,9 +19,9 @@ TABLE_10 = {
 
 
 @pytest.mark.parametrize(("controller", "condition"), TABLE_10)
-def test_row(er24pc, stop, controller, condition):
-    judged = metrics(stop(controller, f"table10-{condition}"), er24pc, slip_reference=0.14)
-    ours = (judged.distance, judged.stopping_time, judged.torque_integral / 1e3)
+def test_row(judged, controller, condition):
+    found = judged(controller, f"table10-{condition}")
+    ours = (found.distance, found.stopping_time, found.torque_integral / 1e3)
     assert ours == pytest.approx(TABLE_10[controller, condition], rel=0.04)
 
 

@@ -1,4 +1,4 @@
-"""Every step function can be traced by CasADi and then computes what it computes in Python."""
+"""Every step function can be traced by CasADi and compiled, and computes what it computes in Python."""
 
 from dataclasses import replace
 
@@ -7,27 +7,8 @@ import numpy as np
 import pytest
 
 from wspd_design.controllers.protocol import Measurement
-from wspd_design.parameters.loading import load_rail
-from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.stop import simulate
 
 CONTROLLERS = ("afsmc", "afsmc-repaired", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
-
-
-class Recorder:
-    """A controller that keeps what it is asked and what it answers."""
-
-    def __init__(self, controller):
-        self.controller, self.calls = controller, []
-        self.name, self.sample_time = controller.name, controller.sample_time
-
-    def start(self, measurement):
-        return self.controller.start(measurement)
-
-    def step(self, state, measurement):
-        answer = self.controller.step(state, measurement)
-        self.calls.append((state, measurement, answer))
-        return answer
 
 
 def traced(controller):
@@ -41,34 +22,39 @@ def traced(controller):
     return casadi.Function("step", [state, measurement], outputs)
 
 
-def largest_difference(controller, calls):
-    function, worst = traced(controller), 0.0
-    for state, measurement, (following, command) in calls:
-        got = [np.array(x).ravel() for x in function(np.array(state), np.array(measurement))]
-        for values, expected in zip(got, (following, command), strict=True):
-            scale = np.maximum(1.0, np.abs(expected))
-            worst = max(worst, *(np.abs(values - expected) / scale), 0.0)
-    return worst
+def difference(values, expected):
+    """Largest difference, relative to what is larger than one."""
+    values, expected = np.asarray(values, dtype=float), np.asarray(expected, dtype=float)
+    return np.max(np.abs(values - expected) / np.maximum(1.0, np.abs(expected)), initial=0.0)
 
 
-@pytest.fixture(scope="module")
-def recorded(er24pc, make_controller):
-    def record(name, rail="polach-wet"):
-        recorder = Recorder(make_controller(name, rail))
-        simulate(er24pc, recorder, Scenario(rail=load_rail(rail), initial_speed=80.0 / 3.6))
-        return recorder
+def largest_differences(controller, samples):
+    """Largest difference of the compiled loop's steps, and of CasADi's, from those in Python."""
+    function, compiled, traced_only = traced(controller), 0.0, 0.0
+    state = controller.start(samples[0].seen)
+    for sample in samples:
+        following, command = controller.step(state, sample.seen)
+        compiled = max(
+            compiled, difference((*sample.state, sample.fill, sample.vent), (*following, *command))
+        )
+        got = [np.array(x).ravel() for x in function(np.array(state), np.array(sample.seen))]
+        traced_only = max(traced_only, difference(np.concatenate(got), (*following, *command)))
+        state = sample.state
+    return compiled, traced_only
 
-    return record
 
-
+@pytest.mark.parametrize("rail", ["polach-wet", "table10-dry"])
 @pytest.mark.parametrize("name", CONTROLLERS)
-def test_traced_step_equals_python_along_a_run(recorded, name):
-    recorder = recorded(name)
-    assert len(recorder.calls) > 60
-    assert largest_difference(recorder.controller, recorder.calls) < 1e-12
+def test_traced_and_compiled_steps_equal_python_along_a_run(make_controller, stop, name, rail):
+    samples = stop(name, rail).samples
+    assert len(samples) > 90
+    compiled, traced_only = largest_differences(make_controller(name, rail), samples)
+    assert traced_only < 1e-12
+    assert compiled < 1e-12
 
 
-def test_another_controller_is_seen(recorded):
-    recorder = recorded("trenitalia")
-    table = replace(recorder.controller.table, upper_speed_ratio=0.93)
-    assert largest_difference(replace(recorder.controller, table=table), recorder.calls) > 1e-3
+def test_another_controller_is_seen(make_controller, stop):
+    controller = make_controller("trenitalia")
+    other = replace(controller, table=replace(controller.table, fill_pulse=0.961))
+    compiled, _ = largest_differences(other, stop("trenitalia", "polach-wet").samples)
+    assert compiled > 1e-4

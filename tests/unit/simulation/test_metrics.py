@@ -4,14 +4,20 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
+from wspd_design.controllers.protocol import Measurement
+from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.comparison import compare
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
 
+SCENARIO = Scenario(rail=load_rail("polach-wet"), initial_speed=30.0)
 ZERO = dict.fromkeys(
     ("torque", "resistance_impulse", "damping_impulse", "brake_work", "sliding_work", "resistance_work"), 0.0
-) | dict.fromkeys(("damping_work", "lock_time", "judged_time", "slip", "slip_squared"), 0.0)
+) | dict.fromkeys(
+    ("damping_work", "lock_time", "judged_time", "slip", "slip_squared", "vented_pressure"), 0.0
+)
 
 
 def made_up(
@@ -38,9 +44,16 @@ def made_up(
         wheel_speed=one[:, None],
         slip=one[:, None],
         torque=one[:, None],
-        samples=tuple(Sample(time=0.1 * k, fill=f, vent=v, state=()) for k, (f, v) in enumerate(commands)),
+        wheel_load=one[:, None],
+        axle_samples=(
+            tuple(
+                Sample(time=0.1 * k, fill=f, vent=v, state=(), seen=Measurement(0.0, 0.0, 0.0))
+                for k, (f, v) in enumerate(commands)
+            ),
+        ),
         totals=Totals(**{**ZERO, "distance": distance, **totals}),
-        final_wheel_speed=0.0,
+        final_wheel_speeds=(0.0,) * 4,
+        engine="none",
         slip_max=0.5,
     )
 
@@ -54,7 +67,7 @@ def test_lag_and_plateau_of_a_dead_time_and_a_constant_deceleration(er24pc, dead
         end_time=dead_time + v0 / deceleration,
         distance=v0 * dead_time + v0**2 / (2.0 * deceleration),
     )
-    judged = metrics(run, er24pc, slip_reference=0.14)
+    judged = metrics(run, er24pc, SCENARIO, slip_reference=0.14)
     assert judged.lag == pytest.approx(dead_time, abs=1e-12)
     assert judged.plateau == pytest.approx(deceleration, rel=1e-12)
 
@@ -62,7 +75,7 @@ def test_lag_and_plateau_of_a_dead_time_and_a_constant_deceleration(er24pc, dead
 def test_table_10_decomposed_as_in_the_data_book(er24pc):
     # Data book section 13: AFSMC dry 184.03 m in 9.8 s: lag 1.24 s, plateau .397 g.
     judged = metrics(
-        made_up(initial_speed=120 / 3.6, end_time=9.8, distance=184.03), er24pc, slip_reference=0.14
+        made_up(initial_speed=120 / 3.6, end_time=9.8, distance=184.03), er24pc, SCENARIO, slip_reference=0.14
     )
     assert judged.lag == pytest.approx(1.24, abs=0.005)
     assert judged.plateau / 9.81 == pytest.approx(0.397, abs=0.0005)
@@ -71,7 +84,7 @@ def test_table_10_decomposed_as_in_the_data_book(er24pc):
 def test_slip_statistics(er24pc):
     # Two seconds at slip .1, one second at .4: mean .2, mean square .06, about .14 rms sqrt(.0236).
     run = made_up(judged_time=3.0, slip=0.6, slip_squared=2 * 0.01 + 0.16)
-    judged = metrics(run, er24pc, slip_reference=0.14)
+    judged = metrics(run, er24pc, SCENARIO, slip_reference=0.14)
     assert judged.slip_mean == pytest.approx(0.2)
     assert judged.slip_rms == pytest.approx(math.sqrt((2 * 0.04**2 + 0.26**2) / 3))
     assert judged.slip_max == 0.5
@@ -79,7 +92,7 @@ def test_slip_statistics(er24pc):
 
 def test_slip_statistics_match_the_traces(er24pc, stop):
     run = stop("trenitalia", "polach-wet")
-    judged = metrics(run, er24pc, slip_reference=0.14)
+    judged = metrics(run, er24pc, SCENARIO, slip_reference=0.14)
     fast = run.speed > 10 / 3.6
     t, slip = run.time[fast], run.slip[fast, 0]
     span = t[-1] - t[0]
@@ -102,24 +115,56 @@ def test_slip_statistics_match_the_traces(er24pc, stop):
     ],
 )
 def test_valve_switches_and_saturation(er24pc, commands, switches, saturated):
-    judged = metrics(made_up(commands=commands), er24pc, slip_reference=0.14)
+    judged = metrics(made_up(commands=commands), er24pc, SCENARIO, slip_reference=0.14)
     assert judged.valve_switches == switches
     assert judged.saturated_share == saturated
 
 
 def test_a_run_without_standstill_has_no_lag(er24pc):
-    judged = metrics(made_up(ending=Ending.TIME_LIMIT), er24pc, slip_reference=0.14)
+    judged = metrics(made_up(ending=Ending.TIME_LIMIT), er24pc, SCENARIO, slip_reference=0.14)
     assert math.isnan(judged.lag)
     assert math.isnan(judged.plateau)
 
 
-def test_comparison_keeps_the_order_and_tells_its_progress(er24pc, make_controller):
-    from wspd_design.parameters.loading import load_rail
+@pytest.mark.parametrize("rail", ["table10-dry", "polach-wet"])
+@pytest.mark.parametrize("name", ["trenitalia", "afsmc"])
+def test_vented_air_is_what_the_samples_let_out(stop, judged, name, rail):
+    # From the pressure that the controller saw at each sample: fill as (8), (9), then vent; shares of P_max.
+    vented, h, tau = 0.0, 0.1, 0.6
+    for sample in stop(name, rail).samples:
+        start, pressure = sample.time, sample.seen.torque / 60e3
+        filled = solve_ivp(
+            lambda t, p: (1.0 - np.exp(-0.75 * t) - p) / tau,
+            (start, start + sample.fill * h + 1e-12),
+            [pressure],
+            rtol=1e-8,
+            atol=1e-10,
+        ).y[0, -1]
+        vented += filled * (1.0 - np.exp(-sample.vent * h / tau))
+    # The train may come to rest within the last sample.
+    assert judged(name, rail).vented_air == pytest.approx(vented, abs=0.16)
+    assert vented > 1.0
 
+
+@pytest.mark.parametrize("rail", ["table10-dry", "polach-dry", "polach-wet"])
+@pytest.mark.parametrize("name", ["trenitalia", "afsmc", "mitsubishi", "none"])
+def test_nobody_beats_the_bound_or_the_adhesion(judged, name, rail):
+    found = judged(name, rail)
+    assert 0.0 < found.bound < found.distance * (1.0 + 1e-6)
+    assert found.efficiency == found.bound / found.distance
+    assert 0.3 < found.adhesion_utilization < 1.0
+
+
+def test_comparison_keeps_the_order_and_tells_its_progress(er24pc, make_controller):
     told, names = [], ("none", "trenitalia")
     scenario = Scenario(rail=load_rail("table10-dry"), initial_speed=5.0)
     trials = compare(
-        er24pc, [make_controller(n) for n in names], scenario, slip_reference=0.14, progress=told.append
+        er24pc,
+        [make_controller(n) for n in names],
+        scenario,
+        slip_reference=0.14,
+        plant="quarter",
+        progress=told.append,
     )
     assert tuple(t.run.controller for t in trials) == names == tuple(told)
-    assert trials[0].metrics == metrics(trials[0].run, er24pc, slip_reference=0.14)
+    assert trials[0].metrics == metrics(trials[0].run, er24pc, scenario, slip_reference=0.14)
