@@ -1,1 +1,98 @@
-"""Design, prove and validate controllers for railway wheel slide protection."""
+"""Design, prove and validate controllers for railway wheel slide protection.
+
+The names below are loaded when they are first used, so that importing the package costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from wspd_design.analysis.linearization import Linearization, linearize
+    from wspd_design.certificates.records import Certificate, Problem, Status
+    from wspd_design.certificates.suite import verify
+    from wspd_design.controllers.protocol import Command, Controller, Measurement
+    from wspd_design.design.catalog import controller
+    from wspd_design.design.dossier import dossier
+    from wspd_design.design.file import read_design, write_design
+    from wspd_design.design.problem import stability_problem
+    from wspd_design.design.records import Design, Specification
+    from wspd_design.design.selection import design_controller
+    from wspd_design.parameters.errors import UserError
+    from wspd_design.parameters.loading import load_rail, load_vehicle
+    from wspd_design.reporting.report import write_report
+    from wspd_design.simulation.campaign import simulate_many
+    from wspd_design.simulation.comparison import compare, trial
+    from wspd_design.simulation.ideal import ideal_stop
+    from wspd_design.simulation.records import Scenario
+    from wspd_design.simulation.stop import simulate
+
+_HOME = {
+    "Certificate": "certificates.records",
+    "Command": "controllers.protocol",
+    "Controller": "controllers.protocol",
+    "Design": "design.records",
+    "Linearization": "analysis.linearization",
+    "Measurement": "controllers.protocol",
+    "Problem": "certificates.records",
+    "Scenario": "simulation.records",
+    "Specification": "design.records",
+    "Status": "certificates.records",
+    "UserError": "parameters.errors",
+    "compare": "simulation.comparison",
+    "controller": "design.catalog",
+    "design_controller": "design.selection",
+    "dossier": "design.dossier",
+    "ideal_stop": "simulation.ideal",
+    "linearize": "analysis.linearization",
+    "load_rail": "parameters.loading",
+    "load_vehicle": "parameters.loading",
+    "read_design": "design.file",
+    "simulate": "simulation.stop",
+    "simulate_many": "simulation.campaign",
+    "stability_problem": "design.problem",
+    "trial": "simulation.comparison",
+    "verify": "certificates.suite",
+    "write_design": "design.file",
+    "write_report": "reporting.report",
+}
+
+__all__ = [
+    "Certificate",
+    "Command",
+    "Controller",
+    "Design",
+    "Linearization",
+    "Measurement",
+    "Problem",
+    "Scenario",
+    "Specification",
+    "Status",
+    "UserError",
+    "compare",
+    "controller",
+    "design_controller",
+    "dossier",
+    "ideal_stop",
+    "linearize",
+    "load_rail",
+    "load_vehicle",
+    "read_design",
+    "simulate",
+    "simulate_many",
+    "stability_problem",
+    "trial",
+    "verify",
+    "write_design",
+    "write_report",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name from its module."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -7,7 +7,7 @@ import pytest
 from wspd_design.cli.app import run
 from wspd_design.design.file import design_text
 from wspd_design.design.records import Specification
-from wspd_design.design.selection import design
+from wspd_design.design.selection import design_controller
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 
@@ -36,7 +36,9 @@ def wspd(capsys, monkeypatch, tmp_path):
 @pytest.fixture(scope="session")
 def smc_text():
     """Text of a sliding-mode design for the paper's vehicle on the wet rail."""
-    return design_text(design(load_vehicle("er24pc"), load_rail("polach-wet"), Specification(), law="smc"))
+    return design_text(
+        design_controller(load_vehicle("er24pc"), load_rail("polach-wet"), Specification(), law="smc")
+    )
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from wspd_design.controllers.protocol import Controller
 from wspd_design.design.file import read_design
 from wspd_design.design.laws import GAINS_OF
 from wspd_design.design.records import Design, Gain, Specification, vehicle_hash
-from wspd_design.design.selection import design
+from wspd_design.design.selection import design_controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import (
     load_entries,
@@ -82,7 +82,7 @@ def named_design(name: str, vehicle: Vehicle, rail: Rail, specification: Specifi
     """Return the design behind ``afsmc`` (printed gains) or ``smc`` (chosen by the rules), under that name."""
     if name == "afsmc":
         return paper_design(vehicle, rail, specification)
-    return replace(design(vehicle, rail, specification, law="smc"), name=name)
+    return replace(design_controller(vehicle, rail, specification, law="smc"), name=name)
 
 
 def paper_design(vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:

@@ -8,13 +8,14 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from wspd_design.design.laws import GAINS_OF
-from wspd_design.design.records import Design, Gain, Specification
+from wspd_design.design.laws import DIVISORS, FORM_OF, GAINS_OF, PER_RULE
+from wspd_design.design.records import Design, Gain, GainValue, Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
 
 SCHEMA = "wspd-design/1"
 _HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail")
+_FORMS = {float: "one number", bool: "true or false", tuple[float, ...]: "a list of numbers"}
 _SPECIFICATION = {"slip": "-", "speeds": "m/s", "slips": "-", "slip_tolerance": "-", "sample_time": "s"}
 
 
@@ -87,23 +88,40 @@ def read_design(path: str | Path) -> Design:
             )
     gains = _table(document["gains"], "gains", where)
     _check_keys(gains, tuple(GAINS_OF[law]), where, "gains.")
-    return Design(
-        **head,
-        law=law,
-        specification=Specification(**values),
-        gains=tuple(_gain(name, gains[name], where) for name in GAINS_OF[law]),
-    )
+    read = tuple(_gain(name, gains[name], where) for name in GAINS_OF[law])
+    if len({len(gain.value) for gain in read if gain.name in PER_RULE and isinstance(gain.value, tuple)}) > 1:
+        raise UserError(
+            f"{', '.join(f'gains.{name}' for name in PER_RULE)} in {where} must have the same length: "
+            "one number for each fuzzy rule"
+        )
+    return Design(**head, law=law, specification=Specification(**values), gains=read)
 
 
 def _gain(name: str, table: object, where: str) -> Gain:
     entry = _table(table, f"gains.{name}", where)
     _check_keys(entry, ("value", "unit", "why"), where, f"gains.{name}.")
+    value = _value(entry["value"], f"gains.{name}.value in {where}")
+    _check_gain(name, value, where)
     return Gain(
         name=name,
-        value=_value(entry["value"], f"gains.{name}.value in {where}"),
+        value=value,
         unit=_string(entry["unit"], f"gains.{name}.unit in {where}"),
         why=_string(entry["why"], f"gains.{name}.why in {where}"),
     )
+
+
+def _check_gain(name: str, value: GainValue, where: str) -> None:
+    """Refuse a value that the law cannot compute with."""
+    numbers = value if isinstance(value, tuple) else (value,)
+    form = FORM_OF[name]
+    if form is tuple[float, ...]:
+        fits = isinstance(value, tuple) and value and all(isinstance(number, float) for number in value)
+    else:
+        fits = isinstance(value, form)
+    if not fits:
+        raise UserError(f"gains.{name} in {where} must be {_FORMS[form]}")
+    if name in DIVISORS and min(numbers) <= 0.0:
+        raise UserError(f"gains.{name} = {min(numbers):g} in {where} must be above 0")
 
 
 def _table(value: object, name: str, where: str) -> dict[str, Any]:
@@ -143,7 +161,7 @@ def _toml(value: str | float | bool | tuple[float, ...]) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, tuple):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
     return repr(value)

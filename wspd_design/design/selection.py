@@ -20,7 +20,9 @@ ADAPTATION_SHARE = 0.1  # of the brake torque that adaptation may move in one ti
 SWITCHING_RESERVE = 1.02  # on the sampled supremum, which is a lower bound of the true one
 
 
-def design(vehicle: Vehicle, rail: Rail, specification: Specification, *, law: Law = "afsmc") -> Design:
+def design_controller(
+    vehicle: Vehicle, rail: Rail, specification: Specification, *, law: Law = "afsmc"
+) -> Design:
     """Choose the gains of a slip controller.
 
     Parameters

@@ -5,7 +5,7 @@ import pytest
 from wspd_design.cli.case import Wishes, check_law, chosen, resolve, resolve_all, specification
 from wspd_design.design.file import write_design
 from wspd_design.design.records import Specification
-from wspd_design.design.selection import design
+from wspd_design.design.selection import design_controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
@@ -14,7 +14,7 @@ SPECIFICATION = Specification(slip=0.2, slips=(0.02, 0.6), sample_time=0.05)
 
 def written(folder, name="made.toml", vehicle="er24pc", rail="polach-dry"):
     path = folder / name
-    write_design(design(load_vehicle(vehicle), load_rail(rail), SPECIFICATION, law="smc"), path)
+    write_design(design_controller(load_vehicle(vehicle), load_rail(rail), SPECIFICATION, law="smc"), path)
     return str(path)
 
 

@@ -39,6 +39,6 @@ def design(
     locomotive, friction = load_vehicle(vehicle or options.VEHICLE), load_rail(rail or options.RAIL)
     with progress() as tell:
         tell("choosing the gains")
-        made = selection.design(locomotive, friction, wanted, law=chosen)
+        made = selection.design_controller(locomotive, friction, wanted, law=chosen)
     write_design(made, output)
     show_design(made, output)

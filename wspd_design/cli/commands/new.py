@@ -118,7 +118,7 @@ def _design(answers: Answers, target: Path) -> None:
     vehicle, rail = vehicle_and_rail(answers)
     with progress() as tell:
         tell("choosing the gains")
-        made = selection.design(
+        made = selection.design_controller(
             load_vehicle(vehicle), load_rail(rail), wanted(answers), law=check_law(answers["law"])
         )
     write_design(made, target)
