@@ -114,7 +114,7 @@ def _check_gain(name: str, value: GainValue, where: str) -> None:
     """Refuse a value that the law cannot compute with."""
     numbers = value if isinstance(value, tuple) else (value,)
     form = FORM_OF[name]
-    if form is tuple[float, ...]:
+    if form == tuple[float, ...]:
         fits = isinstance(value, tuple) and value and all(isinstance(number, float) for number in value)
     else:
         fits = isinstance(value, form)
