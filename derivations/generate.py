@@ -25,13 +25,14 @@ from derivations import (
     track,
 )
 from derivations.equation_map import equations
-from derivations.map_files import equations_toml, readme
+from derivations.map_files import equations_toml, nomenclature, readme
 from derivations.notation import NOMENCLATURE, Generated
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = Path("wspd_design/model/generated")
 EQUATIONS = Path("wspd_design/data/equations.toml")
 README = Path("derivations/README.md")
+NOMENCLATURE_PAGE = Path("docs/nomenclature.md")
 MODULES: dict[str, ModuleType] = {
     "adaptive_fuzzy": adaptive_fuzzy,
     "adhesion": adhesion,
@@ -150,6 +151,7 @@ def sources() -> dict[Path, str]:
     found = equations()
     files[EQUATIONS] = equations_toml(found)
     files[README] = readme(found)
+    files[NOMENCLATURE_PAGE] = nomenclature()
     return files
 
 
