@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from scipy.integrate import solve_ivp
 
-from wspd_design.model.brake import Valve, braking_torque, pressure_after
+from wspd_design.model.brake import Valve, braking_torque, pressure_after, torque_disturbance
 
 BAR = 1e5
 
@@ -60,3 +60,10 @@ def test_valve_states_are_those_of_table_2():
 def test_torque_is_proportional_to_pressure(er24pc):
     assert braking_torque(er24pc.brake, 6.0 * BAR) == pytest.approx(60e3)
     assert braking_torque(er24pc.brake, 1.5 * BAR) == pytest.approx(15e3)
+
+
+@pytest.mark.parametrize("time", [0.0, 0.03, 0.25, 1.1])
+def test_pad_vibration_is_that_of_section_7(er24pc, time):
+    # T_d = 0.05 T exp(-4 t) sin(10 pi t).
+    printed = 0.05 * math.exp(-4.0 * time) * math.sin(10.0 * math.pi * time)
+    assert torque_disturbance(er24pc.brake, time) == pytest.approx(printed, abs=1e-15)

@@ -10,7 +10,7 @@ import pytest
 
 from wspd_design.model import number
 
-UNARY = [(number.exp, math.exp), (number.atan, math.atan)]
+UNARY = [(number.exp, math.exp), (number.atan, math.atan), (number.sin, math.sin)]
 BINARY = [(number.maximum, max), (number.minimum, min)]
 
 
