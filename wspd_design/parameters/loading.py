@@ -41,6 +41,7 @@ __all__ = [
 
 _Record = TypeVar("_Record")
 
+_SINGULAR = 1e-6  # distance of supply_rate * fill_time from 1, where the filling law is 0/0
 _MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms or to 0.1 t
 
 
@@ -87,6 +88,12 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         raise UserError(
             f"mass = {values['mass']:g} kg in vehicle {parameters.name} must equal body_mass + 2 bogie_mass "
             f"= {parts:g} kg; change the three together."
+        )
+    together = values["brake.supply_rate"] * values["brake.fill_time"]
+    if abs(together - 1.0) < _SINGULAR:
+        raise UserError(
+            f"supply_rate times fill_time = {together:g} of the brake in vehicle {parameters.name} must differ from 1 "
+            "by more than 1e-6: the closed form of the filling is singular there; change one of them a little."
         )
     return _build(
         Vehicle,

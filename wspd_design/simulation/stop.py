@@ -157,6 +157,10 @@ def loop_input(
 def _check(scenario: Scenario, controller: Controller, plant: str) -> None:
     if plant not in PLANTS:
         raise UserError(f'unknown plant "{plant}"; available: {", ".join(PLANTS)}')
+    if not 1e-3 <= controller.sample_time <= 10.0:
+        raise UserError(
+            f"sample time = {controller.sample_time:g} s of controller {controller.name} must lie between 1 ms and 10 s"
+        )
     if not 0.0 <= scenario.sensing.dead_time <= controller.sample_time:
         raise UserError(
             f"dead time = {scenario.sensing.dead_time:g} s must lie between 0 and the sample time "
