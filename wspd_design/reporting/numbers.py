@@ -31,6 +31,15 @@ def significant(value: float, digits: int = 4) -> str:
     return _minus(f"{_trimmed(mantissa)}·10") + str(int(exponent)).translate(_SUPERSCRIPTS)
 
 
+def uncertain(value: float, spread: float, places: int) -> str:
+    """Write a number without digits that it does not have: half of a spread that is not zero goes with it."""
+    if not spread or not math.isfinite(spread):
+        return decimals(value, places)
+    half = spread / 2.0
+    places = min(max(-math.floor(math.log10(half)), 0), places + 2)
+    return f"{decimals(value, places)} ± {decimals(half, places)}"
+
+
 def unit(spelling: str) -> str:
     """Write a unit with superscripts: ``m/s^2`` and ``m/s2`` become ``m/s²``; a ratio has none.
 

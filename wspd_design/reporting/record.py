@@ -81,6 +81,7 @@ def _stop(trial: Trial, lag_distance: float) -> dict[str, Any]:
         "ending": run.ending.name,
         "lag_distance": lag_distance,
         **asdict(trial.metrics),
+        "step_check": asdict(trial.check),
     }
 
 

@@ -6,12 +6,14 @@ import numpy as np
 
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Series, Status
+from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.dossier import Dossier, PhasePlane, Provenance
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.parameters.loading import load_entries
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Run, Sample, Totals
+from wspd_design.simulation.self_check import StepCheck
 
 INITIAL_SPEED = 120.0 / 3.6
 
@@ -40,31 +42,44 @@ def certificate(name: str, status: Status, **changes) -> Certificate:
     return replace(plain, **changes)
 
 
-def trial(controller: str, rail: str = "polach-wet", *, ending: Ending = Ending.STOPPED, **changes) -> Trial:
+def trial(
+    controller: str,
+    rail: str = "polach-wet",
+    *,
+    ending: Ending = Ending.STOPPED,
+    spread: float = 0.0,
+    **changes,
+) -> Trial:
     time = np.linspace(0.0, 10.0, 401)
     speed = INITIAL_SPEED * (1.0 - time / 10.0)
-    slip = 0.14 + 0.1 * np.sin(3.0 * time)
-    wheel_speed = speed * (1.0 - slip) / 0.55
-    wheel_speed[200:240] = 0.0
+    slip = 0.14 + 0.1 * np.sin(3.0 * time[:, np.newaxis] - 0.3 * np.arange(4))
+    wheel_speed = speed[:, np.newaxis] * (1.0 - slip) / 0.55
+    wheel_speed[200:240, 1] = 0.0
     totals = dict.fromkeys(Totals.__dataclass_fields__, 1.0)
+    samples = tuple(
+        Sample(time=0.1 * k, fill=k % 2, vent=1 - k % 2, state=(0.0,), seen=Measurement(20.0, 30.0, 3e4))
+        for k in range(100)
+    )
     run = Run(
         controller=controller,
         vehicle="er24pc",
         rail=rail,
-        plant="quarter",
+        plant="four-axle",
         sample_time=0.1,
         initial_speed=INITIAL_SPEED,
         ending=ending,
         time=time,
         speed=speed,
         distance=np.cumsum(speed) * 0.025,
-        wheel_speed=wheel_speed[:, np.newaxis],
-        slip=slip[:, np.newaxis],
-        torque=(30e3 + 1e4 * np.cos(3.0 * time))[:, np.newaxis],
-        samples=tuple(Sample(time=0.1 * k, fill=k % 2, vent=1 - k % 2, state=(0.0,)) for k in range(100)),
+        wheel_speed=wheel_speed,
+        slip=slip,
+        torque=30e3 + 1e4 * np.cos(3.0 * time[:, np.newaxis] + np.arange(4)),
+        wheel_load=94e3 + 1e4 * np.array([1.5, 0.5, -0.5, -1.5]) * np.ones((401, 1)),
+        axle_samples=(samples,) * 4,
         totals=Totals(**totals),
-        final_wheel_speed=0.0,
+        final_wheel_speeds=(0.0,) * 4,
         slip_max=0.24,
+        engine="by hand",
     )
     figures = Metrics(
         distance=187.65,
@@ -78,10 +93,15 @@ def trial(controller: str, rail: str = "polach-wet", *, ending: Ending = Ending.
         lock_time=0.975,
         saturated_share=1.0,
         valve_switches=99,
+        vented_air=3.21,
+        adhesion_utilization=0.81,
+        bound=174.25,
+        efficiency=0.9286,
         momentum_residual=1.2e-9,
         energy_residual=-3.4e-8,
     )
-    return Trial(run=run, metrics=replace(figures, **changes))
+    check = StepCheck(distance=2e-9, slip=3e-7, refinement=1, chaotic=spread > 0.0, spread=spread)
+    return Trial(run=run, metrics=replace(figures, **changes), check=check)
 
 
 def linearization(speed: float, pole: float) -> Linearization:

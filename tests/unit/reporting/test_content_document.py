@@ -8,10 +8,10 @@ import pytest
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
 from wspd_design.certificates.records import Status
+from wspd_design.design.published import load_table10
 from wspd_design.parameters.errors import UserError
-from wspd_design.reporting.blocks import Figure, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import Bullets, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.numbering import number, parts
-from wspd_design.reporting.published import load_table10
 from wspd_design.reporting.record import SCHEMA, report_record
 from wspd_design.reporting.report import report_document, write_report
 from wspd_design.reporting.sections.comparison import comparison
@@ -146,6 +146,33 @@ def test_the_ranking_says_what_separates_the_stops():
     assert "Between" not in alone
 
 
+def test_chaos_is_told_where_the_numbers_stand():
+    trials = (trial("mine"), trial("mitsubishi", spread=1.8, distance=350.64))
+    document = report_document(sample_dossier(trials=trials), DATE)
+    _, chaotic = _table(document.blocks, "stops-table").rows
+    assert plain(chaotic[1]) == "350.6 ± 0.9"
+    trusted, chaotic = _table(document.blocks, "accuracy-table").rows
+    assert plain(trusted[1].text) == "1/1"
+    assert plain(chaotic[1].text) == "chaotic"
+    assert plain(chaotic[4]) == "1.8"
+    limits = [plain(item) for each in document.blocks if isinstance(each, Bullets) for item in each.items]
+    assert any(item.startswith("A digit that it does not have") and "mitsubishi" in item for item in limits)
+    calm = report_document(sample_dossier(trials=trials[:1]), DATE)
+    said = [plain(item) for each in calm.blocks if isinstance(each, Bullets) for item in each.items]
+    assert not any("A digit" in item for item in said)
+
+
+def test_bound_and_plant_stand_beside_the_stops(document):
+    rows = _table(document.blocks, "stops-table").rows
+    assert [plain(row[2]) for row in rows] == ["92.9"] * 3
+    assert "bound is 174.2 m" in plain(_table(document.blocks, "stops-table").caption)
+    assert "four-axle" in plain(_table(document.blocks, "stops-table").caption)
+    (traces,) = (
+        each for each in document.blocks if isinstance(each, Figure) and each.anchor == "stop-traces"
+    )
+    assert "four-axle" in plain(traces.caption)
+
+
 def test_programs_read_the_same_numbers(document):
     dossier = sample_dossier()
     design, record = document.attachments
@@ -155,6 +182,8 @@ def test_programs_read_the_same_numbers(document):
     assert read["schema"] == SCHEMA == "wspd-report/1"
     assert read["stops"][0]["distance"] == dossier.trials[0].metrics.distance
     assert [each["status"] for each in read["checks"]] == [each.status.name for each in dossier.certificates]
+    assert read["stops"][0]["step_check"]["chaotic"] is False
+    assert read["stops"][0]["bound"] == 174.25
     assert read["parameters"][0]["entries"][0]["name"] == "mass"
 
 

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
 from wspd_design.certificates.records import Series, Status
+from wspd_design.design.published import load_table10
 from wspd_design.reporting.figure_style import figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
 from wspd_design.reporting.figures.phase import phase_planes
 from wspd_design.reporting.figures.poles import pole_map
 from wspd_design.reporting.figures.series import certificate_curves, lyapunov_functions
-from wspd_design.reporting.figures.stop import stop_traces
-from wspd_design.reporting.published import load_table10
+from wspd_design.reporting.figures.stop import LOCK_BAR, stop_traces
 
 DOSSIER = sample_dossier(rail="table10-dry")
 SPECIFICATION = DOSSIER.design.specification
@@ -78,8 +78,9 @@ def test_distances_show_both_parts_and_the_paper():
     for index, (trial, lag) in enumerate(zip(DOSSIER.trials, DOSSIER.lag_distances, strict=True)):
         assert widths[2 * index] == pytest.approx(lag)
         assert widths[2 * index] + widths[2 * index + 1] == pytest.approx(trial.metrics.distance)
-    (mark,) = axes.get_lines()
+    mark, bound = axes.get_lines()
     assert set(mark.get_xdata()) == {184.63}
+    assert set(bound.get_xdata()) == {174.25}
 
 
 def test_the_region_without_stable_equilibrium_is_marked():
@@ -94,11 +95,14 @@ def test_lock_intervals_and_tolerance_are_marked():
     with figure_style():
         figure = DRAWN["stop"](new_figure(height=6.0))
     slip = figure.axes[0]
-    (bars,) = slip.collections
-    bar, _standstill = bars.get_paths()
+    bars = [collection.get_paths() for collection in slip.collections]
     times = DOSSIER.trials[0].run.time
-    assert bar.vertices[:, 0].min() == pytest.approx(times[200])
-    assert bar.vertices[:, 0].max() == pytest.approx(times[239])
+    assert [len(paths) for paths in bars] == [1, 2, 1, 1]  # at standstill all of them
+    locked = bars[1][0].vertices
+    assert locked[:, 0].min() == pytest.approx(times[200])
+    assert locked[:, 0].max() == pytest.approx(times[239])
+    # The second wheelset from the front has the second row from the top.
+    assert locked[:, 1].min() == pytest.approx(1.0 - 2.0 * LOCK_BAR)
     heights = [(patch.get_y(), patch.get_y() + patch.get_height()) for patch in slip.patches]
     assert any(span == pytest.approx((0.09, 0.19)) for span in heights)
 

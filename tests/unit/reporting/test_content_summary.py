@@ -92,11 +92,22 @@ def test_key_numbers_are_those_of_the_records():
     low, high = dossier.design.specification.speeds
     poles = [each.slip_pole for each in dossier.linearizations if low <= each.speed <= high]
     shown = [float(each.value.replace("\N{MINUS SIGN}", "-")) for each in tiles.numbers]
-    wanted = (figures.distance, figures.stopping_time, figures.slip_rms, max(poles))
-    for value, record, places in zip(shown, wanted, (1, 2, 3, 2), strict=True):
+    wanted = (figures.distance, 100.0 * figures.efficiency, figures.slip_rms, max(poles))
+    for value, record, places in zip(shown, wanted, (1, 1, 3, 2), strict=True):
         assert abs(value - record) <= 0.5 * 10.0**-places * 1.0000001
-    assert [each.unit for each in tiles.numbers] == ["m", "s", "", "1/s"]
+    assert [each.unit for each in tiles.numbers] == ["m", "%", "", "1/s"]
+    assert "(four-axle), in 10.00 s" in plain(tiles.numbers[0].note)
+    assert "174.2 m" in plain(tiles.numbers[1].note)
     assert "1/τ = 1.67" in plain(tiles.numbers[3].note)
+
+
+def test_a_chaotic_stop_keeps_only_the_digits_that_it_has():
+    tiles, _ = summary(sample_dossier(trials=(trial("mine", spread=1.8),)))
+    assert isinstance(tiles, KeyNumbers)
+    assert tiles.numbers[0].value == "187.7 ± 0.9"
+    tiles, _ = summary(sample_dossier(trials=(trial("mine", spread=24.0),)))
+    assert isinstance(tiles, KeyNumbers)
+    assert tiles.numbers[0].value == "188 ± 12"
 
 
 def test_the_table_names_every_check_with_its_finding():

@@ -1,13 +1,15 @@
 """The same stop with several controllers."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from wspd_design.design.published import PublishedStop
 from wspd_design.design.records import Specification
-from wspd_design.reporting.figure_style import INK, SERIES
+from wspd_design.reporting import numbers
+from wspd_design.reporting.figure_style import INK, MUTED, SERIES
 from wspd_design.reporting.figures.drawing import note
 from wspd_design.reporting.figures.stop import slip_panel
-from wspd_design.reporting.published import PublishedStop
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
 
@@ -50,7 +52,8 @@ def distance_bars(
                 alpha=0.45,
                 label=None if row else "plateau",
             )
-            note(axes, f"{distance:.1f} m", end, row, xytext=(4, 0), va="center")
+            said = f"{numbers.uncertain(distance, trial.check.spread, 1)} m"
+            note(axes, said, end, row, xytext=(4, 0), va="center")
         else:
             axes.barh(row, distance, color=SERIES[6], height=0.6, alpha=0.4)
             note(axes, f"{distance:.0f} m, still moving", end, row, xytext=(4, 0), va="center")
@@ -58,9 +61,12 @@ def distance_bars(
             axes.plot(
                 [theirs.distance_m] * 2, [row - 0.42, row + 0.42], color=INK, linestyle="-", linewidth=1.6
             )
+    bound = trials[0].metrics.bound
+    if math.isfinite(bound):
+        axes.axvline(bound, color=MUTED, linestyle="--", linewidth=1.0, label="bound")
     axes.set_yticks(range(len(trials)), [trial.run.controller for trial in trials])
     axes.invert_yaxis()
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.0)
     axes.grid(visible=False, axis="y")
     axes.set(xlabel="distance [m]", xlim=(0.0, 1.15 * max(trial.metrics.distance for trial in trials)))
     return figure
@@ -82,7 +88,7 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
     rows = -(-len(trials) // columns)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, trial in zip(grid.flat, trials, strict=False):
-        slip_panel(axes, trial.run, specification, top=1.05)
+        slip_panel(axes, trial.run, specification, top=1.1)
         axes.set_title(trial.run.controller)
         axes.label_outer()
     for axes in grid.flat[len(trials) :]:
@@ -92,6 +98,8 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
         axes.set_xlim(0.0, last)
         axes.tick_params(labelbottom=index + columns >= len(trials))
     figure.supxlabel("time [s]", fontsize="medium")
+    if trials[0].run.slip.shape[1] > 1:
+        figure.legend(*grid.flat[0].get_legend_handles_labels(), loc="outside upper right", ncols=4)
     return figure
 
 
@@ -102,13 +110,14 @@ def distances_alt(trials: Sequence[Trial], lag_distances: Sequence[float]) -> st
         + (f", {lag:.1f} m of it brake build-up" if trial.run.ending is Ending.STOPPED else ", still moving")
         for trial, lag in zip(trials, lag_distances, strict=True)
     )
-    return f"Stopping distances: {'; '.join(said)}."
+    return f"Stopping distances: {'; '.join(said)}; bound {trials[0].metrics.bound:.1f} m."
 
 
 def slips_alt(trials: Sequence[Trial], specification: Specification) -> str:
     """Say in words what the slips show."""
     said = (
-        f"{trial.run.controller} rms {trial.metrics.slip_rms:.3f}, locked {trial.metrics.lock_time:.2f} s"
+        f"{trial.run.controller} rms {trial.metrics.slip_rms:.3f}, a wheelset locked for "
+        f"{trial.metrics.lock_time:.2f} s"
         for trial in trials
     )
     return f"Slip over time about the reference {specification.slip:g}: {'; '.join(said)}."

@@ -1,4 +1,4 @@
-"""One stop over time: slip, speeds, torque and valve command."""
+"""One stop over time: slip, speeds, torque, wheel load and valve command of every wheelset."""
 
 from typing import TYPE_CHECKING
 
@@ -17,11 +17,16 @@ if TYPE_CHECKING:
 
     from wspd_design.simulation.records import Trace
 
+TRAIN = len(SERIES) - 1
+"""Color and line style of the train speed; the wheelsets take the first ones, front to rear."""
+
+LOCK_BAR = 0.02  # of the height of the slip panel, one for each wheelset
+
 
 def stop_traces(
     figure: "Figure", trial: Trial, specification: Specification, *, wheel_radius: float, max_torque: float
 ) -> "Figure":
-    """Draw slip, speeds, torque and the valve command of a stop over one time axis.
+    """Draw slip, speeds, torque, wheel load and the valve command of a stop over one time axis.
 
     Parameters
     ----------
@@ -37,33 +42,22 @@ def stop_traces(
         Of the brake, per wheelset [N m].
     """
     run = trial.run
-    slip, speed, torque, valve = figure.subplots(4, 1, sharex=True, height_ratios=(3.2, 2.2, 2.2, 1.0))
+    slip, speed, torque, load, valve = figure.subplots(
+        5, 1, sharex=True, height_ratios=(3.2, 2.4, 2.2, 1.6, 1.6)
+    )
     slip_panel(slip, run, specification, top=_slip_top(trial, specification))
-    slip.set_title("Slip")
-    curve(speed, run.time, run.speed * KMH, 0, label="train")
-    for wheelset in range(run.wheel_speed.shape[1]):
-        rim = run.wheel_speed[:, wheelset] * wheel_radius * KMH
-        curve(speed, run.time, rim, 1 + wheelset, linewidth=1.0, label=_wheelset("wheel rim", run, wheelset))
-    speed.set(ylabel="speed [km/h]", title="Speed of train and wheel rim", ylim=(0.0, None))
-    speed.legend(loc="upper right")
+    slip.set_title("Slip", pad=16.0)
+    wheelset_legend(slip, run)
+    speed_panel(speed, run, wheel_radius)
+    speed.set_title("Speed of train and wheel rims")
     torque.axhline(max_torque / KILO, color=INK, linestyle="--", linewidth=0.7)
     note(torque, "limit of the brake", run.time[-1], max_torque / KILO, ha="right")
-    for wheelset in range(run.torque.shape[1]):
-        name = _wheelset("torque", run, wheelset)
-        curve(torque, run.time, run.torque[:, wheelset] / KILO, wheelset, label=name)
-    torque.set(
-        ylabel="torque [kN m]", title="Braking torque per wheelset", ylim=(0.0, 1.25 * max_torque / KILO)
-    )
-    times = [sample.time for sample in run.samples] + [float(run.time[-1])]
-    fill = [sample.fill for sample in run.samples]
-    valve.stairs(fill, times, fill=True, color=SERIES[0], alpha=0.6, linewidth=0)
-    valve.set(
-        xlabel="time [s]",
-        ylabel="fill [-]",
-        title="Share of each sample that fills",
-        ylim=(0.0, 1.05),
-        yticks=(0, 1),
-    )
+    torque_panel(torque, run)
+    torque.set(title="Braking torque of each wheelset", ylim=(0.0, 1.25 * max_torque / KILO))
+    load_panel(load, run)
+    load.set_title("Load of one wheel of each wheelset")
+    valve_panel(valve, run)
+    valve.set(xlabel="time [s]", title="Share of each sample that fills, a row from 0 to 1 for each wheelset")
     valve.set_xlim(0.0, float(run.time[-1]))
     return figure
 
@@ -76,16 +70,74 @@ def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: flo
     axes.axhline(reference, color=INK, linestyle="--", linewidth=0.8)
     for wheelset in range(run.slip.shape[1]):
         locked = run.wheel_speed[:, wheelset] <= 0.0
-        # A bar at the top edge: it stays visible when the slip itself has left the picture.
+        # Bars at the top edge, front wheelset first: visible when the slip itself has left the picture.
         axes.broken_barh(
-            _intervals(run.time, locked), (0.96, 0.04), transform=axes.get_xaxis_transform(), color=SERIES[1]
+            _intervals(run.time, locked),
+            (1.0 - LOCK_BAR * (wheelset + 1), 0.8 * LOCK_BAR),
+            transform=axes.get_xaxis_transform(),
+            color=SERIES[wheelset],
+            linewidth=0,
         )
-        curve(axes, run.time, run.slip[:, wheelset], wheelset)
+        curve(axes, run.time, run.slip[:, wheelset], wheelset, linewidth=1.0, label=name(run, wheelset))
     below = run.time[run.speed < JUDGING_SPEED]
     if below.size:
         axes.axvspan(below[0], run.time[-1], color=MUTED, alpha=0.12, linewidth=0)
     axes.set(ylim=(0.0, top), ylabel="slip [-]")
     axes.set_xlim(0.0, float(run.time[-1]))
+
+
+def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
+    """Draw the speed of the train and of each wheel rim."""
+    for wheelset in range(run.wheel_speed.shape[1]):
+        rim = run.wheel_speed[:, wheelset] * wheel_radius * KMH
+        curve(axes, run.time, rim, wheelset, linewidth=1.0)
+    axes.plot(run.time[::20], run.speed[::20] * KMH, color=SERIES[TRAIN], linewidth=1.6, label="train")
+    axes.set(ylabel="speed [km/h]", ylim=(0.0, None))
+    axes.legend(loc="upper right")
+
+
+def torque_panel(axes: "Axes", run: Run) -> None:
+    """Draw the braking torque of each wheelset."""
+    for wheelset in range(run.torque.shape[1]):
+        curve(axes, run.time, run.torque[:, wheelset] / KILO, wheelset, linewidth=1.0)
+    axes.set_ylabel("torque [kN m]")
+
+
+def load_panel(axes: "Axes", run: Run) -> None:
+    """Draw the load of one wheel of each wheelset."""
+    for wheelset in range(run.wheel_load.shape[1]):
+        curve(axes, run.time, run.wheel_load[:, wheelset] / KILO, wheelset, linewidth=1.0)
+    axes.set_ylabel("load [kN]")
+
+
+def valve_panel(axes: "Axes", run: Run) -> None:
+    """Draw the filling share of each sample, one row for each wheelset with the front one on top."""
+    wheelsets = len(run.axle_samples)
+    for wheelset, samples in enumerate(run.axle_samples):
+        floor = 1.25 * (wheelsets - 1 - wheelset)
+        times = [sample.time for sample in samples] + [float(run.time[-1])]
+        fill = [floor + sample.fill for sample in samples]
+        axes.stairs(fill, times, baseline=floor, fill=True, color=SERIES[wheelset], alpha=0.7, linewidth=0)
+    axes.set_yticks(
+        [1.25 * (wheelsets - 1 - wheelset) + 0.5 for wheelset in range(wheelsets)],
+        [str(wheelset + 1) for wheelset in range(wheelsets)],
+    )
+    axes.grid(visible=False, axis="y")
+    axes.set(ylabel="fill [-]", ylim=(0.0, 1.25 * wheelsets))
+
+
+def wheelset_legend(axes: "Axes", run: Run) -> None:
+    """Say above the axes which line is which wheelset, if there are several."""
+    if run.slip.shape[1] > 1:
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=run.slip.shape[1], borderaxespad=0.1)
+
+
+def name(run: Run, wheelset: int) -> str:
+    """Return the name of a wheelset by its place, counted from the front."""
+    last = run.slip.shape[1] - 1
+    if last == 0:
+        return "wheelset"
+    return f"wheelset {wheelset + 1}" + {0: " (front)", last: " (rear)"}.get(wheelset, "")
 
 
 def _intervals(time: "Trace", flags: "NDArray[np.bool_]") -> list[tuple[float, float]]:
@@ -102,22 +154,23 @@ def _intervals(time: "Trace", flags: "NDArray[np.bool_]") -> list[tuple[float, f
 def stop_alt(trial: Trial, specification: Specification) -> str:
     """Say in words what the traces of a stop show."""
     run, figures = trial.run, trial.metrics
+    slips = "; ".join(
+        f"{name(run, wheelset)} at most {run.torque[:, wheelset].max() / KILO:.3g} kN m under "
+        f"{run.wheel_load[:, wheelset].min() / KILO:.3g} to {run.wheel_load[:, wheelset].max() / KILO:.3g} kN "
+        "on a wheel"
+        for wheelset in range(run.slip.shape[1])
+    )
     return (
-        f"Four panels over {figures.stopping_time:.2f} s. Slip: mean {figures.slip_mean:.3f}, largest "
+        f"Five panels over {figures.stopping_time:.2f} s. Slip: mean {figures.slip_mean:.3f}, largest "
         f"{figures.slip_max:.3f}, rms {figures.slip_rms:.3f} about the reference {specification.slip:g}, "
-        f"whose tolerance band of ±{specification.slip_tolerance:g} is shaded. Speed of train and wheel rim "
-        f"from {run.initial_speed * KMH:.4g} km/h to standstill; the wheels are locked for "
-        f"{figures.lock_time:.2f} s. Braking torque per wheelset, at most {run.torque.max() / KILO:.3g} kN "
-        f"m. Filling share of each of the {len(run.samples)} samples; {100.0 * figures.saturated_share:.0f} "
-        "% of them fill or vent throughout."
+        f"whose tolerance band of ±{specification.slip_tolerance:g} is shaded. Speed of train and wheel rims "
+        f"from {run.initial_speed * KMH:.4g} km/h to standstill; a wheelset is locked for at most "
+        f"{figures.lock_time:.2f} s. Braking torque and load: {slips}. Filling share of each of the "
+        f"{len(run.samples)} samples; {100.0 * figures.saturated_share:.0f} % of them fill or vent throughout."
     )
 
 
 def _slip_top(trial: Trial, specification: Specification) -> float:
     """Upper end of the slip axis: what happens above the judging speed fits."""
-    wanted = max(1.15 * trial.metrics.slip_max, specification.slip + 2.0 * specification.slip_tolerance)
-    return min(wanted, 1.05)
-
-
-def _wheelset(name: str, run: Run, index: int) -> str:
-    return name if run.slip.shape[1] == 1 else f"{name} {index + 1}"
+    wanted = max(1.2 * trial.metrics.slip_max, specification.slip + 2.0 * specification.slip_tolerance)
+    return min(wanted, 1.1)

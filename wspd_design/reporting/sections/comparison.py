@@ -3,11 +3,20 @@
 from functools import partial
 
 from wspd_design.design.dossier import Dossier
+from wspd_design.design.published import PublishedStop, load_table10
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Column, Figure, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import (
+    Block,
+    Cell,
+    Column,
+    Figure,
+    Heading,
+    Paragraph,
+    Status,
+    Table,
+)
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all, slips_alt
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
-from wspd_design.reporting.published import PublishedStop, load_table10
 from wspd_design.reporting.text import CodeSpan, Text
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
@@ -29,13 +38,15 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
         Figure(
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
             caption="Stopping distances. Dark: initial speed times lag, what the brake build-up costs; "
-            f"light: the rest, at the plateau deceleration.{marked}",
+            f"light: the rest, at the plateau deceleration. Dashed: the bound of "
+            f"{numbers.decimals(trials[0].metrics.bound, 1)} m, which no controller can beat.{marked}",
             alt=distances_alt(trials, dossier.lag_distances),
             anchor="distances",
         ),
         Paragraph(text=_ranking(dossier)),
         _stops(trials),
         _efforts(trials),
+        _accuracy(trials),
     ]
     if published:
         found.append(_table10(trials, published))
@@ -45,8 +56,8 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
                 partial(slip_of_all, trials=trials, specification=specification),
                 height=0.4 + ROW_HEIGHT * rows,
             ),
-            caption="Slip with each controller, on the same axes; bars at the upper edge mark a locked "
-            "wheel.",
+            caption="Slip of the wheelsets with each controller, on the same axes. Bars at the upper edge mark "
+            "locked wheels, the front wheelset on top.",
             alt=slips_alt(trials, specification),
             anchor="slips",
         )
@@ -105,6 +116,7 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
         columns=(
             Column(title="Controller"),
             Column(title="Distance", unit="m", align="right"),
+            Column(title="Efficiency", unit="%", align="right"),
             Column(title="Time", unit="s", align="right"),
             Column(title="Lag", unit="s", align="right"),
             Column(title="Plateau", unit="m/s²", align="right"),
@@ -116,7 +128,8 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
         rows=tuple(
             (
                 each.run.controller + ("" if each.run.ending is Ending.STOPPED else ", still moving"),
-                numbers.decimals(each.metrics.distance, 1),
+                numbers.uncertain(each.metrics.distance, each.check.spread, 1),
+                numbers.decimals(100.0 * each.metrics.efficiency, 1),
                 numbers.decimals(each.metrics.stopping_time, 2),
                 numbers.decimals(each.metrics.lag, 2),
                 numbers.decimals(each.metrics.plateau, 2),
@@ -127,8 +140,10 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
             )
             for each in trials
         ),
-        caption="Stops; this design first. Slip about its reference above 10 km/h. Lag 2 d/v0 − t and plateau "
-        "v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
+        caption=f"Stops of the {trials[0].run.plant} locomotive; this design first. The bound is "
+        f"{numbers.decimals(trials[0].metrics.bound, 1)} m, efficiency is bound over distance. Slip of all "
+        "wheelsets about its reference above 10 km/h; locked: the wheelset that is locked longest. Lag "
+        "2 d/v0 − t and plateau v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
         anchor="stops-table",
     )
 
@@ -137,26 +152,61 @@ def _efforts(trials: tuple[Trial, ...]) -> Table:
     return Table(
         columns=(
             Column(title="Controller"),
+            Column(title="Adhesion used", unit="%", align="right"),
             Column(title="Torque integral", unit="kN m s", align="right"),
+            Column(title="Air vented", unit="cylinders", align="right"),
             Column(title="Saturated samples", unit="%", align="right"),
             Column(title="Valve switches", align="right"),
+        ),
+        rows=tuple(
+            (
+                each.run.controller,
+                numbers.decimals(100.0 * each.metrics.adhesion_utilization, 1),
+                numbers.decimals(each.metrics.torque_integral / KILO, 1),
+                numbers.decimals(each.metrics.vented_air, 2),
+                numbers.decimals(100.0 * each.metrics.saturated_share, 0),
+                str(each.metrics.valve_switches),
+            )
+            for each in trials
+        ),
+        caption="Effort of the same stops. Adhesion used: creep force over that of the adhesion peak, over the "
+        "whole stop with its build-up. Air vented: full brake cylinders per wheelset. Torque integral: sum of "
+        "the wheelsets, a balance of momentum and no measure of air.",
+        anchor="efforts-table",
+    )
+
+
+def _accuracy(trials: tuple[Trial, ...]) -> Table:
+    return Table(
+        columns=(
+            Column(title="Controller"),
+            Column(title="Steps"),
+            Column(title="Distance, half steps", unit="relative", align="right"),
+            Column(title="Slip, half steps", unit="-", align="right"),
+            Column(title="Spread", unit="m", align="right"),
             Column(title="Momentum residual", unit="-", align="right"),
             Column(title="Energy residual", unit="-", align="right"),
         ),
         rows=tuple(
             (
                 each.run.controller,
-                numbers.decimals(each.metrics.torque_integral / KILO, 1),
-                numbers.decimals(100.0 * each.metrics.saturated_share, 0),
-                str(each.metrics.valve_switches),
+                Cell(status=Status.UNDECIDED, text="chaotic")
+                if each.check.chaotic
+                else Cell(status=Status.GOOD, text=f"1/{each.check.refinement}"),
+                numbers.significant(each.check.distance, 2),
+                numbers.significant(each.check.slip, 2),
+                numbers.significant(each.check.spread, 2) if each.check.chaotic else numbers.NONE,
                 numbers.significant(each.metrics.momentum_residual, 2),
                 numbers.significant(each.metrics.energy_residual, 2),
             )
             for each in trials
         ),
-        caption="Effort and balances of the same stops. The residuals are what the balances of momentum and "
-        "energy miss, relative to their initial values: they judge the simulation, not the controller.",
-        anchor="efforts-table",
+        caption="How far the simulation can be trusted: what half as long steps change in the distance and at "
+        "most in the slip at any sample above 0.3 m/s, after steps of the usual length divided as stated. A "
+        "chaotic closed loop amplifies the last digits, so that no step makes it accurate: its spread is the "
+        "range of the distance over initial speeds that differ by millionths. The residuals are what the "
+        "balances of momentum and energy miss, relative to their initial values.",
+        anchor="accuracy-table",
     )
 
 
@@ -169,7 +219,7 @@ def _table10(trials: tuple[Trial, ...], published: dict[str, PublishedStop]) -> 
                 (
                     each.run.controller,
                     numbers.decimals(theirs.distance_m, 2),
-                    numbers.decimals(each.metrics.distance, 2),
+                    numbers.uncertain(each.metrics.distance, each.check.spread, 2),
                     numbers.decimals(theirs.stopping_time_s, 1),
                     numbers.decimals(each.metrics.stopping_time, 1),
                     numbers.decimals(theirs.torque_integral_kNms, 2),

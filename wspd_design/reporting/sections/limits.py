@@ -1,8 +1,10 @@
 """What the report does not show, and how to make it again."""
 
 from wspd_design.design.dossier import Dossier
+from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
 from wspd_design.reporting.text import CodeSpan, Text, rich
+from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Run
 
 EVERYWHERE: tuple[str, ...] = (
@@ -19,18 +21,34 @@ EVERYWHERE: tuple[str, ...] = (
 
 OF_PLANT = {
     "quarter": "One wheelset stands for all four, with the same load: weight transfer, and wheelsets that "
-    "slide differently, are not shown."
+    "slide differently, are not shown.",
+    "four-axle": "Body and bogies pitch about a quasi-static weight transfer; suspension, lateral motion and "
+    "curves are not modeled.",
 }
 
 
 def limits(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about limits."""
     run: Run = dossier.trials[0].run
-    items: list[Text] = [OF_PLANT[run.plant]] if run.plant in OF_PLANT else []
+    items: list[Text] = [OF_PLANT[run.plant], *_chaos(dossier.trials)]
     return (
         Heading(text="What this report does not show", anchor="limits"),
         Bullets(items=(*items, *EVERYWHERE)),
     )
+
+
+def _chaos(trials: tuple[Trial, ...]) -> list[Text]:
+    """Name the stops that have fewer digits than a table could print."""
+    chaotic = [each for each in trials if each.check.chaotic]
+    if not chaotic:
+        return []
+    named = numbers.listing(
+        [f"{each.run.controller} by {numbers.significant(each.check.spread, 2)} m" for each in chaotic]
+    )
+    return [
+        "A digit that it does not have: some closed loops amplify the last digits of anything, so that "
+        f"initial speeds that differ by millionths spread the distance: {named}."
+    ]
 
 
 def provenance(dossier: Dossier) -> tuple[Definition, ...]:

@@ -10,7 +10,7 @@ from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.series import lyapunov_functions, series_alt
-from wspd_design.reporting.figures.stop import stop_alt, stop_traces
+from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.sections.checks import check_anchor
 from wspd_design.reporting.text import Inline, Link, rich
 from wspd_design.simulation.stop import JUDGING_SPEED
@@ -30,19 +30,23 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"From {start} km/h on {run.rail}, sampled every {run.sample_time * 1e3:g} ms: "
-            f"{run.ending.value}, after {numbers.decimals(figures.distance, 1)} m and "
-            f"{numbers.decimals(figures.stopping_time, 2)} s. Above {judged} km/h the mean slip is "
-            f"{numbers.decimals(figures.slip_mean, 3)} and the largest "
-            f"{numbers.decimals(figures.slip_max, 3)}; the wheels are locked for "
-            f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and the valve changes its state "
+            text=f"The {run.plant} locomotive from {start} km/h on {run.rail}, sampled every "
+            f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
+            f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
+            f"{numbers.decimals(figures.stopping_time, 2)} s. The bound is "
+            f"{numbers.decimals(figures.bound, 1)} m: what a brake with the same build-up needs that holds "
+            "every wheelset at the adhesion peak. Above "
+            f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
+            f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
+            f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
             f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
             "the samples it fills or vents throughout; a relay would do so in all."
         ),
         Figure(
-            svg=picture(draw, height=7.0),
-            caption="The stop over time. Green: tolerance about the reference (dashed). Gray: below "
-            f"{judged} km/h, where the slip is not judged. A bar at the upper edge marks a locked wheel.",
+            svg=picture(draw, height=8.6),
+            caption=f"The stop over time, {run.plant} locomotive. Green: tolerance about the reference "
+            f"(dashed). Gray: below {judged} km/h, where the slip is not judged. Bars at the upper edge of the "
+            "slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
         ),
@@ -52,9 +56,9 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
                 height=3.0,
             ),
             caption=rich(
-                "Phase planes of the stop above 10 km/h. Left: what the law steers, at its samples; on the "
-                "dashed surface the error would decay, and the band is the boundary layer. Right: slip and "
-                "torque of the wheel; closed loops are a limit cycle of slip and valve."
+                f"Phase planes of the {name(run, 0)} above 10 km/h. Left: what the law steers, at its "
+                "samples; on the dashed surface the error would decay, and the band is the boundary layer. "
+                "Right: slip and torque of the wheel; closed loops are a limit cycle of slip and valve."
             ),
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",

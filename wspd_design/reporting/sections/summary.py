@@ -87,13 +87,16 @@ def _stop(dossier: Dossier) -> tuple[str, bool]:
     """Say how the design's own stop went, and whether it kept to the specification."""
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
-    start = f"The simulated stop from {numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+    start = (
+        f"The simulated stop of the {run.plant} locomotive from "
+        f"{numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+    )
     if run.ending is not Ending.STOPPED:
         return f"{start} does not end: {run.ending.value}.", False
     inside = figures.slip_rms <= specification.slip_tolerance
     side = "within" if inside else "beyond"
     said = (
-        f"{start} takes {numbers.decimals(figures.distance, 1)} m; the slip is off its reference of "
+        f"{start} takes {numbers.uncertain(figures.distance, own.check.spread, 1)} m; the slip is off its reference of "
         f"{specification.slip:g} by {numbers.decimals(figures.slip_rms, 3)} rms, {side} the tolerance of "
         f"{specification.slip_tolerance:g}."
     )
@@ -119,16 +122,17 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
     return (
         KeyNumber(
             label="Stopping distance" if stopped else "Distance, still moving",
-            value=numbers.decimals(figures.distance, 1),
+            value=numbers.uncertain(figures.distance, own.check.spread, 1),
             unit="m",
-            note=start,
+            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 2)} s: "
+            f"{numbers.decimals(figures.lag, 2)} s of build-up, then "
+            f"{numbers.decimals(figures.plateau, 2)} m/s²",
         ),
         KeyNumber(
-            label="Stopping time" if stopped else "Time, still moving",
-            value=numbers.decimals(figures.stopping_time, 2),
-            unit="s",
-            note=f"{numbers.decimals(figures.lag, 2)} s of build-up, then "
-            f"{numbers.decimals(figures.plateau, 2)} m/s²",
+            label="Efficiency",
+            value=numbers.decimals(100.0 * figures.efficiency, 1),
+            unit="%",
+            note=f"of the bound, {numbers.decimals(figures.bound, 1)} m: no controller stops shorter",
         ),
         KeyNumber(
             label=f"Slip rms above {numbers.quantity_in(JUDGING_SPEED, 'km/h')}",
