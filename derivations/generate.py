@@ -25,7 +25,7 @@ from derivations import (
     track,
 )
 from derivations.equation_map import equations
-from derivations.map_files import equations_toml, nomenclature, readme
+from derivations.map_files import equations_toml, nomenclature, readme, theory
 from derivations.notation import NOMENCLATURE, Generated
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -33,6 +33,7 @@ PACKAGE = Path("wspd_design/model/generated")
 EQUATIONS = Path("wspd_design/data/equations.toml")
 README = Path("derivations/README.md")
 NOMENCLATURE_PAGE = Path("docs/nomenclature.md")
+THEORY_PAGE = Path("docs/theory.md")
 MODULES: dict[str, ModuleType] = {
     "adaptive_fuzzy": adaptive_fuzzy,
     "adhesion": adhesion,
@@ -152,6 +153,7 @@ def sources() -> dict[Path, str]:
     files[EQUATIONS] = equations_toml(found)
     files[README] = readme(found)
     files[NOMENCLATURE_PAGE] = nomenclature()
+    files[THEORY_PAGE] = theory()
     return files
 
 
