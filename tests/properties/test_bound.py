@@ -1,0 +1,65 @@
+"""No controller stops shorter than the bound, whatever rail, mass, seed and noise."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.records import Rail
+from wspd_design.simulation.ideal import ideal_stop
+from wspd_design.simulation.records import Scenario, Sensing
+from wspd_design.simulation.stop import simulate
+
+CONTROLLERS = ("afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
+
+rails = st.builds(
+    Rail,
+    name=st.just("random"),
+    mu0=st.floats(0.05, 0.6),
+    friction_ratio=st.floats(0.2, 1.0),
+    friction_decay=st.floats(0.0, 0.8),
+    adhesion_reduction=st.floats(0.3, 1.0),
+    slip_reduction=st.floats(0.05, 0.3),
+    mu0_bounds=st.just((0.05, 0.6)),
+)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    rail=rails,
+    share=st.floats(0.8, 1.2),
+    name=st.sampled_from(CONTROLLERS),
+    seed=st.integers(0, 1000),
+    noise=st.floats(0.0, 0.5),
+    plant=st.sampled_from(("four-axle", "quarter")),
+)
+def test_no_controller_beats_the_bound(make_controller, rail, share, name, seed, noise, plant):
+    vehicle = load_vehicle("er24pc")
+    mass = share * vehicle.mass
+    vehicle = replace(vehicle, mass=mass, body_mass=mass - 2.0 * vehicle.bogie_mass)
+    scenario = Scenario(rail=rail, initial_speed=70.0 / 3.6, seed=seed, sensing=Sensing(speed_noise=noise))
+    run = simulate(vehicle, make_controller(name), scenario, plant=plant)
+    bound = ideal_stop(vehicle, replace(scenario, sensing=Sensing()), plant=plant)
+    assert run.totals.distance >= bound.distance * (1.0 - 1e-4)
+
+
+def test_a_brake_of_more_torque_would_beat_it(er24pc, make_controller):
+    """The bound knows the brake: with twice the torque a stop is shorter than the bound of the weaker brake."""
+    strong = replace(er24pc, brake=replace(er24pc.brake, max_torque=2.0 * er24pc.brake.max_torque))
+    scenario = Scenario(
+        rail=load_rail("table10-dry"), initial_speed=70.0 / 3.6
+    )  # locked wheels are at the peak
+    run = simulate(strong, make_controller("none"), scenario)
+    assert run.totals.distance < ideal_stop(er24pc, scenario).distance
+
+
+@pytest.mark.parametrize("plant", ["four-axle", "quarter"])
+def test_full_torque_at_once_and_the_peak_are_shortest(er24pc, plant):
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=120.0 / 3.6)
+    at_once, peak, held = (
+        ideal_stop(er24pc, scenario, plant=plant, **how).distance
+        for how in ({"instantaneous": True}, {}, {"slip": 0.14})
+    )
+    assert at_once < peak < held
