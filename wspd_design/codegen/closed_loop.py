@@ -115,7 +115,7 @@ class LoopOutput:
     lane_totals: dict[str, "Array"]  # (lanes,) each
     stop_totals: dict[str, "Array"]  # (stops,) each
     wheel_speeds: "Array"  # (lanes,)
-    trace: "Array"  # (rows, 3 + 5 axles)
+    trace: "Array"  # (rows, 3 + 5 axles), of the first stop
     samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
     bad_command: tuple[float, float, float]  # time, fill, vent
     steps: int
@@ -153,9 +153,9 @@ class ClosedLoop:
     def _begin(self, given: LoopInput) -> tuple[Any, "Array", list[Any]]:
         import numpy as np
 
-        buffer = ctypes.create_string_buffer(self._library.wspd_size())
+        buffer = _aligned(self._library.wspd_size())
         head = _Head.from_buffer(buffer)
-        trace = np.zeros((given.trace_rows, 3 + 5 * AXLES * self.stops))
+        trace = np.zeros((given.trace_rows, 3 + 5 * AXLES))
         head.set = given.settings
         head.quantum, head.reference_factor = given.quantum, given.reference_factor
         head.trace_rows = given.trace_rows
@@ -316,15 +316,26 @@ def closed_loop_source(
         "OFFSET": PARAMETERS.index(("surroundings", "axle_offset")),
         "FIRST_RAIL": next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail"),
     }
+    for name in ("stop_constants", "lane_constants", "window_constants"):
+        places[name.upper()] = getattr(kernels, name).size1_out(0)
     folder = files("wspd_design").joinpath("codegen", "templates")
-    lanes = f"({AXLES} * STOPS)"
     parts = [f"#define {name} {value}\n" for name, value in places.items()]
     parts.append(folder.joinpath("elementary.h").read_text())
-    parts += [emit(kernels.loads, "STOPS"), emit(kernels.train, "STOPS")]
-    per_lane = (kernels.condition, kernels.axle, kernels.actuator, kernels.start, kernels.step)
-    parts += [emit(kernel, lanes) for kernel in per_lane]
+    lanes, twice = f"({AXLES} * STOPS)", f"(2 * {AXLES} * STOPS)"  # twice: middle and end of a step at once
+    groups = {
+        "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
+        lanes: (kernels.lane_constants, kernels.condition, kernels.axle, kernels.start, kernels.step),
+        twice: (kernels.window_constants, kernels.actuator),
+    }
+    parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
     parts.append(folder.joinpath("closed_loop.c").read_text())
     return "".join(parts), kernels.states
+
+
+def _aligned(size: int) -> Any:
+    """Memory whose address is a multiple of the widest vector, as the C structure expects."""
+    memory = ctypes.create_string_buffer(size + 64)
+    return (ctypes.c_char * size).from_buffer(memory, -ctypes.addressof(memory) % 64)
 
 
 def _pointer(array: "Array") -> Any:

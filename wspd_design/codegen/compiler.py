@@ -7,19 +7,19 @@ library is compiled again, in the end to a temporary folder.
 import ctypes
 import hashlib
 import os
+import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
 # No -ffast-math: in the link step it switches flush-to-zero on for the whole Python process. Without contraction
 # the bits do not depend on the instruction set.
-FLAGS = (
+PORTABLE_FLAGS = (
     "-O3",
-    "-march=native",
-    "-mprefer-vector-width=512",
     "-fno-math-errno",
     "-fno-trapping-math",
     "-ffp-contract=off",
@@ -28,6 +28,8 @@ FLAGS = (
     "-shared",
     "-std=gnu11",
 )
+# Not every machine knows the first two.
+FLAGS = ("-march=native", "-mprefer-vector-width=512", *PORTABLE_FLAGS)
 
 
 class NoCompilerError(RuntimeError):
@@ -35,18 +37,22 @@ class NoCompilerError(RuntimeError):
 
 
 @cache
-def find_compiler() -> str | None:
-    """Return the C compiler: the environment's CC, then cc, gcc, clang; None without one."""
-    for name in (os.environ.get("CC"), "cc", "gcc", "clang"):
-        if name and (path := shutil.which(name)):
-            return path
+def find_compiler() -> tuple[str, ...] | None:
+    """Return the command of the C compiler: the environment's CC, then cc, gcc, clang; None without one."""
+    for command in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
+        name, *options = shlex.split(command) or ("",)
+        if path := shutil.which(name):
+            return (path, *options)
     return None
 
 
 def cache_folder() -> Path:
     """Return the user's cache folder for compiled code."""
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "wspd_design"
+    base = os.environ.get("XDG_CACHE_HOME")
+    try:
+        return (Path(base) if base else Path.home() / ".cache") / "wspd_design"
+    except RuntimeError as error:  # a user without a home
+        raise OSError(str(error)) from error
 
 
 def load_library(source: str) -> ctypes.CDLL:
@@ -60,43 +66,54 @@ def load_library(source: str) -> ctypes.CDLL:
     compiler = find_compiler()
     if compiler is None:
         raise NoCompilerError("no C compiler: neither CC nor cc, gcc or clang is installed")
-    name = _key(source, compiler) + ".so"
-    for folder in (_prepared(cache_folder()), None):
-        if folder is None:
-            return _compile_aside(source, compiler)
+    try:
+        return _from_cache(source, compiler) or _compile_aside(source, compiler)
+    except OSError as error:
+        raise NoCompilerError(f"the C compiler {compiler[0]} cannot be used: {error}") from error
+
+
+def _from_cache(source: str, compiler: tuple[str, ...]) -> ctypes.CDLL | None:
+    """Take the library from the cache, or put it there; None where that fails."""
+    name = f"{_key(source, compiler)}.so"
+    target = None
+    try:
+        folder = cache_folder()
         target = folder / name
-        try:
-            if not target.exists():
-                _compile_to(target, source, compiler)
-            return _loaded(target)
-        except OSError:
-            # A damaged or unreadable file, or no space: once more, away from the cache.
-            target.unlink(missing_ok=True)
-    raise AssertionError("unreachable")
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        if not target.exists():
+            _compile_to(target, source, compiler)
+        return _loaded(target)
+    except OSError:
+        # No folder, no space, or a damaged or unreadable file: the next run shall compile it again.
+        if target is not None:
+            with suppress(OSError):
+                target.unlink(missing_ok=True)
+        return None
 
 
-def _compile_aside(source: str, compiler: str) -> ctypes.CDLL:
+def _compile_aside(source: str, compiler: tuple[str, ...]) -> ctypes.CDLL:
     with tempfile.TemporaryDirectory(prefix="wspd-") as folder:
         target = Path(folder) / "closed_loop.so"
         _compile_to(target, source, compiler)
         return _loaded(target)  # stays mapped after the file is gone
 
 
-def _compile_to(target: Path, source: str, compiler: str) -> None:
+def _compile_to(target: Path, source: str, compiler: tuple[str, ...]) -> None:
     """Compile under a temporary name and rename, so that no other process sees half a library."""
     with tempfile.TemporaryDirectory(prefix=".build-", dir=target.parent) as folder:
         text, library = Path(folder) / "closed_loop.c", Path(folder) / "closed_loop.so"
-        text.write_text(source)
-        command = [compiler, *FLAGS, str(text), "-o", str(library), "-lm"]
-        result = subprocess.run(command, capture_output=True, text=True, check=False)
-        if result.returncode != 0:
-            first = next(iter(result.stderr.splitlines()), "")
-            raise NoCompilerError(f"{compiler} failed: {first}")
-        digest = hashlib.sha256(library.read_bytes()).hexdigest()
-        check = target.with_suffix(".sha256")
+        text.write_text(source, encoding="utf-8")
+        for flags in (FLAGS, PORTABLE_FLAGS):
+            command = [*compiler, *flags, str(text), "-o", str(library), "-lm"]
+            result = subprocess.run(command, capture_output=True, text=True, check=False)
+            if result.returncode == 0 and library.exists():
+                break
+        else:
+            reason = next(iter(result.stderr.splitlines()), f"exit code {result.returncode}")
+            raise NoCompilerError(f"the C compiler {compiler[0]} failed: {reason}")
         written = Path(folder) / "sha256"
-        written.write_text(digest)
-        os.replace(written, check)
+        written.write_text(hashlib.sha256(library.read_bytes()).hexdigest())
+        os.replace(written, target.with_suffix(".sha256"))
         os.replace(library, target)
 
 
@@ -108,19 +125,10 @@ def _loaded(target: Path) -> ctypes.CDLL:
     return ctypes.CDLL(str(target))
 
 
-def _prepared(folder: Path) -> Path | None:
-    """Make the cache folder; None where it cannot be used."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-    except OSError:
-        return None
-    return folder if os.access(folder, os.W_OK | os.X_OK) else None
-
-
 @cache
-def _machine(compiler: str) -> str:
+def _machine(compiler: tuple[str, ...]) -> str:
     """What the compiled code depends on beside its source: compiler and instruction set."""
-    version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=False).stdout
+    version = subprocess.run([*compiler, "--version"], capture_output=True, text=True, check=False).stdout
     features = ""
     if sys.platform == "linux":
         lines = Path("/proc/cpuinfo").read_text().splitlines()
@@ -128,5 +136,7 @@ def _machine(compiler: str) -> str:
     return f"{version}\n{features}\n{sys.platform}"
 
 
-def _key(source: str, compiler: str) -> str:
-    return hashlib.sha256("\n".join((source, *FLAGS, _machine(compiler))).encode()).hexdigest()[:32]
+def _key(source: str, compiler: tuple[str, ...]) -> str:
+    return hashlib.sha256("\n".join((source, *FLAGS, *compiler, _machine(compiler))).encode()).hexdigest()[
+        :32
+    ]

@@ -12,7 +12,8 @@ _COMPARISONS = {"OP_LT": "<", "OP_LE": "<=", "OP_EQ": "==", "OP_NE": "!=", "OP_A
 _CALLS = {
     "OP_EXP": "wspd_exp({0})",
     "OP_LOG": "wspd_log({0})",
-    "OP_ATAN": "wspd_atan({0})",
+    "OP_ATAN": "wspd_atan2({0}, 1.0)",
+    "OP_ATAN2": "wspd_atan2({0}, {1})",
     "OP_SIN": "wspd_sin({0})",
     "OP_POW": "wspd_exp({1} * wspd_log({0}))",
     "OP_CONSTPOW": "wspd_exp({1} * wspd_log({0}))",

@@ -8,10 +8,11 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
 from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.hoisting import hoist
 from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.model import brake as brake_model
 from wspd_design.model.generated import brake as generated
-from wspd_design.model.number import maximum, minimum
+from wspd_design.model.number import maximum, minimum, where
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
 from wspd_design.plants import four_axle
 from wspd_design.plants.four_axle import AXLES, AxleCondition, Pitch
@@ -64,15 +65,17 @@ def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -
 
 
 class Kernels(NamedTuple):
-    """CasADi functions of dense vectors; the first input of a plant kernel is the parameter vector."""
+    """CasADi functions of dense vectors; the first inputs of a plant kernel are the constants made for it."""
 
-    loads: Any  # (p, pitch[6]) -> wheel load[4]
-    condition: Any  # (p, [time, load]) -> [stiffness, damping]
-    axle: Any  # (p, [speed, wheel speed, load, torque, stiffness, damping]) -> [force, acceleration, slip, damping]
-    train: Any  # (p, [speed, force[4], pitch[6]]) -> [acceleration, resistance, pitch'[6]]
-    actuator: (
-        Any  # (p, [time, start, start pressure, fill end, vent end]) -> [pressure, torque, filled pressure]
-    )
+    stop_constants: Any  # (p) -> constants of loads and train
+    lane_constants: Any  # (p) -> constants of condition and axle
+    window_constants: Any  # (p, [start, start pressure, fill end, vent end]) -> constants of actuator
+    loads: Any  # (constants, pitch[6]) -> wheel load[4]
+    train: Any  # (constants, speed, force[4], pitch[6]) -> acceleration, resistance, pitch'[6]
+    condition: Any  # (constants, time, load) -> [stiffness, damping]
+    axle: Any  # (constants, speed, wheel speed, load, torque, locked, [stiffness, damping])
+    #           -> force, wheel acceleration, slip, damping torque, torque that is passed on
+    actuator: Any  # (constants, time) -> pressure, torque, pressure without venting
     start: Any  # ([speed, wheel speed, torque]) -> state
     step: Any  # (state, [speed, wheel speed, torque]) -> [state, fill, vent]
     states: int  # length of the controller state
@@ -99,62 +102,86 @@ def closed_loop_kernels(
     )
     track = replace(rail, **symbols["rail"])
 
-    pitch = ca.SX.sym("pitch", 6)
-    loads = four_axle.wheel_loads(loco, Pitch(*(pitch[i] for i in range(6))))
+    plant = _plant_functions(loco, track, p, symbols["surroundings"]["grade_force"], disturbed)
+    stop_constants, (loads, train) = hoist(plant[:2], 1, "stop_constants")
+    lane_constants, (condition, axle) = hoist(plant[2:4], 1, "lane_constants")
+    window_constants, (actuator,) = hoist(plant[4:], 2, "window_constants")
+    start, step, states = _controller_kernels(controller)
+    return Kernels(
+        stop_constants=stop_constants,
+        lane_constants=lane_constants,
+        window_constants=window_constants,
+        loads=loads,
+        train=train,
+        condition=condition,
+        axle=axle,
+        actuator=actuator,
+        start=start,
+        step=step,
+        states=states,
+    )
 
-    c = ca.SX.sym("c", 2)
-    condition = four_axle.axle_condition(loco, time=c[0], wheel_load=c[1])
 
-    x = ca.SX.sym("x", 6)
+def _plant_functions(loco: Vehicle, track: Rail, p: Any, grade_force: Any, disturbed: bool) -> list[Any]:
+    """Trace the plant; the first input of every function is the parameter vector."""
+    import casadi as ca
+
+    speed, wheel_speed, load, demand, locked, time = (
+        ca.SX.sym(name) for name in ("speed", "wheel_speed", "load", "torque", "locked", "time")
+    )
+    held, force, pitch = ca.SX.sym("condition", 2), ca.SX.sym("force", AXLES), ca.SX.sym("pitch", 6)
+    motions = Pitch(*(pitch[i] for i in range(6)))
+    loads = four_axle.wheel_loads(loco, motions)
+    train = four_axle.train_motion(
+        loco,
+        speed=speed,
+        creep_forces=tuple(force[i] for i in range(AXLES)),
+        pitch=motions,
+        grade_force=grade_force,
+    )
+    condition = four_axle.axle_condition(loco, time=time, wheel_load=load)
     axle = four_axle.axle_motion(
         loco,
         track,
-        speed=x[0],
-        wheel_speed=x[1],
-        wheel_load=x[2],
-        torque=x[3],
-        condition=AxleCondition(stiffness=x[4], damping=x[5]),
+        speed=speed,
+        wheel_speed=wheel_speed,
+        wheel_load=load,
+        torque=demand,
+        condition=AxleCondition(stiffness=held[0], damping=held[1]),
     )
-    outputs = (axle.creep_force, axle.wheel_acceleration, axle.slip, axle.damping_torque)
-
-    y = ca.SX.sym("y", 1 + AXLES + 6)
-    train = four_axle.train_motion(
-        loco,
-        speed=y[0],
-        creep_forces=tuple(y[1 + i] for i in range(AXLES)),
-        pitch=Pitch(*(y[1 + AXLES + i] for i in range(6))),
-        grade_force=symbols["surroundings"]["grade_force"],
-    )
-
-    z = ca.SX.sym("z", 5)
-    time, start, pressure, fill_end, vent_end = (z[i] for i in range(5))
-    filled = generated.filled_pressure(
-        minimum(time, fill_end),
-        start,
-        pressure,
-        loco.brake.max_pressure,
-        loco.brake.supply_rate,
-        loco.brake.fill_time,
-    )
-    vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
-    reached = generated.vented_pressure(vented_for, filled, loco.brake.vent_time)
-    torque = brake_model.braking_torque(loco.brake, reached)
+    rolling = where(locked != 0.0, 0.0, axle.wheel_acceleration)
+    passed = where(locked != 0.0, 2.0 * loco.wheel_radius * axle.creep_force, demand)
+    valves = ca.SX.sym("valves", 4)
+    pressures = _pressure(loco.brake, time, *(valves[i] for i in range(4)))
+    torque = brake_model.braking_torque(loco.brake, pressures[0])
     if disturbed:
         torque *= 1.0 + brake_model.torque_disturbance(loco.brake, time)
-
-    start_kernel, step_kernel, states = _controller_kernels(controller)
-    return Kernels(
-        loads=ca.Function("loads_kernel", [p, pitch], [ca.vertcat(*loads)]),
-        condition=ca.Function("condition_kernel", [p, c], [ca.vertcat(*condition)]),
-        axle=ca.Function("axle_kernel", [p, x], [ca.vertcat(*outputs)]),
-        train=ca.Function(
-            "train_kernel", [p, y], [ca.vertcat(train.acceleration, train.resistance, *train.pitch)]
+    return [
+        ca.Function("loads_kernel", [p, pitch], [ca.vertcat(*loads)]),
+        ca.Function(
+            "train_kernel",
+            [p, speed, force, pitch],
+            [train.acceleration, train.resistance, ca.vertcat(*train.pitch)],
         ),
-        actuator=ca.Function("actuator_kernel", [p, z], [ca.vertcat(reached, torque, filled)]),
-        start=start_kernel,
-        step=step_kernel,
-        states=states,
+        ca.Function("condition_kernel", [p, time, load], [ca.vertcat(*condition)]),
+        ca.Function(
+            "axle_kernel",
+            [p, speed, wheel_speed, load, demand, locked, held],
+            [axle.creep_force, rolling, axle.slip, axle.damping_torque, passed],
+        ),
+        ca.Function("actuator_kernel", [p, valves, time], [pressures[0], torque, pressures[1]]),
+    ]
+
+
+def _pressure(
+    brake: Brake, time: Any, start: Any, start_pressure: Any, fill_end: Any, vent_end: Any
+) -> tuple[Any, Any]:
+    """Cylinder pressure under fill, then vent, then hold; and what it would be without the venting."""
+    filled = generated.filled_pressure(
+        minimum(time, fill_end), start, start_pressure, brake.max_pressure, brake.supply_rate, brake.fill_time
     )
+    vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
+    return generated.vented_pressure(vented_for, filled, brake.vent_time), filled
 
 
 def _controller_kernels(controller: Controller | None) -> tuple[Any, Any, int]:

@@ -1,6 +1,6 @@
-"""The closed loop without a C compiler: one integration step as a CasADi function, the rest in Python.
+"""The closed loop without a C compiler: integration steps in CasADi's virtual machine, the rest in Python.
 
-The steps, their order and the events are those of ``templates/closed_loop.c``; a test holds the two together.
+Steps, their order and the events are those of ``templates/closed_loop.c``; a test holds the two together.
 """
 
 import math
@@ -19,6 +19,16 @@ from wspd_design.codegen.closed_loop import (
     drive,
 )
 from wspd_design.codegen.kernels import PARAMETERS, Kernels, closed_loop_kernels
+from wspd_design.codegen.virtual_step import (
+    INERTIA,
+    RADIUS,
+    ROW,
+    STATE,
+    STATES,
+    TRIED,
+    StepFunctions,
+    step_functions,
+)
 from wspd_design.controllers.protocol import Command, Controller, Measurement
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.four_axle import AXLES
@@ -29,13 +39,9 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_PITCH = 6
 _SHORTEST = 1e-9  # s: edges closer together than this are one
-_MOTION = 1 + AXLES + _PITCH  # speed, wheel speeds, pitch
-_INTEGRATED = LANE_TOTALS[:7]  # the lane totals that are integrals
+_BATCHES = (64, 16, 4)
 _OFFSET = PARAMETERS.index(("surroundings", "axle_offset"))
-_RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
-_INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
 _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail")
 
 
@@ -51,16 +57,19 @@ def run_virtual(
     """Run a single stop; takes and returns what :meth:`ClosedLoop.run` does."""
     import numpy as np
 
-    plant = _VirtualPlant(step_function(vehicle, rail, disturbed=disturbed), given)
+    kernels, functions = _functions(vehicle, rail, disturbed, given.held_slips is not None)
+    plant = _VirtualPlant(kernels, functions, given)
     result, samples = drive(plant, controller, sample_rows)
-    stop = dict(zip(STOP_TOTALS, plant.stop_totals[:, np.newaxis], strict=True))
+    lane = np.vstack([plant.part("lane").reshape(-1, AXLES), plant.vented])
+    stop = [*plant.part("stop"), plant.part("speed")[0]]
+    stop_totals = {name: np.array([value]) for name, value in zip(STOP_TOTALS, stop, strict=True)}
     return LoopOutput(
         result=result,
-        stopped=stop["end_speed"] <= given.settings.stop_speed * (1.0 + 1e-6),
-        lane_totals=dict(zip(LANE_TOTALS, plant.lane_totals, strict=True)),
-        stop_totals=stop,
-        wheel_speeds=plant.motion[1 : 1 + AXLES].copy(),
-        trace=np.array(plant.rows).reshape(len(plant.rows), 3 + 5 * AXLES),
+        stopped=stop_totals["end_speed"] <= given.settings.stop_speed * (1.0 + 1e-6),
+        lane_totals=dict(zip(LANE_TOTALS, lane, strict=True)),
+        stop_totals=stop_totals,
+        wheel_speeds=plant.part("wheel").copy(),
+        trace=np.array(plant.rows).reshape(len(plant.rows), ROW),
         samples=samples,
         bad_command=plant.bad_command,
         steps=plant.steps,
@@ -68,187 +77,142 @@ def run_virtual(
 
 
 @lru_cache(maxsize=8)
-def step_function(vehicle: Vehicle, rail: Rail, *, disturbed: bool) -> Any:
-    """One Runge-Kutta step of a stop with its totals, as a CasADi function of dense vectors.
-
-    Returns
-    -------
-    casadi.Function
-        (parameters (PARAMETERS, axles), motion, locked, torque, [time, step, window], pressure, fill end,
-        vent end, load factors (axles, 3)) -> (motion after the step, lane totals (axles, 7), stop totals (4),
-        last stage (axles, 4: force, slip, load, passed torque), actuator (axles, 3: pressure, torque,
-        pressure before venting)).
-    """
-    import casadi as ca
-
+def _functions(vehicle: Vehicle, rail: Rail, disturbed: bool, holding: bool) -> tuple[Kernels, StepFunctions]:
     kernels = closed_loop_kernels(vehicle, rail, None, disturbed=disturbed)
-    p = ca.SX.sym("p", len(PARAMETERS), AXLES)
-    motion = ca.SX.sym("motion", _MOTION)
-    locked, torque, pressure, fill_end, vent_end = (
-        ca.SX.sym(name, AXLES) for name in ("locked", "torque", "pressure", "fill_end", "vent_end")
-    )
-    when = ca.SX.sym("when", 3)
-    factors = ca.SX.sym("factors", AXLES, 3)
-    time, h, window = when[0], when[1], when[2]
-
-    def actuator(at: Any) -> Any:
-        columns = [
-            kernels.actuator(p[:, a], ca.vertcat(at, window, pressure[a], fill_end[a], vent_end[a]))
-            for a in range(AXLES)
-        ]
-        return ca.horzcat(*columns).T
-
-    middle, end = actuator(time + 0.5 * h), actuator(time + h)
-    half = AXLES + 1 + _PITCH // 2
-    pitch_ahead = motion[AXLES + 1 : half] + 0.5 * h * motion[half:]
-    loads = kernels.loads(p[:, 0], ca.vertcat(pitch_ahead, ca.SX.zeros(_PITCH // 2))) * factors[:, 1]
-    conditions = [kernels.condition(p[:, a], ca.vertcat(time + 0.5 * h, loads[a])) for a in range(AXLES)]
-
-    half_way = (0.5, 1, middle[:, 1], 2.0)
-    shares = ((0.0, 0, torque, 1.0), half_way, half_way, (1.0, 2, end[:, 1], 1.0))
-    rates, lane, stop = ca.SX.zeros(_MOTION), ca.SX.zeros(AXLES, len(_INTEGRATED)), ca.SX.zeros(4)
-    total_rates, last = ca.SX.zeros(_MOTION), ca.SX.zeros(AXLES, 4)
-    judging = ca.SX.sym("judging")
-    for share, column, demand, weight in shares:
-        at = motion + share * h * rates
-        rates, integrands, stop_integrands, last = _stage(
-            ca, kernels, p, at, locked, demand, conditions, factors[:, column], judging
-        )
-        total_rates += weight * rates
-        lane += h * weight / 6.0 * integrands
-        stop += h * weight / 6.0 * stop_integrands
-    reached = motion + h / 6.0 * total_rates
-    inputs = [p, motion, locked, torque, when, pressure, fill_end, vent_end, factors, judging]
-    return ca.Function("step", inputs, [reached, lane, stop, last, end])
-
-
-def _stage(
-    ca: Any,
-    kernels: Kernels,
-    p: Any,
-    at: Any,
-    locked: Any,
-    demand: Any,
-    conditions: list[Any],
-    factors: Any,
-    judging: Any,
-) -> tuple[Any, Any, Any, Any]:
-    """Rates of the motion and integrands of the totals at one stage."""
-    speed, wheels, pitch = at[0], at[1 : 1 + AXLES], at[1 + AXLES :]
-    loads = kernels.loads(p[:, 0], pitch) * factors
-    axles = [
-        kernels.axle(p[:, a], ca.vertcat(speed, wheels[a], loads[a], demand[a], conditions[a]))
-        for a in range(AXLES)
-    ]
-    force, free, slip, damping = (ca.vertcat(*(axle[k] for axle in axles)) for k in range(4))
-    train = kernels.train(p[:, 0], ca.vertcat(speed, force, pitch))
-    radius = p[_RADIUS, :].T
-    passed = ca.if_else(locked, 2.0 * radius * force, demand)
-    judged = ca.if_else(speed > judging, 1.0, 0.0)
-    rates = ca.vertcat(train[0], ca.if_else(locked, 0.0, free), train[2:])
-    integrands = ca.horzcat(
-        passed,
-        2.0 * damping,
-        passed * wheels,
-        2.0 * force * (speed - radius * wheels),
-        2.0 * damping * wheels,
-        judged * slip,
-        judged * slip * slip,
-    )
-    return (
-        rates,
-        integrands,
-        ca.vertcat(speed, train[1], train[1] * speed, judged),
-        ca.horzcat(force, slip, loads, passed),
-    )
+    return kernels, step_functions(kernels, holding=holding, batches=() if holding else _BATCHES)
 
 
 class _VirtualPlant:
     """The plant behind the interface of ``SampledPlant``."""
 
-    def __init__(self, step: Any, given: LoopInput) -> None:
+    def __init__(self, kernels: Kernels, functions: StepFunctions, given: LoopInput) -> None:
         import numpy as np
 
-        self.given, self.set = given, given.settings
-        self.parameters = np.asfortranarray(given.lane_parameters, dtype=np.float64).copy(order="F")
-        radius = self.parameters[_RADIUS]
-        speed = float(given.speeds[0])
-        self.motion = np.concatenate([[speed], speed / radius, np.zeros(_PITCH)])
-        self.locked, self.pressure = np.zeros(AXLES), np.zeros(AXLES)
-        self.fill_end, self.vent_end = np.zeros(AXLES), np.zeros(AXLES)
-        self.torque = np.zeros((AXLES, 3))  # pressure, torque, pressure before venting at the present time
-        self.time = self.window = 0.0
-        self.edge = math.inf
+        self.given, self.set, self.kernels, self.places = given, given.settings, kernels, functions.inputs
+        self.parameters = np.array(given.lane_parameters, dtype=np.float64, order="F")
+        self.state, self.inputs = np.zeros(STATES), np.zeros(functions.single.size1_in(1))
+        self.part("speed")[:] = given.speeds[0]
+        self.part("wheel")[:] = given.speeds[0] / self.parameters[RADIUS]
+        self.edges: tuple[float, ...] = ()
+        self.vented = np.zeros(AXLES)
         self.recorded = -1.0
         self.sample = self.steps = 0
         self.patch = [0] * AXLES
         self.moving = True
-        self.lane_totals, self.stop_totals = np.zeros((len(LANE_TOTALS), AXLES)), np.zeros(len(STOP_TOTALS))
         self.rows: list[NDArray[np.float64]] = []
         self.bad_command = (0.0, 0.0, 0.0)
-        self._bind(step)
+        self._calls = {1: _Call(functions.single, self.state, self.inputs)}
+        for number, function in functions.batches.items():
+            self._calls[number] = _Call(function, self.state, self.inputs)
+        self._write_fixed_inputs()
 
-    def _bind(self, step: Any) -> None:
-        """Give the CasADi function fixed memory: a call then costs no conversion."""
-        import numpy as np
+    def part(self, name: str) -> "Array":
+        """One part of the state, to read and to write."""
+        return self.state[STATE[name]]
 
-        self._inputs = [np.zeros(step.numel_in(k)) for k in range(step.n_in())]
-        self._outputs = [np.zeros(step.numel_out(k)) for k in range(step.n_out())]
-        self._buffer, self._call = step.buffer()
-        for k, array in enumerate(self._inputs):
-            self._buffer.set_arg(k, array.data)
-        for k, array in enumerate(self._outputs):
-            self._buffer.set_res(k, array.data)
+    def _give(self, name: str, values: Any) -> None:
+        self.inputs[self.places[name]] = values
+
+    def _write_fixed_inputs(self) -> None:
+        settings = self.set
+        for name in ("longest_step", "regularization_speed", "stop_speed", "judging_speed"):
+            self._give(name, getattr(settings, name))
+        self._give("per_creep_rate", 1.0 / settings.creep_rate)
+        self._give("scale", 1.0)
+        self._give("load_factors", 1.0)
+        self._give("radius", self.parameters[RADIUS])
+        self._give("inertia", self.parameters[INERTIA])
+        constants = self.kernels.stop_constants(self.given.stop_parameters[:, 0])
+        self._give("stop_constants", _flat(constants))
+        self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
 
     def running(self) -> bool:
-        return self.moving and self.time <= self.set.time_limit
+        return self.moving and self.part("time")[0] <= self.set.time_limit
 
     def measure(self) -> list[Measurement]:
         import numpy as np
 
         given = self.given
-        wheels = self.motion[1 : 1 + AXLES].copy()
+        wheels = self.part("wheel").copy()
         if given.wheel_noise is not None:
             wheels += given.wheel_noise[self.sample]
         if given.quantum > 0.0:
             wheels = given.quantum * np.floor(wheels / given.quantum + 0.5)
-        speed = float(self.motion[0]) * given.reference_factor
+        speed = float(self.part("speed")[0]) * given.reference_factor
         return [
             Measurement(speed=speed, wheel_speed=max(float(w), 0.0), torque=float(t))
-            for w, t in zip(wheels, self.torque[:, 1], strict=True)
+            for w, t in zip(wheels, self.part("torque"), strict=True)
         ]
 
     def advance(self, commands: list[Command]) -> int:
         h = self.set.sample_time
         start = self.sample * h
         result = self._advance_to(start + self.set.dead_time)
-        present = self.time
-        self.lane_totals[9] += self.torque[:, 2] - self.torque[:, 0]
-        self.pressure[:] = self.torque[:, 0]
-        self.window = present
-        for axle, (fill, vent) in enumerate(commands):
+        for fill, vent in commands:
             if not (0.0 <= fill <= 1.0 and vent >= 0.0 and fill + vent <= 1.0 + 1e-9):
                 self.bad_command = (start, fill, vent)
                 return BAD_COMMAND
-            self.fill_end[axle] = present + fill * h
-            whole = 1.0 - fill - vent < 1e-12
-            self.vent_end[axle] = present + h if whole else self.fill_end[axle] + vent * h
-        self.edge = self.time  # that is, look for the next one
+        if self.moving:
+            self._set_valves(commands)
         self.sample += 1
         return result or self._advance_to(self.sample * h)
 
-    def _advance_to(self, until: float) -> int:
+    def _set_valves(self, commands: list[Command]) -> None:
+        import numpy as np
+
+        present, h = float(self.part("time")[0]), self.set.sample_time
+        fill, vent = np.array(commands, dtype=np.float64).T
+        fill_end = present + fill * h
+        vent_end = np.where(1.0 - fill - vent < 1e-12, present + h, fill_end + vent * h)
+        self.vented += self.part("filled") - self.part("pressure")
+        window = np.array([np.full(AXLES, present), self.part("pressure"), fill_end, vent_end])
+        self._give("window_constants", _flat(self.kernels.window_constants(self.parameters, window)))
+        self.edges = tuple(sorted({*fill_end.tolist(), *vent_end.tolist()}))
+
+    def _advance_to(self, goal: float) -> int:
         result = GOOD
-        while self.time < until and self.moving and result == GOOD:
-            result = self._step(until)
+        while self.moving and result == GOOD and (time := float(self.part("time")[0])) < goal:
+            near = (edge for edge in self.edges if time + _SHORTEST < edge < goal - _SHORTEST)
+            result = self._advance_some(next(near, goal))
         return result
 
-    def _lay_rails(self) -> float:
+    def _advance_some(self, until: float) -> int:
+        """Make one step, or several where nothing has to be looked up on the way."""
+        time, speed = float(self.part("time")[0]), float(self.part("speed")[0])
+        wanted = min(
+            max(speed, self.set.regularization_speed) * (1.0 / self.set.creep_rate), self.set.longest_step
+        )
+        change = self._lay_rails(speed)
+        needed = max(math.ceil((until - time) / wanted * (1.0 - 1e-12)), 1)
+        h, number = (until - time) / needed, 1
+        if change > until - time and self.given.load_factors is None and self.given.held_slips is None:
+            number = next((batch for batch in _BATCHES if batch <= needed), 1)
+        self._give("until", until if change >= h else time + change)
+        if number == 1:
+            self._look_up(min(h, change))
+        rows = self._calls[number]()
+        made, end_speed = rows[:, TRIED].T
+        kept = int(made.sum())  # a step that is not made is the last one
+        result = self._record(rows[:kept])
+        if kept < number and end_speed[kept] < self.set.stop_speed:
+            ahead = rows[kept - 1, 1] if kept else speed
+            self._give("scale", (ahead - self.set.stop_speed) / (ahead - end_speed[kept]))
+            rows = self._calls[1]()
+            self.moving, kept = False, kept + 1
+            result = result or self._record(rows)
+        self.steps += kept
+        if kept and rows[-1 if not self.moving else kept - 1, 1] <= self.set.stop_speed * (1.0 + 1e-6):
+            self.moving = False
+        return result
+
+    def _lay_rails(self, speed: float) -> float:
+        """Put the wheels on the rail of their place; the time to the next change at the present speed."""
         given, soonest = self.given, math.inf
         if given.patch_starts is None or given.patch_rails is None:
             return soonest
+        changed = False
         for axle in range(AXLES):
-            place = self.stop_totals[0] - self.parameters[_OFFSET, axle]
+            place = self.part("stop")[0] - self.parameters[_OFFSET, axle]
             reached = self.patch[axle]
             while reached < len(given.patch_starts) and given.patch_starts[reached] <= place:
                 reached += 1
@@ -256,97 +220,68 @@ class _VirtualPlant:
                 rail = given.patch_rails[reached - 1, axle]
                 self.parameters[_FIRST_RAIL : _FIRST_RAIL + RAIL_NUMBERS, axle] = rail
                 self.patch[axle] = reached
+                changed = True
             if reached < len(given.patch_starts):
-                wait = (given.patch_starts[reached] - place) / self.motion[0] + 1e-9
-                soonest = min(soonest, wait)
+                soonest = min(soonest, float(given.patch_starts[reached] - place) / speed + 1e-9)
+        if changed:
+            self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
         return soonest
 
-    def _step_length(self, until: float) -> float:
-        if self.edge <= self.time + _SHORTEST:
-            edges = (*self.fill_end.tolist(), *self.vent_end.tolist())
-            self.edge = min((edge for edge in edges if edge > self.time + _SHORTEST), default=math.inf)
-        if self.edge < until - _SHORTEST:
-            until = self.edge
-        change = self._lay_rails()
-        slowest = max(float(self.motion[0]), self.set.regularization_speed)
-        wanted = min(slowest / self.set.creep_rate, self.set.longest_step)
-        span = until - self.time
-        count = math.ceil(span / wanted * (1.0 - 1e-12))
-        return min(change, span / count if count > 1 else span)
-
-    def _load_factors(self, h: float) -> "Array":
+    def _look_up(self, h: float) -> None:
+        """Take the wheel loads and the slips to be held from their tables, for a step of this length."""
         import numpy as np
 
-        given = self.given
-        if given.load_factors is None:
-            return np.ones((AXLES, 3))
-        points = np.arange(given.load_factors.shape[1]) * given.load_spacing
-        places = self.stop_totals[0] + np.array([0.0, 0.5, 1.0]) * h * self.motion[0]
-        return np.array([np.interp(places, points, row) for row in given.load_factors])
+        given, speed = self.given, float(self.part("speed")[0])
+        if given.load_factors is not None:
+            points = np.arange(given.load_factors.shape[1]) * given.load_spacing
+            places = self.part("stop")[0] + np.array([0.0, 0.5, 1.0]) * h * speed
+            factors = [np.interp(places, points, row) for row in given.load_factors]
+            self._give("load_factors", np.transpose(factors).ravel())
+        if given.held_slips is not None:
+            first, spacing = (
+                math.log(given.held_speeds[0]),
+                math.log(given.held_speeds[1] / given.held_speeds[0]),
+            )
+            k = min(max(int((math.log(speed) - first) / spacing), 0), given.held_slips.shape[1] - 2)
+            here, above = given.held_slips[:, k], given.held_slips[:, k + 1]
+            below = given.held_slips[:, k - 1] if k > 0 else 2.0 * here - above
+            self._give("hold", np.concatenate([[first, spacing, k], below, here, above]))
 
-    def _evaluate(self, h: float) -> None:
-        given = (
-            self.parameters,
-            self.motion,
-            self.locked,
-            self.torque[:, 1],
-            (self.time, h, self.window),
-            self.pressure,
-            self.fill_end,
-            self.vent_end,
-            self._load_factors(h),
-            (self.set.judging_speed,),
-        )
-        for array, values in zip(self._inputs, given, strict=True):
-            array[:] = values.ravel(order="F") if hasattr(values, "ravel") else values
-        self._call()
-
-    def _step(self, until: float) -> int:
-        h = self._step_length(until)
-        following = self.time + h
-        if following > until - 1e-12:
-            following, h = until, until - self.time
-        self._evaluate(h)
-        reached = self._outputs[0]
-        if reached[0] < self.set.stop_speed:
-            h *= (self.motion[0] - self.set.stop_speed) / (self.motion[0] - reached[0])
-            self._evaluate(h)
-        lane = self._outputs[1].reshape((len(_INTEGRATED), AXLES))
-        force, slip, load, passed = self._outputs[3].reshape((4, AXLES))
-        slip = slip.clip(max=1.0)  # the last stage may turn a stopping wheel back
-        actuator = self._outputs[4].reshape((3, AXLES))
-        torque = actuator[1]
-        self.motion[:] = reached
-        self.lane_totals[: len(_INTEGRATED)] += lane
-        self.lane_totals[7] += self.locked * h
-        if self.motion[0] > self.set.judging_speed:
-            self.lane_totals[8] = self.lane_totals[8].clip(min=slip)
-        self.stop_totals[:4] += self._outputs[2]
-        for axle in range(AXLES):
-            wheel = self.motion[1 + axle]
-            if not self.locked[axle] and wheel < 0.0:
-                self.lane_totals[0, axle] += self.parameters[_INERTIA, axle] * wheel
-                self.motion[1 + axle] = 0.0
-                self.locked[axle] = 1.0
-            elif self.locked[axle] and torque[axle] < 2.0 * self.parameters[_RADIUS, axle] * force[axle]:
-                self.locked[axle] = 0.0
-        self.torque[:] = actuator.T
-        self.time = following
-        self.steps += 1
-        self.stop_totals[4] += h
-        self.stop_totals[5] = self.motion[0]
-        if self.motion[0] <= self.set.stop_speed * (1.0 + 1e-6):
-            self.moving = False
-        return self._record(slip, passed, load)
-
-    def _record(self, slip: "Array", passed: "Array", load: "Array") -> int:
-        import numpy as np
-
-        if self.time - self.recorded >= self.set.record_interval or not self.moving:
-            if len(self.rows) == self.given.trace_rows:
-                return BUFFER_FULL
-            self.recorded = self.time
-            head = [self.stop_totals[4], self.motion[0], self.stop_totals[0]]
-            wheels = self.motion[1 : 1 + AXLES]
-            self.rows.append(np.concatenate([head, wheels, slip, passed, load, self.torque[:, 1]]))
+    def _record(self, rows: "Array") -> int:
+        """Keep a row of the traces whenever the interval has passed, and the last one."""
+        for row in rows if self.given.trace_rows else ():
+            time, speed = row[0], row[1]
+            last = speed <= self.set.stop_speed * (1.0 + 1e-6)
+            if time - self.recorded >= self.set.record_interval or last:
+                if len(self.rows) == self.given.trace_rows:
+                    return BUFFER_FULL
+                self.recorded = time
+                self.rows.append(row[:ROW].copy())
         return GOOD
+
+
+class _Call:
+    """A CasADi function bound to fixed memory: a call then costs no conversion. The state is replaced."""
+
+    def __init__(self, function: Any, state: "Array", inputs: "Array") -> None:
+        import numpy as np
+
+        self.state = state
+        self.following, self.rows = np.zeros(STATES), np.zeros(function.size_out(1)[::-1])
+        self.buffer, self.call = function.buffer()
+        self.buffer.set_arg(0, state.data)
+        self.buffer.set_arg(1, inputs.data)
+        self.buffer.set_res(0, self.following.data)
+        self.buffer.set_res(1, self.rows.data)
+
+    def __call__(self) -> "Array":
+        """Advance the state; returns one row per step."""
+        self.call()
+        self.state[:] = self.following
+        return self.rows
+
+
+def _flat(values: Any) -> "Array":
+    import numpy as np
+
+    return np.array(values).ravel(order="F")

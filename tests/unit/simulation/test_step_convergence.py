@@ -68,12 +68,12 @@ def test_chaotic_loops_have_a_spread_and_not_a_digit(stop, run_with, controller,
 # Faults planted in the compiled loop: what is replaced, and by what.
 FAULTS = {
     "steps that run across the valve edges": (
-        "if (loop->edge < until - SHORTEST) until = loop->edge;",
-        "",
+        "edge = edge < before ? edge : 1e300;",
+        "edge = 1e300;",
     ),
     "the method of Euler": (
-        "+ stage[3].acceleration[s];\n            reached.speed[s]",
-        "+ stage[3].acceleration[s];\n            sum = 6.0 * stage[0].acceleration[s];\n            reached.speed[s]",
+        "step[s] * (1.0 / 6.0) * SUM(ACCELERATION)",
+        "step[s] * ACCELERATION(0)",
     ),
 }
 
