@@ -16,12 +16,15 @@ from wspd_design.cli.commands import (
     linearize,
     new,
     report,
+    reproduce,
     simulate,
     sources,
     verify,
 )
 from wspd_design.cli.console import program_version
 from wspd_design.cli.exit_codes import BUG, INTERRUPTED, WRONG_USE
+from wspd_design.cli.notices import plain_notices
+from wspd_design.cli.own_controller import fault_in_own_file
 from wspd_design.parameters.errors import UserError
 
 # Newer versions of Typer carry their own copy of Click; the parent of this class is the usage error of either.
@@ -66,12 +69,15 @@ app.command(rich_help_panel=_DESIGNING, epilog='Example: wspd design --law smc -
 )
 app.command(rich_help_panel=_JUDGING, epilog="Example: wspd verify design.toml")(verify.verify)
 app.command(
-    rich_help_panel=_JUDGING, epilog='Example: wspd simulate afsmc --rail polach-dry --speed "100 km/h"'
+    rich_help_panel=_JUDGING,
+    epilog='Examples: wspd simulate afsmc --rail polach-dry --speed "100 km/h"; '
+    'wspd simulate --runs 1000 --speed-noise "0.05 m/s" -o stops.csv',
 )(simulate.simulate)
 app.command(rich_help_panel=_JUDGING, epilog="Example: wspd compare design.toml afsmc none")(compare.compare)
 app.command(rich_help_panel=_JUDGING, epilog="Example: wspd report design.toml -o report.html --pdf")(
     report.report
 )
+app.command(rich_help_panel=_JUDGING, epilog="Example: wspd reproduce -o reproduction")(reproduce.reproduce)
 app.command(rich_help_panel=_KNOWING, epilog="Example: wspd linearize --rail polach-dry")(linearize.linearize)
 app.command(rich_help_panel=_KNOWING, epilog="Example: wspd equations 19")(equations.equations)
 app.command(rich_help_panel=_KNOWING, epilog="Example: wspd sources er24pc")(sources.sources)
@@ -92,14 +98,18 @@ def run(arguments: Sequence[str]) -> int:
         0 good, 1 a check refuted, 2 wrong use, 3 undecided, 130 interrupted, 70 a fault of the program.
     """
     try:
-        code = app(list(arguments), prog_name="wspd", standalone_mode=False)
+        with plain_notices():
+            code = app(list(arguments), prog_name="wspd", standalone_mode=False)
     except UserError as error:
         return _refuse(str(error))
     except _USAGE_ERROR as error:
         return _refuse(_usage_sentence(error))
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
-    except Exception:
+    except Exception as error:
+        fault = fault_in_own_file(error)
+        if fault is not None:
+            return _refuse(fault)
         traceback.print_exc()
         print("wspd: this is a fault of the program; please report it with the lines above.", file=sys.stderr)
         return BUG

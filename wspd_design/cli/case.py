@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
-from wspd_design.cli.options import CONTROLLER, RAIL, VEHICLE
+from wspd_design.cli.options import CONTROLLER, QUARTER, RAIL, VEHICLE
+from wspd_design.cli.own_controller import is_own_controller, load_own_controller
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.catalog import controller as build_controller
 from wspd_design.design.catalog import is_design_file
@@ -101,6 +102,16 @@ def check_plant(name: str) -> None:
         raise UserError(f'unknown plant "{name}"{offer}; available: {", ".join(PLANTS)}')
 
 
+def check_quarter(name: str, command: str) -> None:
+    """Refuse a plant other than the quarter locomotive, which the analysis at a point speaks about."""
+    check_plant(name)
+    if name != QUARTER:
+        raise UserError(
+            f"{command} speaks about the quarter locomotive, whose wheelsets are alike, not about {name}; "
+            f"leave --plant out or write --plant {QUARTER}"
+        )
+
+
 def check_law(name: str) -> Law:
     """Return the law of a name that can be designed."""
     for law in GAINS_OF:
@@ -117,7 +128,7 @@ def resolve(name: str, wishes: Wishes, base: Specification | None = None) -> Cas
     Parameters
     ----------
     name : str
-        Name of a controller or path of a design file.
+        Name of a controller, path of a design file, or ``FILE.py:NAME``.
     wishes : Wishes
         The options. For a design file, vehicle and rail default to its own.
     base : Specification, optional
@@ -132,10 +143,14 @@ def resolve(name: str, wishes: Wishes, base: Specification | None = None) -> Cas
         return _from_file(name, wishes)
     vehicle_name, rail_name = wishes.vehicle or VEHICLE, wishes.rail or RAIL
     vehicle, rail, wanted = load_vehicle(vehicle_name), load_rail(rail_name), specification(wishes, base)
+    if is_own_controller(name):
+        controller = _own_controller(name, vehicle, rail, wanted, wishes)
+    else:
+        controller = build_controller(name, vehicle, rail, wanted)
     return Case(
         vehicle=vehicle,
         rail=rail,
-        controller=build_controller(name, vehicle, rail, wanted),
+        controller=controller,
         specification=wanted,
         design=None,
         vehicle_name=vehicle_name,
@@ -187,6 +202,22 @@ def _from_file(path: str, wishes: Wishes) -> Case:
         vehicle_name=vehicle_name,
         rail_name=rail_name,
     )
+
+
+def _own_controller(
+    name: str, vehicle: Vehicle, rail: Rail, wanted: Specification, wishes: Wishes
+) -> Controller:
+    """Load a controller from a Python file; it keeps its own slip and sample time unless the user wrote others."""
+    options = {"vehicle": vehicle, "rail": rail, "slip": wanted.slip, "sample_time": wanted.sample_time}
+    said = {"slip": wishes.slip, "sample_time": wishes.sample_time}
+    written = {key: value for key, value in options.items() if said.get(key, key) is not None}
+    made = load_own_controller(name, options=options, written=written)
+    if wishes.sample_time is not None and not _same(wanted.sample_time, made.sample_time):
+        raise UserError(
+            f"--sample-time {wanted.sample_time:g} contradicts {name}, which has {made.sample_time:g} (SI units); "
+            "leave --sample-time out or let it take sample_time"
+        )
+    return made
 
 
 def _shipped(kind: str, name: str, path: str) -> str:

@@ -60,6 +60,26 @@ def progress() -> Iterator[Callable[[str], None]]:
         yield lambda stage: status.update(f"{stage} ...")
 
 
+@contextmanager
+def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
+    """Show how many of ``total`` are done and the remaining time; nothing where there is no terminal."""
+    stream = console(error=True)
+    if not stream.is_terminal or stream.is_dumb_terminal:
+        yield lambda _done: None
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(bar_width=None),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=stream, transient=True) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda done: bar.update(task, completed=done)
+
+
 def is_interactive() -> bool:
     """Tell whether somebody sits in front of the program and can answer questions."""
     return sys.stdin.isatty() and sys.stdout.isatty()

@@ -6,13 +6,16 @@ from typing import Any
 
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.cli.case import Case
 from wspd_design.cli.console import program_version
+from wspd_design.cli.summary import Summary
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.records import Scenario
 
 
-def stop_object(trial: Trial, *, slip_reference: float, seed: int) -> dict[str, Any]:
+def stop_object(trial: Trial, scenario: Scenario, *, slip_reference: float) -> dict[str, Any]:
     """Return the figures of one stop, ``wspd-stop/1``."""
-    run, figures = trial.run, trial.metrics
+    run, figures, check = trial.run, trial.metrics, trial.check
     return {
         "schema": "wspd-stop/1",
         "controller": run.controller,
@@ -21,11 +24,15 @@ def stop_object(trial: Trial, *, slip_reference: float, seed: int) -> dict[str, 
         "plant": run.plant,
         "sample_time_s": run.sample_time,
         "initial_speed_m_s": run.initial_speed,
+        "scenario": scenario_object(scenario),
         "slip_reference": slip_reference,
         "ending": run.ending.name.lower(),
         "distance_m": figures.distance,
         "stopping_time_s": figures.stopping_time,
         "torque_integral_kNms": figures.torque_integral / 1e3,
+        "bound_m": figures.bound,
+        "efficiency": figures.efficiency,
+        "adhesion_utilization": figures.adhesion_utilization,
         "lag_s": figures.lag,
         "plateau_m_s2": figures.plateau,
         "slip_rms": figures.slip_rms,
@@ -33,10 +40,57 @@ def stop_object(trial: Trial, *, slip_reference: float, seed: int) -> dict[str, 
         "slip_max": figures.slip_max,
         "lock_time_s": figures.lock_time,
         "valve_switches": figures.valve_switches,
+        "vented_air": figures.vented_air,
         "saturated_share": figures.saturated_share,
         "momentum_residual": figures.momentum_residual,
         "energy_residual": figures.energy_residual,
-        "seed": seed,
+        "step_check": {
+            "distance": check.distance,
+            "slip": check.slip,
+            "refinement": check.refinement,
+            "chaotic": check.chaotic,
+            "spread_m": check.spread,
+        },
+        "engine": run.engine,
+        "seed": scenario.seed,
+        "version": program_version(),
+    }
+
+
+def scenario_object(scenario: Scenario) -> dict[str, Any]:
+    """Return what disturbs a stop."""
+    rails, sensing = scenario.axle_rails, scenario.sensing
+    return {
+        "axle_rails": None if rails is None else [rail.name for rail in rails],
+        "patches": [{"start_m": patch.start, "rail": patch.rail.name} for patch in scenario.patches],
+        "grade": scenario.grade,
+        "pad_vibration": scenario.pad_vibration,
+        "speed_noise_m_s": sensing.speed_noise,
+        "pulses_per_turn": sensing.pulses_per_turn,
+        "reference_error": sensing.reference_error,
+        "dead_time_s": sensing.dead_time,
+    }
+
+
+def campaign_object(summary: Summary, case: Case, scenario: Scenario) -> dict[str, Any]:
+    """Return what many stops have in common and how they spread, ``wspd-campaign/1``."""
+    campaign = summary.campaign
+    return {
+        "schema": "wspd-campaign/1",
+        "controller": campaign.controller,
+        "vehicle": case.vehicle.name,
+        "rail": case.rail.name,
+        "plant": campaign.plant,
+        "sample_time_s": case.controller.sample_time,
+        "initial_speed_m_s": scenario.initial_speed,
+        "scenario": scenario_object(scenario),
+        "runs": len(campaign.table),
+        "runs_wanted": summary.wanted,
+        "complete": campaign.complete,
+        "not_stopped_share": summary.not_stopped_share,
+        "sampled": campaign.sampled,
+        **{name: asdict(spread) for name, spread in summary.spreads.items()},
+        "seed": scenario.seed,
         "version": program_version(),
     }
 

@@ -4,17 +4,19 @@ from typing import Annotated, Any, TypeAlias
 
 import typer
 
-from wspd_design.design.catalog import CONTROLLERS
+from wspd_design.design.catalog import BASELINES, CONTROLLERS
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import available
 from wspd_design.parameters.units import format_quantity
+from wspd_design.simulation.records import PLANTS
 
 _PAPER = Specification()
 
 VEHICLE = "er24pc"
 RAIL = "polach-wet"
 CONTROLLER = "afsmc"
-PLANT = "four-axle"
+PLANT = PLANTS[0]
+QUARTER = "quarter"
 LAW = "afsmc"
 SPEED = format_quantity(_PAPER.speeds[1], "km/h")
 SPEEDS = f"{format_quantity(_PAPER.speeds[0], 'km/h')} to {SPEED}"
@@ -24,11 +26,19 @@ TOLERANCE = format_quantity(_PAPER.slip_tolerance, "-")
 DESIGN_FILE = "design.toml"
 
 CASE = "Case"
-_CONTROLLERS = f"{', '.join(CONTROLLERS)} or a design file, which brings its own case."
+DISTURBANCES = "Disturbances, all off by default"
+_CONTROLLERS = (
+    f"{', '.join(CONTROLLERS)}, a design file, which brings its own case, or FILE.py:NAME "
+    f"(docs/own-controller.md). {', '.join(BASELINES)} also with :textbook for the textbook tables."
+)
 
 
 def _names(names: list[str]) -> str:
     return f"{', '.join(names)} or a .toml file."
+
+
+def _disturbance(flag: str, metavar: str, meaning: str) -> Any:
+    return typer.Option(flag, metavar=metavar, help=meaning, show_default=False, rich_help_panel=DISTURBANCES)
 
 
 def case_option(flag: str, metavar: str, meaning: str, default: str) -> Any:
@@ -59,7 +69,14 @@ VehicleOption: TypeAlias = Annotated[
 ]
 RailOption: TypeAlias = Annotated[str | None, case_option("--rail", "NAME", _names(available("rail")), RAIL)]
 PlantOption: TypeAlias = Annotated[
-    str, typer.Option("--plant", metavar="NAME", help="Model of the vehicle.", rich_help_panel=CASE)
+    str,
+    typer.Option(
+        "--plant", metavar="NAME", help=f"Model of the vehicle: {' or '.join(PLANTS)}.", rich_help_panel=CASE
+    ),
+]
+QuarterOption: TypeAlias = Annotated[
+    str,
+    typer.Option("--plant", metavar="NAME", help="Model of the vehicle: quarter only.", rich_help_panel=CASE),
 ]
 SpeedOption: TypeAlias = Annotated[
     str, typer.Option("--speed", metavar="SPEED", help="Initial speed with its unit.", rich_help_panel=CASE)
@@ -77,6 +94,54 @@ SampleTimeOption: TypeAlias = Annotated[
 SeedOption: TypeAlias = Annotated[
     int,
     typer.Option("--seed", min=0, metavar="NUMBER", help="Seed of all random numbers.", rich_help_panel=CASE),
+]
+AxleRailsOption: TypeAlias = Annotated[
+    str | None,
+    _disturbance(
+        "--axle-rails",
+        "R1,R2,R3,R4",
+        "Rail below each axle, front first; --rail stays the one that controllers are designed for.",
+    ),
+]
+PatchOption: TypeAlias = Annotated[
+    list[str] | None,
+    _disturbance(
+        "--patch", '"START RAIL"', 'From START on another rail: "50 m polach-wet". Repeat it for several.'
+    ),
+]
+GradeOption: TypeAlias = Annotated[
+    str | None, _disturbance("--grade", "GRADE", 'Positive uphill: "5 permille" or "-0.5 %".')
+]
+PadVibrationOption: TypeAlias = Annotated[
+    bool,
+    typer.Option(
+        "--pad-vibration",
+        help="Vibration of the brake pads, T_d in Section 7 of the paper.",
+        show_default=False,
+        rich_help_panel=DISTURBANCES,
+    ),
+]
+SpeedNoiseOption: TypeAlias = Annotated[
+    str | None, _disturbance("--speed-noise", "SPEED", 'Of the measured rim speed, rms: "0.05 m/s".')
+]
+PulsesOption: TypeAlias = Annotated[
+    int | None,
+    typer.Option(
+        "--pulses",
+        min=1,
+        metavar="NUMBER",
+        help="Pulses per turn of the wheel that measures the speed, such as 80.",
+        show_default=False,
+        rich_help_panel=DISTURBANCES,
+    ),
+]
+ReferenceErrorOption: TypeAlias = Annotated[
+    str | None,
+    _disturbance("--reference-error", "SHARE", 'Of the train speed that the controller knows: "2 %".'),
+]
+DeadTimeOption: TypeAlias = Annotated[
+    str | None,
+    _disturbance("--dead-time", "TIME", 'From command to valve, at most one sample time: "40 ms".'),
 ]
 JsonOption: TypeAlias = Annotated[
     bool, typer.Option("--json", help="Print one JSON object and nothing else (docs/json.md).")

@@ -23,9 +23,13 @@ from wspd_design.parameters.loading import (
     load_trenitalia,
 )
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.schema import PRESETS, Preset
 
 CONTROLLERS = ("afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
 """Names that stand for a controller; the path of a design file stands for its own."""
+
+BASELINES = ("trenitalia", "knorr-bremse", "mitsubishi")
+"""Those of them whose tables come in presets."""
 
 
 def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Controller:
@@ -34,7 +38,8 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     Parameters
     ----------
     name_or_path : str
-        One of :data:`CONTROLLERS`, or the path of a design file ending in ``.toml``.
+        One of :data:`CONTROLLERS`, or the path of a design file ending in ``.toml``. The three controllers of
+        the industry take a preset after a colon, ``trenitalia:textbook``; ``calibrated`` without one.
     vehicle : Vehicle
         The vehicle it shall brake.
     rail : Rail
@@ -53,24 +58,34 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     if name_or_path in ("afsmc", "smc"):
         return named_design(name_or_path, vehicle, rail, specification).build(vehicle, rail)
     sampling, radius = specification.sample_time, vehicle.wheel_radius
-    match name_or_path:
-        case "trenitalia":
-            pulses = load_trenitalia("calibrated")
-            return Trenitalia(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=pulses)
-        case "knorr-bremse":
-            decisions = load_knorr_bremse("calibrated")
-            return KnorrBremse(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=decisions)
-        case "mitsubishi":
-            rules = load_mitsubishi("calibrated")
-            return Mitsubishi(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=rules)
-        case "none":
-            return Unprotected(name=name_or_path, sample_time=sampling)
+    if name_or_path == "none":
+        return Unprotected(name=name_or_path, sample_time=sampling)
+    base, colon, preset_name = name_or_path.partition(":")
+    if base in BASELINES:
+        preset = _preset(base, preset_name if colon else "calibrated")
+        match base:
+            case "trenitalia":
+                pulses = load_trenitalia(preset)
+                return Trenitalia(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=pulses)
+            case "knorr-bremse":
+                table = load_knorr_bremse(preset)
+                return KnorrBremse(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=table)
+            case "mitsubishi":
+                rules = load_mitsubishi(preset)
+                return Mitsubishi(name=name_or_path, sample_time=sampling, wheel_radius=radius, table=rules)
     near = get_close_matches(name_or_path, CONTROLLERS, n=1)
     offer = f', did you mean "{near[0]}"?' if near else ""
     raise UserError(
         f'unknown controller "{name_or_path}"{offer}; available: {", ".join(CONTROLLERS)}, '
         "or the path of a design file ending in .toml"
     )
+
+
+def _preset(base: str, name: str) -> Preset:
+    for preset in PRESETS:
+        if preset == name:
+            return preset
+    raise UserError(f'unknown preset "{name}" of {base}; write {" or ".join(f"{base}:{p}" for p in PRESETS)}')
 
 
 def is_design_file(name_or_path: str) -> bool:

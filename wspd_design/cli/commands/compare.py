@@ -1,12 +1,37 @@
 """``wspd compare``: the same stop with several controllers."""
 
+from collections.abc import Callable
+
+from rich.text import Text
+
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_plant, parse_speed, resolve_all
+from wspd_design.cli.case import Wishes, check_plant, resolve_all
 from wspd_design.cli.console import console, print_json, progress, spaced, table
 from wspd_design.cli.json_objects import comparison_object, stop_object
+from wspd_design.cli.stop_figures import CHAOTIC, number
+from wspd_design.cli.stop_options import StopWords, disturbances_of, rails_of, scenario
 from wspd_design.design.catalog import CONTROLLERS
 from wspd_design.simulation.comparison import Trial, trial
+from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
+
+_ALL_COLUMNS = 72
+"""Columns of a terminal from which on the table shows everything."""
+
+_COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
+    ("d\n[m]", lambda figures: f"{figures.distance:.1f}"),
+    ("t\n[s]", lambda figures: f"{figures.stopping_time:.2f}"),
+    ("lag\n[s]", lambda figures: number(figures.lag, ".2f")),
+    ("eff\n[%]", lambda figures: number(100.0 * figures.efficiency, ".0f")),
+    ("slip\nrms", lambda figures: number(figures.slip_rms, ".3f")),
+    ("slip\nmax", lambda figures: number(figures.slip_max, ".3f")),
+    ("lock\n[s]", lambda figures: f"{figures.lock_time:.1f}"),
+)
+_MORE_COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
+    ("valve\n[-]", lambda figures: f"{figures.valve_switches}"),
+    ("air\n[-]", lambda figures: f"{figures.vented_air:.1f}"),
+    ("adh\n[%]", lambda figures: number(100.0 * figures.adhesion_utilization, ".0f")),
+)
 
 
 def compare(
@@ -18,6 +43,14 @@ def compare(
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
+    axle_rails: options.AxleRailsOption = None,
+    patch: options.PatchOption = None,
+    grade: options.GradeOption = None,
+    pad_vibration: options.PadVibrationOption = False,
+    speed_noise: options.SpeedNoiseOption = None,
+    pulses: options.PulsesOption = None,
+    reference_error: options.ReferenceErrorOption = None,
+    dead_time: options.DeadTimeOption = None,
     as_json: options.JsonOption = False,
 ) -> None:
     """Simulate the same stop with several controllers, side by side.
@@ -28,59 +61,76 @@ def compare(
     check_plant(plant)
     wishes = Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     cases = resolve_all(names or list(CONTROLLERS), wishes)
-    scenario = Scenario(rail=cases[0].rail, initial_speed=parse_speed(speed), seed=seed)
+    stop = scenario(
+        cases[0].rail,
+        StopWords(
+            speed=speed,
+            seed=seed,
+            axle_rails=axle_rails,
+            patches=patch,
+            grade=grade,
+            pad_vibration=pad_vibration,
+            speed_noise=speed_noise,
+            pulses=pulses,
+            reference_error=reference_error,
+            dead_time=dead_time,
+        ),
+    )
     trials: list[tuple[Trial, float]] = []
     with progress() as tell:
         for case in cases:
             tell(f"stop {len(trials) + 1} of {len(cases)}: {case.controller.name}")
             reference = case.specification.slip
-            made = trial(case.vehicle, case.controller, scenario, slip_reference=reference, plant=plant)
+            made = trial(case.vehicle, case.controller, stop, slip_reference=reference, plant=plant)
             trials.append((made, reference))
     if as_json:
-        print_json(
-            comparison_object([stop_object(made, slip_reference=ref, seed=seed) for made, ref in trials])
-        )
+        print_json(comparison_object([stop_object(made, stop, slip_reference=ref) for made, ref in trials]))
         return
-    _show([made for made, _ in trials])
+    _show([made for made, _ in trials], stop)
 
 
-def _show(trials: list[Trial]) -> None:
-    out, first = console(), trials[0].run
+def _show(trials: list[Trial], scenario: Scenario) -> None:
+    out, first = console(), trials[0]
     out.print(
-        f"{first.vehicle} ({first.plant}) on {first.rail}, from {first.initial_speed * 3.6:g} km/h",
+        f"{first.run.vehicle} ({first.run.plant}) on {rails_of(scenario)}, "
+        f"from {first.run.initial_speed * 3.6:g} km/h",
         style="bold",
         markup=False,
     )
-    headers = (
-        "Controller",
-        "d\n[m]",
-        "t\n[s]",
-        "lag\n[s]",
-        "slip\nrms",
-        "slip\nmax",
-        "lock\n[s]",
-        "valve\n[-]",
-    )
-    shown = table(*headers, numeric=headers[1:])
+    disturbances = disturbances_of(scenario)
+    if disturbances:
+        out.print(f"With {disturbances}.", markup=False)
+    complete = out.width >= _ALL_COLUMNS
+    columns = _COLUMNS + _MORE_COLUMNS * complete
+    headers = [header for header, _ in columns]
+    shown = table("Controller", *headers, numeric=tuple(headers))
     stopped = [made.metrics.distance for made in trials if made.run.ending is Ending.STOPPED]
     for made in trials:
-        figures, still_moving = made.metrics, made.run.ending is not Ending.STOPPED
+        still_moving = made.run.ending is not Ending.STOPPED
+        best = bool(stopped) and not still_moving and made.metrics.distance == min(stopped)
         shown.add_row(
-            made.run.controller + (" *" if still_moving else ""),
-            f"{figures.distance:.1f}",
-            f"{figures.stopping_time:.2f}",
-            "-" if still_moving else f"{figures.lag:.2f}",
-            f"{figures.slip_rms:.3f}",
-            f"{figures.slip_max:.3f}",
-            f"{figures.lock_time:.1f}",
-            f"{figures.valve_switches}",
-            style="bold" if stopped and not still_moving and figures.distance == min(stopped) else "",
+            Text(made.run.controller + " *" * still_moving + " ~" * made.check.chaotic),
+            *(cell(made.metrics) for _, cell in columns),
+            style="bold" if best else "",
         )
     out.print(spaced(shown))
+    bound = first.metrics.bound
+    known = f" (bound {bound:.1f} m)" if bound == bound else ""
+    more = (
+        "; valve: changes of its state; air: brake cylinders vented; adh: adhesion used" if complete else ""
+    )
     out.print(
-        "d distance, t time, lag 2 d/v0 - t; slip above 10 km/h, rms about the reference; lock: how long the "
-        "wheels were locked; valve: changes of its state.",
+        f"d distance, t time, lag 2 d/v0 - t, eff efficiency: bound over distance{known}; slip above 10 km/h, "
+        f"rms about the reference; lock: how long the wheels were locked{more}.",
         style="dim",
     )
     if len(stopped) < len(trials):
         out.print(f"* {Ending.TIME_LIMIT.value}.", style="yellow")
+    spreads = [f"{made.run.controller} {made.check.spread:.2g} m" for made in trials if made.check.chaotic]
+    if spreads:
+        out.print(
+            f"~ {CHAOTIC}. Spread of the distance over slightly different initial speeds: "
+            f"{', '.join(spreads)}.",
+            style="yellow",
+            markup=False,
+        )

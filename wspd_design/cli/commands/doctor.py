@@ -1,22 +1,32 @@
 """``wspd doctor``: whether this machine has all that the program needs."""
 
+import ctypes
 import os
 import platform
 import re
+import shlex
 import shutil
+import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, requires, version
+from importlib.util import find_spec
 
 import typer
 from rich.text import Text
 
 from wspd_design.cli.console import console, is_interactive, program_version, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED
+from wspd_design.cli.tables import PARQUET_INSTALLATION
+from wspd_design.codegen.compiler import NoCompilerError, cache_folder, find_compiler, load_library
 
-COMPILERS = ("cc", "gcc", "clang", "cl")
+_INSTALL_COMPILER = (
+    "Without one, stops run in CasADi's virtual machine, many times slower. Install gcc or clang, or set CC."
+)
+_TEST_SOURCE = "#include <math.h>\ndouble doctor(double x) { return sqrt(x); }\n"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +41,7 @@ class Finding:
 
 
 def doctor() -> None:
-    """Look whether all that is needed is there: packages, fonts, folders, terminal.
+    """Look whether all that is needed is there: packages, fonts, folders, compiler, terminal.
 
     Exit code 0 when nothing that is needed is missing, else 1.
     """
@@ -68,6 +78,8 @@ def examine() -> list[Finding]:
         _folder("temporary files", tempfile.gettempdir, "Set TMPDIR to a folder that can be written."),
         _folder("font cache", _font_cache, "Set MPLCONFIGDIR to a folder that can be written."),
         _compiler(),
+        _compiled_code(),
+        _parquet(),
         _terminal(),
     ]
 
@@ -121,15 +133,59 @@ def _font_cache() -> str:
 
 
 def _compiler() -> Finding:
-    environment = os.environ.get("CC")
-    found = next(filter(None, map(shutil.which, filter(None, (environment, *COMPILERS)))), None)
-    return Finding(
-        name="C compiler",
-        found=found or "none",
-        good=found is not None,
-        needed=False,
-        remedy="This version computes without one; a later one compiles the closed loop.",
-    )
+    """Compile, load and call one function, as a closed loop is, but past the cache of earlier ones."""
+    compiler = find_compiler()
+    if compiler is None:
+        return Finding(name="C compiler", found="none", good=False, needed=False, remedy=_INSTALL_COMPILER)
+    works, found = False, shlex.join(compiler)
+    try:
+        about = subprocess.run([*compiler, "--version"], capture_output=True, text=True, check=False).stdout
+        found += f", {next(iter(about.splitlines()), 'version unknown')}; "
+        with _empty_cache():
+            function = load_library(_TEST_SOURCE).doctor
+        function.restype, function.argtypes = ctypes.c_double, [ctypes.c_double]
+        works = function(9.0) == 3.0
+        found += "a test program ran" if works else "a test program computed a wrong number"
+    except (OSError, NoCompilerError) as error:
+        found += str(error)
+    return Finding(name="C compiler", found=found, good=works, needed=False, remedy=_INSTALL_COMPILER)
+
+
+@contextmanager
+def _empty_cache() -> Iterator[None]:
+    """Let compiled code go to a folder that is removed afterwards."""
+    name = "XDG_CACHE_HOME"
+    before = os.environ.get(name)
+    with tempfile.TemporaryDirectory(prefix="wspd-") as folder:
+        os.environ[name] = folder
+        try:
+            yield
+        finally:
+            os.environ.pop(name)
+            if before is not None:
+                os.environ[name] = before
+
+
+def _compiled_code() -> Finding:
+    """Look at the cache of compiled loops; without one every start compiles again."""
+    remedy = "Every start compiles again, about 2 s. Set XDG_CACHE_HOME to a folder that can be written."
+    try:
+        folder = cache_folder()
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+        files = [path.stat().st_size for path in folder.glob("*.so")]
+    except OSError as error:
+        return Finding(name="compiled code", found=str(error), good=False, needed=False, remedy=remedy)
+    found = f"{folder}, {len(files)} closed loops, {sum(files) / 1e6:.1f} MB; may be deleted at any time"
+    return Finding(name="compiled code", found=found, good=True)
+
+
+def _parquet() -> Finding:
+    good = find_spec("duckdb") is not None
+    found = f"DuckDB {version('duckdb')}" if good else "none"
+    remedy = f"Results can be written as CSV only; for Parquet: {PARQUET_INSTALLATION}"
+    return Finding(name="Parquet", found=found, good=good, needed=False, remedy=remedy)
 
 
 def _terminal() -> Finding:

@@ -6,7 +6,7 @@ import typer
 from rich.text import Text
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_plant, parse_speed, specification
+from wspd_design.cli.case import Wishes, check_quarter, parse_speed, specification
 from wspd_design.cli.console import console, print_json, spaced, table
 from wspd_design.cli.json_objects import linearization_object
 from wspd_design.parameters.loading import load_rail, load_vehicle
@@ -29,7 +29,7 @@ def linearize(
         ),
     ] = None,
     vehicle: options.VehicleOption = None,
-    plant: options.PlantOption = options.PLANT,
+    plant: options.QuarterOption = options.QUARTER,
     rail: options.RailOption = None,
     slip: options.SlipOption = None,
     as_json: options.JsonOption = False,
@@ -41,7 +41,7 @@ def linearize(
     """
     from wspd_design.analysis import linearization
 
-    check_plant(plant)
+    check_quarter(plant, "linearize")
     reference = specification(Wishes(slip=slip)).slip
     locomotive, friction = load_vehicle(vehicle or options.VEHICLE), load_rail(rail or options.RAIL)
     speeds = [parse_speed(text) for text in speed] if speed else [kmh / 3.6 for kmh in SPEEDS_KMH]

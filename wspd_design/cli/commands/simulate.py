@@ -1,17 +1,26 @@
-"""``wspd simulate``: one stop and its figures."""
+"""``wspd simulate``: one stop and its figures, or many and their spread."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Case, Wishes, check_plant, chosen, parse_speed, resolve
-from wspd_design.cli.console import console, print_json, progress, spaced, table
+from wspd_design.cli.campaign import simulate_campaign
+from wspd_design.cli.case import Wishes, check_plant, chosen, resolve
+from wspd_design.cli.console import console, print_json, progress
 from wspd_design.cli.json_objects import stop_object
-from wspd_design.cli.output import check_output, write_text
-from wspd_design.simulation.comparison import Trial, trial
-from wspd_design.simulation.records import Ending, Run, Scenario
+from wspd_design.cli.stop_figures import show_stop
+from wspd_design.cli.stop_options import StopWords, scenario
+from wspd_design.cli.tables import check_table, write_table
+from wspd_design.parameters.errors import UserError
+from wspd_design.simulation.comparison import trial
+from wspd_design.simulation.records import Run
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_MANY = "Many stops"
 
 
 def simulate(
@@ -24,77 +33,113 @@ def simulate(
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
+    axle_rails: options.AxleRailsOption = None,
+    patch: options.PatchOption = None,
+    grade: options.GradeOption = None,
+    pad_vibration: options.PadVibrationOption = False,
+    speed_noise: options.SpeedNoiseOption = None,
+    pulses: options.PulsesOption = None,
+    reference_error: options.ReferenceErrorOption = None,
+    dead_time: options.DeadTimeOption = None,
+    runs: Annotated[
+        int | None,
+        typer.Option(
+            "--runs",
+            min=1,
+            metavar="NUMBER",
+            help="Simulate so many stops with other seeds and with parameters drawn from their bounds.",
+            show_default=False,
+            rich_help_panel=_MANY,
+        ),
+    ] = None,
+    nominal: Annotated[
+        bool,
+        typer.Option(
+            "--nominal",
+            help="Draw seeds only; vehicle and rail stay.",
+            show_default=False,
+            rich_help_panel=_MANY,
+        ),
+    ] = False,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Write the traces as CSV.")
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="Write the traces, or one row a stop, to .csv or .parquet.",
+            show_default=False,
+        ),
     ] = None,
     force: options.ForceOption = False,
     as_json: options.JsonOption = False,
 ) -> None:
-    """Simulate one stop and show its figures.
+    """Simulate one stop and show its figures, or many with --runs and show their spread.
 
     A train that does not stop is no error: the ending says so, and the exit code is 0.
     """
     check_plant(plant)
     if output is not None:
-        check_output(output, force=force)
+        check_table(output, force=force)
+    if nominal and runs is None:
+        raise UserError("--nominal is about many stops; add --runs, for example --runs 1000")
     case = resolve(
         chosen(name, controller), Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     )
-    scenario = Scenario(rail=case.rail, initial_speed=parse_speed(speed), seed=seed)
+    stop = scenario(
+        case.rail,
+        StopWords(
+            speed=speed,
+            seed=seed,
+            axle_rails=axle_rails,
+            patches=patch,
+            grade=grade,
+            pad_vibration=pad_vibration,
+            speed_noise=speed_noise,
+            pulses=pulses,
+            reference_error=reference_error,
+            dead_time=dead_time,
+        ),
+    )
+    if runs is not None:
+        simulate_campaign(
+            case,
+            stop,
+            plant=plant,
+            runs=runs,
+            nominal=nominal,
+            output=output,
+            force=force,
+            as_json=as_json,
+        )
+        return
     reference = case.specification.slip
     with progress() as tell:
         tell(f"stop with {case.controller.name}")
-        made = trial(case.vehicle, case.controller, scenario, slip_reference=reference, plant=plant)
+        made = trial(case.vehicle, case.controller, stop, slip_reference=reference, plant=plant)
     if output is not None:
-        write_text(output, trace_csv(made.run), force=force)
+        write_table(output, traces(made.run), force=force)
     if as_json:
-        print_json(stop_object(made, slip_reference=reference, seed=seed))
+        print_json(stop_object(made, stop, slip_reference=reference))
         return
-    _show(case, made)
+    show_stop(made, stop, reference)
     if output is not None:
-        console().print(f"Traces: {output}", markup=False)
+        console().print(f"Traces: {output}", markup=False, soft_wrap=True)
 
 
-def trace_csv(run: Run) -> str:
-    """Return the traces of a stop as CSV, one line per record, columns named with their unit."""
-    import io
-
+def traces(run: Run) -> "NDArray[Any]":
+    """Return the traces of a stop as a table, one row a record, columns named with their unit."""
     import numpy as np
 
-    wheelsets = range(1, run.slip.shape[1] + 1)
-    names = ["time_s", "speed_m_s", "distance_m"]
-    names += [f"{n}_{i}" for n in ("wheel_speed_rad_s", "slip", "torque_N_m") for i in wheelsets]
-    columns = np.column_stack((run.time, run.speed, run.distance, run.wheel_speed, run.slip, run.torque))
-    text = io.StringIO()
-    np.savetxt(text, columns, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
-    return text.getvalue()
-
-
-def _show(case: Case, made: Trial) -> None:
-    run, figures, reference = made.run, made.metrics, case.specification.slip
-    stopped = run.ending is Ending.STOPPED
-    out = console()
-    out.print(
-        f"{run.controller} on {run.rail}, {run.vehicle} ({run.plant}), "
-        f"from {run.initial_speed * 3.6:g} km/h, sample time {run.sample_time * 1e3:g} ms",
-        style="bold",
-        markup=False,
-    )
-    out.print(f"Ending: {run.ending.value}.", style="" if stopped else "bold yellow")
-    shown = table("Figure", "Value", "Unit", numeric=("Value",))
-    shown.add_row("distance", f"{figures.distance:.1f}", "m")
-    shown.add_row("time", f"{figures.stopping_time:.2f}", "s")
-    if stopped:
-        shown.add_row("lag of the brake build-up", f"{figures.lag:.2f}", "s")
-        shown.add_row("deceleration after it", f"{figures.plateau:.3f}", "m/s^2")
-    shown.add_row("torque integral, all wheelsets", f"{figures.torque_integral / 1e3:.1f}", "kN m s")
-    shown.add_row(f"slip rms about {reference:g}", f"{figures.slip_rms:.3f}", "-")
-    shown.add_row("slip mean", f"{figures.slip_mean:.3f}", "-")
-    shown.add_row("slip maximum", f"{figures.slip_max:.3f}", "-")
-    shown.add_row("wheels locked", f"{figures.lock_time:.2f}", "s")
-    shown.add_row("valve switches", f"{figures.valve_switches}", "")
-    shown.add_row("samples at a limit", f"{100.0 * figures.saturated_share:.0f}", "%")
-    shown.add_row("momentum balance, relative", f"{figures.momentum_residual:.1e}", "-")
-    shown.add_row("energy balance, relative", f"{figures.energy_residual:.1e}", "-")
-    out.print(spaced(shown))
-    out.print("Slip figures count above 10 km/h.", style="dim")
+    columns = [("time_s", run.time), ("speed_m_s", run.speed), ("distance_m", run.distance)]
+    for name, trace in (
+        ("wheel_speed_rad_s", run.wheel_speed),
+        ("slip", run.slip),
+        ("torque_N_m", run.torque),
+        ("wheel_load_N", run.wheel_load),
+    ):
+        columns += [(f"{name}_{k + 1}", column) for k, column in enumerate(trace.T)]
+    table = np.zeros(len(run.time), dtype=[(name, "f8") for name, _ in columns])
+    for name, column in columns:
+        table[name] = column
+    return table

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_plant, chosen, resolve
+from wspd_design.cli.case import Wishes, check_quarter, chosen, resolve
 from wspd_design.cli.console import console, print_json, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.json_objects import verification_object
@@ -31,7 +31,7 @@ def verify(
     name: options.ControllerArgument = None,
     controller: options.ControllerOption = None,
     vehicle: options.VehicleOption = None,
-    plant: options.PlantOption = options.PLANT,
+    plant: options.QuarterOption = options.QUARTER,
     rail: options.RailOption = None,
     slip: options.SlipOption = None,
     speeds: options.SpeedsOption = None,
@@ -49,7 +49,7 @@ def verify(
     from wspd_design.certificates import suite
     from wspd_design.design.problem import stability_problem
 
-    check_plant(plant)
+    check_quarter(plant, "verify")
     case = resolve(
         chosen(name, controller),
         Wishes(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),

@@ -1,0 +1,35 @@
+"""Notices of the engine, such as a missing compiler, as plain sentences for the user."""
+
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+
+@contextmanager
+def plain_notices() -> Iterator[None]:
+    """Print each notice of the simulation once, as one line on standard error without file and code."""
+    said: set[str] = set()
+    usual = warnings.showwarning
+
+    def show(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        if category is not UserWarning:
+            usual(message, category, filename, lineno, file, line)
+            return
+        sentence = " ".join(str(message).split()).rstrip(".") + "."
+        if sentence not in said:
+            said.add(sentence)
+            print(f"wspd: {sentence}", file=sys.stderr)
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("always", category=UserWarning, module=r"wspd_design\.simulation\.")
+        warnings.showwarning = show
+        yield

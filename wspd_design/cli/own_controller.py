@@ -1,0 +1,159 @@
+"""A controller from a user's own Python file, ``my_file.py:MyController``."""
+
+import inspect
+import math
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.parameters.errors import UserError
+
+_MODULE_PREFIX = "wspd_own_controller."
+_PROBES = (Measurement(30.0, 50.0, 0.0), Measurement(20.0, 25.0, 2e4))
+_HOW = "see docs/own-controller.md"
+
+
+def is_own_controller(name: str) -> bool:
+    """Tell whether a controller is given by a Python file."""
+    return name.endswith(".py") or name.rpartition(":")[0].endswith(".py")
+
+
+def load_own_controller(
+    name: str, *, options: Mapping[str, object], written: Mapping[str, object]
+) -> Controller:
+    """Load a controller from a Python file.
+
+    Parameters
+    ----------
+    name : str
+        ``FILE.py:NAME``. NAME is a controller, or a class or function that makes one.
+    options : mapping
+        What a class or function may ask for by the names of its parameters.
+    written : mapping
+        Those of the options that the user wrote. Only they replace a default of a parameter.
+
+    Raises
+    ------
+    UserError
+        If the file fails or what it gives is no controller.
+    """
+    file, _, attribute = name.rpartition(":")
+    if not file.endswith(".py"):
+        raise UserError(f"{name} needs the name of the controller in it: {name}:NAME; {_HOW}")
+    module = _run(Path(file))
+    if not hasattr(module, attribute):
+        own = [
+            key for key, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__
+        ]
+        raise UserError(f'{file} has no "{attribute}"; it defines {", ".join(own) or "nothing"}; {_HOW}')
+    found = getattr(module, attribute)
+    made: Any = found if _is_controller(found) else _make(found, name, options, written)
+    _check(made, name)
+    return made  # type: ignore[no-any-return]
+
+
+def fault_in_own_file(error: BaseException) -> str | None:
+    """Say where a user's own file failed; None when the fault is not in such a file."""
+    place, trace = None, error.__traceback__
+    while trace is not None:
+        frame = trace.tb_frame
+        if frame.f_globals.get("__name__", "").startswith(_MODULE_PREFIX):
+            place = f"{frame.f_code.co_filename}, line {trace.tb_lineno}"
+        trace = trace.tb_next
+    return place and f"{place}: {type(error).__name__}: {error}"
+
+
+def _run(path: Path) -> ModuleType:
+    """Run a file as a module; its folder can be imported from meanwhile, as for a script."""
+    try:
+        source = path.read_bytes()
+    except OSError as error:
+        raise UserError(f"cannot read {path} ({error.strerror}); check the path") from None
+    module = ModuleType(_MODULE_PREFIX + path.stem)
+    module.__file__ = str(path)
+    sys.modules[module.__name__] = module  # dataclasses look their module up
+    sys.path.insert(0, str(path.parent.absolute()))
+    try:
+        exec(compile(source, str(path), "exec"), module.__dict__)
+    except SyntaxError as error:
+        raise UserError(f"{path}, line {error.lineno}, is no Python: {error.msg}") from None
+    except Exception as error:
+        raise UserError(_fault(error, path.name)) from None
+    finally:
+        sys.path.pop(0)
+    return module
+
+
+def _is_controller(found: Any) -> bool:
+    return not isinstance(found, type) and all(
+        hasattr(found, key) for key in ("name", "sample_time", "start", "step")
+    )
+
+
+def _make(found: Any, name: str, options: Mapping[str, object], written: Mapping[str, object]) -> object:
+    """Call a class or function with those options that it has parameters for."""
+    if not callable(found):
+        raise UserError(f"{name} is neither a controller nor a class or function that makes one; {_HOW}")
+    given = {}
+    for parameter in inspect.signature(found).parameters.values():
+        by_name = parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
+        needed = parameter.default is parameter.empty and parameter.kind not in (
+            parameter.VAR_POSITIONAL,
+            parameter.VAR_KEYWORD,
+        )
+        offered = options if needed else written
+        if by_name and parameter.name in offered:
+            given[parameter.name] = offered[parameter.name]
+        elif needed:
+            raise UserError(
+                f'{name} asks for "{parameter.name}"; it can have {", ".join(options)} '
+                "by these names, all else needs a default"
+            )
+    return _guarded(lambda: found(**given), name)
+
+
+def _check(made: Any, name: str) -> None:
+    """Look at the attributes, and at what ``start`` and ``step`` do with numbers."""
+    missing = [key for key in ("name", "sample_time", "start", "step") if not hasattr(made, key)]
+    if missing:
+        raise UserError(f"{name} makes no controller, it lacks {', '.join(missing)}; {_HOW}")
+    sampling = made.sample_time
+    if not isinstance(sampling, int | float) or not 1e-3 <= sampling <= 1.0:
+        raise UserError(f"sample_time = {sampling!r} of {name} must be a number between 0.001 and 1 s")
+    before = repr(getattr(made, "__dict__", None))
+    results = _guarded(lambda: [_probe(made, seen) for seen in (*_PROBES, _PROBES[0])], name)
+    for states, following, command in results:
+        if len(command) != 2 or not all(hasattr(command, key) for key in ("fill", "vent")):
+            raise UserError(f"step of {name} must return (state, Command(fill=..., vent=...)); {_HOW}")
+        if len(states) != len(following):
+            raise UserError(
+                f"start of {name} returns {len(states)} states and step {len(following)}; both must return "
+                "all that the controller remembers"
+            )
+        if not all(math.isfinite(number) for number in (*states, *following, *command)):
+            raise UserError(f"{name} returns a number that is not finite: {command}")
+    if results[0] != results[-1] or repr(getattr(made, "__dict__", None)) != before:
+        raise UserError(
+            f"{name} changes from call to call; what it remembers must be in the state that step takes and "
+            f"returns, and nothing may be random; {_HOW}"
+        )
+
+
+def _probe(made: Any, seen: Measurement) -> tuple[Any, Any, Any]:
+    state = made.start(seen)
+    following, command = made.step(state, seen)
+    return tuple(map(float, state)), tuple(map(float, following)), command
+
+
+def _guarded(work: Callable[[], Any], name: str) -> Any:
+    try:
+        return work()
+    except Exception as error:  # the user's code may fail in any way
+        raise UserError(_fault(error, name)) from None
+
+
+def _fault(error: Exception, name: str) -> str:
+    return fault_in_own_file(error) or f"{name}: {type(error).__name__}: {error}"

@@ -1,0 +1,69 @@
+"""The table of the figures of one stop."""
+
+from rich.text import Text
+
+from wspd_design.cli.console import console, spaced, table
+from wspd_design.cli.stop_options import disturbances_of, rails_of
+from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.self_check import StepCheck
+
+CHAOTIC = "chaotic: the last digit of anything moves the result"
+
+
+def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
+    """Print what became of a stop, and how far the numbers can be trusted."""
+    run, figures = made.run, made.metrics
+    stopped = run.ending is Ending.STOPPED
+    out = console()
+    out.print(
+        f"{run.controller} on {rails_of(scenario)}, {run.vehicle} ({run.plant}), "
+        f"from {run.initial_speed * 3.6:g} km/h, sample time {run.sample_time * 1e3:g} ms",
+        style="bold",
+        markup=False,
+    )
+    disturbances = disturbances_of(scenario)
+    if disturbances:
+        out.print(f"With {disturbances}.", markup=False)
+    out.print(f"Ending: {run.ending.value}.", style="" if stopped else "bold yellow")
+    shown = table("Figure", "Value", "Unit", numeric=("Value",))
+    shown.add_row("distance", f"{figures.distance:.1f}", "m")
+    shown.add_row("bound, no controller stops shorter", number(figures.bound, ".1f"), "m")
+    shown.add_row("efficiency, bound over distance", number(100.0 * figures.efficiency, ".1f"), "%")
+    shown.add_row("time", f"{figures.stopping_time:.2f}", "s")
+    if stopped:
+        shown.add_row("lag of the brake build-up", f"{figures.lag:.2f}", "s")
+        shown.add_row("deceleration after it", f"{figures.plateau:.3f}", "m/s^2")
+    shown.add_row("torque integral, all wheelsets", f"{figures.torque_integral / 1e3:.1f}", "kN m s")
+    shown.add_row("adhesion utilization", number(100.0 * figures.adhesion_utilization, ".1f"), "%")
+    shown.add_row(f"slip rms about {reference:g}", number(figures.slip_rms, ".3f"), "-")
+    shown.add_row("slip mean", number(figures.slip_mean, ".3f"), "-")
+    shown.add_row("slip maximum", number(figures.slip_max, ".3f"), "-")
+    shown.add_row("wheels locked", f"{figures.lock_time:.2f}", "s")
+    shown.add_row("vented air per wheelset", f"{figures.vented_air:.2f}", "cylinders")
+    shown.add_row("valve switches per wheelset", f"{figures.valve_switches}", "")
+    shown.add_row("samples at a limit", f"{100.0 * figures.saturated_share:.0f}", "%")
+    shown.add_row("momentum balance, relative", f"{figures.momentum_residual:.1e}", "-")
+    shown.add_row("energy balance, relative", f"{figures.energy_residual:.1e}", "-")
+    shown.add_row("step check, distance, relative", f"{made.check.distance:.1e}", "-")
+    shown.add_row("step check, slip", f"{made.check.slip:.1e}", "-")
+    out.print(spaced(shown))
+    out.print(_trust(made.check))
+    out.print("Slip figures count above 10 km/h.", style="dim")
+
+
+def number(value: float, form: str) -> str:
+    """Format a number; one that does not exist is a dash."""
+    return "-" if value != value else format(value, form)
+
+
+def _trust(check: StepCheck) -> Text:
+    """Say what the step check means."""
+    if check.chaotic:
+        return Text(
+            f"This stop is {CHAOTIC}, and no step is short enough. Over slightly different initial speeds "
+            f"the distance spreads by {check.spread:.2g} m.",
+            style="yellow",
+        )
+    shorter = f", after dividing them by {check.refinement}" if check.refinement > 1 else ""
+    return Text(f"The steps are short enough: half of them give the same stop{shorter}.", style="dim")
