@@ -140,11 +140,16 @@ def dossier(
         initial_speed=initial_speed,
         provenance=Provenance(
             command=command,
-            versions=(("Python", platform.python_version()), *((name, version(name)) for name in PACKAGES)),
+            versions=versions(),
             seed=seed,
             input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
         ),
     )
+
+
+def versions() -> tuple[tuple[str, str], ...]:
+    """Return the versions of Python and of the packages that numbers depend on."""
+    return (("Python", platform.python_version()), *((name, version(name)) for name in PACKAGES))
 
 
 def phase_plane(run: Run, law: laws.SlipLaw, *, slip_reference: float) -> PhasePlane:

@@ -15,6 +15,14 @@ class PublishedStop:
     stopping_time_s: float
     torque_integral_kNms: float  # sum over the wheelsets
 
+    def lag(self, initial_speed: float) -> float:
+        """Dead time that with a constant deceleration gives distance and time, 2 d / v0 - t [s]."""
+        return 2.0 * self.distance_m / initial_speed - self.stopping_time_s
+
+    def plateau(self, initial_speed: float) -> float:
+        """Deceleration that with a dead time gives distance and time [m/s2]."""
+        return initial_speed / (2.0 * (self.stopping_time_s - self.distance_m / initial_speed))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PublishedStops:

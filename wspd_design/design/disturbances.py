@@ -1,0 +1,140 @@
+"""What the disturbances of the paper's simulations change: vibrating pads and an irregular track."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from wspd_design.controllers.protocol import Controller
+from wspd_design.parameters.records import TrackSpectrum, Vehicle
+from wspd_design.simulation.records import LoadIrregularity, Scenario
+from wspd_design.simulation.stop import axle_offsets, simulate
+from wspd_design.simulation.track import (
+    Irregularity,
+    band,
+    spectrum,
+    standard_deviation,
+    synthesize,
+    welch_spectrum,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+CHANNELS = ("lateral-high", "vertical-high", "cross-level-high")
+"""The rows of Table 9, in its order: horizontal, vertical and "lateral", which is the cross level."""
+
+LOAD_SPREAD = 0.04
+"""Assumed standard deviation of the relative wheel load: multibody simulations of this track give 0.03 to 0.05."""
+
+SPACING = 0.5  # m, a sixth of the shortest wavelength
+SHOWN = 300.0  # m of the profile
+WELCH_HARMONICS, WELCH_SEGMENT = 2000, 200.0  # repeats after 6.8 km, m
+MARGIN = 0.06  # rad/m, two lines of the estimate, which the edges of the band blur
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackChannel:
+    """A synthesized channel and its spectrum, stated by eq. (49) and estimated from the profile."""
+
+    channel: str
+    sigma: float  # m or rad, from the spectrum, in the band
+    found_sigma: float  # of the profile
+    ratio: float  # estimated over stated density, mean over the band
+    wavenumber: "Array"  # rad/m
+    density: "Array"  # stated
+    found: "Array"  # estimated by Welch's method
+    distance: "Array"  # m, of the profile that is shown
+    profile: "Array"  # m or rad
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Disturbance:
+    """What disturbances change in one stop."""
+
+    controller: str
+    rail: str
+    spread: float  # m, of the distance without any; 0 unless the closed loop is chaotic
+    by_pads: float  # m, change of the distance with T_d of Section 7
+    by_track: float  # m, with irregular wheel loads
+
+
+def track_channel(track: TrackSpectrum, channel: str, *, seed: int) -> TrackChannel:
+    """Synthesize a channel and estimate its spectrum from a long profile."""
+    import numpy as np
+
+    long = synthesize(track, channel, seed=seed, harmonics=WELCH_HARMONICS)
+    values = long.profile(np.arange(long.fade_in, long.fade_in + long.period, SPACING))
+    wavenumber, found = welch_spectrum(values, SPACING, WELCH_SEGMENT)
+    low, high = band(track)
+    inside = (wavenumber > low + MARGIN) & (wavenumber < high - MARGIN)
+    stated = spectrum(track, channel, wavenumber[inside])
+    short = synthesize(track, channel, seed=seed)
+    distance = np.arange(0.0, SHOWN, SPACING)
+    return TrackChannel(
+        channel=channel,
+        sigma=standard_deviation(track, channel),
+        found_sigma=float(values.std()),
+        ratio=float(np.mean(found[inside] / stated)),
+        wavenumber=wavenumber[inside],
+        density=stated,
+        found=found[inside],
+        distance=distance,
+        profile=short.profile(distance),
+    )
+
+
+def irregular_load(vehicle: Vehicle, vertical: Irregularity, *, sigma: float) -> LoadIrregularity:
+    """Give the wheel loads the shape of a vertical profile and the assumed spread.
+
+    Each axle meets the profile when it gets there. How a load follows a profile depends on suspension and masses
+    that the paper does not print; only shape and spread are claimed here.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        For the distances of its axles.
+    vertical : Irregularity
+        Profile over distance.
+    sigma : float
+        Standard deviation of the profile [m].
+    """
+    import numpy as np
+
+    # The profile fades in and the last axle begins behind the first one.
+    offsets = axle_offsets(vehicle, "four-axle")
+    distance = np.arange(0.0, vertical.period, SPACING)
+    rows = (
+        1.0 + LOAD_SPREAD / sigma * vertical.profile(np.maximum(distance - offset, 0.0)) for offset in offsets
+    )
+    return LoadIrregularity(spacing=SPACING, factors=tuple(tuple(row.tolist()) for row in rows))
+
+
+def disturbance(
+    vehicle: Vehicle,
+    controller: Controller,
+    scenario: Scenario,
+    *,
+    load: LoadIrregularity,
+    distance: float,
+    spread: float,
+) -> Disturbance:
+    """Simulate a stop with each disturbance, beside the undisturbed distance [m] and its spread [m]."""
+
+    def change(disturbed: Scenario) -> float:
+        return simulate(vehicle, controller, disturbed).totals.distance - distance
+
+    return Disturbance(
+        controller=controller.name,
+        rail=scenario.rail.name,
+        spread=spread,
+        by_pads=change(replace(scenario, pad_vibration=True)),
+        by_track=change(replace(scenario, load_irregularity=load)),
+    )
+
+
+def largest_change(disturbances: Sequence[Disturbance]) -> float:
+    """Largest change of a distance among the stops that are not chaotic [m]."""
+    return max(max(abs(each.by_pads), abs(each.by_track)) for each in disturbances if not each.spread)
