@@ -2,8 +2,6 @@
 
 import json
 import math
-import os
-import tempfile
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -12,6 +10,7 @@ from wspd_design.design.laws import DIVISORS, FORM_OF, GAINS_OF, PER_RULE
 from wspd_design.design.records import Design, Gain, GainValue, Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
+from wspd_design.parameters.writing import write_whole
 
 SCHEMA = "wspd-design/1"
 _HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail")
@@ -40,21 +39,7 @@ def write_design(design: Design, path: str | Path) -> None:
     UserError
         If the folder does not exist or cannot be written.
     """
-    target = Path(path)
-    try:
-        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as stream:
-                stream.write(design_text(design))
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, target)
-        except OSError:
-            os.unlink(temporary)
-            raise
-    except OSError as error:
-        raise UserError(
-            f"cannot write {target} ({error.strerror}); choose a folder that exists and can be written"
-        ) from None
+    write_whole(Path(path), lambda part: part.write_text(design_text(design), encoding="utf-8"))
 
 
 def read_design(path: str | Path) -> Design:

@@ -1,10 +1,9 @@
 """Writes a report to a file, whole or not at all."""
 
-import os
-from contextlib import suppress
 from pathlib import Path
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.writing import write_whole
 from wspd_design.reporting.blocks import Document
 
 
@@ -30,21 +29,4 @@ def write_document(document: Document, path: str | Path) -> None:
             content = render_pdf(document)
         case _:
             raise UserError(f"report {path}: the name must end in .html or .pdf, which chooses the format")
-    try:
-        _write_whole(path, content)
-    except OSError as error:
-        raise UserError(
-            f"report {path} cannot be written ({error.strerror}); choose a folder that exists and is writable"
-        ) from error
-
-
-def _write_whole(path: Path, content: bytes) -> None:
-    """Write to a temporary file beside the target and rename it, which is one step for every reader."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    except BaseException:
-        with suppress(OSError):  # nothing to remove when the folder is missing
-            part.unlink()
-        raise
+    write_whole(path, lambda part: part.write_bytes(content))

@@ -155,7 +155,7 @@ def test_unwritable_places_leave_nothing_behind(designs, tmp_path):
     before = sorted(tmp_path.rglob("*"))
     for target in (tmp_path / "missing" / "design.toml", occupied / "design.toml", folder):
         with pytest.raises(
-            UserError, match=r"cannot write .*; choose a folder that exists and can be written"
+            UserError, match=r"cannot be written .*; choose a folder that exists and is writable"
         ):
             write_design(designs["smc"], target)
     assert sorted(tmp_path.rglob("*")) == before

@@ -54,7 +54,7 @@ def test_a_failing_rename_leaves_nothing(
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "replace", fail)
+    monkeypatch.setattr("os.replace", fail)
     with pytest.raises(UserError, match="No space left on device"):
         write_document(document, tmp_path / "report.html")
     assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,42 @@
+"""Files that appear when they are complete, or not at all."""
+
+import os
+import tempfile
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from wspd_design.parameters.errors import UserError
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Fill a temporary file beside the target and rename it, which is one step for every reader.
+
+    Parameters
+    ----------
+    path : Path
+        The file to be; one of the same name is replaced.
+    write : callable
+        Fills the file of the path that it is given.
+
+    Raises
+    ------
+    UserError
+        If the folder does not exist or cannot be written, or there is no space.
+    """
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+        os.close(handle)
+        part = Path(name)
+        try:
+            write(part)
+            part.chmod(0o644)  # mkstemp keeps others out
+            os.replace(part, path)
+        except BaseException:
+            with suppress(OSError):
+                part.unlink()
+            raise
+    except OSError as error:
+        raise UserError(
+            f"{path} cannot be written ({error.strerror}); choose a folder that exists and is writable"
+        ) from None
