@@ -332,6 +332,7 @@ static void settle_holds(Loop *loop, const Stage *last, const double *speed, Mot
 static void finish(Loop *loop, int stop)
 {
     loop->active[stop] = 0.0;
+    if (loop->phase[stop] == ACT) loop->sample[stop]++; /* the last command came too late to act */
     loop->phase[stop] = DONE;
     loop->running--;
 }

@@ -33,11 +33,12 @@ static inline double wspd_exp(double x)
     return x > 709.0 ? INFINITY : result;
 }
 
-static inline double wspd_log(double x) /* of a positive normal number */
+static inline double wspd_log(double x)
 {
     const uint64_t half_root = 0x3fe6a09e667f3bcdu; /* sqrt(1/2) */
-    uint64_t u = to_bits(x) + (0x3ff0000000000000u - half_root);
-    double k = from_bits((u >> 52) | 0x4330000000000000u) - (0x1p52 + 1023.0);
+    int tiny = x < 0x1p-1022;
+    uint64_t u = to_bits(tiny ? x * 0x1p54 : x) + (0x3ff0000000000000u - half_root);
+    double k = from_bits((u >> 52) | 0x4330000000000000u) - (tiny ? 0x1p52 + 1077.0 : 0x1p52 + 1023.0);
     double m = from_bits((u & 0x000fffffffffffffu) + half_root);
     double f = (m - 1.0) / (m + 1.0);
     double z = f * f;
@@ -49,10 +50,12 @@ static inline double wspd_log(double x) /* of a positive normal number */
     q = FMA(q, z, 0x1.2492492476cc5p-2);
     q = FMA(q, z, 0x1.9999999999a38p-2);
     q = FMA(q, z, 0x1.5555555555555p-1);
-    return FMA(k, LN2_HIGH, FMA(2.0, f, FMA(f * z, q, k * LN2_LOW)));
+    double result = FMA(k, LN2_HIGH, FMA(2.0, f, FMA(f * z, q, k * LN2_LOW)));
+    result = x > 0.0 && x < INFINITY ? result : x; /* infinity and NaN are their own logarithms */
+    return x <= 0.0 ? (x < 0.0 ? NAN : -INFINITY) : result;
 }
 
-static inline double wspd_atan2(double y, double x)
+static inline double wspd_atan2(double y, double x) /* not both zero */
 {
     const uint64_t sign = 0x8000000000000000u;
     double t = fabs(y), u = fabs(x);

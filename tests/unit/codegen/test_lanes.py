@@ -1,0 +1,98 @@
+"""A stop has the same bits wherever it runs: beside other stops, in threads, and with other compiler options."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wspd_design.codegen import compiler
+from wspd_design.codegen.closed_loop import ClosedLoop, closed_loop_source, load_closed_loop
+from wspd_design.codegen.compiler import load_library
+from wspd_design.parameters.loading import load_rail
+from wspd_design.simulation.records import Scenario, Sensing
+from wspd_design.simulation.stop import loop_input, sample_rows
+
+SPEEDS = (10.0, 9.0, 4.0, 10.0, 0.5, 7.0, 10.0, 8.5)
+
+
+@pytest.fixture(scope="module", params=["afsmc", "trenitalia", "mitsubishi"])
+def law(request, make_controller):
+    return make_controller(request.param, "polach-wet")
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return Scenario(rail=load_rail("polach-wet"), initial_speed=10.0)
+
+
+def results(output, stop=0, stops=1):
+    """All numbers of one of the stops."""
+    lanes = [values[stop::stops] for values in (*output.lane_totals.values(), output.wheel_speeds)]
+    return np.concatenate([*lanes, [values[stop] for values in output.stop_totals.values()]])
+
+
+def cases(vehicle, scenario, speeds):
+    return [(vehicle, replace(scenario, initial_speed=speed, seed=7 * k)) for k, speed in enumerate(speeds)]
+
+
+@pytest.mark.parametrize("stops", [2, 8])
+def test_a_stop_does_not_depend_on_the_stops_beside_it(er24pc, law, scenario, stops):
+    noisy = replace(scenario, sensing=Sensing(speed_noise=0.01, dead_time=0.03))
+    several = cases(er24pc, noisy, SPEEDS[:stops])
+    beside = load_closed_loop(er24pc, noisy.rail, law, stops=stops).run(
+        loop_input(several, law, plant="four-axle")
+    )
+    alone = load_closed_loop(er24pc, noisy.rail, law)
+    assert beside.stopped.all()
+    for stop, case in enumerate(several):
+        single = alone.run(loop_input([case], law, plant="four-axle"))
+        np.testing.assert_array_equal(results(beside, stop, stops), results(single))
+
+
+def test_samples_of_stops_side_by_side(er24pc, law, scenario):
+    several = cases(er24pc, scenario, SPEEDS[:2])
+    rows = sample_rows(law)
+    loop = load_closed_loop(er24pc, scenario.rail, law, stops=2)
+    beside = loop.run(loop_input(several, law, plant="four-axle"), sample_rows=rows).samples
+    for stop, case in enumerate(several):
+        single = load_closed_loop(er24pc, scenario.rail, law).run(
+            loop_input([case], law, plant="four-axle"), sample_rows=rows
+        )
+        mine = beside[: len(single.samples), 1:].reshape(len(single.samples), -1, 4, 2)[:, :, :, stop]
+        np.testing.assert_array_equal(mine.reshape(len(mine), -1), single.samples[:, 1:])
+
+
+def test_two_runs_and_threads_are_the_same(er24pc, law, scenario):
+    loop = load_closed_loop(er24pc, scenario.rail, law)
+    several = cases(er24pc, scenario, SPEEDS)
+
+    def run(case):
+        return results(loop.run(loop_input([case], law, plant="four-axle")))
+
+    first, second = [run(case) for case in several], [run(case) for case in several]
+    with ThreadPoolExecutor(max_workers=4) as pool:
+        threaded = list(pool.map(run, several))
+    np.testing.assert_array_equal(first, second)
+    np.testing.assert_array_equal(first, threaded)
+
+
+@pytest.mark.parametrize(
+    "flags",
+    [
+        ("-O1", "-march=native"),
+        ("-O3", "-march=native", "-mprefer-vector-width=128"),
+        ("-O2",),
+    ],
+    ids=" ".join,
+)
+def test_compiler_options_do_not_change_a_bit(er24pc, make_controller, scenario, flags, cache, monkeypatch):  # noqa: ARG001
+    law = make_controller("afsmc")
+    given = loop_input([(er24pc, replace(scenario, initial_speed=3.0))], law, plant="four-axle")
+    usual = load_closed_loop(er24pc, scenario.rail, law).run(given)
+    kept = tuple(flag for flag in compiler.PORTABLE_FLAGS if not flag.startswith("-O"))
+    monkeypatch.setattr(compiler, "FLAGS", (*flags, *kept))
+    source, states = closed_loop_source(er24pc, scenario.rail, law, stops=1, disturbed=False)
+    other = ClosedLoop(load_library(source), 1, states).run(given)
+    assert other.steps == usual.steps
+    np.testing.assert_array_equal(results(other), results(usual))
