@@ -47,6 +47,18 @@ class Hypothesis:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Proof:
+    """An inequality that the checker accepted, with the text from which it can be checked again."""
+
+    claim: str  # name
+    statement: str  # in words
+    claim_hash: str  # SHA-256 of ranges, model text, relation and bound
+    certificate: str  # JSON
+    leaves: int  # boxes that the checker decided
+    seconds: float  # that the check took
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Series:
     """Samples of a quantity over another one, for the plot beside the verdict."""
 
@@ -79,6 +91,9 @@ class Certificate:
     reference: str = ""
     model_hash: str = ""
     seconds: float = 0.0
+    undecided: float = 0.0  # share of the box that was left open
+    engine: str = ""  # versions of what searched and what checked
+    proofs: tuple[Proof, ...] = field(default=(), repr=False)
     series: tuple[Series, ...] = field(default=(), repr=False)
 
 

@@ -1,0 +1,220 @@
+"""The checker: replays a split tree and believes nothing that it did not compute itself.
+
+It uses the standard library, SymPy's exact numbers and python-flint alone. The claim comes from the caller, never
+from the certificate. The certificate holds a tree in preorder, one character per step:
+
+* ``a``, ``b``, ...: the box is halved along the first, second, ... free variable; the lower half comes first;
+* ``A``, ``B``, ...: the expression is monotone in this variable on the box, which is reduced to its worst face;
+* ``.``: interval arithmetic shows the inequality on the box;
+* ``~``: the mean value form shows it.
+"""
+
+import json
+import time
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+import flint
+
+from wspd_design.certificates.proof.balls import Ends, Program, Refused, add, ball, finite, mul
+from wspd_design.certificates.proof.claim import Claim
+from wspd_design.certificates.proof.identity import same
+
+FORMAT = "wspd-proof/1"
+PRECISION = 80  # bits
+MOST_STEPS = 400_000
+MOST_HALVINGS = 400  # of one box
+MOST_BYTES = 4_000_000
+
+Box: TypeAlias = list[tuple[Any, Any]]
+"""Exact ends of every variable (``fmpq``)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """What the checker says."""
+
+    accepted: bool
+    reason: str
+    leaves: int
+    seconds: float
+
+
+def check(claim: Claim, certificate: str, *, seconds: float = 60.0) -> Verdict:
+    """Decide whether a certificate proves a claim.
+
+    Parameters
+    ----------
+    claim : Claim
+        What is to be shown, from the problem.
+    certificate : str
+        JSON text; it may be anything.
+    seconds : float
+        A longer check is refused [s].
+    """
+    started = time.perf_counter()
+    leaves, reason = 0, "every box of the tree satisfies the inequality"
+    try:
+        tree = _tree(claim, certificate)
+        if claim.form is not None and not same(claim.formula(), claim.definition()):
+            raise Refused("the arranged form of the expression is not the model's")
+        with flint.ctx.workprec(PRECISION):
+            leaves = _replay(claim, tree, started + seconds)
+    except Refused as refusal:
+        reason = str(refusal)
+    taken = time.perf_counter() - started
+    return Verdict(accepted=leaves > 0, reason=reason, leaves=leaves, seconds=taken)
+
+
+def value(claim: Claim, point: dict[str, Fraction]) -> tuple[Fraction, Fraction]:
+    """Enclose the expression, as the model's kernels have it, at one point of the box.
+
+    Parameters
+    ----------
+    claim : Claim
+        Its bound does not matter.
+    point : dict
+        Exact value of every free variable, by name.
+
+    Raises
+    ------
+    Refused
+        If the point does not lie in the box, or the expression is not defined there.
+    """
+    box: Box = []
+    for v in claim.variables:
+        at = point[v.name] if v.free else v.low
+        if not v.low <= at <= v.high:
+            raise Refused(f"{v.name} = {float(at):g} lies outside the box")
+        box.append((_fmpq(at), _fmpq(at)))
+    with flint.ctx.workprec(PRECISION):
+        found, _ = Program(claim.definition(), claim.variables).run(_ends(box))
+        if not finite(found):
+            raise Refused("the expression is not defined at this point")
+        return _rational(found[0].lower()), _rational(found[1].upper())
+
+
+def _tree(claim: Claim, certificate: str) -> str:
+    """Read the tree, or refuse."""
+    if len(certificate) > MOST_BYTES:
+        raise Refused("the certificate is too long")
+    try:
+        content = json.loads(certificate)
+    except (ValueError, RecursionError):
+        raise Refused("the certificate is no JSON") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise Refused(f"the certificate does not have the format {FORMAT}")
+    if content.get("claim_sha256") != claim.digest():
+        raise Refused("the certificate belongs to another claim")
+    tree = content.get("tree")
+    if not isinstance(tree, str) or not tree:
+        raise Refused("the certificate has no tree")
+    if len(tree) > MOST_STEPS:
+        raise Refused("the tree is too long")
+    return tree
+
+
+def _replay(claim: Claim, tree: str, deadline: float) -> int:
+    """Walk the tree and return the number of leaves, or refuse."""
+    program = Program(claim.formula(), claim.variables)
+    letters = {chr(ord("a") + i): k for i, k in enumerate(program.free)}
+    root: Box = [(_fmpq(v.low), _fmpq(v.high)) for v in claim.variables]
+    waiting: list[tuple[Box, int, list[Ends] | None]] = [(root, 0, None)]
+    leaves = 0
+    for position, step in enumerate(tree):
+        if not waiting:
+            raise Refused(f"the tree goes on after its last leaf, at step {position}")
+        if time.perf_counter() > deadline:
+            raise Refused("the check takes too long")
+        box, halvings, slopes = waiting.pop()
+        if step in ".~":
+            if not _holds(claim, program, box, mean_value=step == "~"):
+                raise Refused(f"leaf {leaves} does not satisfy the inequality")
+            leaves += 1
+        elif step in letters:
+            if halvings >= MOST_HALVINGS:
+                raise Refused(f"a box is halved more than {MOST_HALVINGS} times")
+            low, high = box[letters[step]]
+            middle = (low + high) / 2
+            for half in ((middle, high), (low, middle)):
+                waiting.append((_replaced(box, letters[step], half), halvings + 1, slopes))
+        elif step.lower() in letters and step.isupper():
+            face, slopes = _worst_face(claim, program, box, letters[step.lower()], slopes)
+            waiting.append((face, halvings, slopes))
+        else:
+            raise Refused(f"the tree has an unknown step at {position}")
+    if waiting:
+        raise Refused("the tree ends before all boxes are decided")
+    return leaves
+
+
+def _holds(claim: Claim, program: Program, box: Box, *, mean_value: bool) -> bool:
+    """Whether the inequality is certain on a box."""
+    if mean_value:
+        slopes = _slopes(program, box)
+        middles = [(low + high) / 2 for low, high in box]
+        found, _ = program.run(_ends([(middle, middle) for middle in middles]))
+        for k in program.free:
+            low, high = box[k]
+            if low != high:
+                found = add(
+                    found, mul(slopes[k], (flint.arb(low - middles[k]), flint.arb(high - middles[k])))
+                )
+    else:
+        found, _ = program.run(_ends(box))
+    bound = ball(claim.bound)
+    if not finite(found):
+        return False
+    return bool(found[1] <= bound if claim.relation == "<=" else found[0] >= bound)
+
+
+def _worst_face(
+    claim: Claim, program: Program, box: Box, k: int, slopes: list[Ends] | None
+) -> tuple[Box, list[Ends]]:
+    """Reduce a box to the end of one variable where the inequality is tightest.
+
+    Slopes that were enclosed on a larger box hold here as well; only if they leave the sign open they are enclosed
+    anew.
+    """
+    rising = 0 if slopes is None else _sign(slopes[k])
+    if slopes is None or rising == 0:
+        slopes = _slopes(program, box)
+        rising = _sign(slopes[k])
+    if rising == 0:
+        raise Refused(f"the expression is not monotone in {claim.variables[k].name} on a box")
+    end = box[k][1] if (rising > 0) == (claim.relation == "<=") else box[k][0]
+    return _replaced(box, k, (end, end)), slopes
+
+
+def _slopes(program: Program, box: Box) -> list[Ends]:
+    """Enclose the slopes on a box on which the expression is defined."""
+    found, slopes = program.run(_ends(box), derivatives=True)
+    if not finite(found):
+        raise Refused("the expression is not defined on a box where its slope is used")
+    return slopes
+
+
+def _sign(x: Ends) -> int:
+    """1 or -1 if an interval certainly has no number of the other sign, else 0."""
+    if x[0] >= 0:
+        return 1
+    return -1 if x[1] <= 0 else 0
+
+
+def _replaced(box: Box, k: int, ends: tuple[Any, Any]) -> Box:
+    return [*box[:k], ends, *box[k + 1 :]]
+
+
+def _ends(box: Box) -> list[Ends]:
+    return [(flint.arb(low), flint.arb(high)) for low, high in box]
+
+
+def _fmpq(number: Fraction) -> Any:
+    return flint.fmpq(number.numerator, number.denominator)
+
+
+def _rational(point: Any) -> Fraction:
+    """Return the exact value of a ball without radius."""
+    mantissa, exponent = point.man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

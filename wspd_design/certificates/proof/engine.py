@@ -1,0 +1,195 @@
+"""From a claim to a finding: the prover searches, the checker decides, a witness is evaluated exactly."""
+
+import json
+import time
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from math import floor, inf, log10, nextafter
+
+from wspd_design.certificates.proof import checker
+from wspd_design.certificates.proof.claim import Claim, text
+from wspd_design.certificates.proof.prover import Budget, Outcome, Progress, extreme, prove
+from wspd_design.certificates.records import Proof, Range, Status
+
+PACKAGES = ("crival", "casadi", "python-flint", "sympy")
+GUARD = 1e-12  # relative; what the prover leaves to the rounding of the checker
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """What is known about a claim.
+
+    ``extreme`` encloses the supremum of the expression (for ``>=`` the infimum). Its end on the side of the bound
+    is proved if the status is PROVED, otherwise the prover's word; the other end is attained at ``place``.
+    """
+
+    status: Status  # PROVED, REFUTED or UNDECIDED
+    claim: Claim  # what was settled: if proved, with nearly the tightest bound
+    extreme: Range
+    place: dict[str, float]  # of the attained end: every variable by name, SI units
+    undecided: float  # share of the box that the prover left open
+    boxes: int
+    seconds: float
+    proof: Proof | None
+    reason: str  # why it is undecided, else empty
+
+    @property
+    def margin(self) -> Range:
+        """Distance of the extreme from the bound that was settled, positive where the claim holds."""
+        bound = float(self.claim.bound)
+        ends = self.extreme.low, self.extreme.high
+        assert ends[0] is not None
+        assert ends[1] is not None
+        if self.claim.relation == "<=":
+            return Range(low=_down(bound - ends[1]), high=_up(bound - ends[0]), unit=self.claim.unit)
+        return Range(low=_down(ends[0] - bound), high=_up(ends[1] - bound), unit=self.claim.unit)
+
+
+def settle(
+    claim: Claim,
+    *,
+    tolerance: float,
+    budget: Budget | None = None,
+    progress: Progress = lambda _share: None,
+) -> Finding:
+    """Prove a claim with nearly the tightest bound that holds, or refute it, or say how far one got.
+
+    Parameters
+    ----------
+    claim : Claim
+        What is asked.
+    tolerance : float
+        Width of the enclosure of the extreme value, in the unit of the claim.
+    budget : Budget, optional
+        Of each run of the prover.
+    progress : callable, optional
+        Told the share of the box that is decided.
+
+    Returns
+    -------
+    Finding
+        PROVED only if the checker accepts; REFUTED only if exact evaluation at the witness denies the claim.
+        If proved, the ``claim`` of the finding has the bound that was proved, at least as tight as what was
+        asked: see :func:`tightest`.
+    """
+    started = time.perf_counter()
+    upper = claim.relation == "<="
+    found = extreme(claim, tolerance=tolerance, budget=budget, progress=progress)
+    attained = checker.value(claim, found.point)
+    reached, far = (attained[0], found.high) if upper else (attained[1], found.low)
+    if (reached > claim.bound) if upper else (reached < claim.bound):
+        return _finding(claim, found, Status.REFUTED, attained, far, started, None, "")
+    target = tightest(claim, found, tolerance)
+    if (target.bound > claim.bound) if upper else (target.bound < claim.bound):
+        # The bound lies within the tolerance of the extreme value, or the budget was used up.
+        target = claim
+        found = prove(claim, budget=budget, progress=progress)
+    if not found.tree:
+        share = f"{found.undecided:.2g} of the box is undecided after {found.boxes} boxes"
+        return _finding(claim, found, Status.UNDECIDED, attained, far, started, None, share)
+    certificate = certificate_text(target, found)
+    verdict = checker.check(target, certificate)
+    if not verdict.accepted:
+        reason = f"the checker refuses the proof: {verdict.reason}"
+        return _finding(claim, found, Status.UNDECIDED, attained, far, started, None, reason)
+    proof = Proof(
+        claim=target.name,
+        statement=f"{target.name} {target.relation} {text(target.bound)} {target.unit}",
+        claim_hash=target.digest(),
+        certificate=certificate,
+        leaves=verdict.leaves,
+        seconds=verdict.seconds,
+    )
+    return _finding(target, found, Status.PROVED, attained, float(target.bound), started, proof, "")
+
+
+def tightest(claim: Claim, found: Outcome, tolerance: float) -> Claim:
+    """Return the claim with the bound that the prover reached, rounded outwards to a short decimal."""
+    digits = 1 - floor(log10(tolerance))
+    step = Fraction(1, 10) ** digits
+    if claim.relation == "<=":
+        reached = Fraction(found.high) * (1 + Fraction(GUARD) * (1 if found.high > 0.0 else -1))
+        near = float(-(-reached // step) * step)
+        bound = near if Fraction(near) >= reached else nextafter(near, inf)
+    else:
+        reached = Fraction(found.low) * (1 - Fraction(GUARD) * (1 if found.low > 0.0 else -1))
+        near = float(reached // step * step)
+        bound = near if Fraction(near) <= reached else nextafter(near, -inf)
+    return replace(claim, bound=Fraction(bound))
+
+
+def certificate_text(claim: Claim, found: Outcome) -> str:
+    """Write the certificate; only format, hash and tree matter to the checker, the rest is for people."""
+    content = {
+        "format": checker.FORMAT,
+        "claim": claim.name,
+        "claim_sha256": claim.digest(),
+        "relation": claim.relation,
+        "bound": text(claim.bound),
+        "unit": claim.unit,
+        "variables": [v.name for v in claim.free],
+        "tree": found.tree,
+        "prover": {"boxes": found.boxes, "seconds": round(found.seconds, 3), "versions": versions()},
+    }
+    return json.dumps(content, indent=1)
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Versions of what searches and what checks."""
+    found = {}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "missing"
+    return found
+
+
+def engine() -> str:
+    """Name what searches and what checks, with versions."""
+    return ", ".join(f"{package} {number}" for package, number in versions().items())
+
+
+def _finding(
+    claim: Claim,
+    found: Outcome,
+    status: Status,
+    attained: tuple[Fraction, Fraction],
+    far: float,
+    started: float,
+    proof: Proof | None,
+    reason: str,
+) -> Finding:
+    ends = (_below(attained[0]), far) if claim.relation == "<=" else (far, _above(attained[1]))
+    return Finding(
+        status=status,
+        claim=claim,
+        extreme=Range(low=ends[0], high=ends[1], unit=claim.unit),
+        place={v.name: float(found.point.get(v.name, v.low)) for v in claim.variables},
+        undecided=found.undecided if status is Status.UNDECIDED else 0.0,
+        boxes=found.boxes,
+        seconds=time.perf_counter() - started,
+        proof=proof,
+        reason=reason,
+    )
+
+
+def _below(number: Fraction) -> float:
+    near = float(number)
+    return near if Fraction(near) <= number else nextafter(near, -inf)
+
+
+def _above(number: Fraction) -> float:
+    near = float(number)
+    return near if Fraction(near) >= number else nextafter(near, inf)
+
+
+def _down(number: float) -> float:
+    return nextafter(number, -inf)
+
+
+def _up(number: float) -> float:
+    return nextafter(number, inf)
