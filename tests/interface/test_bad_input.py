@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 FAR = ("--speed", "30 km/h")
+WET_AND_DRY = "polach-wet,polach-wet,polach-dry,polach-dry"
 
 # Command line -> what the sentence must name: the culprit and the remedy.
 COMMAND_LINES = {
@@ -39,7 +40,42 @@ COMMAND_LINES = {
     "equation unknown": (("equations", "50"), ("50", "wspd equations")),
     "verdict unknown": (("equations", "--verdict", "misprnt"), ('did you mean "misprint"?',)),
     "parameter set unknown": (("sources", "er24cp"), ('did you mean "er24pc"?',)),
-    "plant of a later version": (("simulate", "--plant", "four-axle"), ("four-axle", "--plant quarter")),
+    "plant of a linearization": (("linearize", "--plant", "four-axle"), ("four-axle", "--plant quarter")),
+    "plant of certificates": (("verify", "--plant", "four-axle"), ("four-axle", "--plant quarter")),
+    "axle rails of the quarter locomotive": (
+        ("simulate", "--plant", "quarter", "--axle-rails", WET_AND_DRY),
+        ("single axles", "four-axle"),
+    ),
+    "too few axle rails": (("compare", "--axle-rails", "polach-wet"), ("names 1 rail;", "name 4")),
+    "axle rail unknown": (("simulate", "--axle-rails", WET_AND_DRY[:-1]), ('did you mean "polach-dry"?',)),
+    "patch without unit": (("simulate", "--patch", "50 polach-wet"), ("50 m polach-wet",)),
+    "patch without rail": (("compare", "--patch", "50 m"), ("50 m polach-wet",)),
+    "patch of a time": (("simulate", "--patch", "50 s polach-wet"), ("start of the patch", "unit of time")),
+    "patch on an unknown rail": (("simulate", "--patch", "5 m polach-wett"), ('did you mean "polach-wet"?',)),
+    "patch behind the start": (("simulate", "--patch", "-5 m polach-wet"), ("not be negative",)),
+    "patches that fall": (
+        ("simulate", "--patch", "50 m polach-wet", "--patch", "20 m polach-dry"),
+        ("starts must rise",),
+    ),
+    "grade too steep": (("simulate", "--grade", "20 %"), ("0.2", "[-0.1, 0.1]")),
+    "grade of a word": (("simulate", "--grade", "steep"), ("steep", "5 permille")),
+    "grade with two units": (("simulate", "--grade", "5 % permille"), ("5 permille",)),
+    "speed noise below zero": (("simulate", "--speed-noise", "-0.1 m/s"), ("-0.1 m/s", "not be negative")),
+    "speed noise of a length": (("compare", "--speed-noise", "0.1 m"), ("speed noise", "km/h")),
+    "no pulses": (("simulate", "--pulses", "0"), ("--pulses", "--help")),
+    "reference error of all": (("simulate", "--reference-error", "100 %"), ("100 %", "between")),
+    "reference error NaN": (("simulate", "--reference-error", "nan"), ("nan", "finite")),
+    "dead time below zero": (("simulate", "--dead-time", "-5 ms"), ("-5 ms", "not be negative")),
+    "dead time above the sample time": (("simulate", "--dead-time", "150 ms"), ("0.15 s", "0.1 s")),
+    "no runs": (("simulate", "--runs", "0"), ("--runs", "--help")),
+    "nominal without runs": (("simulate", "--nominal"), ("--runs 1000",)),
+    "rows in another format": (("simulate", "--runs", "9", "-o", "rows.xlsx"), (".csv or .parquet",)),
+    "traces in another format": (("simulate", "-o", "traces.txt"), (".csv or .parquet",)),
+    "preset unknown": (("simulate", "trenitalia:text"), ('"text"', "trenitalia:textbook")),
+    "preset of a law without": (("simulate", "smc:textbook"), ("smc:textbook", "available")),
+    "folder of a reproduction is a file": (("reproduce", "-o", "typo.toml"), ("typo.toml", "folder")),
+    "folder of a reproduction is full": (("reproduce", "-o", "full"), ("full", "--force")),
+    "folder above a reproduction is missing": (("reproduce", "-o", "a/b"), ("folder a", "does not exist")),
     "plant unknown": (("verify", "--plant", "half"), ("half", "quarter")),
     "two controllers": (("simulate", "smc", "--controller", "none"), ("smc", "none", "leave one out")),
     "design file missing": (("verify", "missing.toml"), ("missing.toml", "check the path")),
@@ -92,6 +128,8 @@ COMMAND_LINES = {
 @pytest.fixture
 def files(tmp_path, smc_text):
     (tmp_path / "folder").mkdir()
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "page.html").touch()
     (tmp_path / "old.html").touch()
     (tmp_path / "new.pdf").touch()
     (tmp_path / "smc.toml").write_text(smc_text)

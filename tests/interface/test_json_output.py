@@ -24,11 +24,15 @@ STOP = {
     "plant": str,
     "sample_time_s": NUMBER,
     "initial_speed_m_s": NUMBER,
+    "scenario": dict,
     "slip_reference": NUMBER,
     "ending": str,
     "distance_m": NUMBER,
     "stopping_time_s": NUMBER,
     "torque_integral_kNms": NUMBER,
+    "bound_m": NUMBER,
+    "efficiency": NUMBER,
+    "adhesion_utilization": NUMBER,
     "lag_s": NUMBER,
     "plateau_m_s2": NUMBER,
     "slip_rms": NUMBER,
@@ -36,12 +40,53 @@ STOP = {
     "slip_max": NUMBER,
     "lock_time_s": NUMBER,
     "valve_switches": int,
+    "vented_air": NUMBER,
     "saturated_share": NUMBER,
     "momentum_residual": NUMBER,
     "energy_residual": NUMBER,
+    "step_check": dict,
+    "engine": str,
     "seed": int,
     "version": str,
 }
+SCENARIO = {
+    "axle_rails": (list, type(None)),
+    "patches": list,
+    "grade": NUMBER,
+    "pad_vibration": bool,
+    "speed_noise_m_s": NUMBER,
+    "pulses_per_turn": int,
+    "reference_error": NUMBER,
+    "dead_time_s": NUMBER,
+}
+STEP_CHECK = {
+    "distance": NUMBER,
+    "slip": NUMBER,
+    "refinement": int,
+    "chaotic": bool,
+    "spread_m": NUMBER,
+}
+CAMPAIGN = {
+    "schema": str,
+    "controller": str,
+    "vehicle": str,
+    "rail": str,
+    "plant": str,
+    "sample_time_s": NUMBER,
+    "initial_speed_m_s": NUMBER,
+    "scenario": dict,
+    "runs": int,
+    "runs_wanted": int,
+    "complete": bool,
+    "not_stopped_share": NUMBER,
+    "sampled": list,
+    "distance_m": dict,
+    "stopping_time_s": dict,
+    "lock_time_s": dict,
+    "seed": int,
+    "version": str,
+}
+SPREAD = {"min": NUMBER, "p05": NUMBER, "median": NUMBER, "p95": NUMBER, "max": NUMBER}
 COMPARISON = {"schema": str, "stops": list, "version": str}
 VERIFICATION = {
     "schema": str,
@@ -73,6 +118,17 @@ CHECK = {
     "resolution": str,
     "reference": str,
     "model_hash": str,
+    "seconds": NUMBER,
+    "undecided": NUMBER,
+    "engine": str,
+    "proofs": list,
+}
+PROOF = {
+    "claim": str,
+    "statement": str,
+    "claim_hash": str,
+    "certificate": str,
+    "leaves": int,
     "seconds": NUMBER,
 }
 LINEARIZATION = {
@@ -125,10 +181,67 @@ def test_stop(wspd):
     vehicle, rail = load_vehicle("er24pc"), load_rail("polach-dry")
     law = controller("trenitalia", vehicle, rail, Specification())
     scenario = Scenario.stop(from_kmh=20.0, rail=rail)
-    figures = trial(vehicle, law, scenario, slip_reference=Specification().slip).metrics
+    made = trial(vehicle, law, scenario, slip_reference=Specification().slip)
+    figures = made.metrics
     assert found["distance_m"] == figures.distance
+    assert (found["bound_m"], found["efficiency"]) == (figures.bound, figures.efficiency)
+    assert found["vented_air"] == figures.vented_air
+    assert_form(found["step_check"], STEP_CHECK)
+    assert found["step_check"]["distance"] == made.check.distance
+    assert_form(found["scenario"], SCENARIO)
+    assert found["plant"] == "four-axle"
     assert found["torque_integral_kNms"] == pytest.approx(figures.torque_integral / 1000.0, rel=1e-15)
     assert found["ending"] == "stopped"
+
+
+def test_disturbances_are_recorded_and_change_the_stop(wspd):
+    plain = only_object(wspd("simulate", "trenitalia", *SLOW, "--json"))
+    options = (
+        *("--axle-rails", "polach-wet,polach-wet,polach-dry,polach-dry", "--patch", "2 m low-adhesion"),
+        *("--grade", "-5 permille", "--pad-vibration", "--speed-noise", "0.05 m/s", "--pulses", "80"),
+        *("--reference-error", "2 %", "--dead-time", "40 ms"),
+    )
+    found = only_object(wspd("simulate", "trenitalia", *SLOW, *options, "--json"))
+    assert_form(found["scenario"], SCENARIO)
+    assert found["scenario"] == {
+        "axle_rails": ["polach-wet", "polach-wet", "polach-dry", "polach-dry"],
+        "patches": [{"start_m": 2.0, "rail": "low-adhesion"}],
+        "grade": -0.005,
+        "pad_vibration": True,
+        "speed_noise_m_s": 0.05,
+        "pulses_per_turn": 80,
+        "reference_error": 0.02,
+        "dead_time_s": 0.04,
+    }
+    assert found["distance_m"] != pytest.approx(plain["distance_m"], rel=1e-3)
+    assert found["bound_m"] is None  # not known for a change of rail
+    assert found["efficiency"] is None
+
+
+def test_a_chaotic_stop_gives_its_spread(wspd, monkeypatch):
+    def chaotic(*arguments, **options):
+        made = trial(*arguments, **options)
+        return replace(made, check=replace(made.check, chaotic=True, spread=0.25, refinement=8))
+
+    monkeypatch.setattr(simulate, "trial", chaotic)
+    found = only_object(wspd("simulate", "none", *SLOW, "--json"))
+    assert (found["step_check"]["chaotic"], found["step_check"]["spread_m"]) == (True, 0.25)
+    shown = wspd("simulate", "none", *SLOW).out
+    assert "chaotic" in shown
+    assert "0.25 m" in shown
+
+
+def test_campaign(wspd):
+    found = only_object(wspd("simulate", "none", *SLOW, "--runs", "20", "--seed", "5", "--json"))
+    assert_form(found, CAMPAIGN)
+    assert found["schema"] == "wspd-campaign/1"
+    assert (found["runs"], found["runs_wanted"], found["complete"], found["seed"]) == (20, 20, True, 5)
+    assert {"vehicle.mass", "rail.mu0"} <= set(found["sampled"])
+    assert_form(found["scenario"], SCENARIO)
+    for name in ("distance_m", "stopping_time_s", "lock_time_s"):
+        assert_form(found[name], SPREAD)
+        assert sorted(found[name].values()) == list(found[name].values())
+    assert found["distance_m"]["min"] < found["distance_m"]["max"]
 
 
 def test_stop_of_a_design_file_takes_its_case(wspd, smc_file):
@@ -176,6 +289,8 @@ def test_verification(wspd):
     assert [check["name"] for check in found["checks"]] == ["surface_hurwitz", "gain_positive"]
     for check in found["checks"]:
         assert_form(check, CHECK)
+        for proof in check["proofs"]:
+            assert_form(proof, PROOF)
     assert set(found["checks"][1]["margin"]) == {"low", "high", "unit"}
 
 
@@ -199,5 +314,16 @@ def test_all_keys_are_documented():
     document = (Path(__file__).parents[2] / "docs" / "json.md").read_text()
     tables = re.findall(r"^\| (`[^|]*`) \|", document, flags=re.MULTILINE)
     documented = {key for cell in tables for key in re.findall(r"`([^`]+)`", cell)}
-    forms = (STOP, COMPARISON, VERIFICATION, CHECK, LINEARIZATION, POINT)
+    forms = (
+        STOP,
+        SCENARIO,
+        STEP_CHECK,
+        CAMPAIGN,
+        SPREAD,
+        COMPARISON,
+        VERIFICATION,
+        CHECK,
+        LINEARIZATION,
+        POINT,
+    )
     assert documented == {key for form in forms for key in form}

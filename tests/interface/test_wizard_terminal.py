@@ -1,8 +1,10 @@
 """The wizard on a real pseudo-terminal: what stands on the screen of a user."""
 
 import os
+import re
 import sys
 import time
+from contextlib import suppress
 
 import pexpect
 import pyte
@@ -101,3 +103,20 @@ def test_progress_leaves_no_trace(terminal):
     assert screen.exit_code() == 0
     assert screen.text.lstrip().startswith("none on polach-wet")
     assert "stop with none" not in screen.text
+
+
+def test_ctrl_c_keeps_the_stops_that_are_done(terminal, tmp_path):
+    screen = terminal("simulate", "none", "--speed", "60 km/h", "--runs", "30000", "-o", "rows.csv")
+    screen.wait_for("/30000")
+    deadline = time.monotonic() + PATIENCE
+    while " 0/30000" in screen.text or "/30000" not in screen.text:
+        assert time.monotonic() < deadline, screen.text
+        with suppress(pexpect.TIMEOUT):
+            screen.stream.feed(screen.child.read_nonblocking(4096, timeout=0.2))
+    screen.child.send("\x03")
+    assert screen.exit_code() == 130
+    said = re.search(r"interrupted after (\d+) of 30000 stops", " ".join(screen.text.split()))
+    assert said is not None, screen.text
+    rows = (tmp_path / "rows.csv").read_text().splitlines()
+    assert len(rows) - 1 == int(said[1])
+    assert 0 < int(said[1]) < 30000

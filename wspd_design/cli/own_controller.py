@@ -8,11 +8,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.controllers.protocol import Command, Controller, Measurement
 from wspd_design.parameters.errors import UserError
 
 _MODULE_PREFIX = "wspd_own_controller."
-_PROBES = (Measurement(30.0, 50.0, 0.0), Measurement(20.0, 25.0, 2e4))
+_PROBES = tuple(Measurement(speed, speed * ratio, 2e4) for speed in (30.0, 10.0) for ratio in (1.8, 1.2, 0.1))
 _HOW = "see docs/own-controller.md"
 
 
@@ -124,9 +124,9 @@ def _check(made: Any, name: str) -> None:
     if not isinstance(sampling, int | float) or not 1e-3 <= sampling <= 1.0:
         raise UserError(f"sample_time = {sampling!r} of {name} must be a number between 0.001 and 1 s")
     before = repr(getattr(made, "__dict__", None))
-    results = _guarded(lambda: [_probe(made, seen) for seen in (*_PROBES, _PROBES[0])], name)
+    results = _guarded(lambda: [_probe(made, seen) for seen in _PROBES * 2], name)
     for states, following, command in results:
-        if len(command) != 2 or not all(hasattr(command, key) for key in ("fill", "vent")):
+        if not isinstance(command, Command):
             raise UserError(f"step of {name} must return (state, Command(fill=..., vent=...)); {_HOW}")
         if len(states) != len(following):
             raise UserError(
@@ -135,7 +135,8 @@ def _check(made: Any, name: str) -> None:
             )
         if not all(math.isfinite(number) for number in (*states, *following, *command)):
             raise UserError(f"{name} returns a number that is not finite: {command}")
-    if results[0] != results[-1] or repr(getattr(made, "__dict__", None)) != before:
+    half = len(_PROBES)
+    if results[:half] != results[half:] or repr(getattr(made, "__dict__", None)) != before:
         raise UserError(
             f"{name} changes from call to call; what it remembers must be in the state that step takes and "
             f"returns, and nothing may be random; {_HOW}"

@@ -65,5 +65,5 @@ def _trust(check: StepCheck) -> Text:
             f"the distance spreads by {check.spread:.2g} m.",
             style="yellow",
         )
-    shorter = f", after dividing them by {check.refinement}" if check.refinement > 1 else ""
-    return Text(f"The steps are short enough: half of them give the same stop{shorter}.", style="dim")
+    divided = f", divided by {check.refinement}," if check.refinement > 1 else ""
+    return Text(f"The steps{divided} are short enough: half of them give the same stop.", style="dim")

@@ -12,7 +12,7 @@ from wspd_design.plants.four_axle import AXLES
 from wspd_design.simulation.records import Patch, Scenario, Sensing
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
-_PERMILLE = re.compile(r"(?P<number>.*\d)\s*(?:‰|per ?mille?)", re.IGNORECASE)
+_PERMILLE = re.compile(r"(?P<number>.*\d)\s*(?:‰|per ?mil(?:le)?)", re.IGNORECASE)
 _GRADE = 'write "5 permille", "0.5 %" or 0.005, negative downhill'
 
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from wspd_design.cli.console import console, print_json, progress
+from wspd_design.cli.console import console, print_json, progress, progress_bar
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
@@ -33,3 +33,17 @@ def test_progress_is_silent_without_a_terminal(capsys):
     with progress() as tell:
         tell("stage")
     assert capsys.readouterr() == ("", "")
+
+
+def test_progress_bar(capsys, monkeypatch):
+    with progress_bar("4 stops", 4) as tell:
+        tell(2)
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("FORCE_COLOR", "1")  # Rich then takes the stream for a terminal
+    with progress_bar("4 stops [all]", 4) as tell:
+        tell(2)
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "4 stops [all]" in err
+    assert "2/4" in err

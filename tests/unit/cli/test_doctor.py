@@ -1,5 +1,7 @@
 """The doctor finds what is missing."""
 
+import os
+import sys
 import tomllib
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -8,6 +10,8 @@ import pytest
 
 from wspd_design.cli.app import run
 from wspd_design.cli.commands import doctor
+from wspd_design.codegen import compiler
+from wspd_design.codegen.compiler import find_compiler
 
 
 def test_all_declared_packages_are_examined():
@@ -53,8 +57,53 @@ def test_typesetting_that_fails(monkeypatch, capsys):
     assert "no fonts" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("found", [None, "/usr/bin/cc"])
-def test_a_compiler_is_not_needed(found, monkeypatch, capsys):
-    monkeypatch.setattr(doctor.shutil, "which", lambda _name: found)
+def test_a_compiler_is_not_needed(monkeypatch, capsys):
+    monkeypatch.setattr(doctor, "find_compiler", lambda: None)
     assert run(["doctor"]) == 0
-    assert (found or "none") in capsys.readouterr().out
+    assert "Install gcc or clang" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(find_compiler() is None, reason="this machine has no C compiler")
+def test_the_compiler_is_tried():
+    finding = doctor._compiler()
+    assert finding.good
+    assert finding.found.startswith(find_compiler()[0])
+    assert "a test program ran" in finding.found
+
+
+def test_a_compiler_that_fails_is_seen(monkeypatch):
+    refusing = (sys.executable, "-c", "raise SystemExit('no licence')")
+    for module in (doctor, compiler):
+        monkeypatch.setattr(module, "find_compiler", lambda: refusing)
+    finding = doctor._compiler()
+    assert not finding.good
+    assert "no licence" in finding.found
+
+
+def test_trying_the_compiler_leaves_the_cache_alone(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert doctor._compiler().good == (find_compiler() is not None)
+    assert os.environ["XDG_CACHE_HOME"] == str(tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_size_of_the_cache(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    folder = tmp_path / "wspd_design"
+    folder.mkdir()
+    (folder / "a.so").write_bytes(bytes(3_000_000))
+    found = doctor._compiled_code()
+    assert found.good
+    assert f"{folder}, 1 closed loops, 3.0 MB" in found.found
+    monkeypatch.setenv("XDG_CACHE_HOME", "/proc/no-folder")
+    found = doctor._compiled_code()
+    assert not found.good
+    assert "XDG_CACHE_HOME" in found.remedy
+
+
+def test_parquet_is_not_needed(monkeypatch):
+    assert doctor._parquet().good
+    monkeypatch.setattr(doctor, "find_spec", lambda _name: None)
+    found = doctor._parquet()
+    assert (found.good, found.needed) == (False, False)
+    assert 'pip install "wspd-design[parquet]"' in found.remedy

@@ -21,5 +21,6 @@ def reproduce(
     from wspd_design.reporting.reproduction import write_reproduction
 
     with progress() as tell:
-        write_reproduction(output, tell)
-    console().print(f"Written: {output}", style="bold", markup=False, soft_wrap=True)
+        written = write_reproduction(output, tell)
+    for path in written:
+        console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)

@@ -1,0 +1,94 @@
+"""From the options of a stop to its scenario."""
+
+import pytest
+
+from wspd_design.cli.stop_options import StopWords, disturbances_of, rails_of, scenario
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_rail
+from wspd_design.simulation.records import Patch, Scenario, Sensing
+
+WET, DRY = load_rail("polach-wet"), load_rail("polach-dry")
+
+
+def made(**words):
+    return scenario(WET, StopWords(speed="120 km/h", seed=3, **words))
+
+
+def test_nothing_written_disturbs_nothing():
+    assert made() == Scenario(rail=WET, initial_speed=120.0 / 3.6, seed=3)
+    assert disturbances_of(made()) == ""
+    assert rails_of(made()) == "polach-wet"
+
+
+@pytest.mark.parametrize(
+    ("text", "grade"),
+    [
+        ("5 permille", 0.005),
+        ("-5 per mille", -0.005),
+        ("5permil", 0.005),
+        ("12.5 ‰", 0.0125),
+        ("0.5 %", 0.005),
+        ("-0.5 %", -0.005),
+        ("0.005", 0.005),
+        ("0,5 %", 0.005),
+    ],
+)
+def test_grade(text, grade):
+    assert made(grade=text).grade == pytest.approx(grade, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["5 promille", "permille", "", "5 m", "nan", "uphill", "1 2 %"])
+def test_what_is_no_grade(text):
+    with pytest.raises(UserError, match="5 permille"):
+        made(grade=text)
+
+
+@pytest.mark.parametrize("text", ["50 m polach-dry", "50m polach-dry", " 5e4 mm  polach-dry "])
+def test_patch(text):
+    assert made(patches=[text]).patches == (Patch(start=50.0, rail=DRY),)
+
+
+def test_patch_on_an_own_rail_in_a_folder_with_a_blank(tmp_path):
+    folder = tmp_path / "my rails"
+    folder.mkdir()
+    (folder / "icy.toml").write_text('base = "polach-wet"\n')
+    (patch,) = made(patches=[f"50 m {folder / 'icy.toml'}"]).patches
+    assert (patch.start, patch.rail.name) == (50.0, "icy")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "50 m", "polach-dry", "50 polach-dry", "m polach-dry", "50 m/s polach-dry"]
+)
+def test_what_is_no_patch(text):
+    with pytest.raises(UserError, match="50 m"):
+        made(patches=[text])
+
+
+def test_axle_rails_are_front_first():
+    rails = made(axle_rails="polach-wet, polach-dry ,low-adhesion,polach-dry").axle_rails
+    assert [rail.name for rail in rails] == ["polach-wet", "polach-dry", "low-adhesion", "polach-dry"]
+
+
+def test_sensing():
+    stop = made(speed_noise="0.18 km/h", pulses=80, reference_error="-2 %", dead_time="40 ms")
+    assert stop.sensing == Sensing(
+        speed_noise=pytest.approx(0.05), pulses_per_turn=80, reference_error=-0.02, dead_time=0.04
+    )
+
+
+def test_all_is_said_to_the_reader():
+    stop = made(
+        axle_rails="polach-wet,polach-wet,polach-dry,polach-dry",
+        patches=["50 m low-adhesion"],
+        grade="-5 permille",
+        pad_vibration=True,
+        speed_noise="0.05 m/s",
+        pulses=80,
+        reference_error="2 %",
+        dead_time="40 ms",
+    )
+    assert rails_of(stop) == "polach-wet/polach-wet/polach-dry/polach-dry, low-adhesion from 50 m"
+    assert disturbances_of(stop) == (
+        "grade -5 permille, pad vibration, speed noise 0.05 m/s rms, 80 pulses per turn, reference error 2 %, "
+        "dead time 40 ms"
+    )
