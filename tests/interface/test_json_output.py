@@ -323,6 +323,7 @@ def test_all_keys_are_documented():
         COMPARISON,
         VERIFICATION,
         CHECK,
+        PROOF,
         LINEARIZATION,
         POINT,
     )
