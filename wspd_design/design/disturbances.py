@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import TrackSpectrum, Vehicle
+from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.records import LoadIrregularity, Scenario
 from wspd_design.simulation.stop import axle_offsets, simulate
 from wspd_design.simulation.track import (
@@ -113,28 +115,32 @@ def irregular_load(vehicle: Vehicle, vertical: Irregularity, *, sigma: float) ->
 
 
 def disturbance(
-    vehicle: Vehicle,
-    controller: Controller,
-    scenario: Scenario,
-    *,
-    load: LoadIrregularity,
-    distance: float,
-    spread: float,
+    vehicle: Vehicle, controller: Controller, undisturbed: Trial, scenario: Scenario, load: LoadIrregularity
 ) -> Disturbance:
-    """Simulate a stop with each disturbance, beside the undisturbed distance [m] and its spread [m]."""
+    """Simulate a stop again with each disturbance alone."""
 
     def change(disturbed: Scenario) -> float:
-        return simulate(vehicle, controller, disturbed).totals.distance - distance
+        distance = simulate(vehicle, controller, disturbed).totals.distance
+        return distance - undisturbed.metrics.distance
 
     return Disturbance(
         controller=controller.name,
         rail=scenario.rail.name,
-        spread=spread,
+        spread=undisturbed.check.spread,
         by_pads=change(replace(scenario, pad_vibration=True)),
         by_track=change(replace(scenario, load_irregularity=load)),
     )
 
 
-def largest_change(disturbances: Sequence[Disturbance]) -> float:
-    """Largest change of a distance among the stops that are not chaotic [m]."""
-    return max(max(abs(each.by_pads), abs(each.by_track)) for each in disturbances if not each.spread)
+def held_slip_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity, *, slip: float) -> float:
+    """Change of the distance by irregular wheel loads with the slip held: what the track itself costs [m]."""
+    disturbed = ideal_stop(vehicle, replace(scenario, load_irregularity=load), slip=slip)
+    return disturbed.distance - ideal_stop(vehicle, scenario, slip=slip).distance
+
+
+def largest_change(disturbances: Sequence[Disturbance], *, chaotic: bool) -> float:
+    """Largest change of a distance among the chaotic stops or among the others; 0 where there are none [m]."""
+    changes = (
+        max(abs(each.by_pads), abs(each.by_track)) for each in disturbances if (each.spread > 0.0) == chaotic
+    )
+    return max(changes, default=0.0)

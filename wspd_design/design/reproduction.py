@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.design.ablation import IDEAL_FILL_TIME, IDEAL_SAMPLE_TIME, ablation
 from wspd_design.design.catalog import controller
-from wspd_design.design.conclusions import Conclusion, conclusions
+from wspd_design.design.conclusions import conclusions
+from wspd_design.design.conclusions.records import Conclusion
 from wspd_design.design.disturbances import (
     CHANNELS,
     Disturbance,
     TrackChannel,
     disturbance,
+    held_slip_change,
     irregular_load,
     track_channel,
 )
@@ -34,7 +36,7 @@ from wspd_design.design.table10 import Table10Row, table10_rows
 from wspd_design.model import adhesion
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.loading import load_rail, load_track_spectrum, load_vehicle
-from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.records import Rail, TrackSpectrum, Vehicle
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.records import Run, Scenario
@@ -71,8 +73,10 @@ class Reproduction:
     evidence: Evidence
     conclusions: tuple[Conclusion, ...]
     friction: tuple[FrictionCurve, ...]
+    spectra: TrackSpectrum
     track: tuple[TrackChannel, ...]
     disturbances: tuple[Disturbance, ...]
+    held_slip_changes: tuple[float, ...]  # m, by the track with the slip held at the reference, for each rail
     provenance: Provenance
 
 
@@ -107,21 +111,17 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
     spectra = load_track_spectrum("erri-b176")
     sigma = standard_deviation(spectra, "vertical-high")
     load = irregular_load(vehicle, synthesize(spectra, "vertical-high", seed=seed), sigma=sigma)
-    disturbances = []
-    for (name, rail), done in trials.items():
-        if name in CONTROLLERS:
-            law = controller(name, vehicle, scenarios[rail].rail, specification)
-            undisturbed = done.metrics.distance
-            disturbances.append(
-                disturbance(
-                    vehicle,
-                    law,
-                    scenarios[rail],
-                    load=load,
-                    distance=undisturbed,
-                    spread=done.check.spread,
-                )
-            )
+    disturbances = [
+        disturbance(
+            vehicle,
+            controller(name, vehicle, scenarios[rail].rail, specification),
+            done,
+            scenarios[rail],
+            load,
+        )
+        for (name, rail), done in trials.items()
+        if name in CONTROLLERS
+    ]
     evidence = Evidence(
         initial_speed=speed,
         slip_reference=specification.slip,
@@ -146,8 +146,12 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
         friction=tuple(
             _friction(vehicle, each.rail, v) for each in scenarios.values() for v in FRICTION_SPEEDS
         ),
+        spectra=spectra,
         track=tuple(track_channel(spectra, channel, seed=seed) for channel in CHANNELS),
         disturbances=tuple(disturbances),
+        held_slip_changes=tuple(
+            held_slip_change(vehicle, each, load, slip=specification.slip) for each in scenarios.values()
+        ),
         provenance=Provenance(
             command=command,
             versions=versions(),

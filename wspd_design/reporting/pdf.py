@@ -128,17 +128,22 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
     return {"status": None, "text": _text(cell)}
 
 
+LONG_TEXT = 25  # characters
+
+
 def _shares(table: Table) -> list[int]:
     """Return for each column its share of the free width; 0 for columns as wide as their content.
 
-    Columns of long texts share what the short ones leave, in proportion to their longest text.
+    Columns of long texts share what the short ones leave, in proportion to their longest text; without a long
+    text all share.
     """
     longest = [
         max(len(plain(cell.text if isinstance(cell, Cell) else cell)) for cell in (column.title, *cells))
         for column, *cells in zip(table.columns, *table.rows, strict=True)
     ]
-    threshold = min(25, max(longest))
-    return [min(length, 80) if length >= threshold else 0 for length in longest]
+    if max(longest) < LONG_TEXT:
+        return longest
+    return [min(length, 80) if length >= LONG_TEXT else 0 for length in longest]
 
 
 def _block(numbered: NumberedBlock) -> dict[str, Any]:

@@ -44,7 +44,7 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
     UserError
         If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is no number of seconds.
     """
-    document = report_document(dossier, _now())
+    document = report_document(dossier, report_time())
     for path in paths:
         write_document(document, path)
 
@@ -82,7 +82,8 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
     )
 
 
-def _now() -> datetime:
+def report_time() -> datetime:
+    """Return the date of a report: now, or that of ``SOURCE_DATE_EPOCH``."""
     stated = os.environ.get("SOURCE_DATE_EPOCH")
     if stated is None:
         return datetime.now(UTC).replace(microsecond=0)

@@ -1,0 +1,139 @@
+"""Which of the paper's conclusions hold: page one and the section with all of them."""
+
+from collections import Counter
+
+from wspd_design.design.conclusions.records import Conclusion
+from wspd_design.design.conclusions.records import Verdict as Finding
+from wspd_design.design.evidence import FALLING_RAILS
+from wspd_design.design.reproduction import Reproduction
+from wspd_design.design.table10 import largest, root_mean_square
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import (
+    Block,
+    Cell,
+    Column,
+    Definition,
+    Definitions,
+    Heading,
+    KeyNumber,
+    KeyNumbers,
+    Paragraph,
+    Status,
+    Table,
+    Verdict,
+)
+from wspd_design.reporting.text import Link
+
+COUNTED = {
+    Finding.FAILS: ("does not hold", "do not hold"),
+    Finding.PARTLY: ("holds in part", "hold in part"),
+    Finding.HOLDS: ("holds", "hold"),
+}
+"""From the worst finding to the best, in words that follow the number of one or of several conclusions."""
+
+
+def verdict(made: Reproduction) -> Verdict:
+    """Return the judgment of the page; the worst finding decides."""
+    counts = Counter(each.verdict for each in made.conclusions)
+    worst = next(each for each in COUNTED if counts[each])
+    tally = numbers.listing(
+        [f"{counts[each]} {words[counts[each] > 1]}" for each, words in COUNTED.items() if counts[each]]
+    )
+    return Verdict(
+        status=Status[worst.name],
+        sentence=f"Of {len(made.conclusions)} conclusions of Section 7, {tally} in our stops. Table 10 itself "
+        f"comes out again, on friction and rule tables fitted to it: its 24 numbers deviate by "
+        f"{_percent(root_mean_square(made.table10), 2)} % rms and {_percent(largest(made.table10), 1)} % at most.",
+    )
+
+
+def summary(made: Reproduction) -> tuple[Block, ...]:
+    """Return the key numbers and the table of conclusions."""
+    evidence = made.evidence
+    relay = max(abs(each.relay / each.printed - 1.0) for each in evidence.ablations)
+    late = [evidence.stop("afsmc", each.rail).history.late_rms for each in evidence.ablations]
+    places = []
+    for rail in FALLING_RAILS:
+        names = [each.controller for each in evidence.ranking(rail)]
+        places.append(str(names.index("afsmc") + 1))
+    key_numbers = KeyNumbers(
+        numbers=(
+            KeyNumber(
+                label="Table 10, rms deviation",
+                value=_percent(root_mean_square(made.table10), 2),
+                unit="%",
+                note=f"largest of 24 numbers {_percent(largest(made.table10), 2)} %",
+            ),
+            KeyNumber(
+                label="A plain relay in its place",
+                value=_percent(relay, 2),
+                unit="%",
+                note="largest change of the distance on four rails",
+            ),
+            KeyNumber(
+                label="Place of the law on Polach's rails",
+                value=" and ".join(places),
+                note=f"of {len(names)}, dry and wet, by distance",
+            ),
+            KeyNumber(
+                label="Late slip rms of the law",
+                value=numbers.decimals(max(late), 2),
+                note=f"on the worst rail, {numbers.decimals(min(late), 2)} on the best, about "
+                f"{evidence.slip_reference:g}",
+            ),
+        )
+    )
+    table = Table(
+        columns=(Column(title="Conclusion of the paper"), Column(title="Finding"), Column(title="Where")),
+        rows=tuple(
+            (
+                (Link(anchor=_anchor(each), text=each.claim),),
+                Cell(status=Status[each.verdict.name]),
+                each.place,
+            )
+            for each in made.conclusions
+        ),
+        caption="What the paper concludes from its simulations, and whether our stops say so too.",
+        anchor="conclusions-table",
+    )
+    return (key_numbers, table)
+
+
+def conclusions(made: Reproduction) -> tuple[Block, ...]:
+    """Return the section that judges each conclusion by its numbers."""
+    found: list[Block] = [
+        Heading(text="What holds and what does not", anchor="conclusions"),
+        Paragraph(
+            text="Each conclusion is judged by a stated rule from the numbers of this page alone; the claims are "
+            "the paper's in our words. The proof of Section 6 is judged elsewhere, by the checks of "
+            "every design report."
+        ),
+    ]
+    for topic in dict.fromkeys(each.topic for each in made.conclusions):
+        found.append(Heading(text=topic.value, anchor=f"topic-{topic.name.lower()}", level=2))
+        for each in made.conclusions:
+            if each.topic is topic:
+                found += _conclusion(each)
+    return tuple(found)
+
+
+def _conclusion(conclusion: Conclusion) -> list[Block]:
+    return [
+        Heading(text=conclusion.name.capitalize(), anchor=_anchor(conclusion), level=3),
+        Verdict(status=Status[conclusion.verdict.name], sentence=conclusion.claim),
+        Definitions(
+            rows=(
+                Definition(term="In the paper", text=conclusion.place),
+                Definition(term="It holds if", text=conclusion.rule),
+                Definition(term="Here", text=conclusion.finding),
+            )
+        ),
+    ]
+
+
+def _anchor(conclusion: Conclusion) -> str:
+    return f"conclusion-{conclusion.name}"
+
+
+def _percent(share: float, places: int) -> str:
+    return numbers.decimals(100.0 * share, places)
