@@ -225,13 +225,13 @@ class _Search:
         low, high = np.nan_to_num(gradient.lo, nan=-inf), np.nan_to_num(gradient.hi, nan=inf)
         low, high = np.broadcast_to(low, boxes.low.shape), np.broadcast_to(high, boxes.low.shape)
         centered = self._mean_value(boxes, middle, low, high)
-        upper = np.minimum(np.minimum(plain, centered), boxes.upper)
         decided = (plain <= threshold) | (centered <= threshold)
+        shown = np.where(plain <= threshold, plain, centered)
         for k in np.flatnonzero(decided):
             self.nodes[boxes.node[k]].mark = "." if plain[k] <= threshold else "~"
-        if decided.any():
-            self.ceiling = max(self.ceiling, float(upper[decided].max()))
-        boxes.upper = upper
+        # What a leaf shows is what the checker will see there, even if its parent knew better.
+        self.ceiling = max(self.ceiling, float(shown[decided].max(initial=-inf)))
+        boxes.upper = np.minimum(np.minimum(plain, centered), boxes.upper)
         keep = np.flatnonzero(~decided)
         return self._divide(boxes.take(keep), low[:, keep], high[:, keep])
 
