@@ -149,6 +149,12 @@ def test_comparison_with_shipped_controllers(wspd, own):
     assert len({stop["distance_m"] for stop in stops}) == 3
 
 
+def test_certificates_that_speak_about_it(wspd, own):
+    outcome = wspd("verify", f"{own.name}:ready", "--only", "gain_positive")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert outcome.out.startswith("any options on polach-wet")
+
+
 def test_a_file_beside_it_can_be_imported(wspd, own, tmp_path):
     (tmp_path / "helper_of_own.py").write_text("SLIP = 0.2\n")
     own.write_text("from helper_of_own import SLIP\n" + own.read_text())

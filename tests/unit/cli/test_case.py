@@ -7,7 +7,13 @@ from wspd_design.design.file import write_design
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.loading import (
+    load_knorr_bremse,
+    load_mitsubishi,
+    load_rail,
+    load_trenitalia,
+    load_vehicle,
+)
 
 SPECIFICATION = Specification(slip=0.2, slips=(0.02, 0.6), sample_time=0.05)
 
@@ -106,3 +112,25 @@ def test_all_in_a_comparison_follow_the_options():
     cases = resolve_all(["none", "trenitalia"], Wishes(rail="low-adhesion", sample_time="20 ms"))
     assert {case.rail.name for case in cases} == {"low-adhesion"}
     assert {case.controller.sample_time for case in cases} == {0.02}
+
+
+@pytest.mark.parametrize(
+    ("base", "load"),
+    [
+        ("trenitalia", load_trenitalia),
+        ("knorr-bremse", load_knorr_bremse),
+        ("mitsubishi", load_mitsubishi),
+    ],
+)
+def test_presets_select_the_tables(base, load):
+    assert load("textbook") != load("calibrated")
+    textbook = resolve(f"{base}:textbook", Wishes()).controller
+    assert (textbook.name, textbook.table) == (f"{base}:textbook", load("textbook"))
+    for name in (base, f"{base}:calibrated"):
+        assert resolve(name, Wishes()).controller.table == load("calibrated")
+
+
+@pytest.mark.parametrize("name", ["trenitalia:", "mitsubishi:text", "none:textbook", "afsmc:textbook"])
+def test_what_is_no_preset(name):
+    with pytest.raises(UserError, match=name.partition(":")[0]):
+        resolve(name, Wishes())
