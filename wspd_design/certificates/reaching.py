@@ -5,19 +5,31 @@ v sbar' = r - rho W0 sat(sbar / layer), r = (1 - rho) v c e - Psi + rho Psi_hat 
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import product
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, laws
 from wspd_design.certificates.checking import OutsideModel, certified, level, series
-from wspd_design.certificates.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.domain import KMH, SLIP, SPEED
+from wspd_design.certificates.findings import hypothesis, proofs, status, undecided
+from wspd_design.certificates.model_error import (
+    Mismatch,
+    inertia_ratio,
+    mismatch,
+    residual,
+    residual_over_ratio,
+    variables,
+)
+from wspd_design.certificates.plant import Values, place, plant_dynamics, plant_forces, plant_variables
+from wspd_design.certificates.proof.claim import Claim
+from wspd_design.certificates.proof.engine import engine, settle
+from wspd_design.certificates.proof.prover import extreme
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Series, Status
-from wspd_design.certificates.search import SOBOL_EXPONENT, STARTS, Maximum, maximize
 from wspd_design.controllers.sliding_mode import SlidingMode
-from wspd_design.model.generated import sliding_surface
-from wspd_design.model.slip import resistance, slip_dynamics
+from wspd_design.model.number import Number
+from wspd_design.model.slip import resistance
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 
@@ -26,37 +38,20 @@ if TYPE_CHECKING:
 
 NAME, TITLE = "reaching", "Reaching the sliding surface"
 PLOT_SPEEDS, PLOT_SLIPS = 60, 60
+TOLERANCE = 1e-3  # m/s2, of the enclosures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Supremum:
-    """The largest value found on the domain, a lower bound of the supremum, and where it lies."""
+    """Enclosure of a supremum on the domain, by the prover alone; ``value`` is attained at ``point``."""
 
     value: float  # m/s2
+    upper: float  # m/s2
     point: tuple[Point, ...]
-    evaluations: int
-
-
-class Mismatch(NamedTuple):
-    """What the design model of a law does not know of the plant."""
-
-    residual: "Array"  # m/s2, r
-    inertia_ratio: "Array"  # -, rho
-
-
-def mismatch(problem: Problem, law: SlidingMode, points: "Array") -> Mismatch:
-    """Evaluate r and rho at points of the domain."""
-    slip, speed = points[:, SLIP], points[:, SPEED]
-    plant = domain.dynamics(problem, points)
-    model = slip_dynamics(law.vehicle, law.rail, slip, speed)
-    ratio = law.vehicle.wheelset_inertia / points[:, INERTIA]
-    error = sliding_surface.slip_error(law.gains.slip_reference, slip)
-    closing = (1.0 - ratio) * speed * law.gains.surface_rate * error
-    return Mismatch(residual=closing - speed * plant.drift + ratio * speed * model.drift, inertia_ratio=ratio)
 
 
 def supremum(problem: Problem) -> Supremum:
-    """Search the largest abs(r) on the domain; the switching gain of the law does not matter.
+    """Enclose the largest abs(r) on the domain; the switching gain of the law does not matter.
 
     Parameters
     ----------
@@ -66,40 +61,84 @@ def supremum(problem: Problem) -> Supremum:
     Returns
     -------
     Supremum
-        In m/s2. A lower bound of the true supremum, since it is found by sampling and climbing.
+        In m/s2.
     """
     law = _sliding_mode(problem)
-    found = _search(problem, law, lambda error: abs(error.residual))
-    return Supremum(value=found.value, point=domain.readable(found.point), evaluations=found.evaluations)
+    return _supremum(
+        Claim(
+            name="abs(r)",
+            variables=variables(problem, law),
+            expression=lambda x: abs(residual(problem, law, x)),
+            form=lambda x: abs(residual_over_ratio(problem, law, x) * inertia_ratio(x)),
+            relation="<=",
+            bound=Fraction(0),
+            unit="m/s2",
+        )
+    )
 
 
 def required_gain(problem: Problem) -> Supremum:
-    """Search the smallest switching gain W0 that meets the condition everywhere, sup (abs(r) + eta) / rho.
+    """Enclose the smallest switching gain W0 that meets the condition everywhere, sup (abs(r) + eta) / rho.
 
     Returns
     -------
     Supremum
-        In m/s2. A lower bound of the gain that is needed.
+        In m/s2.
     """
     law = _sliding_mode(problem)
-    eta = reserve(problem)
-    found = _search(problem, law, lambda error: _needed_gain(error, eta))
-    return Supremum(value=found.value, point=domain.readable(found.point), evaluations=found.evaluations)
+    return _supremum(claims(problem, law)[0])
 
 
 def reserve(problem: Problem) -> float:
     """Reaching rate eta that brings a wheel from rolling to the surface above the lowest speed [m/s2].
 
     In sigma = integral of dt / v the distance to the surface shrinks with eta, and the speed falls no faster
-    than v0 exp(-a_max sigma), with a_max from full friction on all wheels.
+    than v0 exp(-a_max sigma), with a_max of :func:`largest_deceleration`.
     """
     domain.box(problem)
     low, high = problem.speeds
     if not low < high:
         raise OutsideModel(f"the speeds {low:g} to {high:g} m/s are one speed, which leaves no time to reach")
-    rolling = float(resistance(problem.vehicle, high)) / problem.mass_bounds[0]
-    deceleration = problem.mu0_bounds[1] * constants().gravity + rolling
-    return deceleration * problem.slip / math.log(high / low)
+    return largest_deceleration(problem) * problem.slip / math.log(high / low)
+
+
+def largest_deceleration(problem: Problem) -> float:
+    """Return a_max: full friction on all wheels and the resistance at the highest speed [m/s2]."""
+    rolling = float(resistance(problem.vehicle, problem.speeds[1])) / problem.mass_bounds[0]
+    return problem.mu0_bounds[1] * constants().gravity + rolling
+
+
+def claims(problem: Problem, law: SlidingMode) -> tuple[Claim, Claim]:
+    """Return what the theorem needs: the gain outweighs the model error; the train slows no faster than a_max."""
+    eta = reserve(problem)
+
+    def needed(x: Values) -> Number:
+        ratio = inertia_ratio(x)
+        return abs(residual(problem, law, x) / ratio) + eta / ratio
+
+    def arranged(x: Values) -> Number:
+        inverse = x["wheelset inertia"] / x["model wheelset inertia"]
+        return abs(residual_over_ratio(problem, law, x)) + eta * inverse
+
+    gain = Claim(
+        name="(abs(r) + eta)/rho",
+        variables=variables(problem, law),
+        expression=needed,
+        form=arranged,
+        relation="<=",
+        bound=Fraction(law.gains.switching_gain),
+        unit="m/s2",
+    )
+    deceleration = Claim(
+        name="deceleration",
+        variables=plant_variables(problem),
+        expression=lambda x: plant_dynamics(problem, x).deceleration,
+        form=lambda x: plant_forces(problem, x).deceleration,
+        relation="<=",
+        bound=Fraction(largest_deceleration(problem)),
+        unit="m/s2",
+    )
+    return gain, deceleration
 
 
 @certified(name=NAME, title=TITLE)
@@ -113,46 +152,70 @@ def check(problem: Problem) -> Certificate:
             "abs(r) + eta <= rho W0 for a law with a friction model and a switching gain W0.",
             "has no switching gain W0 that stands against a model error",
         )
-    eta = reserve(problem)
-    gain = law.gains.switching_gain
-    found = _search(problem, law, lambda error: _needed_gain(error, eta))
-    at = mismatch(problem, law, found.point[None, :])
-    residual, ratio = float(at.residual[0]), float(at.inertia_ratio[0])
-    slack = gain - found.value
-    holds = slack >= 0.0
-    where = domain.readable(found.point)
-    spot = f"slip {found.point[SLIP]:.3f}, {found.point[SPEED] * KMH:.3g} km/h, mu0 {found.point[MU0]:.3g}, "
-    spot += f"mass {found.point[MASS]:.0f} kg"
+    eta, gain = reserve(problem), law.gains.switching_gain
+    needed, slowing = (settle(claim, tolerance=TOLERANCE) for claim in claims(problem, law))
+    found = needed.extreme
+    at = needed.place
+    spot = (
+        f"slip {at['slip']:.3f}, {at['speed'] * KMH:.3g} km/h, mu0 {at['mu0']:.3g}, mass {at['mass']:.0f} kg"
+    )
+    verdict = status(needed, slowing)
+    where = place(at)
+    left = problem.speeds[1] * math.exp(-_upper(slowing.extreme) * problem.slip / eta)
+    meaning = {
+        Status.PROVED: "From everywhere on the domain the slip error is driven into the boundary layer. A wheel that "
+        f"rolls at {problem.speeds[1] * KMH:.3g} km/h reaches the surface above {left * KMH:.3g} km/h.",
+        Status.REFUTED: "There the torque can drive the slip away from its surface: a larger W0 or a better "
+        "friction model is needed.",
+        Status.UNDECIDED: f"Open: {needed.reason or slowing.reason}.",
+    }[verdict]
+    refuted = needed.status is Status.REFUTED
     return Certificate(
         name=NAME,
         title=TITLE,
         claim=f"W0 = {gain:.4g} m/s2 outweighs the model error: abs(r) + eta <= rho W0, "
         f"eta = {eta:.3g} m/s2, on {domain.described(problem)}.",
-        status=Status.EVIDENCE if holds else Status.REFUTED,
-        explanation=(
-            f"The tightest point found needs W0 = {found.value:.4g} m/s2 (abs(r) = {abs(residual):.4g} m/s2, "
-            f"rho = {ratio:.3g}, at {spot}). "
-            + (
-                "From everywhere on the domain the slip error is driven into the boundary layer."
-                if holds
-                else "There the torque can drive the slip away from its surface: a larger W0 or a better "
-                "friction model is needed."
-            )
-        ),
-        margin=Range(low=None, high=slack, unit="m/s2"),
+        status=verdict,
+        explanation=f"The smallest W0 that does lies between {found.low:.7g} and {found.high:.7g} m/s2; the "
+        f"tightest point is at {spot}. {meaning}",
+        margin=Range(low=gain - _upper(found), high=gain - _lower(found), unit="m/s2"),
         worst_point=where,
-        witness=() if holds else (*where, Point(name="abs(r)", value=abs(residual), unit="m/s2")),
+        witness=(*where, Point(name="(abs(r) + eta)/rho", value=_lower(found), unit="m/s2"))
+        if refuted
+        else (),
+        hypotheses=(
+            hypothesis(f"(abs(r) + eta)/rho <= W0 = {gain:.4g} m/s2", needed),
+            hypothesis(f"deceleration <= a_max = {largest_deceleration(problem):.4g} m/s2", slowing),
+        ),
         assumptions=(
             "T = u: no valve lag, no sampling, no limit of the brake torque",
             "slip reference constant",
-            "eta brings a rolling wheel to the surface above the lowest speed of the domain",
+            "vehicle and rail numbers without a range in the domain are known",
         ),
-        method="even Sobol sampling with all corners, then bounded local optimization from the best points",
-        resolution=f"{found.evaluations} evaluations: 2^{SOBOL_EXPONENT} Sobol points and the corners, "
-        f"{STARTS} local climbs; sampling bounds the margin only from above",
+        method="interval branch and bound, replayed by the independent checker",
+        resolution=f"{needed.boxes + slowing.boxes} boxes; the smallest W0 within {TOLERANCE:g} m/s2",
         reference="eqs. (20), (23)-(25) with W = W0/v; findings, section 2",
+        undecided=undecided(needed, slowing),
+        engine=engine(),
+        proofs=proofs(needed, slowing),
         series=_plots(problem, law, eta),
     )
+
+
+def _lower(found: Range) -> float:
+    assert found.low is not None
+    return found.low
+
+
+def _upper(found: Range) -> float:
+    assert found.high is not None
+    return found.high
+
+
+def _supremum(claim: Claim) -> Supremum:
+    found = extreme(claim, tolerance=TOLERANCE)
+    at = {v.name: float(found.point.get(v.name, v.low)) for v in claim.variables}
+    return Supremum(value=found.low, upper=found.high, point=place(at))
 
 
 def _plots(problem: Problem, law: SlidingMode, reserve: float) -> tuple[Series, ...]:
@@ -176,15 +239,6 @@ def _needed_gain(error: Mismatch, reserve: float) -> "Array":
     """Switching gain that outweighs a model error with a reserve, (abs(r) + eta) / rho."""
     needed: Array = (abs(error.residual) + reserve) / error.inertia_ratio
     return needed
-
-
-def _search(problem: Problem, law: SlidingMode, objective: "Callable[[Mismatch], Array]") -> Maximum:
-    """Maximize a function of the model error on the domain."""
-
-    def values(points: "Array") -> "Array":
-        return objective(mismatch(problem, law, points))
-
-    return maximize(values, *domain.box(problem), seed=problem.seed)
 
 
 def _sliding_mode(problem: Problem) -> SlidingMode:

@@ -11,14 +11,14 @@ from the certificate. The certificate holds a tree in preorder, one character pe
 
 import json
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeAlias
 
 import flint
 
 from wspd_design.certificates.proof.balls import Ends, Program, Refused, add, ball, finite, mul
-from wspd_design.certificates.proof.claim import Claim
+from wspd_design.certificates.proof.claim import Claim, number
 from wspd_design.certificates.proof.identity import same
 
 FORMAT = "wspd-proof/1"
@@ -47,7 +47,7 @@ def check(claim: Claim, certificate: str, *, seconds: float = 60.0) -> Verdict:
     Parameters
     ----------
     claim : Claim
-        What is to be shown, from the problem.
+        What is to be shown, from the problem. The certificate may show a tighter bound.
     certificate : str
         JSON text; it may be anything.
     seconds : float
@@ -56,7 +56,7 @@ def check(claim: Claim, certificate: str, *, seconds: float = 60.0) -> Verdict:
     started = time.perf_counter()
     leaves, reason = 0, "every box of the tree satisfies the inequality"
     try:
-        tree = _tree(claim, certificate)
+        claim, tree = _read(claim, certificate)
         if claim.form is not None and not same(claim.formula(), claim.definition()):
             raise Refused("the arranged form of the expression is not the model's")
         with flint.ctx.workprec(PRECISION):
@@ -95,8 +95,8 @@ def value(claim: Claim, point: dict[str, Fraction]) -> tuple[Fraction, Fraction]
         return _rational(found[0].lower()), _rational(found[1].upper())
 
 
-def _tree(claim: Claim, certificate: str) -> str:
-    """Read the tree, or refuse."""
+def _read(claim: Claim, certificate: str) -> tuple[Claim, str]:
+    """Return the claim with the bound that the certificate shows, and the tree; or refuse."""
     if len(certificate) > MOST_BYTES:
         raise Refused("the certificate is too long")
     try:
@@ -105,14 +105,20 @@ def _tree(claim: Claim, certificate: str) -> str:
         raise Refused("the certificate is no JSON") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise Refused(f"the certificate does not have the format {FORMAT}")
-    if content.get("claim_sha256") != claim.digest():
+    try:
+        shown = replace(claim, bound=number(content["bound"]))
+    except (KeyError, TypeError, ValueError, OverflowError, ZeroDivisionError):
+        raise Refused("the certificate states no bound") from None
+    if (shown.bound > claim.bound) if claim.relation == "<=" else (shown.bound < claim.bound):
+        raise Refused("the certificate shows less than is claimed")
+    if content.get("claim_sha256") != shown.digest():
         raise Refused("the certificate belongs to another claim")
     tree = content.get("tree")
     if not isinstance(tree, str) or not tree:
         raise Refused("the certificate has no tree")
     if len(tree) > MOST_STEPS:
         raise Refused("the tree is too long")
-    return tree
+    return shown, tree
 
 
 def _replay(claim: Claim, tree: str, deadline: float) -> int:

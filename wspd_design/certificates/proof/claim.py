@@ -21,10 +21,15 @@ Expression: TypeAlias = Callable[[Mapping[str, Number]], Number]
 Relation: TypeAlias = Literal["<=", ">="]
 
 
-def text(number: Fraction) -> str:
+def text(rational: Fraction) -> str:
     """Write a rational without loss: a decimal stands for the double that Python reads from it, else p/q."""
-    near = number.numerator / number.denominator
-    return repr(near) if Fraction(near) == number else str(number)
+    near = float(rational)
+    return repr(near) if Fraction(near) == rational else f"{rational.numerator}/{rational.denominator}"
+
+
+def number(written: str) -> Fraction:
+    """Read what :func:`text` wrote."""
+    return Fraction(written) if "/" in written else Fraction(float(written))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,13 +132,13 @@ class Claim:
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def constant(number: Any) -> Fraction:
+def constant(symbolic: Any) -> Fraction:
     """Return the exact value of a SymPy number."""
-    if number.is_Rational:
-        return Fraction(int(number.p), int(number.q))
-    if number.is_Float:
-        return Fraction(float(number))
-    raise ValueError(f"{number} is no number that a claim may contain")
+    if symbolic.is_Rational:
+        return Fraction(int(symbolic.p), int(symbolic.q))
+    if symbolic.is_Float:
+        return Fraction(float(symbolic))
+    raise ValueError(f"{symbolic} is no number that a claim may contain")
 
 
 def model_text(formula: Any) -> str:
