@@ -7,7 +7,7 @@ from independent_stop import IndependentStop
 
 from wspd_design.model.generated import motion as generated
 from wspd_design.parameters.loading import constants, load_rail
-from wspd_design.simulation import stop as module
+from wspd_design.simulation import loop_input as module
 from wspd_design.simulation.metrics import momentum_residual
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate

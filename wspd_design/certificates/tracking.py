@@ -6,9 +6,10 @@ from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Ending, Scenario
-from wspd_design.simulation.stop import JUDGING_SPEED, simulate
+from wspd_design.simulation.stop import simulate
 
 NAME, TITLE = "tracking", "Slip of the sampled loop"
 SETTLED_SHARE = 0.5  # of the initial speed: build-up of the brake and the transient lie above it

@@ -8,8 +8,9 @@ from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import TrackSpectrum, Vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.ideal import ideal_stop
+from wspd_design.simulation.loop_input import axle_offsets
 from wspd_design.simulation.records import LoadIrregularity, Scenario
-from wspd_design.simulation.stop import axle_offsets, simulate
+from wspd_design.simulation.stop import simulate
 from wspd_design.simulation.track import (
     Irregularity,
     band,

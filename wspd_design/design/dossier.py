@@ -20,8 +20,8 @@ from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
 from wspd_design.simulation.comparison import Trial, compare
+from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
-from wspd_design.simulation.stop import JUDGING_SPEED
 
 POLE_SPEEDS = 60  # points of the pole map
 PRESET = "calibrated"  # of the baselines, as the catalog builds them

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
-from wspd_design.simulation.stop import JUDGING_SPEED
 
 if TYPE_CHECKING:
     import numpy as np

@@ -12,8 +12,9 @@ from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import ParameterSet, Vehicle
+from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.stop import loop_input, run_loop
+from wspd_design.simulation.stop import run_loop
 
 if TYPE_CHECKING:
     import numpy as np

@@ -16,8 +16,9 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.four_axle import AXLES
+from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.stop import loop_input, run_loop
+from wspd_design.simulation.stop import run_loop
 
 if TYPE_CHECKING:
     import numpy as np

@@ -10,8 +10,8 @@ from wspd_design.codegen import compiler
 from wspd_design.codegen.closed_loop import ClosedLoop, closed_loop_source, load_closed_loop
 from wspd_design.codegen.compiler import load_library
 from wspd_design.parameters.loading import load_rail
+from wspd_design.simulation.loop_input import loop_input, sample_rows
 from wspd_design.simulation.records import Scenario, Sensing
-from wspd_design.simulation.stop import loop_input, sample_rows
 
 SPEEDS = (10.0, 9.0, 4.0, 10.0, 0.5, 7.0, 10.0, 8.5)
 

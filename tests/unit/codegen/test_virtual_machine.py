@@ -13,8 +13,9 @@ from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.virtual_machine import run_virtual
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation import ideal, stop
+from wspd_design.simulation.loop_input import loop_input, sample_rows
 from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing
-from wspd_design.simulation.stop import loop_input, sample_rows, simulate
+from wspd_design.simulation.stop import simulate
 
 SPEED = 60.0 / 3.6
 LAWS = ("afsmc", "afsmc-repaired", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")

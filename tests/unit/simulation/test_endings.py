@@ -11,7 +11,7 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.model.number import where
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants, load_rail
-from wspd_design.simulation import stop as module
+from wspd_design.simulation import loop_input as module
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.stop import simulate

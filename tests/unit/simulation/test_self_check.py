@@ -67,11 +67,11 @@ def test_a_run_that_is_not_aligned_with_the_valve_edges_fails(er24pc, make_contr
 def test_steps_that_are_too_long_are_refined(er24pc, make_controller, monkeypatch):
     scenario = Scenario(rail=load_rail("table10-dry"), initial_speed=SPEED)
     law = make_controller("smc", "table10-dry")
-    monkeypatch.setattr("wspd_design.simulation.stop.LONGEST_STEP", 2e-3)
+    monkeypatch.setattr("wspd_design.simulation.loop_input.LONGEST_STEP", 2e-3)
     _, check = simulate_checked(er24pc, law, scenario)
     assert check.passed
     assert check.refinement > 1
-    monkeypatch.setattr("wspd_design.simulation.stop.LONGEST_STEP", 8e-3)
+    monkeypatch.setattr("wspd_design.simulation.loop_input.LONGEST_STEP", 8e-3)
     _, check = simulate_checked(er24pc, law, scenario)
     assert not check.passed
     assert not check.chaotic  # the steps are too long, which is no fault of the loop

@@ -2,7 +2,7 @@
 
 from wspd_design.design.conclusions.records import Conclusion, Topic, verdict
 from wspd_design.design.evidence import CONSTANT_RAILS, CONTROLLERS, FALLING_RAILS, RAILS, Evidence
-from wspd_design.simulation.stop import JUDGING_SPEED
+from wspd_design.simulation.loop_input import JUDGING_SPEED
 
 SLIP_LIMIT = 0.3  # -, that the paper reads from Figure 13
 
@@ -61,7 +61,7 @@ def mitsubishi(evidence: Evidence) -> Conclusion:
     return Conclusion(
         name="mitsubishi",
         topic=Topic.SLIP,
-        claim="With Mitsubishi the slip stays below 0.3 on dry rails and diverges on wet ones.",
+        claim="With Mitsubishi the slip stays below 0.3 dry and diverges wet.",
         place="Section 7, Figure 13",
         verdict=verdict(good),
         rule=f"its largest slip above 10 km/h is at most {SLIP_LIMIT:g} dry and larger wet",
@@ -89,7 +89,7 @@ def frequency(evidence: Evidence) -> Conclusion:
     return Conclusion(
         name="frequency",
         topic=Topic.SLIP,
-        claim="The torque swings slowest with Trenitalia and fastest with Mitsubishi, and faster on wet rails.",
+        claim="Torques swing slowest with Trenitalia, fastest with Mitsubishi, faster when wet.",
         place="Section 7, Figures 17 to 20",
         verdict=verdict([*extremes, *wetter]),
         rule="it is so on each rail, and for each controller in each pair of rails",

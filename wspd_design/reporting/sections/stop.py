@@ -13,7 +13,7 @@ from wspd_design.reporting.figures.series import lyapunov_functions, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.sections.checks import check_anchor
 from wspd_design.reporting.text import Inline, Link, rich
-from wspd_design.simulation.stop import JUDGING_SPEED
+from wspd_design.simulation.loop_input import JUDGING_SPEED
 
 LYAPUNOV = "lyapunov"
 """Checks of a Lyapunov function have names that begin so; the function is their first series."""

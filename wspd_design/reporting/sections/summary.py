@@ -10,8 +10,8 @@ from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumb
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.sections.checks import FINDINGS, check_anchor
 from wspd_design.reporting.text import Inline, Link, Text
+from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Ending
-from wspd_design.simulation.stop import JUDGING_SPEED
 
 COUNTED = {
     Finding.REFUTED: "refuted",
