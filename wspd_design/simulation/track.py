@@ -126,7 +126,7 @@ def synthesize(
         raise UserError(f"fade-in = {fade_in:g} m must be above 0; 20 to 50 m is usual")
     low, high = band(track)
     step = (high - low) / harmonics
-    wavenumbers: Array = low + step * (np.arange(harmonics) + 0.5)
+    wavenumbers = low + step * (np.arange(harmonics, dtype=np.float64) + 0.5)
     density = spectrum(track, channel, wavenumbers)
     place = list(track.rows).index(channel)
     generator = np.random.default_rng(np.random.SeedSequence([seed, place]))

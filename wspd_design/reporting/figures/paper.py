@@ -71,12 +71,12 @@ def velocities(figure: "Figure", trials: Trials, controller: str, wheel_radius: 
 
 def torques(figure: "Figure", trials: Trials, controllers: Sequence[str], rails: tuple[str, str]) -> "Figure":
     """Draw the braking torque of the paper's wheelset 1 with several controllers: Figures 17, 18."""
-    grid = figure.subplots(len(controllers), 2, sharey=True, sharex="col")
-    for row, controller in zip(grid, controllers, strict=True):
+    grid = figure.subplots(len(controllers), 2, sharey=True, sharex="col", squeeze=False)
+    for letter, row, controller in zip("abc", grid, controllers, strict=False):
         for axes, rail in zip(row, rails, strict=True):
             run = trials[controller, rail].run
             _torque(axes, run)
-            axes.set_title(f"{controller}, {rail}")
+            axes.set_title(f"({letter}) {controller}, {rail}")
             axes.set_xlim(0.0, None)
             _outer(axes, x="time [s]", y="torque [kN m]")
     return figure

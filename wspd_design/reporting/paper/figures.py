@@ -35,13 +35,8 @@ def figures(made: Reproduction) -> tuple[Block, ...]:
         _friction(made),
     ]
     for controller, number in SLIP_FIGURES.items():
-        found += [
-            Heading(text=_capital(TITLES[controller]), anchor=f"figures-{controller}", level=2),
-            _slips(made, controller, number),
-            _velocities(made, controller, number + 1),
-        ]
+        found += [_slips(made, controller, number), _velocities(made, controller, number + 1)]
     found += [
-        Heading(text="Torque, input and vertical force", anchor="figures-torque", level=2),
         *(_torques(made, rails, number) for rails, number in ((DRY, 17), (WET, 18))),
         *(_inputs(made, rails, number) for rails, number in ((DRY, 19), (WET, 20))),
         _forces(made),
@@ -155,7 +150,3 @@ def _chaos(stops: list[StopFigures]) -> str:
 
 def _word(rails: tuple[str, str]) -> str:
     return "dry" if rails == DRY else "wet"
-
-
-def _capital(text: str) -> str:
-    return text[0].upper() + text[1:]

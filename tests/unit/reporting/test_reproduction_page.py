@@ -1,0 +1,155 @@
+"""The page about the paper: its verdict is that of the conclusions, and its numbers are those of the records."""
+
+import re
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import pytest
+
+from tests.unit.reporting.sample_reproduction import sample_evidence, sample_reproduction
+from wspd_design.design.conclusions import conclusions
+from wspd_design.design.published import load_table10
+from wspd_design.reporting.blocks import Cell, Figure, Heading, KeyNumbers, Status, Table
+from wspd_design.reporting.blocks import Verdict as Judgment
+from wspd_design.reporting.figure_style import figure_style, new_figure
+from wspd_design.reporting.figures import paper
+from wspd_design.reporting.numbering import number
+from wspd_design.reporting.paper.verdicts import summary, verdict
+from wspd_design.reporting.reproduction import reproduction_document
+from wspd_design.reporting.text import plain
+
+DATE = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
+
+
+@pytest.fixture(scope="module")
+def document():
+    return reproduction_document(sample_reproduction(), DATE)
+
+
+def _table(document, anchor):
+    return next(each for each in document.blocks if isinstance(each, Table) and each.anchor == anchor)
+
+
+def test_links_and_anchors_are_good(document):
+    number(document)
+
+
+def test_every_figure_of_the_paper_is_there_and_spoken(document):
+    figures = {each.anchor: each for each in document.blocks if isinstance(each, Figure)}
+    for of_paper in (3, *range(9, 22)):
+        figure = figures[f"paper-figure-{of_paper}"]
+        assert plain(figure.caption).startswith(f"Figure {of_paper} of the paper")
+        assert any(c.isdigit() for c in figure.alt)
+        assert "nan" not in figure.alt
+
+
+def test_the_numbering_of_the_wheelsets_is_told(document):
+    text = " ".join(plain(each.text) for each in document.blocks if hasattr(each, "text"))
+    assert "wheelsets 3 and 4 are in front" in text
+
+
+def test_all_24_numbers_stand_beside_ours(document):
+    rows = _table(document, "table10-numbers").rows
+    shown = [[plain(cell) for cell in row] for row in rows]
+    for row, published in zip(shown, load_table10().stops, strict=True):
+        assert row[0] == published.controller
+        assert [row[2], row[5], row[8]] == [
+            f"{published.distance_m:.2f}",
+            f"{published.stopping_time_s:.1f}",
+            f"{published.torque_integral_kNms:.2f}",
+        ]
+        # The invented stop of the sample.
+        assert [row[3], row[6], row[9]] == ["187.65", "10.00", "1567.8"]
+        off = 100.0 * (187.65 / published.distance_m - 1.0)
+        assert float(row[4].replace("\N{MINUS SIGN}", "-")) == pytest.approx(off, abs=0.006)
+
+
+def test_the_worst_conclusion_decides():
+    good = sample_reproduction()
+    assert verdict(good).status is Status.HOLDS
+    assert "13 hold in our stops" in plain(verdict(good).sentence)
+    evidence = sample_evidence(published=load_table10())
+    partly = replace(good, conclusions=conclusions(evidence))
+    assert verdict(partly).status is Status.PARTLY
+    assert "1 holds in part and 12 hold in" in plain(verdict(partly).sentence)
+    planted = replace(good, conclusions=conclusions(replace(evidence, load_range=(188e3, 188e3))))
+    assert verdict(planted).status is Status.FAILS
+    assert "1 does not hold, 1 holds in part and 11 hold" in plain(verdict(planted).sentence)
+
+
+def test_a_planted_number_reaches_the_reader():
+    evidence = sample_evidence(load_range=(188e3, 188e3))
+    document = reproduction_document(sample_reproduction(evidence), DATE)
+    (judged,) = (
+        each
+        for each in document.blocks
+        if isinstance(each, Judgment) and "shifts weight" in plain(each.sentence)
+    )
+    assert judged.status is Status.FAILS
+    _, table = document.summary
+    assert isinstance(table, Table)
+    cell = table.rows[-1][1]
+    assert isinstance(cell, Cell)
+    assert cell.status is Status.FAILS
+
+
+def test_key_numbers_are_those_of_the_evidence():
+    tiles, _ = summary(sample_reproduction())
+    assert isinstance(tiles, KeyNumbers)
+    # Relay 240 m in place of 200 m; first on both of Polach's rails; late rms 0.02 everywhere.
+    assert [each.value for each in tiles.numbers[1:]] == ["20.00", "1 and 1", "0.02"]
+
+
+def test_every_conclusion_has_a_section(document):
+    headings = {each.anchor for each in document.blocks if isinstance(each, Heading)}
+    for each in sample_reproduction().conclusions:
+        assert f"conclusion-{each.name}" in headings
+
+
+def test_table_9_has_its_coefficients(document):
+    rows = {plain(row[1]): [plain(cell) for cell in row] for row in _table(document, "table9").rows}
+    assert rows["vertical-high"][:3] == ["Vertical", "vertical-high", "7.343623·10⁻⁷"]
+    assert rows["cross-level-high"][3] == "1.305533·10⁻⁶"
+    assert rows["vertical-high"][8:] == ["1.60 mm", "1.50 mm"]
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda figure, made: paper.friction_curves(figure, made.friction),
+        lambda figure, made: paper.slips(figure, made.trials, "afsmc", 0.14),
+        lambda figure, made: paper.velocities(figure, made.trials, "afsmc", 0.55),
+        lambda figure, made: paper.torques(
+            figure, made.trials, ("trenitalia",), ("table10-dry", "polach-dry")
+        ),
+        lambda figure, made: paper.input_and_torque(
+            figure, made.trials, "afsmc", ("table10-dry", "polach-dry")
+        ),
+        lambda figure, made: paper.vertical_forces(
+            figure, made.trials, "afsmc", ("table10-wet", "polach-wet")
+        ),
+    ],
+)
+def test_axes_of_the_paper_have_units(draw):
+    with figure_style():
+        figure = draw(new_figure(height=3.0), sample_reproduction())
+        figure.draw_without_rendering()
+    labels = [axes.get_xlabel() for axes in figure.axes] + [axes.get_ylabel() for axes in figure.axes]
+    assert all(re.match(r".+ \[(-|s|km/h|kN|kN m)\]$", label) for label in labels if label)
+    assert any(labels)
+    for axes in figure.axes:
+        labeled = [line for line in axes.get_lines() if not line.get_label().startswith("_")]
+        assert len({line.get_linestyle() for line in labeled} | {"train"}) >= min(len(labeled), 4)
+
+
+def test_the_papers_wheelset_1_is_the_last_one():
+    made = sample_reproduction()
+    run = made.trials["trenitalia", "table10-dry"].run
+    with figure_style():
+        figure = paper.torques(
+            new_figure(height=3.0), made.trials, ("trenitalia",), ("table10-dry", "polach-dry")
+        )
+    (line,) = figure.axes[0].get_lines()
+    drawn = dict(zip(line.get_xdata(), line.get_ydata(), strict=True))
+    for time, torque in drawn.items():
+        assert torque == run.torque[run.time.tolist().index(time), 3] / 1e3
