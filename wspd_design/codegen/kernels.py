@@ -4,6 +4,7 @@ The numbers of vehicle and rail are inputs of the plant kernels, so that one com
 rail and sample of parameters; those of the controller are constants of its kernel.
 """
 
+import re
 from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
@@ -106,7 +107,7 @@ def closed_loop_kernels(
     stop_constants, (loads, train) = hoist(plant[:2], 1, "stop_constants")
     lane_constants, (condition, axle) = hoist(plant[2:4], 1, "lane_constants")
     window_constants, (actuator,) = hoist(plant[4:], 2, "window_constants")
-    start, step, states = _controller_kernels(controller)
+    start, step, states = controller_kernels(controller)
     return Kernels(
         stop_constants=stop_constants,
         lane_constants=lane_constants,
@@ -184,8 +185,11 @@ def _pressure(
     return generated.vented_pressure(vented_for, filled, brake.vent_time), filled
 
 
-def _controller_kernels(controller: Controller | None) -> tuple[Any, Any, int]:
-    """Trace ``start`` and ``step``; whatever goes wrong there means that the controller cannot be traced."""
+def controller_kernels(controller: Controller | None) -> tuple[Any, Any, int]:
+    """Trace ``start`` and ``step``; returns also the number of states.
+
+    Whatever goes wrong there means that the controller cannot be traced.
+    """
     import casadi as ca
 
     m = ca.SX.sym("m", 3)
@@ -203,7 +207,8 @@ def _controller_kernels(controller: Controller | None) -> tuple[Any, Any, int]:
         start = ca.Function("start_kernel", [m], [ca.vertcat(*initial)])
         step = ca.Function("step_kernel", [state, m], [ca.vertcat(*following, command.fill, command.vent)])
     except Exception as error:  # the user's code may fail on symbols in any way
-        raise UntraceableError(f"{controller.name}: {error}") from error
+        reason = re.sub(r"\S*\.[ch]pp:\d+: ", "", str(error))  # without CasADi's places in its own source
+        raise UntraceableError(f"{controller.name}: {reason}") from error
     if len(following) != len(initial):
         raise UntraceableError(
             f"{controller.name}: step returns {len(following)} states, start {len(initial)}"

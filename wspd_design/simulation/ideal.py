@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_SPEEDS, _SLIPS = 481, 4001  # grid of the table of peak slips
+_SPEEDS, _SLIPS = 241, 1001  # grid of the table of peak slips; the peak is flat
 _AT_ONCE = 1e9  # 1/s: a supply that is there at once
 _INSTANT = 1e-6  # s: a cylinder that fills at once
 _SAMPLE_TIME = 0.1  # s: the unprotected brake fills whatever it samples
@@ -82,7 +82,7 @@ def ideal_stop(
     if instantaneous:
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
-    filling = Unprotected(name="ideal", sample_time=_SAMPLE_TIME)
+    filling = Unprotected(name="ideal", sample_time=max(_SAMPLE_TIME, scenario.sensing.dead_time))
     given = loop_input([(vehicle, scenario)], filling, plant=plant)
     rails = scenario.axle_rails or (scenario.rail,) * AXLES
     speeds = _speeds(scenario.initial_speed)
@@ -122,14 +122,22 @@ def peak_adhesion(vehicle: Vehicle, rail: Rail, speeds: "Array") -> "tuple[Array
     """
     import numpy as np
 
+    table, slips, peaks = _peak_table(vehicle, rail, max(float(np.max(speeds)), 1.0))
+    logs = np.log(np.maximum(speeds, table[0]))
+    return np.interp(logs, np.log(table), slips), np.interp(logs, np.log(table), peaks)
+
+
+@lru_cache(maxsize=64)
+def _peak_table(vehicle: Vehicle, rail: Rail, top_speed: float) -> "tuple[Array, Array, Array]":
+    """Train speeds, the slips of their adhesion peaks and the peaks."""
+    import numpy as np
+
     load = float(static_wheel_load(vehicle))
     stiffness = adhesion.contact_stiffness(vehicle.contact, load)
-    table = _speeds(max(float(np.max(speeds)), 1.0))
+    speeds = _speeds(top_speed)
     slips = np.geomspace(1e-4, 1.0, _SLIPS)
-    v, s = table[:, np.newaxis], slips[np.newaxis, :]
+    v, s = speeds[:, np.newaxis], slips[np.newaxis, :]
     referred = s * np.minimum(v / constants().slip_regularization_speed, 1.0)
     forces = adhesion.creep_force(referred, v * s, load, rail, stiffness)
     best = forces.argmax(axis=1)
-    peaks = forces[np.arange(len(table)), best] / load
-    logs = np.log(np.maximum(speeds, table[0]))
-    return np.interp(logs, np.log(table), slips[best]), np.interp(logs, np.log(table), peaks)
+    return speeds, slips[best], forces[np.arange(len(speeds)), best] / load
