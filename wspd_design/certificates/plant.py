@@ -13,7 +13,7 @@ from wspd_design.certificates import domain
 from wspd_design.certificates.proof.claim import Variable, variable
 from wspd_design.certificates.records import Point, Problem
 from wspd_design.model.generated import adhesion as generated
-from wspd_design.model.number import Number, atan
+from wspd_design.model.number import Number, atan, exp
 from wspd_design.model.slip import SlipDynamics, resistance, slip_dynamics, static_wheel_load
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
@@ -121,6 +121,7 @@ class Forces(NamedTuple):
 
     creep_force: Number  # N per wheel
     deceleration: Number  # m/s2
+    pole: Number  # 1/s, dF/dslip
 
 
 EXPONENT = 2.0 / 3.0
@@ -161,14 +162,29 @@ def forces(
     stiffness = generated.contact_stiffness(
         contact.shear_modulus, contact.semi_axis_rolling, contact.semi_axis_lateral, contact.kalker_c11
     )
-    friction = generated.friction_coefficient(
-        slip * speed, rail.mu0, rail.friction_ratio, rail.friction_decay
-    )
+    falling = rail.mu0 * (1.0 - rail.friction_ratio) * exp(-rail.friction_decay * (slip * speed))
+    friction = rail.mu0 * rail.friction_ratio + falling
     gradient = stiffness * per_load * slip / friction
-    weakened = rail.adhesion_reduction * gradient
-    used = friction * (weakened / (weakened**2 + 1.0) + atan(rail.slip_reduction * gradient)) * 2.0 / pi
-    per_mass = used * 8.0 * constants().gravity / (2 * vehicle.wheelsets)
-    return Forces(creep_force=used * load, deceleration=per_mass + resistance(vehicle, speed) / vehicle.mass)
+    weak, slow = rail.adhesion_reduction * gradient, rail.slip_reduction * gradient
+    adhesion, sliding = weak**2 + 1.0, slow**2 + 1.0
+    used = friction * (weak / adhesion + atan(slow)) * 2.0 / pi
+    gravity = 8.0 * constants().gravity / (2 * vehicle.wheelsets)
+    deceleration = used * gravity + resistance(vehicle, speed) / vehicle.mass
+    # The slope of force over load and speed: by the creep itself, and by the friction that falls with sliding.
+    by_creep = (
+        stiffness
+        * per_load
+        * (rail.adhesion_reduction * (2.0 - adhesion) / adhesion**2 + rail.slip_reduction / sliding)
+    )
+    shape = weak**3 * 2.0 / adhesion**2 + atan(slow) - slow / sliding
+    slope = (by_creep / speed - rail.friction_decay * falling * shape) * (2.0 / pi)
+    inertia = vehicle.wheel_inertia
+    pole = (
+        deceleration / speed
+        - slope * (load * vehicle.wheel_radius**2 / inertia + (1.0 - slip) * gravity)
+        - vehicle.wheel_damping / inertia
+    )
+    return Forces(creep_force=used * load, deceleration=deceleration, pole=pole)
 
 
 def place(values: Mapping[str, float]) -> tuple[Point, ...]:

@@ -15,6 +15,8 @@ from wspd_design.certificates.proof.claim import Variable, constant
 Ends: TypeAlias = tuple[Any, Any]
 """Balls around the lower and the upper end of an interval."""
 
+MOST_EXPONENT = 16  # of a power that is taken by multiplication
+
 
 class Refused(ValueError):
     """The certificate does not show the claim."""
@@ -143,13 +145,21 @@ def inverse(x: Ends) -> Ends:
     return flint.arb.nan(), flint.arb.nan()
 
 
+def natural_power(x: Ends, n: int) -> Ends:
+    """Power with an exponent of at least 1; an odd one keeps the order of the ends."""
+    if n % 2 == 0:
+        return sqr(natural_power(x, n // 2))
+    return x[0] ** n, x[1] ** n
+
+
 def power(x: Ends, exponent: Fraction) -> tuple[Ends, Ends]:
     """Power of an interval and its derivative with respect to the base."""
     if exponent == -1:
         found = inverse(x)
         return found, negative(sqr(found))
-    if exponent == 2:
-        return sqr(x), (2 * x[0], 2 * x[1])
+    if exponent.denominator == 1 and 2 <= exponent <= MOST_EXPONENT:
+        n = int(exponent)
+        return natural_power(x, n), mul((flint.arb(n),) * 2, natural_power(x, n - 1))
     p = ball(exponent)
     low, high = _log(x)
     found = mul((p, p), (low, high))

@@ -86,23 +86,59 @@ def settle(
         # The bound lies within the tolerance of the extreme value, or the budget was used up.
         target = claim
         found = prove(claim, budget=budget, progress=progress)
+    return _checked(target, found, attained, started)
+
+
+def enclose(
+    claim: Claim,
+    *,
+    tolerance: float,
+    budget: Budget | None = None,
+    progress: Progress = lambda _share: None,
+) -> Finding:
+    """Prove nearly the tightest bound of a claim's expression; the bound of the claim itself does not matter.
+
+    Parameters
+    ----------
+    claim : Claim
+        Expression, box and direction.
+    tolerance : float
+        Width of the enclosure of the extreme value, in the unit of the claim.
+    budget : Budget, optional
+        Of the prover.
+    progress : callable, optional
+        Told the share of the box that is decided.
+
+    Returns
+    -------
+    Finding
+        PROVED or UNDECIDED; its claim has the bound that was proved.
+    """
+    started = time.perf_counter()
+    found = extreme(claim, tolerance=tolerance, budget=budget, progress=progress)
+    return _checked(tightest(claim, found, tolerance), found, checker.value(claim, found.point), started)
+
+
+def _checked(claim: Claim, found: Outcome, attained: tuple[Fraction, Fraction], started: float) -> Finding:
+    """Let the checker decide about what the prover found."""
+    far = found.high if claim.relation == "<=" else found.low
     if not found.tree:
         share = f"{found.undecided:.2g} of the box is undecided after {found.boxes} boxes"
         return _finding(claim, found, Status.UNDECIDED, attained, far, started, None, share)
-    certificate = certificate_text(target, found)
-    verdict = checker.check(target, certificate)
+    certificate = certificate_text(claim, found)
+    verdict = checker.check(claim, certificate)
     if not verdict.accepted:
         reason = f"the checker refuses the proof: {verdict.reason}"
         return _finding(claim, found, Status.UNDECIDED, attained, far, started, None, reason)
     proof = Proof(
-        claim=target.name,
-        statement=f"{target.name} {target.relation} {text(target.bound)} {target.unit}",
-        claim_hash=target.digest(),
+        claim=claim.name,
+        statement=f"{claim.name} {claim.relation} {text(claim.bound)} {claim.unit}",
+        claim_hash=claim.digest(),
         certificate=certificate,
         leaves=verdict.leaves,
         seconds=verdict.seconds,
     )
-    return _finding(target, found, Status.PROVED, attained, float(target.bound), started, proof, "")
+    return _finding(claim, found, Status.PROVED, attained, float(claim.bound), started, proof, "")
 
 
 def tightest(claim: Claim, found: Outcome, tolerance: float) -> Claim:
