@@ -328,7 +328,7 @@ def closed_loop_source(
         twice: (kernels.window_constants, kernels.actuator),
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
-    parts.append(folder.joinpath("closed_loop.c").read_text())
+    parts += [folder.joinpath(name).read_text() for name in ("motion.c", "closed_loop.c")]
     return "".join(parts), kernels.states
 
 

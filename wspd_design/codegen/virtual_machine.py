@@ -18,18 +18,20 @@ from wspd_design.codegen.closed_loop import (
     LoopOutput,
     drive,
 )
-from wspd_design.codegen.kernels import PARAMETERS, Kernels, closed_loop_kernels
+from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.kernels import PARAMETERS, Kernels, closed_loop_kernels, controller_kernels
 from wspd_design.codegen.virtual_step import (
+    END_SPEED,
     INERTIA,
+    MADE,
     RADIUS,
     ROW,
     STATE,
     STATES,
-    TRIED,
     StepFunctions,
     step_functions,
 )
-from wspd_design.controllers.protocol import Command, Controller, Measurement
+from wspd_design.controllers.protocol import Command, Controller, Measurement, State
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.four_axle import AXLES
 
@@ -40,7 +42,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _SHORTEST = 1e-9  # s: edges closer together than this are one
-_BATCHES = (64, 16, 4)
+_BATCHES = (64, 16, 8, 4, 2)
 _OFFSET = PARAMETERS.index(("surroundings", "axle_offset"))
 _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail")
 
@@ -59,7 +61,7 @@ def run_virtual(
 
     kernels, functions = _functions(vehicle, rail, disturbed, given.held_slips is not None)
     plant = _VirtualPlant(kernels, functions, given)
-    result, samples = drive(plant, controller, sample_rows)
+    result, samples = drive(plant, _traced(controller), sample_rows)
     lane = np.vstack([plant.part("lane").reshape(-1, AXLES), plant.vented])
     stop = [*plant.part("stop"), plant.part("speed")[0]]
     stop_totals = {name: np.array([value]) for name, value in zip(STOP_TOTALS, stop, strict=True)}
@@ -89,7 +91,9 @@ class _VirtualPlant:
         import numpy as np
 
         self.given, self.set, self.kernels, self.places = given, given.settings, kernels, functions.inputs
-        self.parameters = np.array(given.lane_parameters, dtype=np.float64, order="F")
+        # The numbers of an axle are a column for CasADi and a row here.
+        self._by_axle = np.array(given.lane_parameters.T, dtype=np.float64, order="C")
+        self.parameters = self._by_axle.T
         self.state, self.inputs = np.zeros(STATES), np.zeros(functions.single.size1_in(1))
         self.part("speed")[:] = given.speeds[0]
         self.part("wheel")[:] = given.speeds[0] / self.parameters[RADIUS]
@@ -101,9 +105,12 @@ class _VirtualPlant:
         self.moving = True
         self.rows: list[NDArray[np.float64]] = []
         self.bad_command = (0.0, 0.0, 0.0)
-        self._calls = {1: _Call(functions.single, self.state, self.inputs)}
-        for number, function in functions.batches.items():
-            self._calls[number] = _Call(function, self.state, self.inputs)
+        self._steps = {
+            number: _Bound(function, self.state, self.inputs)
+            for number, function in ((1, functions.single), *functions.batches.items())
+        }
+        self._window = np.zeros((AXLES, 4))
+        self._window_constants = _Bound(kernels.window_constants.map(AXLES), self._by_axle, self._window)
         self._write_fixed_inputs()
 
     def part(self, name: str) -> "Array":
@@ -165,8 +172,11 @@ class _VirtualPlant:
         fill_end = present + fill * h
         vent_end = np.where(1.0 - fill - vent < 1e-12, present + h, fill_end + vent * h)
         self.vented += self.part("filled") - self.part("pressure")
-        window = np.array([np.full(AXLES, present), self.part("pressure"), fill_end, vent_end])
-        self._give("window_constants", _flat(self.kernels.window_constants(self.parameters, window)))
+        self._window[:] = np.stack(
+            [np.full(AXLES, present), self.part("pressure"), fill_end, vent_end], axis=1
+        )
+        self._window_constants.call()
+        self._give("window_constants", self._window_constants.outputs[0].ravel())
         self.edges = tuple(sorted({*fill_end.tolist(), *vent_end.tolist()}))
 
     def _advance_to(self, goal: float) -> int:
@@ -190,20 +200,24 @@ class _VirtualPlant:
         self._give("until", until if change >= h else time + change)
         if number == 1:
             self._look_up(min(h, change))
-        rows = self._calls[number]()
-        made, end_speed = rows[:, TRIED].T
-        kept = int(made.sum())  # a step that is not made is the last one
+        rows = self._step(number)
+        kept = int(rows[:, MADE].sum())  # a step that is not made is the last one
         result = self._record(rows[:kept])
-        if kept < number and end_speed[kept] < self.set.stop_speed:
-            ahead = rows[kept - 1, 1] if kept else speed
-            self._give("scale", (ahead - self.set.stop_speed) / (ahead - end_speed[kept]))
-            rows = self._calls[1]()
-            self.moving, kept = False, kept + 1
-            result = result or self._record(rows)
+        if kept < number and rows[kept, END_SPEED] < self.set.stop_speed:
+            ahead = float(self.part("speed")[0])
+            self._give("scale", (ahead - self.set.stop_speed) / (ahead - rows[kept, END_SPEED]))
+            result = result or self._record(self._step(1))
+            kept += 1
         self.steps += kept
-        if kept and rows[-1 if not self.moving else kept - 1, 1] <= self.set.stop_speed * (1.0 + 1e-6):
-            self.moving = False
+        self.moving = bool(self.part("speed")[0] > self.set.stop_speed * (1.0 + 1e-6))
         return result
+
+    def _step(self, number: int) -> "Array":
+        """Advance the state; returns one row per step."""
+        steps = self._steps[number]
+        steps.call()
+        self.state[:] = steps.outputs[0][0]
+        return steps.outputs[1]
 
     def _lay_rails(self, speed: float) -> float:
         """Put the wheels on the rail of their place; the time to the next change at the present speed."""
@@ -260,25 +274,46 @@ class _VirtualPlant:
         return GOOD
 
 
-class _Call:
-    """A CasADi function bound to fixed memory: a call then costs no conversion. The state is replaced."""
+class _Bound:
+    """A CasADi function on fixed memory: a call then costs no conversion."""
 
-    def __init__(self, function: Any, state: "Array", inputs: "Array") -> None:
+    def __init__(self, function: Any, *inputs: "Array") -> None:
         import numpy as np
 
-        self.state = state
-        self.following, self.rows = np.zeros(STATES), np.zeros(function.size_out(1)[::-1])
-        self.buffer, self.call = function.buffer()
-        self.buffer.set_arg(0, state.data)
-        self.buffer.set_arg(1, inputs.data)
-        self.buffer.set_res(0, self.following.data)
-        self.buffer.set_res(1, self.rows.data)
+        # The outputs have one row per column of the function's.
+        self.outputs = [np.zeros(function.size_out(k)[::-1]) for k in range(function.n_out())]
+        self.buffer, self.call = function.buffer()  # the buffer has to live as long as the call
+        for k, array in enumerate(inputs):
+            self.buffer.set_arg(k, array.data)
+        for k, array in enumerate(self.outputs):
+            self.buffer.set_res(k, array.data)
 
-    def __call__(self) -> "Array":
-        """Advance the state; returns one row per step."""
-        self.call()
-        self.state[:] = self.following
-        return self.rows
+
+class _Traced:
+    """A controller whose step runs in the virtual machine."""
+
+    def __init__(self, controller: Controller) -> None:
+        import numpy as np
+
+        self.name, self.sample_time, self.start = controller.name, controller.sample_time, controller.start
+        _, step, states = controller_kernels(controller)
+        self._state, self._seen = np.zeros(states), np.zeros(3)
+        self._bound = _Bound(step, self._state, self._seen)
+
+    def step(self, state: State, measurement: Measurement) -> tuple[State, Command]:
+        self._state[:] = state
+        self._seen[:] = measurement
+        self._bound.call()
+        *following, fill, vent = self._bound.outputs[0][0].tolist()
+        return tuple(following), Command(fill=fill, vent=vent)
+
+
+def _traced(controller: Controller) -> Controller:
+    """The controller in the virtual machine, or as it is where that cannot be."""
+    try:
+        return _Traced(controller)
+    except UntraceableError:
+        return controller
 
 
 def _flat(values: Any) -> "Array":

@@ -1,6 +1,6 @@
 """One integration step of the closed loop as a CasADi function, and several of them in one call.
 
-The formulas are those of ``templates/closed_loop.c``. Steps beyond the goal, and the one that would end below the
+The formulas are those of ``templates/motion.c``. Steps beyond the goal, and the one that would end below the
 stop speed, leave the state as it is, so that a call may hold more steps than are needed.
 """
 
@@ -41,14 +41,14 @@ STATE = _places(
 )
 STATES = STATE["stop"].stop
 ROW = 3 + 5 * AXLES  # of the trace
-TRIED = slice(ROW, ROW + 2)  # after the row: whether the step was made, and the speed at its end
+MADE, END_SPEED = ROW, ROW + 1  # after the row: whether the step was made, and the speed at its end
 
 
 class StepFunctions(NamedTuple):
     """What runs a stop without a compiler."""
 
     inputs: dict[str, slice]  # places in the vector of everything that a step needs beside the state
-    single: Any  # (state, inputs) -> state, (row, tried)
+    single: Any  # (state, inputs) -> state, row with what follows it
     batches: dict[int, Any]  # number of steps -> (state, inputs) -> state, one column per step
 
 
@@ -82,7 +82,8 @@ def step_functions(kernels: Kernels, *, holding: bool, batches: Iterable[int]) -
     sizes = (kernels.lane_constants.size1_out(0), kernels.stop_constants.size1_out(0))
     places = _sizes(*sizes, kernels.window_constants.size1_out(0))
     state, given = ca.SX.sym("state", STATES), ca.SX.sym("given", places["hold"].stop)
-    single = ca.Function("step", [state, given], _Step(kernels, places, state, given, holding).outputs())
+    outputs = ca.cse(_Step(kernels, places, state, given, holding).outputs())
+    single = ca.Function("step", [state, given], outputs)
     repeated = {}
     for number in batches:
         following, rows = ca.MX.sym("state", STATES), []
