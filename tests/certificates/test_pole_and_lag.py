@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from scipy.signal import cont2discrete
 
-from wspd_design.certificates import open_loop_pole, routh_lag, sampling
+from wspd_design.certificates import open_loop_pole, sampling
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.slip_pole import pole_map
 from wspd_design.controllers.protocol import pulse_width
-from wspd_design.model.generated.slip import slip_gain
 from wspd_design.model.slip import slip_dynamics
 
 FINDINGS = {  # nominal pole at slip 0.14 and 33.3, 20, 10, 5 m/s on the calibrated vehicle [1/s]
@@ -112,48 +111,3 @@ def test_slow_sampling_is_refuted_where_fast_sampling_passes(make_problem, make_
     problem = make_problem(law, vehicle=fast_vehicle)
     assert sampling.check(replace(problem, sample_time=0.02)).status is Status.EVIDENCE
     assert sampling.check(replace(problem, sample_time=0.5)).status is Status.REFUTED
-
-
-def _eigenvalues(problem, law, speed):
-    """Closed loop of slip, torque and integral by differences of the law and the plant."""
-    vehicle = problem.vehicle
-    plant = slip_dynamics(vehicle, problem.rail, 0.14, speed)
-    gain = slip_gain(speed, vehicle.wheel_inertia, vehicle.wheel_radius)
-    if hasattr(law.gains, "switching_gain"):
-        layer_rate = law.gains.switching_gain / speed / law.gains.boundary_layer
-        by_error = (plant.pole + law.gains.surface_rate + layer_rate) / gain
-        by_integral = layer_rate * law.gains.surface_rate / gain
-    else:
-        slope = routh_lag.torque_per_surface(law)
-        by_error, by_integral = slope * law.gains.proportional_gain, slope * law.gains.integral_gain
-    lag = vehicle.brake.fill_time
-    return np.linalg.eigvals(
-        [
-            [plant.pole, gain, 0.0],
-            [-by_error / lag, -1.0 / lag, by_integral / lag],
-            [-1.0, 0.0, 0.0],
-        ]
-    )
-
-
-@pytest.mark.parametrize("name", ["afsmc", "smc"])
-@pytest.mark.parametrize("rail", ["polach-dry", "polach-wet", "table10-wet"])
-def test_routh_agrees_with_eigenvalues(make_problem, make_controller, name, rail):
-    law = make_controller(name, rail)
-    problem = make_problem(law, rail=rail)
-    margins = routh_lag.check(problem).series[0]
-    for speed, margin in zip(margins.x[::8], margins.y[::8], strict=True):
-        stable = bool(_eigenvalues(problem, law, speed / 3.6).real.max() < 0.0)
-        assert stable is bool(margin > 0.0)
-
-
-def test_layer_with_the_papers_valve_is_refuted_on_dry_rail(make_problem, make_controller):
-    verdict = routh_lag.check(make_problem(make_controller("smc")))
-    assert verdict.status is Status.REFUTED
-    assert {point.name for point in verdict.witness} == {"speed", "slip pole", "k"}
-
-
-def test_layer_with_a_fast_valve_passes(make_problem, make_controller, fast_vehicle):
-    problem = make_problem(make_controller("smc"), vehicle=fast_vehicle)
-    assert routh_lag.check(problem).status is Status.EVIDENCE
-    assert routh_lag.check(make_problem(make_controller("none"))).status is Status.NOT_APPLICABLE

@@ -1,0 +1,37 @@
+"""Numbers that are certain: balls of python-flint's ``arb`` and the doubles and fractions around them.
+
+A ball contains the exact result of the arithmetic on the stored numbers, so that a comparison that comes out true
+holds.
+"""
+
+import math
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+Ball: TypeAlias = Any
+"""A ``flint.arb``."""
+
+
+def ball(low: float | Fraction, high: float | Fraction) -> Ball:
+    """Return a ball that contains all numbers from ``low`` to ``high``."""
+    return point(low) if low == high else point(low).union(point(high))
+
+
+def point(value: float | Fraction) -> Ball:
+    """Return a ball around one number."""
+    from flint import arb, fmpq
+
+    return arb(fmpq(value.numerator, value.denominator)) if isinstance(value, Fraction) else arb(value)
+
+
+def above(value: Ball) -> float:
+    """Return a double that nothing in the ball exceeds; infinite if the ball is not bounded."""
+    if not value.is_finite():
+        return math.inf
+    upper = float(value.upper())
+    return upper if point(upper) >= value else math.nextafter(upper, math.inf)
+
+
+def below(value: Ball) -> float:
+    """Return a double that nothing in the ball falls short of."""
+    return -above(-value)

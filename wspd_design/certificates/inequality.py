@@ -1,0 +1,45 @@
+"""Decide whether an expression of the model is positive on a box."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+from wspd_design.certificates.proof.claim import Claim, Expression, Variable
+from wspd_design.certificates.proof.engine import Finding, settle
+from wspd_design.certificates.records import Status
+
+LEAST = Fraction(1, 10**6)
+"""What is shown is a bound above zero, so that the expression is positive and not only not negative."""
+
+
+def positive(
+    name: str, variables: tuple[Variable, ...], expression: Expression, *, unit: str, tolerance: float
+) -> Finding:
+    """Decide whether an expression is positive on a box, strictly.
+
+    Parameters
+    ----------
+    name : str
+        Of the claim.
+    variables : tuple of Variable
+        The box.
+    expression : callable
+        From the variables by name to a number, in functions that run on every number type.
+    unit : str
+        Of the expression.
+    tolerance : float
+        Of the enclosure of the infimum, in that unit.
+
+    Returns
+    -------
+    Finding
+        PROVED with a bound above zero, REFUTED at a point, or UNDECIDED.
+    """
+    claim = Claim(
+        name=name, variables=variables, expression=expression, relation=">=", bound=LEAST, unit=unit
+    )
+    found = settle(claim, tolerance=tolerance)
+    highest = found.extreme.high
+    assert highest is not None
+    if found.status is Status.REFUTED and highest > 0.0:
+        return replace(found, status=Status.UNDECIDED, reason="the infimum is hardly above zero")
+    return found

@@ -1,0 +1,127 @@
+"""The loop near its reference at a frozen speed: a law as three gains, and the cubic that decides.
+
+With e = slip_reference - slip, E its integral and T the torque, every law here is
+u = u0 + P e + I E - K (T - T0) as long as nothing saturates. On e' = p e - G (T - T0), tau T' + T = u the loop has
+the characteristic polynomial
+
+    tau q^3 + (1 + K - p tau) q^2 + (G P - (1 + K) p) q + G I.
+
+For the sliding mode on its own design model this is tau q^3 + (1 - p tau) q^2 + (c + k) q + k c.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple, TypeAlias
+
+from wspd_design.certificates.balls import above, below, point
+from wspd_design.certificates.plant import (
+    Values,
+    model_variables,
+    plant_dynamics,
+    plant_variables,
+    records_of,
+)
+from wspd_design.certificates.proof.claim import Variable, variable
+from wspd_design.certificates.records import Problem
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains, firing_strengths
+from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.controllers.torque_feedback import TorqueFeedback
+from wspd_design.model.number import Number
+from wspd_design.model.slip import SlipDynamics, slip_dynamics
+
+LinearLaw: TypeAlias = AdaptiveFuzzy | SlidingMode | TorqueFeedback
+"""Laws that are linear near their reference."""
+
+
+class Feedback(NamedTuple):
+    """Gains of a law near its reference."""
+
+    proportional: Number  # N m per slip, P
+    integral: Number  # N m/s per slip, I
+    torque: Number  # -, K
+
+
+class Cubic(NamedTuple):
+    """Coefficients of q^3, q^2, q, 1."""
+
+    third: Number
+    second: Number
+    first: Number
+    constant: Number
+
+
+def feedback(law: LinearLaw, speed: Number, *, slope: Number | None = None) -> Feedback:
+    """Linear form of a law at its reference and a train speed [m/s].
+
+    ``slope`` is that of the adaptive law, du/ds [N m], worked out by default.
+    """
+    if isinstance(law, TorqueFeedback):
+        per_slip = speed * law.gains.sliding_gain * law.vehicle.brake.max_torque
+        return Feedback(proportional=per_slip, integral=0.0, torque=law.gains.torque_gain)
+    if isinstance(law, SlidingMode):
+        gains = law.gains
+        model = slip_dynamics(law.vehicle, law.rail, gains.slip_reference, speed)
+        layer_rate = 1.0 / speed * gains.switching_gain / gains.boundary_layer  # k
+        return Feedback(
+            proportional=(model.pole + gains.surface_rate + layer_rate) / model.gain,
+            integral=layer_rate * gains.surface_rate / model.gain,
+            torque=0.0,
+        )
+    if slope is None:
+        slope = torque_per_surface(law.gains, 0.0)
+    return Feedback(
+        proportional=slope * law.gains.proportional_gain, integral=slope * law.gains.integral_gain, torque=0.0
+    )
+
+
+def torque_per_surface(gains: AdaptiveFuzzyGains, zero: Number) -> Number:
+    """Slope du/ds of the adaptive law on its surface, with what it adapts as at the start [N m].
+
+    The rule strengths are memberships exp(-(s - center)^2/width^2) over their sum, so that each has the slope
+    w (d - mean of d), d = 2 center/width^2, at s = 0. The type of ``zero`` is that of the arithmetic.
+    """
+    strengths = firing_strengths(gains, zero)
+    pulls = [
+        (zero + 2.0 * center) / width / width
+        for center, width in zip(gains.centres, gains.widths, strict=True)
+    ]
+    mean = sum(w * pull for w, pull in zip(strengths, pulls, strict=True))
+    moved = sum(
+        b * w * (pull - mean) for b, w, pull in zip(gains.initial_weights, strengths, pulls, strict=True)
+    )
+    return gains.torque_unit * (moved + (zero + gains.initial_bound) / gains.boundary_layer)
+
+
+def cubic(plant: SlipDynamics, lag: float, law: Feedback) -> Cubic:
+    """Characteristic polynomial of the loop with the valve lag tau [s]."""
+    opened = 1.0 + law.torque
+    return Cubic(
+        third=lag,
+        second=opened - plant.pole * lag,
+        first=plant.gain * law.proportional - opened * plant.pole,
+        constant=plant.gain * law.integral,
+    )
+
+
+def lag_of(problem: Problem) -> float:
+    """Time constant of the valve, the slower of filling and venting [s]."""
+    return max(problem.vehicle.brake.fill_time, problem.vehicle.brake.vent_time)
+
+
+def variables(problem: Problem, law: LinearLaw) -> tuple[Variable, ...]:
+    """Quantities of the loop at the slip reference, for claims: plant on its domain, law as it is."""
+    plant = plant_variables(problem, slip=problem.slip)
+    if isinstance(law, SlidingMode):
+        return plant + model_variables(law.vehicle, law.rail)
+    if isinstance(law, AdaptiveFuzzy):
+        slope = torque_per_surface(law.gains, point(0.0))
+        return (*plant, variable("du/ds", (below(slope), above(slope)), "N m"))
+    return plant
+
+
+def loop_at(problem: Problem, law: LinearLaw, values: Values) -> tuple[SlipDynamics, Feedback]:
+    """Plant and linear form of the law for the quantities of :func:`variables`."""
+    plant, speed = plant_dynamics(problem, values), values["speed"]
+    if isinstance(law, SlidingMode):
+        vehicle, rail = records_of(values, law.vehicle, law.rail, "model ")
+        return plant, feedback(replace(law, vehicle=vehicle, rail=rail), speed)
+    return plant, feedback(law, speed, slope=values.get("du/ds"))
