@@ -12,8 +12,8 @@ from wspd_design.codegen.compiler import find_compiler
 from wspd_design.design.catalog import controller
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import constants, load_rail, load_vehicle
+from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.stop import loop_input
 
 SAMPLE_TIME = 0.01  # s, 100 Hz: what a present WSP has, and the case of the trial measurements
 SPEED = 120.0 / 3.6
