@@ -308,9 +308,8 @@ REMARKS = """The hand-written program `benchmarks/scalar_stop.c` computes the sa
 distance agrees to 1e-9. `benchmarks/references.py` holds the runs with SciPy and python-control. They step from valve
 edge to valve edge as well, but between edges they choose their steps, while the compiled loop takes at most 1 ms and
 evaluates the right-hand side 3.6 times as often as RK45 does here. Against solvers the ratios therefore grow with the
-sampling rate and with the number of valve edges. The goals against solvers come from a trial in which a right-hand
-side in Python took longer and the compiled loop had no load transfer. CasADi's virtual machine needs 4.6 us for the
-2300 operations of one step, so that 1 ms steps leave no room for more than a ratio of six.
+sampling rate and with the number of valve edges. Without a compiler, one step of 2300 operations takes CasADi's
+virtual machine about 4.6 us (on the machine above), so that 1 ms steps leave no room for a ratio of twenty.
 """
 
 
