@@ -133,10 +133,10 @@ def disturbance(
     )
 
 
-def held_slip_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity, *, slip: float) -> float:
-    """Change of the distance by irregular wheel loads with the slip held: what the track itself costs [m]."""
-    disturbed = ideal_stop(vehicle, replace(scenario, load_irregularity=load), slip=slip)
-    return disturbed.distance - ideal_stop(vehicle, scenario, slip=slip).distance
+def bound_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity) -> float:
+    """Change of the bound by irregular wheel loads: what the track costs a perfect brake [m]."""
+    disturbed = ideal_stop(vehicle, replace(scenario, load_irregularity=load))
+    return disturbed.distance - ideal_stop(vehicle, scenario).distance
 
 
 def largest_change(disturbances: Sequence[Disturbance], *, chaotic: bool) -> float:

@@ -14,8 +14,8 @@ from wspd_design.design.disturbances import (
     CHANNELS,
     Disturbance,
     TrackChannel,
+    bound_change,
     disturbance,
-    held_slip_change,
     irregular_load,
     track_channel,
 )
@@ -76,7 +76,7 @@ class Reproduction:
     spectra: TrackSpectrum
     track: tuple[TrackChannel, ...]
     disturbances: tuple[Disturbance, ...]
-    held_slip_changes: tuple[float, ...]  # m, by the track with the slip held at the reference, for each rail
+    bound_changes: tuple[float, ...]  # m, of the bound by the track, for each rail
     provenance: Provenance
 
 
@@ -149,9 +149,7 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
         spectra=spectra,
         track=tuple(track_channel(spectra, channel, seed=seed) for channel in CHANNELS),
         disturbances=tuple(disturbances),
-        held_slip_changes=tuple(
-            held_slip_change(vehicle, each, load, slip=specification.slip) for each in scenarios.values()
-        ),
+        bound_changes=tuple(bound_change(vehicle, each, load) for each in scenarios.values()),
         provenance=Provenance(
             command=command,
             versions=versions(),

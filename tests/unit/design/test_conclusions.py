@@ -50,9 +50,9 @@ PLANTED = {
     ),
     "mitsubishi": (_stops("mitsubishi", slip_max=0.31), "table10-dry 0.31"),
     "frequency": (_stops("trenitalia", history={"torque_frequency": 9.0}), "trenitalia 9.00"),
-    "relay": (_stops("afsmc", saturated_share=0.99), "in 99.0 to 99.0 %"),
-    "adaptation": (_ablations(unadapted=201.5), "changes the distance by 0.25 to 0.25 %"),
-    "air": (_stops("trenitalia", vented_air=1.0), "from 1.0 to 3.2 full cylinders"),
+    "relay": (_stops("afsmc", saturated_share=0.99), "in 99.0 % of"),
+    "adaptation": (_ablations(unadapted=201.5), "changes the distance by 0.25 %"),
+    "air": (_stops("trenitalia", vented_air=1.0), "is 1.0 to 3.2 full cylinders"),
     "friction": (
         replace(GOOD, yardsticks=tuple(replace(each, bound=250.0) for each in GOOD.yardsticks)),
         "bound 250.0 m",

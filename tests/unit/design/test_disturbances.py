@@ -7,7 +7,7 @@ from wspd_design.design.disturbances import (
     LOAD_SPREAD,
     SPACING,
     Disturbance,
-    held_slip_change,
+    bound_change,
     irregular_load,
     largest_change,
 )
@@ -39,10 +39,14 @@ def test_each_axle_meets_the_same_track_later(er24pc, load):
     assert last[200:] == pytest.approx(later, abs=0.1 * LOAD_SPREAD)
 
 
-def test_the_track_itself_costs_next_to_nothing(er24pc, load):
-    # Findings section 3.7: less than 0.1 m in a multibody stop.
-    scenario = Scenario.stop(from_kmh=120.0, rail=load_rail("polach-wet"))
-    assert 0.0 < abs(held_slip_change(er24pc, scenario, load, slip=0.14)) < 0.1
+@pytest.mark.parametrize(
+    ("rail", "most"), [("table10-dry", 0.1), ("table10-wet", 0.1), ("polach-wet", 0.1), ("polach-dry", 0.5)]
+)
+def test_the_track_costs_a_perfect_brake_next_to_nothing(er24pc, load, rail, most):
+    # Findings section 3.7: less than 0.1 m in a multibody stop. The dry rail has a sharp peak, which the slip
+    # misses while the load moves.
+    scenario = Scenario.stop(from_kmh=120.0, rail=load_rail(rail))
+    assert 0.0 < abs(bound_change(er24pc, scenario, load)) < most
 
 
 def test_chaotic_stops_are_told_apart():

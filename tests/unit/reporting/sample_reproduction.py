@@ -163,7 +163,7 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
             for name in CONTROLLERS
             for rail in RAILS
         ),
-        held_slip_changes=(0.01, -0.02, 0.03, 0.0),
+        bound_changes=(0.01, -0.02, 0.03, 0.0),
         provenance=Provenance(
             command="wspd reproduce -o reports/paper",
             versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),

@@ -1,6 +1,6 @@
 """Conclusions about the adaptive fuzzy law itself."""
 
-from wspd_design.design.conclusions.records import Conclusion, Topic, verdict
+from wspd_design.design.conclusions.records import Conclusion, Topic, extent, verdict
 from wspd_design.design.evidence import RAILS, Evidence
 
 SAME = 0.01  # relative change of the distance that is none
@@ -21,9 +21,9 @@ def relay(evidence: Evidence) -> Conclusion:
         verdict=verdict(smooth),
         rule=f"it commands more than full or no brake in at least {100.0 * (1.0 - RELAY_SHARE):.0f} % of the "
         "samples, and a plain relay on s stops differently by more than 1 %",
-        finding=f"the duty is 0 or 1 in {100.0 * min(saturated):.1f} to {100.0 * max(saturated):.1f} % of the "
+        finding=f"the duty is 0 or 1 in {extent([100.0 * each for each in saturated], 1)} % of the "
         "samples. A relay that fills where s > 0 and vents elsewhere, with neither rules nor adaptation, changes "
-        f"the distance by {100.0 * min(changes):.2f} to {100.0 * max(changes):.2f} %.",
+        f"the distance by {extent([100.0 * each for each in changes], 2)} %.",
     )
 
 
@@ -45,8 +45,8 @@ def adaptation(evidence: Evidence) -> Conclusion:
         rule=f"without adaptation the distance changes by more than 1 %, and the weights stay below "
         f"{RELAY_WEIGHT:g} times the maximum torque",
         finding=f"with the command read as a share of the maximum torque, switching the adaptation off changes the "
-        f"distance by {100.0 * min(changes):.2f} to {100.0 * max(changes):.2f} %. Read in kN m, the weights grow to "
-        f"{min(weights):.0f} to {max(weights):.0f} times the maximum torque and the bound to "
-        f"{min(growth):.0f} to {max(growth):.0f} times its start, until the law is a relay; without adaptation the "
-        f"brake then hardly acts, and the train runs {min(stranded):.0f} to {max(stranded):.0f} m.",
+        f"distance by {extent([100.0 * each for each in changes], 2)} %. Read in kN m, the weights grow to "
+        f"{extent(weights, 0)} times the maximum torque and the bound to "
+        f"{extent(growth, 0)} times its start, until the law is a relay; without adaptation the "
+        f"brake then hardly acts, and the train runs {extent(stranded, 0)} m.",
     )

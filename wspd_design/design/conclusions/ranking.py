@@ -64,7 +64,7 @@ def build_up(evidence: Evidence) -> Conclusion:
         name="build-up",
         topic=Topic.RANKING,
         claim="The differences of Table 10 are differences in the control of slip.",
-        place="Section 7, implied by Table 10",
+        place="Table 10, implied",
         verdict=verdict([share < MOSTLY for share in shares]),
         rule=f"the brake build-up, v0 times the lag, makes less than {100.0 * MOSTLY:.0f} % of the gap "
         "between the longest and the shortest stop",

@@ -40,3 +40,9 @@ def verdict(parts: Sequence[bool]) -> Verdict:
     if all(parts):
         return Verdict.HOLDS
     return Verdict.PARTLY if any(parts) else Verdict.FAILS
+
+
+def extent(values: Sequence[float], places: int) -> str:
+    """Write the range of values with fixed decimals, once where its ends agree."""
+    low, high = f"{min(values):.{places}f}", f"{max(values):.{places}f}"
+    return low if low == high else f"{low} to {high}"

@@ -1,6 +1,6 @@
 """Conclusions about what was simulated and measured."""
 
-from wspd_design.design.conclusions.records import Conclusion, Topic, Verdict
+from wspd_design.design.conclusions.records import Conclusion, Topic, Verdict, extent
 from wspd_design.design.evidence import CONSTANT_RAILS, CONTROLLERS, FALLING_RAILS, Evidence
 from wspd_design.design.table10 import relative_range
 
@@ -24,7 +24,7 @@ def air(evidence: Evidence) -> Conclusion:
         "stops of the table",
         finding=f"the torque integral follows from the initial momentum, whatever the controller does: its range is "
         f"{100.0 * relative_range(printed):.2f} % as printed and {100.0 * relative_range(torques):.2f} % here, "
-        f"while the vented air goes from {min(air):.1f} to {max(air):.1f} full cylinders per wheelset.",
+        f"while the vented air is {extent(air, 1)} full cylinders per wheelset.",
     )
 
 

@@ -1,6 +1,6 @@
 """Conclusions about the course of the slip and of the torque."""
 
-from wspd_design.design.conclusions.records import Conclusion, Topic, verdict
+from wspd_design.design.conclusions.records import Conclusion, Topic, extent, verdict
 from wspd_design.design.evidence import CONSTANT_RAILS, CONTROLLERS, FALLING_RAILS, RAILS, Evidence
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 
@@ -46,8 +46,8 @@ def standstill(evidence: Evidence) -> Conclusion:
         place="Section 7, Figures 9, 11, 15",
         verdict=verdict(better),
         rule="its slip rms between 10 and 1 km/h is below that of both",
-        finding=f"{'; '.join(said)}. From 10 km/h to standstill the train runs {min(rest):.1f} to "
-        f"{max(rest):.1f} m: what happens there hardly counts.",
+        finding=f"{'; '.join(said)}. From 10 km/h to standstill the train runs {extent(rest, 1)} m: "
+        "what happens there hardly counts.",
     )
 
 
@@ -89,7 +89,7 @@ def frequency(evidence: Evidence) -> Conclusion:
     return Conclusion(
         name="frequency",
         topic=Topic.SLIP,
-        claim="Torques swing slowest with Trenitalia, fastest with Mitsubishi, faster when wet.",
+        claim="Torques swing slowest with Trenitalia, fastest with Mitsubishi, faster wet.",
         place="Section 7, Figures 17 to 20",
         verdict=verdict([*extremes, *wetter]),
         rule="it is so on each rail, and for each controller in each pair of rails",

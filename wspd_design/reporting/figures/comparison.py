@@ -13,6 +13,9 @@ from wspd_design.reporting.figures.stop import slip_panel
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
 
+MOST = 320
+"""Points of a curve: the panels are small and many."""
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -88,7 +91,7 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
     rows = -(-len(trials) // columns)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, trial in zip(grid.flat, trials, strict=False):
-        slip_panel(axes, trial.run, specification, top=1.1)
+        slip_panel(axes, trial.run, specification, top=1.1, most=MOST)
         axes.set_title(trial.run.controller)
         axes.label_outer()
     for axes in grid.flat[len(trials) :]:

@@ -113,6 +113,7 @@ def vertical_forces(figure: "Figure", trials: Trials, controller: str, rails: tu
             note(axes, name(run, wheelset), run.time[-1], float(force[-1]), ha="right", **place)
         axes.set_title(rail)
         axes.set_xlim(0.0, float(run.time[-1]))
+        axes.margins(y=0.15)
         _outer(axes, x="time [s]", y="vertical force [kN]")
     return figure
 

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 TRAIN = len(SERIES) - 1
 """Color and line style of the train speed; the wheelsets take the first ones, front to rear."""
 
+MOST = 900
+"""Points of the curve of one wheelset: there are up to 20 in one figure."""
+
 LOCK_BAR = 0.02  # of the height of the slip panel, one for each wheelset
 
 
@@ -62,7 +65,7 @@ def stop_traces(
     return figure
 
 
-def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: float) -> None:
+def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: float, most: int = MOST) -> None:
     """Draw the slip of all wheelsets with its reference, tolerance band and lock intervals."""
     reference, tolerance = specification.slip, specification.slip_tolerance
     band = (reference - tolerance, reference + tolerance)
@@ -78,7 +81,15 @@ def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: flo
             color=SERIES[wheelset],
             linewidth=0,
         )
-        curve(axes, run.time, run.slip[:, wheelset], wheelset, linewidth=1.0, label=name(run, wheelset))
+        curve(
+            axes,
+            run.time,
+            run.slip[:, wheelset],
+            wheelset,
+            most=most,
+            linewidth=1.0,
+            label=name(run, wheelset),
+        )
     below = run.time[run.speed < JUDGING_SPEED]
     if below.size:
         axes.axvspan(below[0], run.time[-1], color=MUTED, alpha=0.12, linewidth=0)
@@ -90,7 +101,7 @@ def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
     """Draw the speed of the train and of each wheel rim."""
     for wheelset in range(run.wheel_speed.shape[1]):
         rim = run.wheel_speed[:, wheelset] * wheel_radius * KMH
-        curve(axes, run.time, rim, wheelset, linewidth=1.0)
+        curve(axes, run.time, rim, wheelset, most=MOST, linewidth=1.0)
     axes.plot(run.time[::20], run.speed[::20] * KMH, color=SERIES[TRAIN], linewidth=1.6, label="train")
     axes.set(ylabel="speed [km/h]", ylim=(0.0, None))
     axes.legend(loc="upper right")
@@ -99,14 +110,14 @@ def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
 def torque_panel(axes: "Axes", run: Run) -> None:
     """Draw the braking torque of each wheelset."""
     for wheelset in range(run.torque.shape[1]):
-        curve(axes, run.time, run.torque[:, wheelset] / KILO, wheelset, linewidth=1.0)
+        curve(axes, run.time, run.torque[:, wheelset] / KILO, wheelset, most=MOST, linewidth=1.0)
     axes.set_ylabel("torque [kN m]")
 
 
 def load_panel(axes: "Axes", run: Run) -> None:
     """Draw the load of one wheel of each wheelset."""
     for wheelset in range(run.wheel_load.shape[1]):
-        curve(axes, run.time, run.wheel_load[:, wheelset] / KILO, wheelset, linewidth=1.0)
+        curve(axes, run.time, run.wheel_load[:, wheelset] / KILO, wheelset, most=MOST, linewidth=1.0)
     axes.set_ylabel("load [kN]")
 
 

@@ -24,7 +24,7 @@ def track(made: Reproduction) -> tuple[Block, ...]:
     ratios = [each.ratio for each in made.track]
     changes = made.disturbances
     calm, chaotic = (numbers.decimals(largest_change(changes, chaotic=which), 1) for which in (False, True))
-    held = numbers.decimals(max(map(abs, made.held_slip_changes)), 2)
+    bound = numbers.decimals(max(map(abs, made.bound_changes)), 2)
     return (
         Heading(text="Table 9 and the track", anchor="track"),
         Equation(
@@ -74,10 +74,10 @@ def track(made: Reproduction) -> tuple[Block, ...]:
             text="The paper adds a vibration of the pads and an irregular track to its stops. How a wheel load "
             "follows the track depends on a suspension that the paper does not print. Here the load of each wheelset "
             "has the shape of the vertical profile, as each axle meets it, with an assumed standard deviation of "
-            f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. With the slip held at its "
-            f"reference the track changes the distance by {held} m at most: it takes and gives the same. Real laws "
-            f"switch at other moments than before, and their distances change by up to {calm} m"
-            + (f", those of chaotic loops by up to {chaotic} m." if any(d.spread for d in changes) else ".")
+            f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. The bound "
+            f"changes by {bound} m at most: what the track costs a perfect brake. A real law switches at other "
+            f"moments than before, and its distance changes by up to {calm} m"
+            + (f", that of a chaotic loop by up to {chaotic} m." if any(d.spread for d in changes) else ".")
         ),
         _disturbances(made),
     )
