@@ -41,7 +41,7 @@ reports: $(VENV)/.installed
 	$(BIN)/wspd reproduce --output reports/paper --force
 
 bench: $(VENV)/.installed-dev
-	$(BIN)/python -m benchmarks.run
+	$(BIN)/python benchmarks/run.py
 
 $(VENV)/.installed: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
