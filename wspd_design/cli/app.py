@@ -9,6 +9,8 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli.commands import (
+    certify,
+    check,
     compare,
     design,
     doctor,
@@ -68,6 +70,8 @@ app.command(rich_help_panel=_DESIGNING, epilog='Example: wspd design --law smc -
     design.design
 )
 app.command(rich_help_panel=_JUDGING, epilog="Example: wspd verify design.toml")(verify.verify)
+app.command(rich_help_panel=_JUDGING, epilog="Example: wspd certify design.toml")(certify.certify)
+app.command(rich_help_panel=_JUDGING, epilog="Example: wspd check design.certificates/*.json")(check.check)
 app.command(
     rich_help_panel=_JUDGING,
     epilog='Examples: wspd simulate afsmc --rail polach-dry --speed "100 km/h"; '

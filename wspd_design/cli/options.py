@@ -143,6 +143,9 @@ DeadTimeOption: TypeAlias = Annotated[
     str | None,
     _disturbance("--dead-time", "TIME", 'From command to valve, at most one sample time: "40 ms".'),
 ]
+OnlyOption: TypeAlias = Annotated[
+    list[str] | None, typer.Option("--only", metavar="CHECK", help="One check; repeat it for several.")
+]
 JsonOption: TypeAlias = Annotated[
     bool, typer.Option("--json", help="Print one JSON object and nothing else (docs/json.md).")
 ]

@@ -1,0 +1,97 @@
+"""Certificates as JSON files: what is claimed, for people, and the proofs, for the checker.
+
+Nothing in a file is believed. :mod:`wspd_design.certificates.replay` rebuilds the claims from the design and reads
+nothing but the name of the check, whether it is said to be proved, and the proofs.
+"""
+
+import json
+from typing import Any, NamedTuple
+
+from wspd_design.certificates.proof.balls import Refused
+from wspd_design.certificates.records import Certificate, Point, Status
+
+SCHEMA = "wspd-certificate/1"
+MOST_BYTES = 20_000_000
+MOST_PROOFS = 100
+
+
+class Stated(NamedTuple):
+    """What a file states, nothing of it checked."""
+
+    check: str
+    status: Status
+    proofs: tuple[str, ...]  # JSON, one per statement
+
+
+def file_name(certificate: Certificate) -> str:
+    """Return the name under which a certificate is kept."""
+    return f"{certificate.name}.json"
+
+
+def certificate_text(certificate: Certificate) -> str:
+    """Write a certificate with its proofs as JSON.
+
+    Times are left out, so that the same design gives the same file. Floats are written without loss.
+    """
+    margin = certificate.margin
+    content = {
+        "schema": SCHEMA,
+        "check": certificate.name,
+        "status": certificate.status.name,
+        "claim": certificate.claim,
+        "explanation": certificate.explanation,
+        "margin": None if margin is None else {"low": margin.low, "high": margin.high, "unit": margin.unit},
+        "worst_point": _places(certificate.worst_point),
+        "witness": _places(certificate.witness),
+        "hypotheses": [{"text": each.text, "status": each.status.name} for each in certificate.hypotheses],
+        "assumptions": list(certificate.assumptions),
+        "undecided": certificate.undecided,
+        "reference": certificate.reference,
+        "engine": certificate.engine,
+        "model_sha256": certificate.model_hash,
+        "proofs": [_proof(each.certificate) for each in certificate.proofs],
+    }
+    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+
+
+def read_certificate(text: str) -> Stated:
+    """Read what a file states.
+
+    Parameters
+    ----------
+    text : str
+        It may be anything.
+
+    Raises
+    ------
+    Refused
+        If the text is no certificate.
+    """
+    if len(text) > MOST_BYTES:
+        raise Refused("the file is too long for a certificate")
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError):
+        raise Refused("the file is no complete JSON") from None
+    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
+        raise Refused(f"the file is no certificate of this version, {SCHEMA}")
+    check, status, proofs = (content.get(key) for key in ("check", "status", "proofs"))
+    if not isinstance(check, str):
+        raise Refused("the file names no check")
+    if not isinstance(status, str) or status not in Status.__members__:
+        raise Refused("the file states no status")
+    if not isinstance(proofs, list) or not 1 <= len(proofs) <= MOST_PROOFS:
+        raise Refused("the file holds no proofs, or too many")
+    return Stated(check=check, status=Status[status], proofs=tuple(json.dumps(each) for each in proofs))
+
+
+def _proof(text: str) -> Any:
+    """Return a proof as it stands, less the computing time."""
+    content = json.loads(text)
+    if isinstance(content, dict) and isinstance(content.get("prover"), dict):
+        content["prover"].pop("seconds", None)
+    return content
+
+
+def _places(points: tuple[Point, ...]) -> list[dict[str, Any]]:
+    return [{"name": each.name, "value": each.value, "unit": each.unit} for each in points]

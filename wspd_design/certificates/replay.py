@@ -1,0 +1,181 @@
+"""The checker alone: rebuilds the claims of a check from the design and decides about the proofs of a file.
+
+It needs neither the prover nor CasADi. What a check has to show stands in ``OBLIGATIONS``.
+"""
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any, TypeAlias
+
+from wspd_design.certificates import open_loop_pole, quadratic, reaching
+from wspd_design.certificates.certificate_file import read_certificate
+from wspd_design.certificates.proof import checker
+from wspd_design.certificates.proof.balls import Refused
+from wspd_design.certificates.proof.checker import Verdict
+from wspd_design.certificates.proof.claim import Claim, number
+from wspd_design.certificates.records import Problem, Status
+from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.controllers.torque_feedback import TorqueFeedback
+
+Content: TypeAlias = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Obligation:
+    """Something that a check shows, rebuilt from the design.
+
+    A proof of an inequality may show a looser bound than the check needs: it then says something true, but does not
+    meet the obligation.
+    """
+
+    text: str
+    needed: bool  # for the check to be proved; what is not needed encloses a number
+    concerns: Callable[[Content], bool]  # whether a proof is about this
+    check: Callable[[str], Verdict]
+    meets: Callable[[Content], bool]  # whether an accepted proof shows enough
+    shows: Callable[[Content], str]  # what an accepted proof shows, in words
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replayed:
+    """What the checker says about a file."""
+
+    check: str  # name, empty if the file tells none
+    accepted: bool  # every proof in it, and all that its status needs
+    reason: str
+    shown: tuple[str, ...]  # statements that were proved
+    missing: tuple[str, ...]  # statements that the check needs and the file does not show
+    leaves: int
+    seconds: float
+
+
+def replay(problem: Problem, text: str) -> Replayed:
+    """Decide whether the proofs of a certificate file hold for a closed loop.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop and domain that the claims are taken from.
+    text : str
+        The file; it may be anything.
+    """
+    started = time.perf_counter()
+    name, leaves = "", 0
+    shown: list[str] = []
+    missing: list[str] = []
+    try:
+        stated = read_certificate(text)
+        name = stated.check
+        wanted = obligations(name, problem)
+        done: set[str] = set()
+        for proof in stated.proofs:
+            content = json.loads(proof)
+            met = next(
+                (each for each in wanted if isinstance(content, dict) and each.concerns(content)), None
+            )
+            if met is None:
+                raise Refused(f"a proof shows nothing that {name} needs")
+            verdict = met.check(proof)
+            if not verdict.accepted:
+                raise Refused(f"{met.text}: {verdict.reason}")
+            if met.meets(content):
+                done.add(met.text)
+            shown.append(met.shows(content))
+            leaves += verdict.leaves
+        missing = [each.text for each in wanted if each.needed and each.text not in done]
+        if missing and stated.status is Status.PROVED:
+            raise Refused(f"no proof of {'; '.join(missing)}")
+        accepted, reason = True, "every proof holds for this design"
+    except Refused as refusal:
+        accepted, reason = False, str(refusal)
+    return Replayed(
+        check=name,
+        accepted=accepted,
+        reason=reason,
+        shown=tuple(shown),
+        missing=tuple(missing),
+        leaves=leaves,
+        seconds=time.perf_counter() - started,
+    )
+
+
+def obligations(name: str, problem: Problem) -> tuple[Obligation, ...]:
+    """Return what a check has to show about a closed loop.
+
+    Raises
+    ------
+    Refused
+        If no such check keeps proofs, or it does not speak about this controller.
+    """
+    if name not in OBLIGATIONS:
+        raise Refused(f'no check "{name}" keeps proofs; those that do: {", ".join(OBLIGATIONS)}')
+    return OBLIGATIONS[name](problem)
+
+
+def _inequality(claim: Claim, *, needed: bool = True) -> Obligation:
+    """A claim of which every bound may be shown; one at least as tight as the claim's meets it."""
+    return Obligation(
+        text=_statement(claim),
+        needed=needed,
+        concerns=lambda content: (
+            (content.get("claim"), content.get("relation")) == (claim.name, claim.relation)
+        ),
+        check=lambda text: checker.check(_as_stated(claim, json.loads(text)), text),
+        meets=lambda content: _as_tight(claim, number(content["bound"])),
+        shows=lambda content: _statement(_as_stated(claim, content)),
+    )
+
+
+def _as_stated(claim: Claim, content: Content) -> Claim:
+    try:
+        return replace(claim, bound=number(content["bound"]))
+    except (KeyError, TypeError, ValueError, OverflowError, ZeroDivisionError):
+        raise Refused("the proof states no bound") from None
+
+
+def _as_tight(claim: Claim, bound: Fraction) -> bool:
+    return bound <= claim.bound if claim.relation == "<=" else bound >= claim.bound
+
+
+def _statement(claim: Claim) -> str:
+    return f"{claim.name} {claim.relation} {float(claim.bound):.6g} {claim.unit}".removesuffix(" -")
+
+
+def _reaching(problem: Problem) -> tuple[Obligation, ...]:
+    if not isinstance(problem.controller, SlidingMode):
+        raise Refused("the design has no switching gain, so that reaching does not speak about it")
+    return tuple(_inequality(claim) for claim in reaching.claims(problem, problem.controller))
+
+
+def _open_loop_pole(problem: Problem) -> tuple[Obligation, ...]:
+    limit = 1.0 / open_loop_pole.shortest_lag(problem)
+    return (
+        _inequality(open_loop_pole.pole_claim(problem, "<=", limit)),
+        _inequality(open_loop_pole.pole_claim(problem, ">=", limit), needed=False),
+    )
+
+
+def _lpv_lyapunov(problem: Problem) -> tuple[Obligation, ...]:
+    if not isinstance(problem.controller, TorqueFeedback):
+        raise Refused("the design feeds back no torque, so that lpv_lyapunov does not speak about it")
+    text = "one quadratic function falls along the continuous and the sampled loop"
+    return (
+        Obligation(
+            text=text,
+            needed=True,
+            concerns=lambda content: content.get("format") == quadratic.FORMAT,
+            check=lambda proof: quadratic.check_quadratic(proof, problem),
+            meets=lambda _content: True,
+            shows=lambda _content: text,
+        ),
+    )
+
+
+OBLIGATIONS: Mapping[str, Callable[[Problem], tuple[Obligation, ...]]] = {
+    "reaching": _reaching,
+    "open_loop_pole": _open_loop_pole,
+    "lpv_lyapunov": _lpv_lyapunov,
+}

@@ -1,0 +1,102 @@
+"""``wspd certify``: the checks of a design, with every proof kept as a file that can be checked again."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.text import Text
+
+from wspd_design.certificates.certificate_file import certificate_text, file_name
+from wspd_design.certificates.records import Certificate
+from wspd_design.cli import options
+from wspd_design.cli.case import Wishes, resolve
+from wspd_design.cli.console import console, spaced, table
+from wspd_design.cli.output import check_folder, write_text
+from wspd_design.cli.verification import (
+    exit_code,
+    margin_text,
+    problem_of,
+    run_checks,
+    show_claims,
+    show_counts,
+    status_text,
+)
+from wspd_design.design.catalog import is_design_file
+from wspd_design.parameters.errors import UserError
+
+FOLDER = ".certificates"
+"""Ending of the folder beside a design."""
+
+
+def certify(
+    design: Annotated[str, typer.Argument(metavar="DESIGN", help="A design file.", show_default=False)],
+    vehicle: options.VehicleOption = None,
+    rail: options.RailOption = None,
+    only: options.OnlyOption = None,
+    seed: options.SeedOption = 0,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FOLDER",
+            help=f"Where the proofs go. Default: DESIGN{FOLDER} beside the design.",
+            show_default=False,
+        ),
+    ] = None,
+    force: options.ForceOption = False,
+) -> None:
+    """Prove what can be proved about a design and keep the proofs.
+
+    Each check with proofs becomes one JSON file, which wspd check decides about without the program that found it.
+    Exit code 1 when a claim is refuted, else 3 when one is undecided, else 0.
+    """
+    if not is_design_file(design):
+        raise UserError(
+            f'certify needs a design file, because proofs are checked against it, not "{design}"; make one with '
+            "wspd design -o, or use wspd verify"
+        )
+    case = resolve(design, Wishes(vehicle=vehicle, rail=rail))
+    folder = output if output is not None else Path(design).with_suffix(FOLDER)
+    check_folder(folder, force=force)
+    problem = problem_of(case, seed=seed)
+    certificates = run_checks(problem, only)
+    files = _write(certificates, folder, force=force)
+    show_claims(problem, certificates)
+    _show(certificates, files)
+    show_counts(certificates)
+    if files:
+        console().print(Text(f"\nWritten: {folder} ({len(files)} of {len(certificates)} checks have proofs)"))
+        console().print(Text(f"Check them: wspd check {folder}/*.json"))
+    else:
+        console().print("\nNo check has a proof to keep.")
+    raise typer.Exit(exit_code(certificates))
+
+
+def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) -> dict[str, str]:
+    """Write those that have proofs; return the name of each file by that of the check."""
+    proved = [certificate for certificate in certificates if certificate.proofs]
+    if proved:
+        try:
+            folder.mkdir(exist_ok=True)
+        except OSError as error:
+            raise UserError(
+                f"folder {folder} cannot be made ({error.strerror}); choose another one with -o"
+            ) from None
+    for certificate in proved:
+        write_text(folder / file_name(certificate), certificate_text(certificate), force=force)
+    return {certificate.name: file_name(certificate) for certificate in proved}
+
+
+def _show(certificates: Sequence[Certificate], files: Mapping[str, str]) -> None:
+    shown = table("Status", "Check", "Margin", "Proof", "Seconds", numeric=("Seconds",))
+    for certificate in certificates:
+        shown.add_row(
+            status_text(certificate.status),
+            certificate.name,
+            Text(margin_text(certificate.margin)),
+            Text(files.get(certificate.name, "")),
+            f"{certificate.seconds:.1f}",
+        )
+    console().print(spaced(shown))

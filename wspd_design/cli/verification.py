@@ -1,0 +1,123 @@
+"""What ``verify`` and ``certify`` share: run the checks of a case and show what they found."""
+
+from collections import Counter
+from collections.abc import Collection, Sequence
+
+from rich.console import Group
+from rich.padding import Padding
+from rich.text import Text
+
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.cli.case import Case
+from wspd_design.cli.console import console, progress, spaced, table
+from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
+
+_SIGNS = {
+    Status.PROVED: ("✓", "green"),
+    Status.EVIDENCE: ("~", "cyan"),
+    Status.VACUOUS: ("○", "yellow"),
+    Status.NOT_APPLICABLE: ("-", "dim"),
+    Status.UNDECIDED: ("?", "bold yellow"),
+    Status.REFUTED: ("✗", "bold red"),
+}
+
+
+def problem_of(case: Case, *, seed: int = 0) -> Problem:
+    """Return the closed loop and domain that the checks of a case speak about."""
+    from wspd_design.design.problem import stability_problem
+
+    return stability_problem(case.vehicle, case.rail, case.controller, case.specification, seed=seed)
+
+
+def run_checks(problem: Problem, only: Collection[str] | None) -> tuple[Certificate, ...]:
+    """Run the checks with their progress on standard error."""
+    from wspd_design.certificates import suite
+
+    with progress() as tell:
+        return suite.verify(problem, only=only or None, progress=tell)
+
+
+def exit_code(certificates: Sequence[Certificate]) -> int:
+    """Return the exit code of a verification; a refuted claim counts more than an undecided one."""
+    statuses = {certificate.status for certificate in certificates}
+    if Status.REFUTED in statuses:
+        return REFUTED
+    return UNDECIDED if Status.UNDECIDED in statuses else GOOD
+
+
+def show_claims(problem: Problem, certificates: Sequence[Certificate]) -> None:
+    """Print what is claimed and found, check by check."""
+    out = console()
+    low, high = problem.speeds
+    out.print(
+        f"{problem.controller.name} on {problem.rail.name}, {problem.vehicle.name}: "
+        f"slip {problem.slips[0]:g} to {problem.slips[1]:g}, {low * 3.6:g} to {high * 3.6:g} km/h, "
+        f"sample time {problem.sample_time * 1e3:g} ms",
+        style="bold",
+        markup=False,
+    )
+    for certificate in certificates:
+        out.print(_claim(certificate))
+
+
+def show_verdicts(certificates: Sequence[Certificate]) -> None:
+    """Print status and margin of each check as a table, and what the statuses mean."""
+    shown = table("Status", "Check", "Margin")
+    for certificate in certificates:
+        shown.add_row(
+            status_text(certificate.status), certificate.name, Text(margin_text(certificate.margin))
+        )
+    console().print(spaced(shown))
+    show_counts(certificates)
+
+
+def show_counts(certificates: Sequence[Certificate]) -> None:
+    """Print how often each status was found, and what it means."""
+    out = console()
+    counts = Counter(certificate.status for certificate in certificates)
+    present = [status for status in _SIGNS if counts[status]]
+    out.print(Text(", ").join(Text(f"{counts[s]} {_word(s)}", style=_SIGNS[s][1]) for s in present))
+    for status in present:
+        out.print(f"{_word(status)}: {status.value}.", style="dim")
+
+
+def status_text(status: Status) -> Text:
+    """Return sign and word of a status, in its color."""
+    sign, style = _SIGNS[status]
+    return Text(f"{sign} {_word(status)}", style=style)
+
+
+def margin_text(margin: Range | None) -> str:
+    """Write an enclosure of a margin."""
+    if margin is None:
+        return ""
+    unit = "" if margin.unit == "-" else f" {margin.unit}"
+    match margin.low, margin.high:
+        case None, None:
+            return ""
+        case low, None:
+            return f">= {low:.3g}{unit}"
+        case None, high:
+            return f"<= {high:.3g}{unit}"
+        case low, high:
+            same = f"{low:.3g}" == f"{high:.3g}"
+            return f"{low:.3g}{unit}" if same else f"{low:.3g} to {high:.3g}{unit}"
+
+
+def _claim(certificate: Certificate) -> Group:
+    """What is claimed and, unless it holds, why not; indented below the name of the check."""
+    lines = [Text(certificate.claim)]
+    if certificate.status in (Status.REFUTED, Status.UNDECIDED, Status.VACUOUS):
+        lines.append(Text(certificate.explanation, style="italic"))
+    if certificate.witness:
+        lines.append(Text(f"Witness: {_place(certificate.witness)}", style="red"))
+    heading = Text(f"\n{certificate.name}: ", style="bold").append(status_text(certificate.status))
+    return Group(heading, Padding(Group(*lines), (0, 0, 0, 2)))
+
+
+def _word(status: Status) -> str:
+    return status.name.replace("_", " ")
+
+
+def _place(points: Sequence[Point]) -> str:
+    return ", ".join(f"{point.name} {point.value:.4g} {point.unit}".removesuffix(" -") for point in points)
