@@ -178,7 +178,7 @@ def check(problem: Problem) -> Certificate:
         status=verdict,
         explanation=f"The smallest W0 that does lies between {found.low:.7g} and {found.high:.7g} m/s2; the "
         f"tightest point is at {spot}. {meaning}",
-        margin=Range(low=gain - _upper(found), high=gain - _lower(found), unit="m/s2"),
+        margin=needed.margin,
         worst_point=where,
         witness=(*where, Point(name="(abs(r) + eta)/rho", value=_lower(found), unit="m/s2"))
         if refuted

@@ -9,7 +9,6 @@ from wspd_design.certificates.checking import level, series
 from wspd_design.certificates.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
 from wspd_design.certificates.records import Problem, Series
 from wspd_design.certificates.search import Maximum, maximize
-from wspd_design.codegen.functions import slip_plant
 
 if TYPE_CHECKING:
     from wspd_design.certificates.domain import Array
@@ -49,13 +48,6 @@ def pole_map(problem: Problem) -> PoleMap:
         worst=np.max([poles(*corner) for corner in corners], axis=0),
         highest=maximize(lambda points: domain.dynamics(problem, points).pole, low, high, seed=problem.seed),
     )
-
-
-def exact_pole(problem: Problem, point: "Array") -> float:
-    """Pole at one point by CasADi's derivative of the drift: independent of the formula that was searched."""
-    vehicle, rail = domain.varied(problem, *(float(point[column]) for column in (MASS, INERTIA, MU0)))
-    matrix, _ = slip_plant(vehicle, rail).jacobians(float(point[SLIP]), 0.0, float(point[SPEED]), 0.0)
-    return float(matrix[0, 0])
 
 
 def plots(poles: PoleMap, limit_name: str, limit: float) -> tuple[Series, ...]:

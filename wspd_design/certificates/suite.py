@@ -5,17 +5,19 @@ from difflib import get_close_matches
 
 from wspd_design.certificates import (
     barbalat,
-    brake_authority,
     gain_positive,
     lyapunov_printed,
     lyapunov_repaired,
     lyapunov_surface,
+    no_go,
     open_loop_pole,
     reaching,
     routh_lag,
     sampling,
+    sliding_exists,
     surface_hurwitz,
     tracking,
+    well_posed,
 )
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
@@ -25,13 +27,15 @@ from wspd_design.parameters.errors import UserError
 MODULES = (
     surface_hurwitz,
     gain_positive,
-    brake_authority,
+    well_posed,
+    sliding_exists,
     reaching,
     lyapunov_surface,
     lyapunov_printed,
     lyapunov_repaired,
     barbalat,
     open_loop_pole,
+    no_go,
     sampling,
     routh_lag,
     tracking,

@@ -14,6 +14,12 @@ from wspd_design.certificates.proof.claim import Variable, constant
 
 Ends: TypeAlias = tuple[Any, Any]
 """Balls around the lower and the upper end of an interval."""
+Slopes: TypeAlias = dict[int, Ends]
+"""Enclosures of the derivatives, by the number of the variable; one that is not there is zero."""
+
+NONE: Slopes = {}
+NAMES = {"Add", "Mul", "exp", "log", "atan", "Abs", "Max", "Min"}
+OPERANDS = {"Max": 2, "Min": 2}
 
 MOST_EXPONENT = 16  # of a power that is taken by multiplication
 
@@ -23,83 +29,93 @@ class Refused(ValueError):
 
 
 class Program:
-    """The SymPy expression of a claim, each shared part once, on intervals with forward derivatives."""
+    """A SymPy expression on intervals, each shared part once; what no free variable enters is done beforehand."""
 
     def __init__(self, formula: Any, variables: tuple[Variable, ...]) -> None:
-        self.numbers = {v.name: k for k, v in enumerate(variables)}
         self.free = [k for k, v in enumerate(variables) if v.free]
-        self.steps: list[tuple[str, list[int], Any]] = []
+        self.known: dict[int, Ends] = {}
+        self.steps: list[tuple[int, str, list[int], Any]] = []
+        numbers = {v.name: k for k, v in enumerate(variables)}
         places: dict[Any, int] = {}
 
         def visit(node: Any) -> int:
-            if node not in places:
-                arguments = [visit(argument) for argument in node.args]
-                self.steps.append(self._step(node, arguments))
-                places[node] = len(self.steps) - 1
-            return places[node]
+            if node in places:
+                return places[node]
+            arguments = [visit(argument) for argument in node.args]
+            place = places[node] = len(places)
+            if node.is_Symbol and variables[numbers[node.name]].free:
+                self.steps.append((place, "Symbol", [], numbers[node.name]))
+            elif node.is_Symbol:
+                self.known[place] = (ball(variables[numbers[node.name]].low),) * 2
+            elif not node.args:
+                self.known[place] = (ball(constant(node)),) * 2
+            else:
+                name, operands, extra = _operation(node, arguments)
+                if all(k in self.known for k in operands):
+                    x = [self.known[k] for k in operands]
+                    self.known[place], _ = _apply(name, operands, x, [{}] * len(x), extra)
+                else:
+                    self.steps.append((place, name, operands, extra))
+            return place
 
-        visit(formula)
-
-    def _step(self, node: Any, arguments: list[int]) -> tuple[str, list[int], Any]:
-        if node.is_Symbol:
-            return "Symbol", [], self.numbers[node.name]
-        if not node.args:
-            number = ball(constant(node))
-            return "Number", [], (number, number)
-        if node.is_Pow:
-            if not node.args[1].is_number:
-                raise Refused("a power has an exponent that is no number")
-            exponent = constant(node.args[1])
-            return "Pow", arguments[:1], exponent
-        name = type(node).__name__
-        if name not in {"Add", "Mul", "exp", "log", "atan", "Abs", "Max", "Min"}:
-            raise Refused(f"the expression contains {name}, which has no interval form")
-        return name, arguments, None
+        self.result = visit(formula)
 
     def run(self, ends: list[Ends], *, derivatives: bool = False) -> tuple[Ends, list[Ends]]:
         """Enclose the value and, if asked, the slope along every variable."""
         zero, one = flint.arb(0), flint.arb(1)
-        values: list[Ends] = []
-        slopes: list[dict[int, Ends]] = []
-        for name, arguments, extra in self.steps:
-            x = [values[k] for k in arguments]
-            dx = [slopes[k] for k in arguments]
+        values, slopes = dict(self.known), dict.fromkeys(self.known, NONE)
+        for place, name, operands, extra in self.steps:
             if name == "Symbol":
-                values.append(ends[extra])
-                slopes.append({extra: (one, one)} if derivatives and extra in self.free else {})
+                values[place], slopes[place] = ends[extra], {extra: (one, one)} if derivatives else {}
                 continue
-            if name == "Number":
-                values.append(extra)
-                slopes.append({})
-                continue
-            if name == "Add":
-                found, slope = x[0], dx[0]
-                for y, dy in zip(x[1:], dx[1:], strict=True):
-                    found, slope = add(found, y), _plus(slope, dy)
-            elif name == "Mul":
-                found, slope = x[0], dx[0]
-                for k in range(1, len(x)):
-                    slope = _plus(_times(slope, x[k]), _times(dx[k], found))
-                    same = k == 1 and arguments[0] == arguments[1]
-                    found = sqr(found) if same else mul(found, x[k])
-            elif name == "Pow":
-                found, inner = power(x[0], extra)
-                slope = _times(dx[0], inner) if dx[0] else {}
-            elif name == "exp":
-                found = x[0][0].exp(), x[0][1].exp()
-                slope = _times(dx[0], found)
-            elif name == "log":
-                found = _log(x[0])
-                slope = _times(dx[0], inverse(x[0]))
-            elif name == "atan":
-                found = x[0][0].atan(), x[0][1].atan()
-                slope = _times(dx[0], inverse(add((one, one), sqr(x[0])))) if dx[0] else {}
-            else:
-                y, dy = (negative(x[0]), _times(dx[0], (-one, -one))) if name == "Abs" else (x[1], dx[1])
-                found, slope = _extremum(x[0], dx[0], y, dy, largest=name != "Min")
-            values.append(found)
-            slopes.append(slope)
-        return values[-1], [slopes[-1].get(k, (zero, zero)) for k in range(len(ends))]
+            x, dx = [values[k] for k in operands], [slopes[k] for k in operands]
+            values[place], slopes[place] = _apply(name, operands, x, dx, extra)
+        slope = slopes[self.result]
+        return values[self.result], [slope.get(k, (zero, zero)) for k in range(len(ends))]
+
+
+def _operation(node: Any, arguments: list[int]) -> tuple[str, list[int], Any]:
+    """Name of an operation, its operands and, for a power, its exponent."""
+    if node.is_Pow:
+        if not node.args[1].is_number:
+            raise Refused("a power has an exponent that is no number")
+        return "Pow", arguments[:1], constant(node.args[1])
+    name = type(node).__name__
+    if len(arguments) != OPERANDS.get(name, len(arguments)) or name not in NAMES:
+        raise Refused(f"the expression contains {name}, which has no interval form")
+    return name, arguments, None
+
+
+def _apply(
+    name: str, operands: list[int], x: list[Ends], dx: list[Slopes], extra: Any
+) -> tuple[Ends, Slopes]:
+    """Do one operation on intervals and their slopes."""
+    found, slope = x[0], dx[0]
+    if name == "Add":
+        for y, dy in zip(x[1:], dx[1:], strict=True):
+            found, slope = add(found, y), _plus(slope, dy)
+        return found, slope
+    if name == "Mul":
+        for k in range(1, len(x)):
+            slope = _plus(_times(slope, x[k]), _times(dx[k], found))
+            same = k == 1 and operands[0] == operands[1]
+            found = sqr(found) if same else mul(found, x[k])
+        return found, slope
+    if name in {"Abs", "Max", "Min"}:
+        minus = flint.arb(-1), flint.arb(-1)
+        y, dy = (negative(x[0]), _times(dx[0], minus)) if name == "Abs" else (x[1], dx[1])
+        return _extremum(x[0], dx[0], y, dy, largest=name != "Min")
+    inner: Ends
+    if name == "Pow":
+        found, inner = power(x[0], extra)
+    elif name == "exp":
+        found = inner = x[0][0].exp(), x[0][1].exp()
+    elif name == "log":
+        found, inner = _log(x[0]), inverse(x[0])
+    else:
+        one = flint.arb(1), flint.arb(1)
+        found, inner = (x[0][0].atan(), x[0][1].atan()), inverse(add(one, sqr(x[0])))
+    return found, _times(dx[0], inner)
 
 
 def add(x: Ends, y: Ends) -> Ends:
@@ -173,9 +189,7 @@ def _log(x: Ends) -> Ends:
     return flint.arb.nan(), flint.arb.nan()
 
 
-def _extremum(
-    x: Ends, dx: dict[int, Ends], y: Ends, dy: dict[int, Ends], *, largest: bool
-) -> tuple[Ends, dict[int, Ends]]:
+def _extremum(x: Ends, dx: Slopes, y: Ends, dy: Slopes, *, largest: bool) -> tuple[Ends, Slopes]:
     """Larger or smaller of two; where it is open which, the slope may be that of either."""
     if largest:
         found = x[0].max(y[0]), x[1].max(y[1])
@@ -193,13 +207,13 @@ def _extremum(
     return found, slope
 
 
-def _plus(x: dict[int, Ends], y: dict[int, Ends]) -> dict[int, Ends]:
+def _plus(x: Slopes, y: Slopes) -> Slopes:
     if not x or not y:
         return x or y
     return {**x, **y, **{k: add(x[k], y[k]) for k in x.keys() & y.keys()}}
 
 
-def _times(slope: dict[int, Ends], factor: Ends) -> dict[int, Ends]:
+def _times(slope: Slopes, factor: Ends) -> Slopes:
     return {k: mul(each, factor) for k, each in slope.items()}
 
 

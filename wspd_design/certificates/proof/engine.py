@@ -27,6 +27,7 @@ class Finding:
 
     status: Status  # PROVED, REFUTED or UNDECIDED
     claim: Claim  # what was settled: if proved, with nearly the tightest bound
+    asked: Fraction  # bound that was asked for
     extreme: Range
     place: dict[str, float]  # of the attained end: every variable by name, SI units
     undecided: float  # share of the box that the prover left open
@@ -37,14 +38,13 @@ class Finding:
 
     @property
     def margin(self) -> Range:
-        """Distance of the extreme from the bound that was settled, positive where the claim holds."""
-        bound = float(self.claim.bound)
-        ends = self.extreme.low, self.extreme.high
-        assert ends[0] is not None
-        assert ends[1] is not None
-        if self.claim.relation == "<=":
-            return Range(low=_down(bound - ends[1]), high=_up(bound - ends[0]), unit=self.claim.unit)
-        return Range(low=_down(ends[0] - bound), high=_up(ends[1] - bound), unit=self.claim.unit)
+        """Distance of the extreme from the bound that was asked for, positive where the claim holds."""
+        assert self.extreme.low is not None
+        assert self.extreme.high is not None
+        low, high = self.asked - Fraction(self.extreme.high), self.asked - Fraction(self.extreme.low)
+        if self.claim.relation == ">=":
+            low, high = -high, -low
+        return Range(low=_below(low), high=_above(high), unit=self.claim.unit)
 
 
 def settle(
@@ -72,7 +72,7 @@ def settle(
     Finding
         PROVED only if the checker accepts; REFUTED only if exact evaluation at the witness denies the claim.
         If proved, the ``claim`` of the finding has the bound that was proved, at least as tight as what was
-        asked: see :func:`tightest`.
+        asked.
     """
     started = time.perf_counter()
     upper = claim.relation == "<="
@@ -80,13 +80,13 @@ def settle(
     attained = checker.value(claim, found.point)
     reached, far = (attained[0], found.high) if upper else (attained[1], found.low)
     if (reached > claim.bound) if upper else (reached < claim.bound):
-        return _finding(claim, found, Status.REFUTED, attained, far, started, None, "")
+        return _finding(claim, found, Status.REFUTED, attained, far, started, claim.bound)
     target = tightest(claim, found, tolerance)
     if (target.bound > claim.bound) if upper else (target.bound < claim.bound):
         # The bound lies within the tolerance of the extreme value, or the budget was used up.
         target = claim
         found = prove(claim, budget=budget, progress=progress)
-    return _checked(target, found, attained, started)
+    return _checked(target, found, attained, started, claim.bound)
 
 
 def enclose(
@@ -116,20 +116,23 @@ def enclose(
     """
     started = time.perf_counter()
     found = extreme(claim, tolerance=tolerance, budget=budget, progress=progress)
-    return _checked(tightest(claim, found, tolerance), found, checker.value(claim, found.point), started)
+    attained = checker.value(claim, found.point)
+    return _checked(tightest(claim, found, tolerance), found, attained, started, claim.bound)
 
 
-def _checked(claim: Claim, found: Outcome, attained: tuple[Fraction, Fraction], started: float) -> Finding:
+def _checked(
+    claim: Claim, found: Outcome, attained: tuple[Fraction, Fraction], started: float, asked: Fraction
+) -> Finding:
     """Let the checker decide about what the prover found."""
     far = found.high if claim.relation == "<=" else found.low
     if not found.tree:
         share = f"{found.undecided:.2g} of the box is undecided after {found.boxes} boxes"
-        return _finding(claim, found, Status.UNDECIDED, attained, far, started, None, share)
+        return _finding(claim, found, Status.UNDECIDED, attained, far, started, asked, reason=share)
     certificate = certificate_text(claim, found)
     verdict = checker.check(claim, certificate)
     if not verdict.accepted:
         reason = f"the checker refuses the proof: {verdict.reason}"
-        return _finding(claim, found, Status.UNDECIDED, attained, far, started, None, reason)
+        return _finding(claim, found, Status.UNDECIDED, attained, far, started, asked, reason=reason)
     proof = Proof(
         claim=claim.name,
         statement=f"{claim.name} {claim.relation} {text(claim.bound)} {claim.unit}",
@@ -138,7 +141,7 @@ def _checked(claim: Claim, found: Outcome, attained: tuple[Fraction, Fraction], 
         leaves=verdict.leaves,
         seconds=verdict.seconds,
     )
-    return _finding(claim, found, Status.PROVED, attained, float(claim.bound), started, proof, "")
+    return _finding(claim, found, Status.PROVED, attained, float(claim.bound), started, asked, proof=proof)
 
 
 def tightest(claim: Claim, found: Outcome, tolerance: float) -> Claim:
@@ -196,13 +199,16 @@ def _finding(
     attained: tuple[Fraction, Fraction],
     far: float,
     started: float,
-    proof: Proof | None,
-    reason: str,
+    asked: Fraction,
+    *,
+    proof: Proof | None = None,
+    reason: str = "",
 ) -> Finding:
     ends = (_below(attained[0]), far) if claim.relation == "<=" else (far, _above(attained[1]))
     return Finding(
         status=status,
         claim=claim,
+        asked=asked,
         extreme=Range(low=ends[0], high=ends[1], unit=claim.unit),
         place={v.name: float(found.point.get(v.name, v.low)) for v in claim.variables},
         undecided=found.undecided if status is Status.UNDECIDED else 0.0,
@@ -221,11 +227,3 @@ def _below(number: Fraction) -> float:
 def _above(number: Fraction) -> float:
     near = float(number)
     return near if Fraction(near) >= number else nextafter(near, inf)
-
-
-def _down(number: float) -> float:
-    return nextafter(number, -inf)
-
-
-def _up(number: float) -> float:
-    return nextafter(number, inf)

@@ -198,10 +198,13 @@ class _Search:
 
     def _try(self, points: "Array") -> None:
         """Keep the best of some points."""
+        self._keep(points, self._value(self.tape.evaluate(points, points, derivatives=False).value))
+
+    def _keep(self, points: "Array", found: Intervals) -> None:
+        """Keep the best of some points, given what the expression is there."""
         import numpy as np
 
-        reached = self._value(self.tape.evaluate(points, points, derivatives=False).value).lo
-        reached = np.where(np.isnan(reached), -inf, reached)
+        reached = np.where(np.isnan(found.lo), -inf, found.lo)
         winner = int(np.argmax(reached))
         if self.best_place is None or reached[winner] > self.best:
             self.best, self.best_place = float(reached[winner]), points[:, winner].copy()
@@ -217,14 +220,15 @@ class _Search:
         found = self.tape.evaluate(boxes.low, boxes.high)
         plain = _upper(self._value(found.value))
         middle = 0.5 * (boxes.low + boxes.high)
-        self._try(middle)
+        center = self._value(self.tape.evaluate(middle, middle, derivatives=False).value)
+        self._keep(middle, center)
         gradient = found.gradient
         if gradient is None:  # the expression is constant
             gradient = self.backend.Interval(np.zeros_like(boxes.low), np.zeros_like(boxes.low))
         gradient = self._value(gradient)
         low, high = np.nan_to_num(gradient.lo, nan=-inf), np.nan_to_num(gradient.hi, nan=inf)
         low, high = np.broadcast_to(low, boxes.low.shape), np.broadcast_to(high, boxes.low.shape)
-        centered = self._mean_value(boxes, middle, low, high)
+        centered = self._mean_value(boxes, middle, center, low, high)
         decided = (plain <= threshold) | (centered <= threshold)
         shown = np.where(plain <= threshold, plain, centered)
         for k in np.flatnonzero(decided):
@@ -235,9 +239,11 @@ class _Search:
         keep = np.flatnonzero(~decided)
         return self._divide(boxes.take(keep), low[:, keep], high[:, keep])
 
-    def _mean_value(self, boxes: _Boxes, middle: "Array", low: "Array", high: "Array") -> "Array":
+    def _mean_value(
+        self, boxes: _Boxes, middle: "Array", center: Intervals, low: "Array", high: "Array"
+    ) -> "Array":
         """Upper bound by the mean value form."""
-        found = self._value(self.tape.evaluate(middle, middle, derivatives=False).value)
+        found = center
         for row in range(len(low)):
             reach = self.backend.Interval(boxes.low[row] - middle[row], boxes.high[row] - middle[row])
             found = found + self.backend.Interval(low[row], high[row]) * reach

@@ -16,12 +16,11 @@ if TYPE_CHECKING:
 
 
 class Instruction(NamedTuple):
-    """One operation: the numbers of its operands and of its result in the work vector."""
+    """One operation: the numbers of its operands and of its result."""
 
     operation: str
     operands: tuple[int, ...]
     result: int
-    constant: tuple[float, float] | None  # enclosure
 
 
 class Enclosure(NamedTuple):
@@ -51,8 +50,10 @@ class Tape:
     """A claim's expression on intervals, over a box that is scaled to [0, 1] in every free variable."""
 
     claim: Claim
-    instructions: tuple[Instruction, ...]
     backend: Backend
+    known: dict[int, Jet]  # results that do not depend on the box
+    instructions: tuple[Instruction, ...]  # the others
+    output: int
 
     def evaluate(self, low: "Array", high: "Array", *, derivatives: bool = True) -> Enclosure:
         """Enclose the expression on boxes.
@@ -64,47 +65,43 @@ class Tape:
         derivatives : bool
             Whether to enclose the slopes as well.
         """
-        work: dict[int, Jet] = {}
         inputs = self._inputs(low, high, derivatives)
-        ring = Ring(self.backend)
-        for operation, operands, result, constant in self.instructions:
+        ring, work = Ring(self.backend), dict(self.known)
+        for operation, operands, result in self.instructions:
             if operation == "OP_INPUT":
                 work[result] = inputs[operands[0]]
-            elif constant is not None:
-                work[result] = Jet(self._thin(constant), None)
-            elif operation == "OP_OUTPUT":
-                found = work[operands[0]]
             else:
                 work[result] = ring.apply(operation, [work[k] for k in operands])
+        found = work[self.output]
         return Enclosure(_filled(found.value, low.shape[1:]), found.slope)
 
-    def _inputs(self, low: "Array", high: "Array", derivatives: bool) -> list[Jet]:
+    def _inputs(self, low: "Array", high: "Array", derivatives: bool) -> dict[int, Jet]:
+        """Return the free variables on the boxes, by their numbers among all variables."""
         import numpy as np
 
-        found, row, count = [], 0, len(self.claim.free)
-        for v in self.claim.variables:
-            if not v.free:
-                found.append(Jet(self._thin(enclosing(v.low)), None))
-                continue
-            width = self._thin(enclosing(v.high - v.low))
+        found, count = {}, len(self.claim.free)
+        free = [(k, v) for k, v in enumerate(self.claim.variables) if v.free]
+        for row, (k, v) in enumerate(free):
+            width = thin(self.backend, enclosing(v.high - v.low))
             place = self.backend.Interval(low[row], high[row])
             slope = None
             if derivatives:
                 along = np.zeros((2, count, 1))
                 along[0, row], along[1, row] = width.lo, width.hi
                 slope = self.backend.Interval(along[0], along[1])
-            found.append(Jet(self._thin(enclosing(v.low)) + width * place, slope))
-            row += 1
+            found[k] = Jet(thin(self.backend, enclosing(v.low)) + width * place, slope)
         return found
 
-    def _thin(self, ends: tuple[float, float]) -> Intervals:
-        import numpy as np
 
-        return self.backend.Interval(np.array([ends[0]]), np.array([ends[1]]))
+def thin(backend: Backend, ends: tuple[float, float]) -> Intervals:
+    """Return an interval for all boxes."""
+    import numpy as np
+
+    return backend.Interval(np.array([ends[0]]), np.array([ends[1]]))
 
 
 def trace(claim: Claim, backend: Backend) -> Tape:
-    """Record the instructions of a claim's CasADi function.
+    """Record the instructions of a claim's CasADi function, and do those that no free variable enters.
 
     Raises
     ------
@@ -115,19 +112,37 @@ def trace(claim: Claim, backend: Backend) -> Tape:
 
     names = {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}
     function = claim.function()
+    ring = Ring(backend)
+    place: dict[
+        int, int
+    ] = {}  # CasADi uses the places of its work vector again; here each result has its own
+    known: dict[int, Jet] = {}
     instructions = []
+    output = -1
     for k in range(function.n_instructions()):
         operation = names[function.instruction_id(k)]
         operands, results = function.instruction_input(k), function.instruction_output(k)
-        constant = None
+        if operation == "OP_OUTPUT":
+            output = place[operands[0]]
+            continue
         if operation == "OP_CONST":
-            constant = enclosing(Fraction(function.instruction_constant(k)))
+            known[k] = Jet(thin(backend, enclosing(Fraction(function.instruction_constant(k)))), None)
         elif operation == "OP_INPUT":
-            operands = operands[1:]  # the element of the one input
-        elif operation not in OPERATIONS and operation != "OP_OUTPUT":
+            v = claim.variables[operands[1]]
+            if v.free:
+                instructions.append(Instruction(operation, (operands[1],), k))
+            else:
+                known[k] = Jet(thin(backend, enclosing(v.low)), None)
+        elif operation in OPERATIONS:
+            sources = tuple(place[operand] for operand in operands)
+            if all(source in known for source in sources):
+                known[k] = ring.apply(operation, [known[source] for source in sources])
+            else:
+                instructions.append(Instruction(operation, sources, k))
+        else:
             raise ValueError(f"{claim.name}: the operation {operation} has no interval form")
-        instructions.append(Instruction(operation, tuple(operands), results[0], constant))
-    return Tape(claim, tuple(instructions), backend)
+        place[results[0]] = k
+    return Tape(claim, backend, known, tuple(instructions), output)
 
 
 OPERATIONS = frozenset(
@@ -144,6 +159,7 @@ class Ring:
 
     def __init__(self, backend: Backend) -> None:
         self.backend = backend
+        self.zero, self.half, self.one = (thin(backend, (x, x)) for x in (0.0, 0.5, 1.0))
 
     def apply(self, operation: str, operands: list[Jet]) -> Jet:
         """Do one CasADi operation."""
@@ -179,7 +195,7 @@ class Ring:
 
     def inv(self, x: Jet) -> Jet:
         """Reciprocal."""
-        value = self.thin(1.0) / x.value
+        value = self.one / x.value
         return Jet(value, _scaled(x.slope, -self.backend.sqr(value)))
 
     def div(self, x: Jet, y: Jet) -> Jet:
@@ -195,7 +211,7 @@ class Ring:
     def sqrt(self, x: Jet) -> Jet:
         """Square root."""
         value = self.backend.sqrt(x.value)
-        return Jet(value, _scaled(x.slope, self.thin(0.5) / value))
+        return Jet(value, _scaled(x.slope, self.half / value))
 
     def exp(self, x: Jet) -> Jet:
         """Exponential function."""
@@ -204,11 +220,11 @@ class Ring:
 
     def log(self, x: Jet) -> Jet:
         """Natural logarithm."""
-        return Jet(self.backend.log(x.value), _scaled(x.slope, self.thin(1.0) / x.value))
+        return Jet(self.backend.log(x.value), _scaled(x.slope, self.one / x.value))
 
     def atan(self, x: Jet) -> Jet:
         """Inverse tangent."""
-        slope = self.thin(1.0) / (self.thin(1.0) + self.backend.sqr(x.value))
+        slope = self.one / (self.one + self.backend.sqr(x.value))
         return Jet(self.backend.atan(x.value), _scaled(x.slope, slope))
 
     def fabs(self, x: Jet) -> Jet:
@@ -229,7 +245,7 @@ class Ring:
 
         if x.slope is None and y.slope is None:
             return Jet(value, None)
-        zero = self.thin(0.0)
+        zero = self.zero
         first, second = x.slope or zero, y.slope or zero
         low = np.where(preference.lo >= 0.0, first.lo, np.minimum(first.lo, second.lo))
         high = np.where(preference.lo >= 0.0, first.hi, np.maximum(first.hi, second.hi))
@@ -248,16 +264,10 @@ class Ring:
     def integer_power(self, x: Jet, n: int) -> Jet:
         """Power with a natural exponent by squaring."""
         if n == 0:
-            return Jet(self.thin(1.0), None)
+            return Jet(self.one, None)
         half = self.integer_power(x, n // 2)
-        square = self.sq(half) if n > 1 else Jet(self.thin(1.0), None)
+        square = self.sq(half) if n > 1 else Jet(self.one, None)
         return self.mul(square, x) if n % 2 else square
-
-    def thin(self, number: float) -> Intervals:
-        """A double."""
-        import numpy as np
-
-        return self.backend.Interval(np.array([number]), np.array([number]))
 
 
 def _sum(x: Intervals | None, y: Intervals | None) -> Intervals | None:

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import brake_authority, domain, reaching
-from wspd_design.certificates.domain import SLIP, SPEED
+from wspd_design.certificates import domain, reaching, sliding_exists
+from wspd_design.certificates.domain import MU0, SLIP, SPEED
 from wspd_design.certificates.records import Status
 
 
@@ -15,9 +15,30 @@ def _with_torque(vehicle, torque):
 
 
 def test_printed_law_can_always_release_and_is_brake_limited_somewhere(make_problem, make_controller):
-    verdict = brake_authority.check(make_problem(make_controller("afsmc")))
-    assert verdict.status is Status.EVIDENCE
+    verdict = sliding_exists.check(make_problem(make_controller("afsmc")))
+    assert verdict.status is Status.PROVED
     assert "Brake-limited" in verdict.explanation
+    assert {hypothesis.status for hypothesis in verdict.hypotheses} == {Status.PROVED}
+
+
+def test_largest_friction_parts_what_the_brake_can_hold(make_problem, make_controller):
+    law = make_controller("afsmc")
+    problem = make_problem(law)
+    suffices, fails = sliding_exists.largest_friction(problem, law)
+    assert fails - suffices < 2e-3
+    limit, margin = problem.vehicle.brake.max_torque, reaching.reserve(problem)
+    points = np.random.default_rng(5).uniform(*domain.box(problem), (5000, 5))
+
+    def most(mu0):
+        points[:, MU0] = mu0
+        plant = domain.dynamics(problem, points)
+        rate = law.gains.integral_gain / law.gains.proportional_gain
+        ideal = (-plant.drift + rate * (0.14 - points[:, SLIP])) / plant.gain
+        return (ideal + margin / (plant.gain * points[:, SPEED])).max()
+
+    assert most(suffices) <= limit
+    # Random points miss the very corner, so that they need a little more friction to show the lack.
+    assert most(1.1 * fails) > limit
 
 
 def test_margin_is_not_above_any_random_point(make_problem, make_controller):
@@ -27,25 +48,25 @@ def test_margin_is_not_above_any_random_point(make_problem, make_controller):
     plant = domain.dynamics(problem, points)
     ideal = (-plant.drift + law.gains.surface_rate * (0.14 - points[:, SLIP])) / plant.gain
     slack = ideal - reaching.reserve(problem) / (plant.gain * points[:, SPEED])
-    assert brake_authority.check(problem).margin.high <= slack.min()
+    assert sliding_exists.check(problem).margin.low <= slack.min()
 
 
 def test_strong_brake_is_never_the_limit(make_problem, make_controller, er24pc):
     problem = make_problem(make_controller("afsmc"), vehicle=_with_torque(er24pc, 200e3))
-    verdict = brake_authority.check(problem)
-    assert verdict.status is Status.EVIDENCE
+    verdict = sliding_exists.check(problem)
+    assert verdict.status is Status.PROVED
     assert "never the limit" in verdict.explanation
 
 
 def test_weak_brake_makes_the_claim_vacuous(make_problem, make_controller, er24pc):
     problem = make_problem(make_controller("afsmc"), vehicle=_with_torque(er24pc, 2e3))
-    assert brake_authority.check(problem).status is Status.VACUOUS
+    assert sliding_exists.check(problem).status is Status.VACUOUS
 
 
 def test_surface_faster_than_a_vented_wheel_is_refuted(make_problem, make_controller):
     law = make_controller("smc")
     demanding = replace(law, gains=replace(law.gains, surface_rate=4.0))
-    verdict = brake_authority.check(make_problem(demanding))
+    verdict = sliding_exists.check(make_problem(demanding))
     assert verdict.status is Status.REFUTED
     at = {point.name: point.value for point in verdict.witness}
     assert at["u* - eta/g"] < 0.0
@@ -54,4 +75,4 @@ def test_surface_faster_than_a_vented_wheel_is_refuted(make_problem, make_contro
 
 def test_rule_tables_have_no_ideal_torque(make_problem, make_controller):
     problem = make_problem(make_controller("knorr-bremse"))
-    assert brake_authority.check(problem).status is Status.NOT_APPLICABLE
+    assert sliding_exists.check(problem).status is Status.NOT_APPLICABLE

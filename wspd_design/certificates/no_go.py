@@ -1,0 +1,121 @@
+"""Speeds at which no law without feedback of torque or wheel acceleration can be stable with this valve.
+
+With the averaged valve the divergence at an equilibrium is p - 1/tau whatever such a law does. Where the slip pole
+p reaches 1/tau, one closed-loop pole lies in the right half plane or on its border.
+"""
+
+from typing import TYPE_CHECKING
+
+from wspd_design.certificates import domain, findings, laws, slip_pole
+from wspd_design.certificates.checking import certified
+from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.open_loop_pole import pole_claim, shortest_lag
+from wspd_design.certificates.plant import place
+from wspd_design.certificates.proof.claim import Claim, Relation
+from wspd_design.certificates.proof.engine import engine, settle
+from wspd_design.certificates.records import Certificate, Problem, Status
+from wspd_design.model.slip import slip_dynamics
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.domain import Array
+
+NAME, TITLE = "no_go", "Speeds that slip feedback cannot master"
+TOLERANCE = 1e-3  # 1/s, of the enclosed pole
+GRID_SPEEDS = 401
+INSET = 1e-3  # relative; the claimed interval ends this far inside the crossings
+
+
+@certified(name=NAME, title=TITLE)
+def check(problem: Problem) -> Certificate:
+    """Find the widest interval of speeds with p >= 1/tau at the nominal parameters, and prove it."""
+    domain.box(problem)
+    limit = 1.0 / shortest_lag(problem)
+    interval = widest_interval(problem, limit)
+    form = laws.slip_feedback_only(problem)
+    low, high = interval or problem.speeds
+    finding = settle(
+        interval_claim(problem, limit, (low, high), ">=" if interval else "<="), tolerance=TOLERANCE
+    )
+    claimed = f"{low:.4g} to {high:.4g} m/s ({low * KMH:.3g} to {high * KMH:.3g} km/h)"
+    bound = "p >= 1/tau" if interval else "p <= 1/tau"
+    poles = slip_pole.pole_map(problem)
+    status = finding.status
+    if form.status is Status.REFUTED:
+        status = Status.NOT_APPLICABLE
+        meaning = f"{problem.controller.name} feeds back more than the slip and is not bound by this."
+    elif interval:
+        meaning = (
+            "There every equilibrium is unstable whatever the gains: the slip swings around its reference."
+        )
+    else:
+        status = Status.VACUOUS if finding.status is Status.PROVED else finding.status
+        meaning = "There is no such speed: the valve is faster than the slip pole throughout."
+    return Certificate(
+        name=NAME,
+        title=TITLE,
+        claim=f"No law without feedback of torque or wheel acceleration is asymptotically stable at slip "
+        f"{problem.slip:g} from {claimed}, with the nominal parameters and tau = {1.0 / limit:g} s."
+        if interval
+        else f"At some speed from {claimed} no law without feedback of torque or wheel acceleration is "
+        f"asymptotically stable at slip {problem.slip:g}, with the nominal parameters.",
+        status=status,
+        explanation=f"{meaning} {finding.reason}".rstrip(),
+        margin=finding.margin,
+        worst_point=place(finding.place),
+        hypotheses=(form, findings.hypothesis(f"{bound} = {limit:.4g} 1/s from {claimed}", finding)),
+        assumptions=(
+            "frozen train speed",
+            "averaged valve with the smaller of its two time constants",
+            "nominal parameters, static wheel load",
+        ),
+        method="crossings by bisection, then interval branch and bound, replayed by the independent checker",
+        resolution=f"{GRID_SPEEDS} speeds to find the interval; {finding.boxes} boxes to prove it",
+        reference="eqs. (14), (19); findings, section 2, no-go",
+        undecided=finding.undecided,
+        engine=engine(),
+        proofs=findings.proofs(finding),
+        series=slip_pole.plots(poles, "1/tau", limit),
+    )
+
+
+def interval_claim(problem: Problem, limit: float, speeds: tuple[float, float], relation: Relation) -> Claim:
+    """Return the claim that the nominal slip pole reaches (or respects) a limit [1/s] at all speeds [m/s]."""
+    return pole_claim(
+        problem,
+        relation,
+        limit,
+        speed=speeds,
+        mass=problem.vehicle.mass,
+        inertia=problem.vehicle.wheelset_inertia,
+        mu0=problem.rail.mu0,
+    )
+
+
+def widest_interval(problem: Problem, limit: float) -> tuple[float, float] | None:
+    """Search the widest interval of speeds [m/s] on which the nominal pole exceeds a limit [1/s]."""
+    import numpy as np
+    from scipy.optimize import brentq
+
+    def excess(speed: "float | Array") -> "Array":
+        found: Array = slip_dynamics(problem.vehicle, problem.rail, problem.slip, speed).pole - limit
+        return found
+
+    speeds = np.geomspace(*problem.speeds, GRID_SPEEDS)
+    above = excess(speeds) > 0.0
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], above, [False]]).astype(int)))
+    if edges.size == 0:
+        return None
+
+    def crossing(outside: int, inside: int, direction: float) -> float:
+        if not 0 <= outside < GRID_SPEEDS:
+            return float(speeds[inside])
+        root = brentq(excess, *sorted((float(speeds[outside]), float(speeds[inside]))))
+        return float(root) * (1.0 + direction * INSET)
+
+    intervals = [
+        (crossing(int(first) - 1, int(first), 1.0), crossing(int(end), int(end) - 1, -1.0))
+        for first, end in zip(edges[::2], edges[1::2], strict=True)
+    ]
+    return max(
+        (each for each in intervals if each[0] < each[1]), key=lambda each: each[1] / each[0], default=None
+    )
