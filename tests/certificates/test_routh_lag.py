@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from wspd_design.certificates import routh_lag
-from wspd_design.certificates.linear_loop import Feedback, cubic, feedback, lag_of, torque_per_surface
+from wspd_design.certificates.linear_loop import (
+    Feedback,
+    cubic,
+    feedback,
+    lag_of,
+    nominal,
+    torque_per_surface,
+)
 from wspd_design.certificates.proof.checker import check as check_proof
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.adaptive_fuzzy import torque_demand
@@ -37,7 +44,7 @@ def eigenvalues(problem, speed, *, mass=None, inertia=None, mu0=None):
 def test_polynomial_has_the_eigenvalues_of_the_loop(make_problem, make_controller, name, rail):
     problem = make_problem(make_controller(name, rail), rail=rail)
     for speed in (3.0, 12.0, 33.0):
-        plant = slip_dynamics(problem.vehicle, problem.rail, 0.14, speed)
+        plant = nominal(problem.vehicle, problem.rail, 0.14, speed)
         roots = np.roots(cubic(plant, lag_of(problem), feedback(problem.controller, speed)))
         assert np.sort_complex(roots) == pytest.approx(
             np.sort_complex(eigenvalues(problem, speed)), rel=1e-6, abs=1e-6
@@ -47,7 +54,7 @@ def test_polynomial_has_the_eigenvalues_of_the_loop(make_problem, make_controlle
 def test_polynomial_of_the_sliding_mode_on_its_own_model_is_the_derived_one(make_problem, make_controller):
     law = make_controller("smc")
     problem = make_problem(law)
-    plant = slip_dynamics(problem.vehicle, problem.rail, 0.14, 9.0)
+    plant = nominal(problem.vehicle, problem.rail, 0.14, 9.0)
     rate = law.gains.switching_gain / 9.0 / law.gains.boundary_layer
     derived = sliding_surface.lag_characteristic(plant.pole, 0.6, law.gains.surface_rate, rate)
     assert tuple(cubic(plant, 0.6, feedback(law, 9.0))) == pytest.approx(derived, rel=1e-12)

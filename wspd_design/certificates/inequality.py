@@ -12,7 +12,13 @@ LEAST = Fraction(1, 10**6)
 
 
 def positive(
-    name: str, variables: tuple[Variable, ...], expression: Expression, *, unit: str, tolerance: float
+    name: str,
+    variables: tuple[Variable, ...],
+    expression: Expression,
+    form: Expression,
+    *,
+    unit: str,
+    tolerance: float,
 ) -> Finding:
     """Decide whether an expression is positive on a box, strictly.
 
@@ -24,6 +30,8 @@ def positive(
         The box.
     expression : callable
         From the variables by name to a number, in functions that run on every number type.
+    form : callable
+        The same function, arranged for intervals.
     unit : str
         Of the expression.
     tolerance : float
@@ -35,7 +43,13 @@ def positive(
         PROVED with a bound above zero, REFUTED at a point, or UNDECIDED.
     """
     claim = Claim(
-        name=name, variables=variables, expression=expression, relation=">=", bound=LEAST, unit=unit
+        name=name,
+        variables=variables,
+        expression=expression,
+        form=form,
+        relation=">=",
+        bound=LEAST,
+        unit=unit,
     )
     found = settle(claim, tolerance=tolerance)
     highest = found.extreme.high

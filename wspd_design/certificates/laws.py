@@ -1,5 +1,6 @@
 """What the checks need to know of a law: its surface, its layer, and what it feeds back."""
 
+from collections.abc import Iterable
 from typing import TypeAlias
 
 from wspd_design.certificates.records import Certificate, Hypothesis, Problem, Status
@@ -28,6 +29,20 @@ def layer(law: SlipLaw) -> float:
     if isinstance(law, SlidingMode):
         return law.gains.boundary_layer
     return law.gains.boundary_layer / law.gains.proportional_gain
+
+
+_WEAKNESS = (Status.UNDECIDED, Status.VACUOUS, Status.EVIDENCE, Status.PROVED)
+"""From the weakest support of a theorem to the strongest."""
+
+
+def of_theorem(hypotheses: Iterable[Hypothesis]) -> Status:
+    """Status of what follows from hypotheses: that of the weakest.
+
+    A hypothesis that is refuted takes the ground from the argument, not the truth from its conclusion: the theorem
+    is undecided then.
+    """
+    found = [each.status for each in hypotheses]
+    return min((s if s in _WEAKNESS else Status.UNDECIDED for s in found), key=_WEAKNESS.index)
 
 
 def not_applicable(problem: Problem, name: str, claim: str, reason: str) -> Certificate:

@@ -15,8 +15,10 @@ from typing import NamedTuple, TypeAlias
 from wspd_design.certificates.balls import above, below, point
 from wspd_design.certificates.plant import (
     Values,
+    forces,
     model_variables,
     plant_dynamics,
+    plant_forces,
     plant_variables,
     records_of,
 )
@@ -25,11 +27,20 @@ from wspd_design.certificates.records import Problem
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains, firing_strengths
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.controllers.torque_feedback import TorqueFeedback
+from wspd_design.model.generated.slip import slip_gain
 from wspd_design.model.number import Number
-from wspd_design.model.slip import SlipDynamics, slip_dynamics
+from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.records import Rail, Vehicle
 
 LinearLaw: TypeAlias = AdaptiveFuzzy | SlidingMode | TorqueFeedback
 """Laws that are linear near their reference."""
+
+
+class Plant(NamedTuple):
+    """What the loop needs to know of (19)."""
+
+    pole: Number  # 1/s, p
+    gain: Number  # 1/(N m s), G
 
 
 class Feedback(NamedTuple):
@@ -49,17 +60,20 @@ class Cubic(NamedTuple):
     constant: Number
 
 
-def feedback(law: LinearLaw, speed: Number, *, slope: Number | None = None) -> Feedback:
+def feedback(
+    law: LinearLaw, speed: Number, *, slope: Number | None = None, model: Plant | None = None
+) -> Feedback:
     """Linear form of a law at its reference and a train speed [m/s].
 
-    ``slope`` is that of the adaptive law, du/ds [N m], worked out by default.
+    ``slope`` is that of the adaptive law, du/ds [N m], and ``model`` the design model of the sliding mode; both are
+    worked out by default.
     """
     if isinstance(law, TorqueFeedback):
         per_slip = speed * law.gains.sliding_gain * law.vehicle.brake.max_torque
         return Feedback(proportional=per_slip, integral=0.0, torque=law.gains.torque_gain)
     if isinstance(law, SlidingMode):
         gains = law.gains
-        model = slip_dynamics(law.vehicle, law.rail, gains.slip_reference, speed)
+        model = model or nominal(law.vehicle, law.rail, gains.slip_reference, speed)
         layer_rate = 1.0 / speed * gains.switching_gain / gains.boundary_layer  # k
         return Feedback(
             proportional=(model.pole + gains.surface_rate + layer_rate) / model.gain,
@@ -71,6 +85,12 @@ def feedback(law: LinearLaw, speed: Number, *, slope: Number | None = None) -> F
     return Feedback(
         proportional=slope * law.gains.proportional_gain, integral=slope * law.gains.integral_gain, torque=0.0
     )
+
+
+def nominal(vehicle: Vehicle, rail: Rail, slip: float, speed: Number) -> Plant:
+    """Pole and gain of a vehicle on a rail, from the kernels."""
+    dynamics = slip_dynamics(vehicle, rail, slip, speed)
+    return Plant(pole=dynamics.pole, gain=dynamics.gain)
 
 
 def torque_per_surface(gains: AdaptiveFuzzyGains, zero: Number) -> Number:
@@ -91,7 +111,7 @@ def torque_per_surface(gains: AdaptiveFuzzyGains, zero: Number) -> Number:
     return gains.torque_unit * (moved + (zero + gains.initial_bound) / gains.boundary_layer)
 
 
-def cubic(plant: SlipDynamics, lag: float, law: Feedback) -> Cubic:
+def cubic(plant: Plant, lag: float, law: Feedback) -> Cubic:
     """Characteristic polynomial of the loop with the valve lag tau [s]."""
     opened = 1.0 + law.torque
     return Cubic(
@@ -118,10 +138,24 @@ def variables(problem: Problem, law: LinearLaw) -> tuple[Variable, ...]:
     return plant
 
 
-def loop_at(problem: Problem, law: LinearLaw, values: Values) -> tuple[SlipDynamics, Feedback]:
-    """Plant and linear form of the law for the quantities of :func:`variables`."""
-    plant, speed = plant_dynamics(problem, values), values["speed"]
-    if isinstance(law, SlidingMode):
-        vehicle, rail = records_of(values, law.vehicle, law.rail, "model ")
-        return plant, feedback(replace(law, vehicle=vehicle, rail=rail), speed)
-    return plant, feedback(law, speed, slope=values.get("du/ds"))
+def loop_at(
+    problem: Problem, law: LinearLaw, values: Values, *, arranged: bool = False
+) -> tuple[Plant, Feedback]:
+    """Plant and linear form of the law for the quantities of :func:`variables`.
+
+    ``arranged`` gives the same functions in the form that is tight on intervals.
+    """
+    speed, inertia, radius = values["speed"], values["wheelset inertia"], values["wheel_radius"]
+    if arranged:
+        plant = Plant(pole=plant_forces(problem, values).pole, gain=slip_gain(speed, inertia / 2.0, radius))
+    else:
+        dynamics = plant_dynamics(problem, values)
+        plant = Plant(pole=dynamics.pole, gain=dynamics.gain)
+    if not isinstance(law, SlidingMode):
+        return plant, feedback(law, speed, slope=values.get("du/ds"))
+    vehicle, rail = records_of(values, law.vehicle, law.rail, "model ")
+    model = None
+    if arranged:
+        gain = slip_gain(speed, vehicle.wheel_inertia, vehicle.wheel_radius)
+        model = Plant(pole=forces(vehicle, rail, values["slip"], speed).pole, gain=gain)
+    return plant, feedback(replace(law, vehicle=vehicle, rail=rail), speed, model=model)

@@ -9,7 +9,7 @@ from wspd_design.certificates.balls import Ball, point
 from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.plant import place, plant_dynamics
-from wspd_design.certificates.proof.engine import Finding, engine, settle
+from wspd_design.certificates.proof.engine import Finding, enclose, engine
 from wspd_design.certificates.quadratic import (
     Loop,
     Matrix,
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from wspd_design.certificates.proof.claim import Relation
 
 NAME, TITLE = "lpv_lyapunov", "Quadratic function for all speeds"
-ANYWHERE = Fraction(10**6)  # 1/s, a bound that every pole keeps
 TOLERANCE = 0.1  # 1/s, of the ends of the polytope
 SPEEDS = 25
 
@@ -129,8 +128,7 @@ def check(problem: Problem) -> Certificate:
 
 def _end(problem: Problem, relation: "Relation") -> Finding:
     """Enclose one end of the interval of p - a/v."""
-    bound = -ANYWHERE if relation == ">=" else ANYWHERE
-    return settle(pole_claim(problem, relation, bound), tolerance=TOLERANCE)
+    return enclose(pole_claim(problem, relation, Fraction(0)), tolerance=TOLERANCE)
 
 
 def _weaker(ends: tuple[Finding, ...]) -> Status:

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 from wspd_design.certificates import domain, laws
 from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.linear_loop import LinearLaw, feedback, lag_of
+from wspd_design.certificates.linear_loop import LinearLaw, feedback, lag_of, nominal
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.model.slip import SlipDynamics, slip_dynamics
 
 if TYPE_CHECKING:
     import numpy as np
@@ -132,7 +131,7 @@ def loop(problem: Problem, law: LinearLaw, speed: float, *, sample_time: float |
     import numpy as np
 
     vehicle = problem.vehicle
-    dynamics: SlipDynamics = slip_dynamics(vehicle, problem.rail, problem.slip, speed)
+    dynamics = nominal(vehicle, problem.rail, problem.slip, speed)
     lag, limit = lag_of(problem), vehicle.brake.max_torque
     gains = feedback(law, speed)
     plant = control.ss(

@@ -20,7 +20,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from wspd_design.certificates.balls import Ball, ball, point
-from wspd_design.certificates.plant import Values, plant_dynamics, plant_variables
+from wspd_design.certificates.plant import Values, plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.proof.checker import Verdict
@@ -90,10 +90,15 @@ def pole_claim(problem: Problem, relation: Relation, bound: Fraction) -> Claim:
         plant = plant_dynamics(problem, values)
         return plant.pole - plant.deceleration / values["speed"]
 
+    def arranged(values: Values) -> Number:
+        plant = plant_forces(problem, values)
+        return plant.pole - plant.deceleration / values["speed"]
+
     return Claim(
         name="slip pole less a/v",
         variables=plant_variables(problem, slip=problem.slip),
         expression=difference,
+        form=arranged,
         relation=relation,
         bound=bound,
         unit="1/s",

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, laws
@@ -15,16 +16,15 @@ from wspd_design.certificates.linear_loop import (
     feedback,
     lag_of,
     loop_at,
+    nominal,
     variables,
 )
 from wspd_design.certificates.plant import Values, place
-from wspd_design.certificates.proof.claim import Expression
 from wspd_design.certificates.proof.engine import Finding, engine
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Series, Status
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
-from wspd_design.model.slip import slip_dynamics
 
 if TYPE_CHECKING:
     from wspd_design.certificates.domain import Array
@@ -120,43 +120,46 @@ def check(problem: Problem) -> Certificate:
 def _conditions(problem: Problem, law: LinearLaw) -> tuple[Condition, ...]:
     """Examine what must be positive, each in multiples of what it would be without slip pole and lag."""
     lag, quantities = lag_of(problem), variables(problem, law)
+    most = feedback(law, problem.speeds[1]).integral
 
-    def at(values: Values) -> tuple[Cubic, Number, Number]:
-        plant, gains = loop_at(problem, law, values)
+    def at(values: Values, arranged: bool) -> tuple[Cubic, Number, float]:
+        plant, gains = loop_at(problem, law, values, arranged=arranged)
         # Any positive scale serves; the small part keeps it positive for a law without feedback.
         scale = plant.gain * (abs(gains.proportional) + LEAST_GAIN * problem.vehicle.brake.max_torque)
         return cubic(plant, lag, gains), scale, abs(1.0 + gains.torque) or 1.0
 
-    def second(values: Values) -> Number:
-        found, _, opened = at(values)
+    def second(values: Values, arranged: bool) -> Number:
+        found, _, opened = at(values, arranged)
         return found.second / opened
 
-    def first(values: Values) -> Number:
-        found, scale, _ = at(values)
+    def first(values: Values, arranged: bool) -> Number:
+        found, scale, _ = at(values, arranged)
         return found.first / scale
 
-    def determinant(values: Values) -> Number:
-        found, scale, opened = at(values)
+    def determinant(values: Values, arranged: bool) -> Number:
+        found, scale, opened = at(values, arranged)
         return (found.second * found.first - found.third * found.constant) / (scale * opened)
 
-    most = feedback(law, problem.speeds[1]).integral
+    def integral(values: Values, arranged: bool) -> Number:
+        return loop_at(problem, law, values, arranged=arranged)[1].integral / abs(most)
 
-    def integral(values: Values) -> Number:
-        return loop_at(problem, law, values)[1].integral / abs(most)
-
-    if most == 0.0:
-        conditions: tuple[tuple[str, Expression], ...] = (
-            ("p tau < 1 + K", second),
-            ("G P > (1 + K) p", first),
-        )
-    else:
-        conditions = (
-            ("I > 0", integral),
-            ("p tau < 1", second),
-            (DETERMINANTS[type(law)], determinant),
-        )
+    conditions = (
+        (("p tau < 1 + K", second), ("G P > (1 + K) p", first))
+        if most == 0.0
+        else (("I > 0", integral), ("p tau < 1", second), (DETERMINANTS[type(law)], determinant))
+    )
     return tuple(
-        Condition(text=text, finding=positive(text, quantities, expression, unit="-", tolerance=TOLERANCE))
+        Condition(
+            text=text,
+            finding=positive(
+                text,
+                quantities,
+                partial(expression, arranged=False),
+                partial(expression, arranged=True),
+                unit="-",
+                tolerance=TOLERANCE,
+            ),
+        )
         for text, expression in conditions
     )
 
@@ -187,7 +190,7 @@ def _plots(problem: Problem, law: LinearLaw, lag: float) -> tuple[tuple[Series, 
     import numpy as np
 
     speeds = np.geomspace(*problem.speeds, PLOT_SPEEDS)
-    plant = slip_dynamics(problem.vehicle, problem.rail, problem.slip, speeds)
+    plant = nominal(problem.vehicle, problem.rail, problem.slip, speeds)
     gains = feedback(law, speeds)
     found = cubic(plant, lag, gains)
     opened = 1.0 + gains.torque
