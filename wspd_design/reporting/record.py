@@ -4,6 +4,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
+from wspd_design.certificates.certificate_file import file_name
 from wspd_design.certificates.records import Certificate
 from wspd_design.design.dossier import Dossier
 from wspd_design.design.records import Design
@@ -62,11 +63,21 @@ def _design(design: Design) -> dict[str, Any]:
 
 
 def _check(certificate: Certificate) -> dict[str, Any]:
-    # The time that a check took is no property of the design and would change the file with every run.
-    left_out = ("series", "seconds")
+    # Times are no property of the design and would change the file with every run; the proofs have their own files.
+    left_out = ("series", "seconds", "proofs")
     record = {key: value for key, value in asdict(certificate).items() if key not in left_out}
     hypotheses = [{"text": each.text, "status": each.status.name} for each in certificate.hypotheses]
-    return record | {"status": certificate.status.name, "hypotheses": hypotheses}
+    proofs = [
+        {
+            "claim": each.claim,
+            "statement": each.statement,
+            "claim_hash": each.claim_hash,
+            "leaves": each.leaves,
+            "file": file_name(certificate),
+        }
+        for each in certificate.proofs
+    ]
+    return record | {"status": certificate.status.name, "hypotheses": hypotheses, "proofs": proofs}
 
 
 def _stop(trial: Trial, lag_distance: float) -> dict[str, Any]:

@@ -34,7 +34,6 @@ def certify(
     vehicle: options.VehicleOption = None,
     rail: options.RailOption = None,
     only: options.OnlyOption = None,
-    seed: options.SeedOption = 0,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -60,7 +59,7 @@ def certify(
     case = resolve(design, Wishes(vehicle=vehicle, rail=rail))
     folder = output if output is not None else Path(design).with_suffix(FOLDER)
     check_folder(folder, force=force)
-    problem = problem_of(case, seed=seed)
+    problem = problem_of(case)
     certificates = run_checks(problem, only)
     files = _write(certificates, folder, force=force)
     show_claims(problem, certificates)

@@ -2,11 +2,13 @@
 
 from functools import partial
 
-from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.certificate_file import certificate_text, file_name
+from wspd_design.certificates.records import Certificate, Proof
 from wspd_design.certificates.records import Status as Finding
 from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
+    Attachment,
     Block,
     Cell,
     Column,
@@ -38,6 +40,20 @@ FINDINGS = (
 def check_anchor(certificate: Certificate) -> str:
     """Return the anchor of the section of a check."""
     return f"check-{certificate.name.replace('_', '-')}"
+
+
+def proof_files(dossier: Dossier) -> tuple[Attachment, ...]:
+    """Return the certificates that carry proofs, each as the file that ``wspd check`` decides about."""
+    return tuple(
+        Attachment(
+            name=file_name(certificate),
+            media_type="application/json",
+            content=certificate_text(certificate),
+            description=f"proofs of the check {certificate.name}, for wspd check with --design design.toml",
+        )
+        for certificate in dossier.certificates
+        if certificate.proofs
+    )
 
 
 def checks(dossier: Dossier) -> tuple[Block, ...]:
@@ -83,6 +99,8 @@ def _check(certificate: Certificate) -> list[Block]:
         )
     if certificate.status is not Finding.NOT_APPLICABLE:
         found.append(Definitions(rows=_details(certificate)))
+    if certificate.proofs:
+        found.append(_proofs(certificate))
     if certificate.series:
         found.append(
             Figure(
@@ -98,17 +116,40 @@ def _check(certificate: Certificate) -> list[Block]:
     return found
 
 
+def _proofs(certificate: Certificate) -> Table:
+    """List what the checker accepted; times are left out, because they change from run to run."""
+    return Table(
+        columns=(
+            Column(title="Proved"),
+            Column(title="Boxes", align="right"),
+            Column(title="Size", unit="bytes", align="right"),
+            Column(title="Claim"),
+        ),
+        rows=tuple(_proof(each) for each in certificate.proofs),
+        caption="What the independent checker accepted; boxes that it decided, size of the proof and fingerprint of "
+        f"the claim. The proofs are attached as {file_name(certificate)}.",
+        anchor=f"{check_anchor(certificate)}-proofs",
+    )
+
+
+def _proof(proof: Proof) -> tuple[str, ...]:
+    return proof.statement, str(proof.leaves), str(len(proof.certificate.encode())), proof.claim_hash[:16]
+
+
 def _axes(certificate: Certificate) -> str:
     return numbers.listing([f"{y_label} over {x_label}" for x_label, y_label in panels(certificate.series)])
 
 
 def _details(certificate: Certificate) -> tuple[Definition, ...]:
+    open_share = f"{numbers.significant(100.0 * certificate.undecided, 2)} % of the box"
     rows = (
         ("Margin", "" if certificate.margin is None else numbers.margin(certificate.margin)),
         ("Tightest point", numbers.point(certificate.worst_point)),
         ("Witness", numbers.point(certificate.witness)),
         ("Assumptions", "; ".join(certificate.assumptions)),
+        ("Left open", open_share if certificate.proofs or certificate.undecided else ""),
         ("Method", certificate.method),
+        ("Engine", certificate.engine),
         ("Resolution", certificate.resolution),
         ("Reference", certificate.reference),
         ("Name, model", f"{certificate.name}, {certificate.model_hash[:16]}"),

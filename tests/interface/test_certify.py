@@ -1,0 +1,86 @@
+"""``wspd certify``: the verdicts of ``wspd verify``, and a file for every proof."""
+
+import json
+
+import pytest
+
+from wspd_design.certificates.records import Status
+
+ONLY = ("--only", "reaching")
+
+
+@pytest.fixture
+def certified(wspd, smc_file):
+    return wspd("certify", smc_file, *ONLY)
+
+
+def test_a_proof_is_kept_beside_the_design(certified, smc_file):
+    assert certified.code == 0, certified.err
+    (kept,) = (smc_file.parent / "smc.certificates").iterdir()
+    assert kept.name == "reaching.json"
+    content = json.loads(kept.read_text())
+    assert content["schema"] == "wspd-certificate/1"
+    assert content["status"] == Status.PROVED.name
+    assert len(content["proofs"]) == 2
+    (row,) = (line for line in certified.out.splitlines() if line.startswith("✓ PROVED"))
+    assert row.split()[:3] == ["✓", "PROVED", "reaching"]
+    assert row.split()[-2] == "reaching.json"
+    assert float(row.split()[-1]) > 0.0
+
+
+@pytest.mark.usefixtures("certified")
+def test_the_same_design_gives_the_same_file(wspd, smc_file):
+    kept = smc_file.parent / "smc.certificates" / "reaching.json"
+    first = kept.read_bytes()
+    refused = wspd("certify", smc_file, *ONLY)
+    assert refused.code == 2
+    assert "is not empty" in refused.err
+    assert wspd("certify", smc_file, *ONLY, "--force").code == 0
+    assert kept.read_bytes() == first
+
+
+def test_a_check_without_proof_leaves_nothing_behind(wspd, smc_file):
+    done = wspd("certify", smc_file, "--only", "surface_hurwitz")
+    assert done.code == 0
+    assert "No check has a proof to keep" in done.out
+    assert not (smc_file.parent / "smc.certificates").exists()
+
+
+def test_a_refuted_check_says_so_and_keeps_what_is_proved(wspd, smc_text, tmp_path):
+    weak = tmp_path / "weak.toml"
+    gain = smc_text.index("[gains.switching_gain]")
+    value = smc_text.index("value = ", gain)
+    weak.write_text(smc_text[:value] + "value = 1.0\n" + smc_text[smc_text.index("\n", value) + 1 :])
+    folder = tmp_path / "elsewhere"
+    done = wspd("certify", weak, *ONLY, "-o", folder)
+    assert done.code == 1
+    assert "✗ REFUTED" in done.out
+    content = json.loads((folder / "reaching.json").read_text())
+    assert content["status"] == Status.REFUTED.name
+    assert content["witness"]
+    checked = wspd("check", folder / "reaching.json", "--design", weak)
+    assert checked.code == 0
+    assert "does not prove reaching" in " ".join(checked.out.split())
+    # Who writes PROVED over it is refused: the proof that counts is missing.
+    (folder / "reaching.json").write_text(json.dumps(content | {"status": "PROVED"}))
+    checked = wspd("check", folder / "reaching.json", "--design", weak)
+    assert checked.code == 1
+    assert "no proof of (abs(r) + eta)/rho <= 1" in checked.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (("afsmc",), "certify needs a design file"),
+        (("missing.toml",), "missing.toml"),
+        (("smc.toml", "--only", "raeching"), 'did you mean "reaching"'),
+        (("smc.toml", "-o", "no/such/folder"), "does not exist"),
+        (("smc.toml", "-o", "smc.toml"), "is a file"),
+    ],
+)
+def test_wrong_use_is_one_sentence(wspd, smc_file, arguments, sentence):
+    done = wspd("certify", *arguments)
+    assert done.code == 2
+    assert sentence in done.err
+    assert len(done.err.strip().splitlines()) == 1
+    assert [each.name for each in smc_file.parent.iterdir()] == ["smc.toml"]

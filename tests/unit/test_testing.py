@@ -1,0 +1,80 @@
+"""Helpers for the tests of users: they pass, fail and refuse as they should."""
+
+from dataclasses import replace
+
+import pytest
+
+from wspd_design.certificates.records import Status
+from wspd_design.design.file import write_design
+from wspd_design.design.problem import stability_problem
+from wspd_design.design.records import Specification
+from wspd_design.design.selection import design_controller
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.testing import assert_certified, assert_refuted
+
+
+@pytest.fixture(scope="module")
+def design():
+    return design_controller(load_vehicle("er24pc"), load_rail("polach-wet"), Specification(), law="smc")
+
+
+@pytest.fixture(scope="module")
+def weak(design):
+    """Take most of the switching gain away."""
+    gains = (replace(each, value=1.0) if each.name == "switching_gain" else each for each in design.gains)
+    return replace(design, gains=tuple(gains))
+
+
+def test_a_proved_check_passes_from_record_and_file(design, tmp_path):
+    path = tmp_path / "smc.toml"
+    write_design(design, path)
+    for source in (design, path, str(path)):
+        (found,) = assert_certified(source, "surface_hurwitz")
+        assert found.status is Status.PROVED
+
+
+def test_a_weak_gain_fails_with_explanation_and_worst_point(weak):
+    with pytest.raises(AssertionError) as failure:
+        assert_certified(weak, "surface_hurwitz", "reaching")
+    message = str(failure.value)
+    assert message.startswith("reaching is REFUTED, asked for PROVED: W0 = 1 m/s2")
+    assert "larger W0" in message
+    assert "worst point: slip" in message
+    assert "surface_hurwitz" not in message
+    (found,) = assert_refuted(weak, "reaching")
+    assert found.witness
+
+
+def test_what_is_proved_is_not_refuted(design):
+    with pytest.raises(AssertionError, match="surface_hurwitz is PROVED, asked for REFUTED"):
+        assert_refuted(design, "surface_hurwitz")
+
+
+def test_a_proof_is_more_than_evidence_but_nothing_else_is(design):
+    assert_certified(design, "surface_hurwitz", at_least=Status.EVIDENCE)
+    with pytest.raises(
+        AssertionError, match="lyapunov_printed is NOT_APPLICABLE, asked for EVIDENCE or PROVED"
+    ):
+        assert_certified(design, "lyapunov_printed", at_least=Status.EVIDENCE)
+    with pytest.raises(UserError, match="at_least = REFUTED must be PROVED or EVIDENCE"):
+        assert_certified(design, "surface_hurwitz", at_least=Status.REFUTED)
+
+
+def test_another_rail_is_another_claim(design):
+    assert_refuted(design, "reaching", rail="polach-dry", vehicle="er24pc")
+
+
+def test_a_problem_of_ones_own(design):
+    vehicle, rail = load_vehicle("er24pc"), load_rail("polach-wet")
+    problem = stability_problem(vehicle, rail, design.build(vehicle, rail), design.specification)
+    assert_certified(problem, "surface_hurwitz")
+    with pytest.raises(UserError, match="leave vehicle and rail out"):
+        assert_certified(problem, "surface_hurwitz", rail=rail)
+
+
+def test_wrong_names_are_refused(design):
+    with pytest.raises(UserError, match='unknown check "raeching", did you mean "reaching"'):
+        assert_certified(design, "raeching")
+    with pytest.raises(UserError, match="no check is named"):
+        assert_certified(design)
