@@ -124,12 +124,12 @@ def test_the_switching_gain_outweighs_the_model_error_at_random_points(er24pc, n
     assert np.any(np.abs(r) > rho * 0.5 * w0)  # half of it would not do
 
 
-@pytest.mark.parametrize("name", RAILS)
+@pytest.mark.parametrize("name", ["polach-dry", "polach-wet"])
 def test_the_design_passes_its_own_certificate(er24pc, name):
     rail, specification = load_rail(name), Specification()
     controller = design_controller(er24pc, rail, specification, law="smc").build(er24pc, rail)
     problem = stability_problem(er24pc, rail, controller, specification)
-    assert reaching.check(problem).status is Status.EVIDENCE
+    assert reaching.check(problem).status is Status.PROVED
     weak = replace(
         controller, gains=replace(controller.gains, switching_gain=0.6 * controller.gains.switching_gain)
     )
