@@ -9,7 +9,7 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.suite import NAMES, verify
 from wspd_design.parameters.errors import UserError
 
-EXACT = {"surface_hurwitz", "gain_positive"}
+EXACT = {"derivation", "surface_hurwitz", "gain_positive"}
 
 
 @pytest.fixture(scope="module", params=[("afsmc", "polach-dry"), ("smc", "polach-wet")])
@@ -20,6 +20,7 @@ def certificates(request, make_problem, make_controller):
 
 def test_order(certificates):
     assert NAMES == (
+        "derivation",
         "surface_hurwitz",
         "gain_positive",
         "well_posed",
@@ -33,6 +34,7 @@ def test_order(certificates):
         "no_go",
         "sampling",
         "routh_lag",
+        "sampled_invariance",
         "tracking",
     )
     assert tuple(certificate.name for certificate in certificates) == NAMES
@@ -88,6 +90,7 @@ def test_printed_law_on_dry_rail(make_problem, make_controller):
         "no_go": Status.PROVED,
         "sampling": Status.REFUTED,
         "routh_lag": Status.REFUTED,
+        "sampled_invariance": Status.NOT_APPLICABLE,
         "tracking": Status.REFUTED,
     }
 

@@ -5,6 +5,7 @@ from difflib import get_close_matches
 
 from wspd_design.certificates import (
     barbalat,
+    derivation,
     gain_positive,
     lyapunov_printed,
     lyapunov_repaired,
@@ -19,12 +20,14 @@ from wspd_design.certificates import (
     tracking,
     well_posed,
 )
+from wspd_design.certificates.invariance import certificate as sampled_invariance
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.parameters.errors import UserError
 
 MODULES = (
+    derivation,
     surface_hurwitz,
     gain_positive,
     well_posed,
@@ -38,6 +41,7 @@ MODULES = (
     no_go,
     sampling,
     routh_lag,
+    sampled_invariance,
     tracking,
 )
 NAMES = tuple(module.NAME for module in MODULES)

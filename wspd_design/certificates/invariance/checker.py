@@ -6,6 +6,7 @@ of speed. What it has in common with the search is the reasoning of ``one_sample
 """
 
 import math
+import time
 from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise
@@ -13,7 +14,8 @@ from typing import Any
 
 from wspd_design.certificates.invariance.ball_plant import BallPlant
 from wspd_design.certificates.invariance.ball_slopes import Ball, hull, law_slopes
-from wspd_design.certificates.invariance.runs import CellRuns, Refused, read
+from wspd_design.certificates.invariance.runs import CellRuns, read
+from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.protocol import Measurement
 
@@ -29,7 +31,8 @@ class Verdict:
 
     accepted: bool
     reason: str
-    images: int = 0
+    leaves: int  # blocks of cells that were mapped
+    seconds: float
     slips: tuple[float, float] = (math.nan, math.nan)
 
 
@@ -45,21 +48,27 @@ def check(problem: Problem, text: str) -> Verdict:
     """
     from flint import ctx
 
+    started = time.perf_counter()
+    walk, accepted, reason = None, True, "every image lies inside"
     try:
         with ctx.workprec(64):
-            plant, sets = BallPlant(problem), read(problem, text)
+            sets = read(problem, text)
             if problem.controller.start(Measurement(problem.speeds[1], 0.0, 0.0)) != ():
                 raise Refused("the law has a memory, which the sets leave out")
-            _cover(problem, plant, sets)
-            walk = _Walk(plant)
+            walk = _Walk(BallPlant(problem))
+            _cover(problem, walk.plant, sets)
             for here, slower in zip(sets, [*sets[1:], None], strict=True):
                 walk.window(here, slower)
-    except Refused as reason:
-        return Verdict(accepted=False, reason=str(reason))
+    except Refused as refusal:
+        accepted, reason = False, str(refusal)
     except (TypeError, ValueError, ArithmeticError) as error:  # of the law, on balls
-        return Verdict(accepted=False, reason=f"the map cannot be enclosed: {error}")
+        accepted, reason = False, f"the map cannot be enclosed: {error}"
     return Verdict(
-        accepted=True, reason="every image lies inside", images=walk.images, slips=(walk.low, walk.high)
+        accepted=accepted,
+        reason=reason,
+        leaves=walk.images if walk else 0,
+        seconds=time.perf_counter() - started,
+        slips=(walk.low, walk.high) if walk and accepted else (math.nan, math.nan),
     )
 
 

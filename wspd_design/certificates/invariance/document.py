@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 
 from wspd_design.certificates.checking import model_hash
-from wspd_design.certificates.invariance.runs import SCHEMA
+from wspd_design.certificates.invariance.runs import FORMAT
 from wspd_design.certificates.invariance.search import Found
 from wspd_design.certificates.records import Problem
 
@@ -22,7 +22,7 @@ def write(problem: Problem, found: Sequence[Found]) -> str:
         }
         for each in reversed(found)
     ]
-    document = {"schema": SCHEMA, "model": model_hash(problem), "windows": windows}
+    document = {"format": FORMAT, "claim_sha256": model_hash(problem), "windows": windows}
     return json.dumps(document, separators=(",", ":"))
 
 

@@ -7,14 +7,11 @@ from typing import Any
 
 from wspd_design.certificates.checking import model_hash
 from wspd_design.certificates.invariance.ball_slopes import Ball
+from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.records import Problem
 
-SCHEMA = "wspd-invariant-sets-1"
+FORMAT = "wspd-invariant-sets/1"
 MOST_WINDOWS, MOST_CELLS, MOST_COLUMNS, MOST_STEPS = 500, 400_000, 4096, 64
-
-
-class Refused(Exception):
-    """Why the sets do not show the claim."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +40,14 @@ def read(problem: Problem, text: str) -> list[CellRuns]:
     """Understand the certificate, or refuse it."""
     try:
         document = json.loads(text)
-        if document["schema"] != SCHEMA or document["model"] != model_hash(problem):
+        if document["format"] != FORMAT or document["claim_sha256"] != model_hash(problem):
             raise Refused("the certificate speaks about another model")
         entries = document["windows"]
         if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_WINDOWS:
             raise Refused("no windows, or too many")
         sets = [_one_set(entry) for entry in entries]
+    except Refused:
+        raise
     except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise Refused(f"the certificate cannot be read: {error!r}") from error
     if sum(b - a for each in sets for runs in each.columns.values() for a, b in runs) > MOST_CELLS:

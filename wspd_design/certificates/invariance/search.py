@@ -104,23 +104,23 @@ def search(
     problem : Problem
         Closed loop with a law without memory.
     deadline : float
-        Reading of ``time.monotonic`` after which windows are left out [s].
+        Reading of ``time.process_time`` after which windows are left out [s].
     progress : callable, optional
         Told each window before it is searched.
 
     Returns
     -------
     list of Found or None
-        None for a window in which nothing was found or for which no time was left.
+        None for a window in which nothing was found; windows for which no time was left are missing.
     """
     results: list[Found | None] = []
     for window in windows(problem):
+        if time.process_time() > deadline:
+            break
         progress(f"{window.low * 3.6:.1f} to {window.high * 3.6:.1f} km/h")
         slower = results[-1] if results else None
         best = None
         for tilt, per_unit in TRIALS:
-            if time.monotonic() > deadline:
-                break
             tilted = replace(window, tilt=tilt * window.tilt)
             best = largest(problem, start_region(problem, tilted, per_unit), slower)
             if best is None and slower is not None:
