@@ -77,6 +77,7 @@ def test_printed_law_on_dry_rail(make_problem, make_controller):
     """The statuses that the findings establish by other means."""
     verdicts = {c.name: c.status for c in verify(make_problem(make_controller("afsmc")))}
     assert verdicts == {
+        "derivation": Status.PROVED,
         "surface_hurwitz": Status.PROVED,
         "gain_positive": Status.PROVED,
         "well_posed": Status.PROVED,
