@@ -109,12 +109,12 @@ def _apply(
     if name == "Pow":
         found, inner = power(x[0], extra)
     elif name == "exp":
-        found = inner = x[0][0].exp(), x[0][1].exp()
+        found = inner = exp(x[0])
     elif name == "log":
-        found, inner = _log(x[0]), inverse(x[0])
+        found, inner = log(x[0]), inverse(x[0])
     else:
         one = flint.arb(1), flint.arb(1)
-        found, inner = (x[0][0].atan(), x[0][1].atan()), inverse(add(one, sqr(x[0])))
+        found, inner = atan(x[0]), inverse(add(one, sqr(x[0])))
     return found, _times(dx[0], inner)
 
 
@@ -176,17 +176,26 @@ def power(x: Ends, exponent: Fraction) -> tuple[Ends, Ends]:
     if exponent.denominator == 1 and 2 <= exponent <= MOST_EXPONENT:
         n = int(exponent)
         return natural_power(x, n), mul((flint.arb(n),) * 2, natural_power(x, n - 1))
-    p = ball(exponent)
-    low, high = _log(x)
-    found = mul((p, p), (low, high))
-    found = found[0].exp(), found[1].exp()
-    return found, mul((p, p), mul(found, inverse(x)))
+    factor = (ball(exponent),) * 2
+    found = exp(mul(factor, log(x)))
+    return found, mul(factor, mul(found, inverse(x)))
 
 
-def _log(x: Ends) -> Ends:
+def exp(x: Ends) -> Ends:
+    """Exponential function of an interval."""
+    return x[0].exp(), x[1].exp()
+
+
+def log(x: Ends) -> Ends:
+    """Natural logarithm of an interval; no number if it may reach zero."""
     if x[0] > 0:
         return x[0].log(), x[1].log()
     return flint.arb.nan(), flint.arb.nan()
+
+
+def atan(x: Ends) -> Ends:
+    """Inverse tangent of an interval."""
+    return x[0].atan(), x[1].atan()
 
 
 def _extremum(x: Ends, dx: Slopes, y: Ends, dy: Slopes, *, largest: bool) -> tuple[Ends, Slopes]:

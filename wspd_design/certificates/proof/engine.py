@@ -75,18 +75,32 @@ def settle(
         asked.
     """
     started = time.perf_counter()
-    upper = claim.relation == "<="
     found = extreme(claim, tolerance=tolerance, budget=budget, progress=progress)
-    attained = checker.value(claim, found.point)
-    reached, far = (attained[0], found.high) if upper else (attained[1], found.low)
-    if (reached > claim.bound) if upper else (reached < claim.bound):
-        return _finding(claim, found, Status.REFUTED, attained, far, started, claim.bound)
     target = tightest(claim, found, tolerance)
-    if (target.bound > claim.bound) if upper else (target.bound < claim.bound):
+    if not _denied(claim, found) and not _at_least(target, claim):
         # The bound lies within the tolerance of the extreme value, or the budget was used up.
-        target = claim
-        found = prove(claim, budget=budget, progress=progress)
+        target, found = claim, prove(claim, budget=budget, progress=progress)
+    attained = checker.value(claim, found.point)
+    if _denied(claim, found) and (
+        (attained[0] > claim.bound) if claim.relation == "<=" else (attained[1] < claim.bound)
+    ):
+        return _finding(claim, found, Status.REFUTED, attained, _far(claim, found), started, claim.bound)
     return _checked(target, found, attained, started, claim.bound)
+
+
+def _denied(claim: Claim, found: Outcome) -> bool:
+    """Whether the prover found a point at which a claim does not hold."""
+    return found.low > claim.bound if claim.relation == "<=" else found.high < claim.bound
+
+
+def _at_least(one: Claim, other: Claim) -> bool:
+    """Whether the bound of one claim is at least as tight as that of the other."""
+    return one.bound <= other.bound if one.relation == "<=" else one.bound >= other.bound
+
+
+def _far(claim: Claim, found: Outcome) -> float:
+    """The end of the enclosure that no point attains."""
+    return found.high if claim.relation == "<=" else found.low
 
 
 def enclose(
@@ -124,7 +138,7 @@ def _checked(
     claim: Claim, found: Outcome, attained: tuple[Fraction, Fraction], started: float, asked: Fraction
 ) -> Finding:
     """Let the checker decide about what the prover found."""
-    far = found.high if claim.relation == "<=" else found.low
+    far = _far(claim, found)
     if not found.tree:
         share = f"{found.undecided:.2g} of the box is undecided after {found.boxes} boxes"
         return _finding(claim, found, Status.UNDECIDED, attained, far, started, asked, reason=share)

@@ -1,0 +1,92 @@
+"""The reference problem, whose supremum other tools enclose, and what the prover reports on the way."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from wspd_design.certificates import domain, reaching
+from wspd_design.certificates.model_error import mismatch
+from wspd_design.certificates.proof import engine, outward
+from wspd_design.certificates.proof.checker import value
+from wspd_design.certificates.proof.prover import Budget, extreme, prove
+from wspd_design.certificates.records import Status
+
+TRUE_SUPREMUM = 24.79297  # m/s2, enclosed by 24.79296 and 24.79298
+
+
+def test_supremum_to_five_digits(make_reference_problem, reference_claim):
+    problem = make_reference_problem(30.0)
+    found = extreme(reference_claim, tolerance=1e-5)
+    eta = reaching.reserve(problem)
+    assert found.low <= TRUE_SUPREMUM + eta + 1e-5
+    assert found.high >= TRUE_SUPREMUM + eta - 1e-5
+    assert found.high - found.low < 1e-5
+    assert found.undecided == 0.0
+
+
+def test_sampling_stays_below(make_reference_problem, proved):
+    problem = make_reference_problem(30.0)
+    points = np.random.default_rng(0).uniform(*domain.box(problem), (100_000, 5))
+    sampled = np.abs(mismatch(problem, problem.controller, points).residual).max() + reaching.reserve(problem)
+    assert sampled < proved.extreme.low - 0.5
+    assert proved.extreme.low <= proved.extreme.high < proved.extreme.low + 0.02
+
+
+def test_fast_enough(reference_claim, proved):
+    """Ratios would be better than seconds, but these leave a factor of five even on two busy cores."""
+    assert extreme(reference_claim, tolerance=1e-3).seconds < 2.0
+    assert proved.seconds < 5.0
+    assert proved.proof.seconds < 5.0
+
+
+def test_fallback_arithmetic_finds_the_same(reference_claim, proved):
+    found = extreme(reference_claim, tolerance=0.01, backend=outward)
+    assert found.low <= proved.extreme.high
+    assert found.high >= proved.extreme.low
+    assert found.high - found.low <= 0.01
+
+
+@pytest.mark.parametrize("distance", [1e-2, 1e-3, 1e-4, 1e-5])
+def test_verdict_near_the_supremum(reference_claim, distance):
+    """Just above it is proved, just below refuted, although the enclosure is asked for within 0.01 only."""
+    supremum = extreme(reference_claim, tolerance=1e-6)
+    above, below = (
+        engine.settle(replace(reference_claim, bound=Fraction(bound)), tolerance=0.01)
+        for bound in (supremum.high + distance, supremum.low - distance)
+    )
+    assert (above.status, below.status) == (Status.PROVED, Status.REFUTED)
+    assert 0.0 <= above.margin.low <= above.margin.high
+    assert below.margin.low <= below.margin.high < 0.0
+    exact = value(reference_claim, {v.name: Fraction(below.place[v.name]) for v in reference_claim.free})
+    assert exact[0] > Fraction(supremum.low - distance)
+
+
+def test_used_up_budget_is_undecided(reference_claim):
+    found = engine.settle(reference_claim, tolerance=1e-6, budget=Budget(boxes=100))
+    assert found.status is Status.UNDECIDED
+    assert found.proof is None
+    assert 0.0 < found.undecided <= 1.0
+    assert found.extreme.low <= TRUE_SUPREMUM + 0.31 <= found.extreme.high
+    assert "undecided" in found.reason
+
+
+def test_progress_rises_to_one(reference_claim):
+    told = []
+    prove(reference_claim, progress=told.append)
+    assert told[-1] == pytest.approx(1.0)
+    assert all(0.0 <= share <= 1.0 for share in told)
+    assert told == sorted(told)
+
+
+def test_checker_needs_no_prover():
+    """It loads neither CasADi nor NumPy nor interval arithmetic."""
+    code = (
+        "import sys; import wspd_design.certificates.proof.checker; "
+        "print(sorted({'casadi', 'numpy', 'scipy', 'ival'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
