@@ -24,8 +24,10 @@ def test_a_proof_is_kept_beside_the_design(certified, smc_file):
     assert len(content["proofs"]) == 2
     (row,) = (line for line in certified.out.splitlines() if line.startswith("✓ PROVED"))
     assert row.split()[:3] == ["✓", "PROVED", "reaching"]
-    assert row.split()[-2] == "reaching.json"
-    assert float(row.split()[-1]) > 0.0
+    size, unit, seconds = row.split()[-3:]
+    assert unit == "kB"
+    assert float(size) == pytest.approx(kept.stat().st_size / 1e3, abs=0.06)
+    assert float(seconds) > 0.0
 
 
 @pytest.mark.usefixtures("certified")

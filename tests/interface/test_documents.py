@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("README.md", "docs/tutorial.md")
+PAGES = ("README.md", "docs/tutorial.md", "docs/certificates.md")
 BLOCK = re.compile(r"^```(console|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -57,6 +57,9 @@ def test_python_blocks_run(page, tmp_path, monkeypatch, capsys):
     space: dict[str, object] = {}
     for block in blocks(page, "python"):
         exec(compile(block, page, "exec"), space)
+    for name, item in space.items():
+        if name.startswith("test_") and callable(item):
+            item()
     capsys.readouterr()
     assert space
 

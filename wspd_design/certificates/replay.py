@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeAlias
 
-from wspd_design.certificates import open_loop_pole, quadratic, reaching
+from wspd_design.certificates import no_go, open_loop_pole, quadratic, reaching, sliding_exists, well_posed
 from wspd_design.certificates.certificate_file import read_certificate
+from wspd_design.certificates.laws import SlipLaw
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.proof.checker import Verdict
@@ -72,15 +73,8 @@ def replay(problem: Problem, text: str) -> Replayed:
         wanted = obligations(name, problem)
         done: set[str] = set()
         for proof in stated.proofs:
+            met, verdict = _decide(name, wanted, proof)
             content = json.loads(proof)
-            met = next(
-                (each for each in wanted if isinstance(content, dict) and each.concerns(content)), None
-            )
-            if met is None:
-                raise Refused(f"a proof shows nothing that {name} needs")
-            verdict = met.check(proof)
-            if not verdict.accepted:
-                raise Refused(f"{met.text}: {verdict.reason}")
             if met.meets(content):
                 done.add(met.text)
             shown.append(met.shows(content))
@@ -102,6 +96,19 @@ def replay(problem: Problem, text: str) -> Replayed:
     )
 
 
+def _decide(name: str, wanted: tuple[Obligation, ...], proof: str) -> tuple[Obligation, Verdict]:
+    """Find what a proof shows, or refuse it."""
+    content = json.loads(proof)
+    concerned = [each for each in wanted if isinstance(content, dict) and each.concerns(content)]
+    reason = f"a proof shows nothing that {name} needs"
+    for each in concerned:
+        verdict = each.check(proof)
+        if verdict.accepted:
+            return each, verdict
+        reason = f"{each.text}: {verdict.reason}"
+    raise Refused(reason)
+
+
 def obligations(name: str, problem: Problem) -> tuple[Obligation, ...]:
     """Return what a check has to show about a closed loop.
 
@@ -111,21 +118,26 @@ def obligations(name: str, problem: Problem) -> tuple[Obligation, ...]:
         If no such check keeps proofs, or it does not speak about this controller.
     """
     if name not in OBLIGATIONS:
-        raise Refused(f'no check "{name}" keeps proofs; those that do: {", ".join(OBLIGATIONS)}')
+        raise Refused(f'the claims of "{name}" cannot be rebuilt; known are {", ".join(OBLIGATIONS)}')
     return OBLIGATIONS[name](problem)
 
 
-def _inequality(claim: Claim, *, needed: bool = True) -> Obligation:
-    """A claim of which every bound may be shown; one at least as tight as the claim's meets it."""
+def _inequality(
+    claim: Claim, *, needed: bool = True, where: str = "", box: Callable[[], Claim] | None = None
+) -> Obligation:
+    """A claim of which every bound may be shown; one at least as tight as the claim's meets it.
+
+    ``where`` says on which part of the domain it stands; ``box`` searches that part, if that takes long.
+    """
     return Obligation(
-        text=_statement(claim),
+        text=_statement(claim) + where,
         needed=needed,
         concerns=lambda content: (
             (content.get("claim"), content.get("relation")) == (claim.name, claim.relation)
         ),
-        check=lambda text: checker.check(_as_stated(claim, json.loads(text)), text),
+        check=lambda text: checker.check(_as_stated(box() if box else claim, json.loads(text)), text),
         meets=lambda content: _as_tight(claim, number(content["bound"])),
-        shows=lambda content: _statement(_as_stated(claim, content)),
+        shows=lambda content: _statement(_as_stated(claim, content)) + where,
     )
 
 
@@ -158,6 +170,41 @@ def _open_loop_pole(problem: Problem) -> tuple[Obligation, ...]:
     )
 
 
+def _well_posed(problem: Problem) -> tuple[Obligation, ...]:
+    return tuple(_inequality(claim) for claim in well_posed.claims(problem))
+
+
+def _no_go(problem: Problem) -> tuple[Obligation, ...]:
+    """The interval of speeds is searched again; whatever it is, the checker decides about it."""
+    limit = 1.0 / open_loop_pole.shortest_lag(problem)
+    interval = no_go.widest_interval(problem, limit)
+    low, high = interval or problem.speeds
+    claim = no_go.interval_claim(problem, limit, (low, high), ">=" if interval else "<=")
+    return (_inequality(claim, where=f" from {low:.4g} to {high:.4g} m/s"),)
+
+
+def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
+    law = problem.controller
+    if not isinstance(law, SlipLaw):
+        raise Refused("the design has no sliding surface, so that sliding_exists does not speak about it")
+    limit = problem.vehicle.brake.max_torque
+    enough = sliding_exists.torque_claim(problem, law, "<=", limit)
+
+    def slippery() -> Claim:
+        """Search the friction below which the brake suffices again, which needs the prover."""
+        friction = sliding_exists.largest_friction(problem, law)
+        if friction is None:
+            raise Refused("the brake suffices at no friction")
+        span = min(friction[0], problem.mu0_bounds[0]), friction[0]
+        return sliding_exists.torque_claim(problem, law, "<=", limit, mu0=span)
+
+    return (
+        _inequality(sliding_exists.torque_claim(problem, law, ">=", 0.0)),
+        _inequality(enough, needed=False),
+        _inequality(enough, needed=False, where=" up to the largest mu0 for which it holds", box=slippery),
+    )
+
+
 def _lpv_lyapunov(problem: Problem) -> tuple[Obligation, ...]:
     if not isinstance(problem.controller, TorqueFeedback):
         raise Refused("the design feeds back no torque, so that lpv_lyapunov does not speak about it")
@@ -175,7 +222,11 @@ def _lpv_lyapunov(problem: Problem) -> tuple[Obligation, ...]:
 
 
 OBLIGATIONS: Mapping[str, Callable[[Problem], tuple[Obligation, ...]]] = {
+    "well_posed": _well_posed,
+    "sliding_exists": _sliding_exists,
     "reaching": _reaching,
+    "boundary_layer": _reaching,  # it rests on the same inequalities
+    "no_go": _no_go,
     "open_loop_pole": _open_loop_pole,
     "lpv_lyapunov": _lpv_lyapunov,
 }

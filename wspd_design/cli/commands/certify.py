@@ -61,20 +61,22 @@ def certify(
     check_folder(folder, force=force)
     problem = problem_of(case)
     certificates = run_checks(problem, only)
-    files = _write(certificates, folder, force=force)
+    sizes = _write(certificates, folder, force=force)
     show_claims(problem, certificates)
-    _show(certificates, files)
+    _show(certificates, sizes)
     show_counts(certificates)
-    if files:
-        console().print(Text(f"\nWritten: {folder} ({len(files)} of {len(certificates)} checks have proofs)"))
+    if sizes:
+        console().print(
+            Text(f"\nWritten: {folder}/NAME.json for each of the {len(sizes)} checks with proofs")
+        )
         console().print(Text(f"Check them: wspd check {folder}/*.json"))
     else:
         console().print("\nNo check has a proof to keep.")
     raise typer.Exit(exit_code(certificates))
 
 
-def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) -> dict[str, str]:
-    """Write those that have proofs; return the name of each file by that of the check."""
+def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) -> dict[str, int]:
+    """Write those that have proofs; return the size of each file [byte] by the name of the check."""
     proved = [certificate for certificate in certificates if certificate.proofs]
     if proved:
         try:
@@ -83,19 +85,23 @@ def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) ->
             raise UserError(
                 f"folder {folder} cannot be made ({error.strerror}); choose another one with -o"
             ) from None
+    sizes = {}
     for certificate in proved:
-        write_text(folder / file_name(certificate), certificate_text(certificate), force=force)
-    return {certificate.name: file_name(certificate) for certificate in proved}
+        text = certificate_text(certificate)
+        write_text(folder / file_name(certificate), text, force=force)
+        sizes[certificate.name] = len(text.encode())
+    return sizes
 
 
-def _show(certificates: Sequence[Certificate], files: Mapping[str, str]) -> None:
-    shown = table("Status", "Check", "Margin", "Proof", "Seconds", numeric=("Seconds",))
+def _show(certificates: Sequence[Certificate], sizes: Mapping[str, int]) -> None:
+    shown = table("Status", "Check", "Margin", "Proof", "Seconds", numeric=("Proof", "Seconds"))
     for certificate in certificates:
+        size = sizes.get(certificate.name)
         shown.add_row(
             status_text(certificate.status),
             certificate.name,
             Text(margin_text(certificate.margin)),
-            Text(files.get(certificate.name, "")),
+            "" if size is None else f"{size / 1e3:.1f} kB",
             f"{certificate.seconds:.1f}",
         )
     console().print(spaced(shown))
