@@ -13,8 +13,10 @@ from wspd_design.controllers import adaptive_fuzzy as law_module
 def test_statement_about_infinity_is_vacuous_and_the_integral_is_bounded(make_problem, make_controller, name):
     verdict = barbalat.check(make_problem(make_controller(name)))
     assert verdict.status is Status.VACUOUS
-    for_ever, integral, lipschitz = verdict.hypotheses
+    for_ever, in_sigma, integral, lipschitz = verdict.hypotheses
     assert for_ever.status is Status.REFUTED
+    assert in_sigma.status is (Status.REFUTED if name == "afsmc" else Status.NOT_APPLICABLE)
+    assert "sigma" in verdict.explanation
     assert integral.status is Status.EVIDENCE
     assert lipschitz.status is Status.EVIDENCE
     at = {point.name: point.value for point in verdict.worst_point}
@@ -25,7 +27,7 @@ def test_statement_about_infinity_is_vacuous_and_the_integral_is_bounded(make_pr
 def test_integral_of_a_law_that_does_not_reach_exceeds_its_bound(make_problem, make_controller):
     law = make_controller("smc")
     weak = replace(law, gains=replace(law.gains, switching_gain=0.5), rail=replace(law.rail, mu0=0.1))
-    _, integral, _ = barbalat.check(make_problem(weak)).hypotheses
+    _, _, integral, _ = barbalat.check(make_problem(weak)).hypotheses
     assert integral.status is Status.REFUTED
 
 
@@ -37,7 +39,7 @@ def test_integral_under_wrong_adaptation_exceeds_its_bound(make_problem, make_co
         return rates._replace(weights=tuple(0.0 for _ in rates.weights), bound=0.0)
 
     monkeypatch.setattr("wspd_design.certificates.proof_run.adaptation", wrong)
-    _, integral, _ = barbalat.check(make_problem(make_controller("afsmc"))).hypotheses
+    _, _, integral, _ = barbalat.check(make_problem(make_controller("afsmc"))).hypotheses
     assert integral.status is Status.REFUTED
 
 

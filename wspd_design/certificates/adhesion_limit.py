@@ -18,10 +18,10 @@
   Until any instant t1 this bounds the speed from below, and from then on adhesion does; the best t1 counts.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from wspd_design.certificates.balls import Ball, above, ball, below, point
 from wspd_design.model import adhesion, brake
@@ -31,16 +31,10 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-
 SPEEDS, CROWDING = 200, 1.25  # intervals of the speed, closer together at low speed
 INSTANTS = 120  # of the change from momentum to adhesion
 PEAK_TOLERANCE = 2e-4  # -, of an enclosed peak
-OVERSPEED = 1e-4  # s, slip that a wheel never exceeds forwards
+OVERSPEED = 1e-4  # -, slip that a wheel never exceeds forwards
 LEAST_SLIP, PARTS = 1e-6, 96  # first part of the slip, and parts above it
 
 
@@ -116,7 +110,7 @@ def peak(vehicle: Vehicle, rail: Rail, speed: float) -> float:
             hump = first / (1 + first * first)
         else:
             hump = point(0.5)
-        return 2 * friction / _pi() * (hump + (rail.slip_reduction * ends[1]).atan())
+        return 2 * friction / point(math.pi) * (hump + (rail.slip_reduction * ends[1]).atan())
 
     def curved(low: float, high: float) -> Ball:
         """Upper bound of f/Q on a part of the slip by its slope there."""
@@ -137,13 +131,6 @@ def peak(vehicle: Vehicle, rail: Rail, speed: float) -> float:
             middle = 0.5 * (low + high)
             waiting += [(low, middle), (middle, high)]
     return highest
-
-
-def _pi() -> Ball:
-    """Return the number that stands for pi in the kernels."""
-    import math
-
-    return point(math.pi)
 
 
 def _grid(initial_speed: float) -> tuple[float, ...]:
@@ -226,13 +213,10 @@ def _require(vehicle: Vehicle, rail: Rail, initial_speed: float) -> None:
         raise NoBound("the bound of the stop needs a resistance without negative parts")
     load = point(vehicle.mass) * constants().gravity / (2 * vehicle.wheelsets)
     stiffness = adhesion.contact_stiffness(vehicle.contact, load)
-    slip, speed = point(OVERSPEED), point(initial_speed)
+    slip, speed, radius = point(OVERSPEED), point(initial_speed), point(vehicle.wheel_radius)
     force = adhesion.creep_force(slip, slip * speed, load, rail, stiffness)
-    by_force = force * (
-        2 * vehicle.wheelsets / point(vehicle.mass)
-        + 2 * point(vehicle.wheel_radius) ** 2 / vehicle.wheelset_inertia
-    )
-    if not by_force >= (1 + slip) * resistance(vehicle, speed) / vehicle.mass:
+    per_force = 2 * vehicle.wheelsets / point(vehicle.mass) + 2 * radius**2 / vehicle.wheelset_inertia
+    if not force * per_force >= (1 + slip) * resistance(vehicle, speed) / vehicle.mass:
         raise NoBound(
             "the resistance could make a wheel outrun the train; the bound of the stop does not hold then"
         )

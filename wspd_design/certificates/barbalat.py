@@ -47,8 +47,8 @@ def check(problem: Problem) -> Certificate:
         status=Status.VACUOUS,
         explanation=f"The train has slowed down to {problem.speeds[0] * KMH:.3g} km/h after "
         f"{time[-1]:.3g} s: there is no t to infinity in a stop, and a limit says nothing about the error "
-        f"at its end. In its place stands the integral of abs(s_D), here {integral:.3g} s against a bound of "
-        f"{bound:.3g} s.",
+        f"at its end. {_in_sigma(law)} In its place stands the integral of abs(s_D), here {integral:.3g} s "
+        f"against a bound of {bound:.3g} s.",
         margin=Range(low=None, high=bound - integral, unit="s"),
         worst_point=(
             Point(name="end of the run", value=float(time[-1]), unit="s"),
@@ -58,6 +58,7 @@ def check(problem: Problem) -> Certificate:
         ),
         hypotheses=(
             Hypothesis(text="the run goes on for ever", status=Status.REFUTED),
+            _endless(law),
             Hypothesis(
                 text=f"the integral of abs(s_D) is at most {name}",
                 status=Status.EVIDENCE if within else Status.REFUTED,
@@ -77,6 +78,27 @@ def check(problem: Problem) -> Certificate:
             level(name, "time [s]", "integral [s]", time, bound),
         ),
     )
+
+
+def _endless(law: AdaptiveFuzzy | SlidingMode) -> Hypothesis:
+    """Whether the lemma can be saved in sigma = integral of dt/v, which has no end although the stop has one.
+
+    There v s_D^2/(2 g) becomes s_D^2/(2 g) and every rate is multiplied by v, so that constant adaptation rates
+    alpha would have to be alpha/v.
+    """
+    if isinstance(law, SlidingMode):
+        text = (
+            "in sigma = integral of dt/v, which has no end: nothing adapts, and reaching shows a finite sigma"
+        )
+        return Hypothesis(text=text, status=Status.NOT_APPLICABLE)
+    text = "in sigma = integral of dt/v, which has no end, the adaptation rates are alpha/v"
+    return Hypothesis(text=text, status=Status.REFUTED)
+
+
+def _in_sigma(law: AdaptiveFuzzy | SlidingMode) -> str:
+    if isinstance(law, SlidingMode):
+        return "In sigma = integral of dt/v no lemma is needed: the surface is reached at a finite sigma."
+    return "In sigma = integral of dt/v the lemma asks for adaptation rates alpha/v; those of this law are constant."
 
 
 def _adaptive(problem: Problem, law: AdaptiveFuzzy) -> tuple["Array", "Array", float, str]:

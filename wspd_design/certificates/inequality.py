@@ -12,15 +12,9 @@ LEAST = Fraction(1, 10**6)
 
 
 def positive(
-    name: str,
-    variables: tuple[Variable, ...],
-    expression: Expression,
-    form: Expression,
-    *,
-    unit: str,
-    tolerance: float,
-) -> Finding:
-    """Decide whether an expression is positive on a box, strictly.
+    name: str, variables: tuple[Variable, ...], expression: Expression, form: Expression, unit: str
+) -> Claim:
+    """Claim that an expression is positive on a box.
 
     Parameters
     ----------
@@ -34,15 +28,8 @@ def positive(
         The same function, arranged for intervals.
     unit : str
         Of the expression.
-    tolerance : float
-        Of the enclosure of the infimum, in that unit.
-
-    Returns
-    -------
-    Finding
-        PROVED with a bound above zero, REFUTED at a point, or UNDECIDED.
     """
-    claim = Claim(
+    return Claim(
         name=name,
         variables=variables,
         expression=expression,
@@ -51,6 +38,18 @@ def positive(
         bound=LEAST,
         unit=unit,
     )
+
+
+def decide(claim: Claim, *, tolerance: float) -> Finding:
+    """Settle a claim of :func:`positive`; a value between zero and its bound refutes nothing.
+
+    Parameters
+    ----------
+    claim : Claim
+        From :func:`positive`.
+    tolerance : float
+        Of the enclosure of the infimum, in the unit of the claim.
+    """
     found = settle(claim, tolerance=tolerance)
     highest = found.extreme.high
     assert highest is not None

@@ -9,7 +9,6 @@ the characteristic polynomial
 For the sliding mode on its own design model this is tau q^3 + (1 - p tau) q^2 + (c + k) q + k c.
 """
 
-from dataclasses import replace
 from typing import NamedTuple, TypeAlias
 
 from wspd_design.certificates.balls import above, below, point
@@ -87,7 +86,7 @@ def feedback(
     )
 
 
-def nominal(vehicle: Vehicle, rail: Rail, slip: float, speed: Number) -> Plant:
+def nominal(vehicle: Vehicle, rail: Rail, slip: Number, speed: Number) -> Plant:
     """Pole and gain of a vehicle on a rail, from the kernels."""
     dynamics = slip_dynamics(vehicle, rail, slip, speed)
     return Plant(pole=dynamics.pole, gain=dynamics.gain)
@@ -145,17 +144,18 @@ def loop_at(
 
     ``arranged`` gives the same functions in the form that is tight on intervals.
     """
-    speed, inertia, radius = values["speed"], values["wheelset inertia"], values["wheel_radius"]
+    speed, slip = values["speed"], values["slip"]
     if arranged:
-        plant = Plant(pole=plant_forces(problem, values).pole, gain=slip_gain(speed, inertia / 2.0, radius))
+        gain = slip_gain(speed, values["wheelset inertia"] / 2.0, values["wheel_radius"])
+        plant = Plant(pole=plant_forces(problem, values).pole, gain=gain)
     else:
         dynamics = plant_dynamics(problem, values)
         plant = Plant(pole=dynamics.pole, gain=dynamics.gain)
     if not isinstance(law, SlidingMode):
         return plant, feedback(law, speed, slope=values.get("du/ds"))
     vehicle, rail = records_of(values, law.vehicle, law.rail, "model ")
-    model = None
+    model = nominal(vehicle, rail, slip, speed)
     if arranged:
         gain = slip_gain(speed, vehicle.wheel_inertia, vehicle.wheel_radius)
-        model = Plant(pole=forces(vehicle, rail, values["slip"], speed).pole, gain=gain)
-    return plant, feedback(replace(law, vehicle=vehicle, rail=rail), speed, model=model)
+        model = Plant(pole=forces(vehicle, rail, slip, speed).pole, gain=gain)
+    return plant, feedback(law, speed, model=model)

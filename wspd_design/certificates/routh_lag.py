@@ -1,14 +1,13 @@
 """Inside the boundary layer the valve lag must leave the loop stable: Routh's conditions at every speed."""
 
 import math
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates import domain, laws
+from wspd_design.certificates import domain, findings, laws
 from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.inequality import positive
+from wspd_design.certificates.inequality import decide, positive
 from wspd_design.certificates.linear_loop import (
     Cubic,
     LinearLaw,
@@ -20,8 +19,9 @@ from wspd_design.certificates.linear_loop import (
     variables,
 )
 from wspd_design.certificates.plant import Values, place
+from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.engine import Finding, engine
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Series, Status
+from wspd_design.certificates.records import Certificate, Point, Problem, Series, Status
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
@@ -40,14 +40,6 @@ DETERMINANTS = {
 HIGHEST_GAIN = 3.0  # of the plotted border, in multiples of the gains of the law
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Condition:
-    """One of Routh's conditions: in words, and what must be positive."""
-
-    text: str
-    finding: Finding
-
-
 @certified(name=NAME, title=TITLE)
 def check(problem: Problem) -> Certificate:
     """Decide Routh's conditions for all speeds and parameters of the domain.
@@ -62,9 +54,9 @@ def check(problem: Problem) -> Certificate:
         return laws.no_surface(problem, NAME, "The loop near its reference is stable with the valve lag.")
     domain.box(problem)
     lag = lag_of(problem)
-    found = _conditions(problem, law)
+    found = [decide(claim, tolerance=TOLERANCE) for claim in claims(problem, law)]
     worst = min(found, key=_rank)
-    status, at = worst.finding.status, worst.finding.place
+    status, at = worst.status, worst.place
     speed = at["speed"]
     plant, gains = loop_at(problem, law, at)
     where = (
@@ -81,12 +73,12 @@ def check(problem: Problem) -> Certificate:
         title=TITLE,
         claim=f"With the valve lag tau = {lag:g} s the loop near slip {problem.slip:g} is stable at every speed "
         f"from {low:.3g} to {high:.3g} km/h and for all masses, inertias and frictions of the domain: "
-        f"{'; '.join(each.text for each in found)}.",
+        f"{'; '.join(each.claim.name for each in found)}.",
         status=status,
         explanation={
             Status.PROVED: f"Tightest {spot}; a lag of up to {tolerable:.3g} s would do there. Small deviations "
             "of the slip die out despite the lag.",
-            Status.REFUTED: f"Violated {spot}: {worst.text}. "
+            Status.REFUTED: f"Violated {spot}: {worst.claim.name}. "
             + (
                 f"A lag of at most {tolerable:.3g} s would do there. "
                 if tolerable > 0.0
@@ -94,12 +86,12 @@ def check(problem: Problem) -> Certificate:
             )
             + f"With the nominal parameters the loop is unstable at {unstable} of {PLOT_SPEEDS} speeds. The slip "
             "cannot settle inside the layer and swings through it.",
-            Status.UNDECIDED: f"Open {spot}: {worst.text}; {worst.finding.reason}.",
+            Status.UNDECIDED: f"Open {spot}: {worst.claim.name}; {worst.reason}.",
         }[status],
-        margin=worst.finding.extreme,
+        margin=worst.extreme,
         worst_point=where,
         witness=where if status is Status.REFUTED else (),
-        hypotheses=tuple(Hypothesis(text=each.text, status=each.finding.status) for each in found),
+        hypotheses=tuple(findings.hypothesis(each.claim.name, each) for each in found),
         assumptions=(
             "frozen train speed",
             "averaged valve with the slower of its two time constants",
@@ -108,17 +100,17 @@ def check(problem: Problem) -> Certificate:
         ),
         method="Routh's conditions of the linearized loop by interval branch and bound; proofs are replayed by "
         "the independent checker, a witness is evaluated in exact balls",
-        resolution="; ".join(f"{each.text}: {each.finding.boxes} boxes" for each in found),
+        resolution="; ".join(f"{each.claim.name}: {each.boxes} boxes" for each in found),
         reference="eqs. (14), (23); findings, section 2, Routh with lag",
-        undecided=worst.finding.undecided,
+        undecided=worst.undecided,
         engine=engine(),
-        proofs=tuple(each.finding.proof for each in found if each.finding.proof is not None),
+        proofs=findings.proofs(*found),
         series=curves,
     )
 
 
-def _conditions(problem: Problem, law: LinearLaw) -> tuple[Condition, ...]:
-    """Examine what must be positive, each in multiples of what it would be without slip pole and lag."""
+def claims(problem: Problem, law: LinearLaw) -> tuple[Claim, ...]:
+    """Return what must be positive, each in multiples of what it would be without slip pole and lag."""
     lag, quantities = lag_of(problem), variables(problem, law)
     most = feedback(law, problem.speeds[1]).integral
 
@@ -149,16 +141,8 @@ def _conditions(problem: Problem, law: LinearLaw) -> tuple[Condition, ...]:
         else (("I > 0", integral), ("p tau < 1", second), (DETERMINANTS[type(law)], determinant))
     )
     return tuple(
-        Condition(
-            text=text,
-            finding=positive(
-                text,
-                quantities,
-                partial(expression, arranged=False),
-                partial(expression, arranged=True),
-                unit="-",
-                tolerance=TOLERANCE,
-            ),
+        positive(
+            text, quantities, partial(expression, arranged=False), partial(expression, arranged=True), "-"
         )
         for text, expression in conditions
     )
@@ -169,12 +153,12 @@ def _frozen(law: LinearLaw) -> tuple[str, ...]:
     return ("weights and bound frozen at their initial values",) if isinstance(law, AdaptiveFuzzy) else ()
 
 
-def _rank(condition: Condition) -> tuple[int, bool, float]:
+def _rank(finding: Finding) -> tuple[int, bool, float]:
     """Order from the worst condition to the best; that on the sign of a gain has no margin of interest."""
     order = (Status.REFUTED, Status.UNDECIDED, Status.PROVED)
-    margin = condition.finding.extreme.high
+    margin = finding.extreme.high
     assert margin is not None
-    return order.index(condition.finding.status), condition.text.endswith("> 0"), margin
+    return order.index(finding.status), finding.claim.name.endswith("> 0"), margin
 
 
 def _tolerable_lag(pole: float, found: Cubic, torque_gain: float) -> float:

@@ -1,5 +1,7 @@
 """No controller stops shorter than this, and how near to it the simulated stop comes."""
 
+import math
+
 from wspd_design.certificates import domain
 from wspd_design.certificates.adhesion_limit import INSTANTS, SPEEDS, Limit, NoBound, stop_limit
 from wspd_design.certificates.checking import OutsideModel, certified, level, series
@@ -44,7 +46,7 @@ def check(problem: Problem) -> Certificate:
         name=NAME,
         title=TITLE,
         claim=f"No controller of this vehicle stops from {start * KMH:.3g} km/h on {problem.rail.name} within less "
-        f"than {limit.distance:.4g} m or {limit.time:.4g} s.",
+        f"than {_down(limit.distance)} m or {_down(limit.time)} s.",
         status=Status.PROVED if holds else Status.REFUTED,
         explanation=(
             f"Adhesion alone asks for {limit.adhesion_distance:.4g} m; until {limit.handover:.3g} s the filling "
@@ -55,7 +57,7 @@ def check(problem: Problem) -> Certificate:
             else f"A simulated stop is shorter than the bound: {distance:.4g} m and {time:.4g} s, ideally "
             f"{ideal.distance:.4g} m. Bound and simulation speak about different plants."
         ),
-        margin=Range(low=min(room, 0.0) if not holds else room, high=room, unit="m"),
+        margin=Range(low=room, high=room, unit="m"),
         worst_point=where,
         witness=() if holds else where,
         hypotheses=(
@@ -73,6 +75,11 @@ def check(problem: Problem) -> Certificate:
         engine=engine(),
         series=_plots(problem, limit, run),
     )
+
+
+def _down(bound: float) -> str:
+    """Write a lower bound so that what stands there is still one."""
+    return f"{math.floor(100.0 * bound) / 100.0:.2f}"
 
 
 def _seen(holds: bool) -> Status:
