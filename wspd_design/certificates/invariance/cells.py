@@ -95,3 +95,24 @@ def inside(members: "Mask", boxes: CellBoxes) -> "Mask":
     found = counts[i1, j1] - counts[i0, j1] - counts[i1, j0] + counts[i0, j0]
     contained: Mask = boxes.within & (found == (i1 - i0) * (j1 - j0))
     return contained
+
+
+def largest_kept(members: "Mask", boxes: CellBoxes, free: "Mask") -> "Mask":
+    """Remove cells with an image that leaves the set, until nothing changes.
+
+    Parameters
+    ----------
+    members : array of bool
+        The set to begin with.
+    boxes : CellBoxes
+        Image of each cell, row by row.
+    free : array of bool
+        Cells that hold no state, so that none can leave; flat.
+    """
+    import numpy as np
+
+    while True:
+        kept: Mask = members & (inside(members, boxes) | free).reshape(members.shape)
+        if np.array_equal(kept, members):
+            return kept
+        members = kept

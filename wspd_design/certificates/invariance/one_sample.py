@@ -53,7 +53,7 @@ class Window:
     tilt: float  # share of T_max per slip
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Images:
     """Bounds for each cell of where it is one sample later, and of the slip in between; infinite if unknown."""
 
@@ -113,14 +113,11 @@ def images(problem: Problem, window: Window, slip: Interval, level: Interval, *,
     rise = (torque_after(brakes, sample, torque.inf, fill.sup, vent.inf) - torque.inf).sup
     fall = (torque_after(brakes, sample, torque.sup, fill.inf, vent.sup) - torque.sup).inf
     moved = level + ival.Interval(fall, rise) / brakes.max_torque + window.tilt * change
-    return Images(
-        slip_low=np.where(known, low, -np.inf),
-        slip_high=np.where(known, high, np.inf),
-        level_low=moved.inf,
-        level_high=moved.sup,
-        between_low=between_low,
-        between_high=between_high,
-    )
+
+    def bounds(low: "Array", high: "Array") -> tuple["Array", "Array"]:
+        return np.where(known, low, -np.inf), np.where(known, high, np.inf)
+
+    return Images(*bounds(low, high), *bounds(moved.inf, moved.sup), *bounds(between_low, between_high))
 
 
 def commands(problem: Problem, window: Window, slip: Interval, level: Interval) -> tuple[Interval, Interval]:

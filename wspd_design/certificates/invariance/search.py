@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.invariance.cells import CellSet, inside, touched
+from wspd_design.certificates.invariance.cells import CellSet, inside, largest_kept, touched
 from wspd_design.certificates.invariance.one_sample import Images, Window, images, largest_deceleration
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.protocol import Measurement
@@ -145,7 +145,7 @@ def start_region(problem: Problem, window: Window, per_unit: int) -> CellSet:
 
 
 def largest(problem: Problem, start: CellSet, slower: Found | None) -> Found | None:
-    """Remove cells with an image that leaves, until nothing changes.
+    """Find the largest invariant set in a region, or none at the reference slip.
 
     Parameters
     ----------
@@ -156,8 +156,6 @@ def largest(problem: Problem, start: CellSet, slower: Found | None) -> Found | N
     slower : Found, optional
         Set of the next slower window, in which images must lie too.
     """
-    import numpy as np
-
     window = start.window
     steps = steps_of(problem, window)
     slip, level = start.edges()
@@ -170,12 +168,7 @@ def largest(problem: Problem, start: CellSet, slower: Found | None) -> Found | N
         turned = in_window(problem, image, window, slower.cells.window)
         stays = inside(slower.cells.members, touched(slower.cells, turned)) | free
         members = members & stays.reshape(shape)
-    boxes = touched(start, image)
-    while True:
-        kept = members & (inside(members, boxes) | free).reshape(shape)
-        if np.array_equal(kept, members):
-            break
-        members = kept
+    members = largest_kept(members, touched(start, image), free)
     found = Found(
         reference=problem.slip,
         cells=replace(start, members=members),

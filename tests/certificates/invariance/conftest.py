@@ -1,0 +1,24 @@
+"""Sets of the torque feedback on a small box, found once."""
+
+import math
+
+import pytest
+
+from tests.certificates.invariance.loops import feedback_problem
+from wspd_design.certificates.invariance import document
+from wspd_design.certificates.invariance.search import search
+
+
+@pytest.fixture(scope="session")
+def problem():
+    return feedback_problem()
+
+
+@pytest.fixture(scope="session")
+def found(problem):
+    return search(problem, deadline=math.inf)
+
+
+@pytest.fixture(scope="session")
+def text(problem, found):
+    return document.write(problem, found)
