@@ -19,33 +19,34 @@ def test_the_installed_functions_are_proved(problem):
     assert "14" in found.explanation
 
 
+def printed_filling(t, t0, start, full, _rate, tau):
+    """Eq. (10) with a supply that is there at once."""
+    return start + (full - start) * (1 - brake.exp(-(t - t0) / tau))
+
+
+def energy_without_speed(s, v, g, *rest, true=adaptive_fuzzy.lyapunov_repaired):
+    return true(s, v / v, g, *rest)
+
+
+def drift_without_slip(slip_ratio, *rest, true=slip.slip_drift):
+    return true(0 * slip_ratio, *rest)
+
+
 FAULTS = {
-    "sign of the torque": (slip, "slip_gain", lambda true: lambda *a: -true(*a)),
-    "number of wheels": (motion, "train_acceleration", lambda true: lambda f, f_d, m: (-f_d - 4 * f) / m),
-    "drift without the train": (slip, "slip_drift", lambda true: lambda lam, *a: true(0 * lam, *a)),
-    "lag": (brake, "torque_rate", lambda true: lambda torque, u, most, tau: true(torque, u, most, 2 * tau)),
-    "printed filling": (
-        brake,
-        "filled_pressure",
-        lambda true: lambda t, t0, p0, full, r, tau: p0 + (full - p0) * (1 - brake.exp(-(t - t0) / tau)),
-    ),
-    "equivalent torque": (
-        sliding_surface,
-        "equivalent_torque",
-        lambda true: lambda f, g, d, e, c: (f + d + c * e) / g,
-    ),
-    "energy without the speed": (
-        adaptive_fuzzy,
-        "lyapunov_repaired",
-        lambda true: lambda s, v, g, *a: true(s, v / v, g, *a),
-    ),
+    "sign of the torque": (slip, "slip_gain", lambda v, i, r, true=slip.slip_gain: -true(v, i, r)),
+    "number of wheels": (motion, "train_acceleration", lambda f, f_d, m: (-f_d - 4 * f) / m),
+    "drift without the slip": (slip, "slip_drift", drift_without_slip),
+    "lag": (brake, "torque_rate", lambda t, u, most, tau, true=brake.torque_rate: true(t, u, most, 2 * tau)),
+    "printed filling": (brake, "filled_pressure", printed_filling),
+    "equivalent torque": (sliding_surface, "equivalent_torque", lambda f, g, d, e, c: (f + d + c * e) / g),
+    "energy without the speed": (adaptive_fuzzy, "lyapunov_repaired", energy_without_speed),
 }
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_wrong_function_is_refuted(problem, monkeypatch, fault):
     module, name, wrong = FAULTS[fault]
-    monkeypatch.setattr(module, name, wrong(getattr(module, name)))
+    monkeypatch.setattr(module, name, wrong)
     found = derivation.check(problem)
     assert found.status is Status.REFUTED
     assert sum(h.status is Status.REFUTED for h in found.hypotheses) >= 1
