@@ -70,10 +70,19 @@ def test_a_refuted_check_says_so_and_keeps_what_is_proved(wspd, smc_text, tmp_pa
     assert "no proof of (abs(r) + eta)/rho <= 1" in checked.out
 
 
+def test_a_named_controller_is_certified_and_checked_by_its_name(wspd, tmp_path):
+    done = wspd("certify", "afsmc", "--rail", "polach-dry", "--only", "well_posed")
+    assert done.code == 0, done.err
+    assert "--design afsmc --rail polach-dry" in " ".join(done.out.split())
+    kept = tmp_path / "afsmc.certificates" / "well_posed.json"
+    assert wspd("check", kept, "--design", "afsmc", "--rail", "polach-dry").code == 0
+    assert wspd("check", kept, "--design", "afsmc").code == 1  # made for another rail
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (("afsmc",), "certify needs a design file"),
+        (("afsmcc",), "afsmc"),
         (("missing.toml",), "missing.toml"),
         (("smc.toml", "--only", "raeching"), 'did you mean "reaching"'),
         (("smc.toml", "-o", "no/such/folder"), "does not exist"),

@@ -1,27 +1,55 @@
-"""The checker alone: rebuilds the claims of a check from the design and decides about the proofs of a file.
+"""Decides about a certificate file: rebuilds what its check has to show from the design, and asks the checkers.
 
-It needs neither the prover nor CasADi. What a check has to show stands in ``OBLIGATIONS``.
+Only where a check chooses a part of the domain by a search is the prover needed, to search it again. What a check has
+to show stands in ``OBLIGATIONS``.
 """
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
-from wspd_design.certificates import no_go, open_loop_pole, quadratic, reaching, sliding_exists, well_posed
+from wspd_design.certificates import (
+    afsmc_energy,
+    laws,
+    no_go,
+    open_loop_pole,
+    quadratic,
+    reaching,
+    routh_lag,
+    sliding_exists,
+    well_posed,
+)
 from wspd_design.certificates.certificate_file import read_certificate
-from wspd_design.certificates.laws import SlipLaw
+from wspd_design.certificates.invariance import checker as invariance
+from wspd_design.certificates.invariance.runs import FORMAT
+from wspd_design.certificates.linear_loop import LinearLaw
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.balls import Refused
-from wspd_design.certificates.proof.checker import Verdict
 from wspd_design.certificates.proof.claim import Claim, number
 from wspd_design.certificates.records import Problem, Status
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
-from wspd_design.controllers.torque_feedback import TorqueFeedback
 
 Content: TypeAlias = Mapping[str, Any]
+
+
+class Answer(Protocol):
+    """What a checker says about a proof."""
+
+    @property
+    def accepted(self) -> bool:
+        """Whether it is one."""
+
+    @property
+    def reason(self) -> str:
+        """Why."""
+
+    @property
+    def leaves(self) -> int:
+        """How many boxes it decided."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +63,7 @@ class Obligation:
     text: str
     needed: bool  # for the check to be proved; what is not needed encloses a number
     concerns: Callable[[Content], bool]  # whether a proof is about this
-    check: Callable[[str], Verdict]
+    check: Callable[[str], Answer]
     meets: Callable[[Content], bool]  # whether an accepted proof shows enough
     shows: Callable[[Content], str]  # what an accepted proof shows, in words
 
@@ -73,12 +101,12 @@ def replay(problem: Problem, text: str) -> Replayed:
         wanted = obligations(name, problem)
         done: set[str] = set()
         for proof in stated.proofs:
-            met, verdict = _decide(name, wanted, proof)
+            met, answer = _decide(name, wanted, proof)
             content = json.loads(proof)
             if met.meets(content):
                 done.add(met.text)
             shown.append(met.shows(content))
-            leaves += verdict.leaves
+            leaves += answer.leaves
         missing = [each.text for each in wanted if each.needed and each.text not in done]
         if missing and stated.status is Status.PROVED:
             raise Refused(f"no proof of {'; '.join(missing)}")
@@ -96,16 +124,16 @@ def replay(problem: Problem, text: str) -> Replayed:
     )
 
 
-def _decide(name: str, wanted: tuple[Obligation, ...], proof: str) -> tuple[Obligation, Verdict]:
+def _decide(name: str, wanted: tuple[Obligation, ...], proof: str) -> tuple[Obligation, Answer]:
     """Find what a proof shows, or refuse it."""
     content = json.loads(proof)
     concerned = [each for each in wanted if isinstance(content, dict) and each.concerns(content)]
     reason = f"a proof shows nothing that {name} needs"
     for each in concerned:
-        verdict = each.check(proof)
-        if verdict.accepted:
-            return each, verdict
-        reason = f"{each.text}: {verdict.reason}"
+        answer = each.check(proof)
+        if answer.accepted:
+            return each, answer
+        reason = f"{each.text}: {answer.reason}"
     raise Refused(reason)
 
 
@@ -156,10 +184,32 @@ def _statement(claim: Claim) -> str:
     return f"{claim.name} {claim.relation} {float(claim.bound):.6g} {claim.unit}".removesuffix(" -")
 
 
+def _all(claims: Iterable[Claim]) -> tuple[Obligation, ...]:
+    return tuple(_inequality(claim) for claim in claims)
+
+
+def _whole(text: str, form: str, check: Callable[[str], Answer]) -> tuple[Obligation, ...]:
+    """A theorem with a checker of its own, whose proof names its form."""
+    return (
+        Obligation(
+            text=text,
+            needed=True,
+            concerns=lambda content: content.get("format") == form,
+            check=check,
+            meets=lambda _content: True,
+            shows=lambda _content: text,
+        ),
+    )
+
+
+def _strange(problem: Problem, name: str) -> Refused:
+    return Refused(f"{name} does not speak about the law of {problem.controller.name}")
+
+
 def _reaching(problem: Problem) -> tuple[Obligation, ...]:
     if not isinstance(problem.controller, SlidingMode):
-        raise Refused("the design has no switching gain, so that reaching does not speak about it")
-    return tuple(_inequality(claim) for claim in reaching.claims(problem, problem.controller))
+        raise _strange(problem, "reaching")
+    return _all(reaching.claims(problem, problem.controller))
 
 
 def _open_loop_pole(problem: Problem) -> tuple[Obligation, ...]:
@@ -168,10 +218,6 @@ def _open_loop_pole(problem: Problem) -> tuple[Obligation, ...]:
         _inequality(open_loop_pole.pole_claim(problem, "<=", limit)),
         _inequality(open_loop_pole.pole_claim(problem, ">=", limit), needed=False),
     )
-
-
-def _well_posed(problem: Problem) -> tuple[Obligation, ...]:
-    return tuple(_inequality(claim) for claim in well_posed.claims(problem))
 
 
 def _no_go(problem: Problem) -> tuple[Obligation, ...]:
@@ -185,8 +231,8 @@ def _no_go(problem: Problem) -> tuple[Obligation, ...]:
 
 def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
     law = problem.controller
-    if not isinstance(law, SlipLaw):
-        raise Refused("the design has no sliding surface, so that sliding_exists does not speak about it")
+    if not isinstance(law, laws.SlipLaw):
+        raise _strange(problem, "sliding_exists")
     limit = problem.vehicle.brake.max_torque
     enough = sliding_exists.torque_claim(problem, law, "<=", limit)
 
@@ -205,28 +251,37 @@ def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
     )
 
 
+def _afsmc_energy(problem: Problem) -> tuple[Obligation, ...]:
+    if not isinstance(problem.controller, AdaptiveFuzzy):
+        raise _strange(problem, "afsmc_energy")
+    return _all(afsmc_energy.claims(problem, problem.controller))
+
+
+def _routh_lag(problem: Problem) -> tuple[Obligation, ...]:
+    if not isinstance(problem.controller, LinearLaw):
+        raise _strange(problem, "routh_lag")
+    return _all(routh_lag.claims(problem, problem.controller))
+
+
 def _lpv_lyapunov(problem: Problem) -> tuple[Obligation, ...]:
-    if not isinstance(problem.controller, TorqueFeedback):
-        raise Refused("the design feeds back no torque, so that lpv_lyapunov does not speak about it")
     text = "one quadratic function falls along the continuous and the sampled loop"
-    return (
-        Obligation(
-            text=text,
-            needed=True,
-            concerns=lambda content: content.get("format") == quadratic.FORMAT,
-            check=lambda proof: quadratic.check_quadratic(proof, problem),
-            meets=lambda _content: True,
-            shows=lambda _content: text,
-        ),
-    )
+    return _whole(text, quadratic.FORMAT, lambda proof: quadratic.check_quadratic(proof, problem))
+
+
+def _sampled_invariance(problem: Problem) -> tuple[Obligation, ...]:
+    text = "one sample maps the sets of slip and torque into themselves at all speeds"
+    return _whole(text, FORMAT, lambda proof: invariance.check(problem, proof))
 
 
 OBLIGATIONS: Mapping[str, Callable[[Problem], tuple[Obligation, ...]]] = {
-    "well_posed": _well_posed,
+    "well_posed": lambda problem: _all(well_posed.claims(problem)),
     "sliding_exists": _sliding_exists,
     "reaching": _reaching,
     "boundary_layer": _reaching,  # it rests on the same inequalities
-    "no_go": _no_go,
+    "afsmc_energy": _afsmc_energy,
     "open_loop_pole": _open_loop_pole,
+    "no_go": _no_go,
+    "routh_lag": _routh_lag,
     "lpv_lyapunov": _lpv_lyapunov,
+    "sampled_invariance": _sampled_invariance,
 }

@@ -1,5 +1,6 @@
 """``wspd certify``: the checks of a design, with every proof kept as a file that can be checked again."""
 
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +14,7 @@ from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, resolve
 from wspd_design.cli.console import console, spaced, table
 from wspd_design.cli.output import check_folder, write_text
+from wspd_design.cli.own_controller import is_own_controller
 from wspd_design.cli.verification import (
     exit_code,
     margin_text,
@@ -30,7 +32,14 @@ FOLDER = ".certificates"
 
 
 def certify(
-    design: Annotated[str, typer.Argument(metavar="DESIGN", help="A design file.", show_default=False)],
+    design: Annotated[
+        str,
+        typer.Argument(
+            metavar="DESIGN",
+            help="A design file; also a controller's name or FILE.py:NAME, as wspd verify takes them.",
+            show_default=False,
+        ),
+    ],
     vehicle: options.VehicleOption = None,
     rail: options.RailOption = None,
     only: options.OnlyOption = None,
@@ -51,13 +60,8 @@ def certify(
     Each check with proofs becomes one JSON file, which wspd check decides about without the program that found it.
     Exit code 1 when a claim is refuted, else 3 when one is undecided, else 0.
     """
-    if not is_design_file(design):
-        raise UserError(
-            f'certify needs a design file, because proofs are checked against it, not "{design}"; make one with '
-            "wspd design -o, or use wspd verify"
-        )
     case = resolve(design, Wishes(vehicle=vehicle, rail=rail))
-    folder = output if output is not None else Path(design).with_suffix(FOLDER)
+    folder = output if output is not None else _beside(design)
     check_folder(folder, force=force)
     problem = problem_of(case)
     certificates = run_checks(problem, only)
@@ -69,10 +73,24 @@ def certify(
         console().print(
             Text(f"\nWritten: {folder}/NAME.json for each of the {len(sizes)} checks with proofs")
         )
-        console().print(Text(f"Check them: wspd check {folder}/*.json"))
+        console().print(
+            Text(f"Check them: wspd check {folder}/*.json{_as_given(design, folder, vehicle, rail)}")
+        )
     else:
         console().print("\nNo check has a proof to keep.")
     raise typer.Exit(exit_code(certificates))
+
+
+def _beside(design: str) -> Path:
+    """Return the folder for the proofs about a design, beside its file if it has one."""
+    return Path(design.rpartition(":")[0] if is_own_controller(design) else design).with_suffix(FOLDER)
+
+
+def _as_given(design: str, folder: Path, vehicle: str | None, rail: str | None) -> str:
+    """Return the options that the checker needs to find the same design."""
+    found = is_design_file(design) and Path(design) == folder.with_suffix(".toml")
+    given = (("--design", None if found else design), ("--vehicle", vehicle), ("--rail", rail))
+    return "".join(f" {option} {shlex.quote(value)}" for option, value in given if value is not None)
 
 
 def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) -> dict[str, int]:

@@ -25,8 +25,8 @@ def check(
         str | None,
         typer.Option(
             "--design",
-            metavar="FILE",
-            help=f"The design. Default: NAME.toml beside the folder NAME{FOLDER} of the certificate.",
+            metavar="DESIGN",
+            help=f"What wspd certify was given. Default: NAME.toml beside the folder NAME{FOLDER} of the certificate.",
             show_default=False,
         ),
     ] = None,
