@@ -1,0 +1,120 @@
+"""The verdict: what is proved, what is left open and why, and what it does not speak about."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from tests.certificates.invariance.loops import feedback_problem
+from wspd_design.certificates.invariance import certificate
+from wspd_design.certificates.invariance.checker import Verdict, check
+from wspd_design.certificates.records import Status
+from wspd_design.controllers.protocol import Command
+from wspd_design.model.number import where
+
+
+@pytest.fixture(scope="module")
+def proved(problem):
+    return certificate.check(problem)
+
+
+def test_a_proved_range(problem, proved):
+    assert proved.status is Status.PROVED
+    assert proved.name == certificate.NAME
+    assert proved.undecided == 0.0
+    assert 0.0 < proved.margin.low < proved.margin.high == 1.0 - problem.slip
+    (proof,) = proved.proofs
+    assert json.loads(proof.certificate)["claim_sha256"] == proof.claim_hash == proved.model_hash
+    again = check(problem, proof.certificate)
+    assert again.accepted
+    assert proved.margin.low == 1.0 - again.slips[1]
+    assert f"{again.slips[1]:.3f}" in proved.claim
+    assert any("full supply pressure" in each for each in proved.assumptions)
+
+
+def test_outlines_are_closed_and_physical(problem, proved):
+    assert 1 <= len(proved.series) <= certificate.OUTLINES
+    for series in proved.series:
+        assert (series.x[0], series.y[0]) == (series.x[-1], series.y[-1])
+        assert 0.0 < min(series.x) < problem.slip < max(series.x) < 1.0
+        assert 0.0 <= min(series.y) <= max(series.y) <= problem.vehicle.brake.max_torque / 1e3
+
+
+def test_without_the_checker_it_is_evidence(problem, monkeypatch):
+    def no(_problem, _text):
+        return Verdict(accepted=False, reason="for the test", leaves=0, seconds=0.0)
+
+    monkeypatch.setattr(certificate.checker, "check", no)
+    found = certificate.check(problem)
+    assert found.status is Status.EVIDENCE
+    assert not found.proofs
+    assert "does not accept" in found.explanation
+
+
+def test_a_wide_box_is_left_open_with_the_windows_and_the_reason():
+    found = certificate.check(feedback_problem(spread=0.2, speeds=(24.0, 26.0)))
+    assert found.status is Status.UNDECIDED
+    assert found.undecided == 1.0
+    assert "No set is found at 86.4 to 93.6 km/h" in found.explanation
+    assert "% of the full one over the box" in found.explanation
+    assert "With nominal parameters the checker accepts" in found.explanation
+    assert not found.proofs
+    assert not found.series
+
+
+def test_some_windows_of_a_range():
+    # At 100 ms the slowest windows fail, the others have sets.
+    problem = feedback_problem(spread=0.0, speeds=(3.0, 6.5), sliding_gain=0.64)
+    gains = replace(problem.controller.gains, torque_gain=7.0)
+    problem = replace(
+        problem, sample_time=0.1, controller=replace(problem.controller, sample_time=0.1, gains=gains)
+    )
+    found = certificate.check(problem)
+    assert found.status is Status.UNDECIDED
+    assert 0.1 < found.undecided < 0.9
+    assert "No set is found at 10.8 to" in found.explanation
+    assert "nominal parameters already" in found.explanation
+    assert found.series
+
+
+def test_time_that_runs_out_is_said(problem, monkeypatch):
+    monkeypatch.setattr(certificate, "SEARCH_SECONDS", 0.0)
+    found = certificate.check(problem)
+    assert found.status is Status.UNDECIDED
+    assert found.undecided == pytest.approx(1.0)
+    assert "The time ran out before 82.8 to 93.6 km/h" in found.explanation
+
+
+def test_wheels_that_lock_have_no_set(problem, make_controller):
+    found = certificate.check(
+        replace(problem, controller=replace(make_controller("none", "polach-wet"), sample_time=0.02))
+    )
+    assert found.status is Status.UNDECIDED
+    assert found.undecided == 1.0
+
+
+@pytest.mark.parametrize("name", ["smc", "afsmc", "trenitalia", "knorr-bremse", "mitsubishi"])
+def test_laws_with_memory_are_none_of_its_business(problem, make_controller, name):
+    controller = make_controller(name, "polach-wet", sample_time=0.02)
+    found = certificate.check(replace(problem, controller=controller))
+    assert found.status is Status.NOT_APPLICABLE
+    assert "remembers" in found.explanation
+
+
+class Unsmooth:
+    """A law that asks which of two numbers is larger, which intervals cannot tell."""
+
+    name, sample_time = "unsmooth", 0.02
+
+    def start(self, _measurement):
+        return ()
+
+    def step(self, state, measurement):
+        duty = where(measurement.torque > 2e4, 0.0, 1.0)
+        return state, Command(fill=duty, vent=1.0 - duty)
+
+
+def test_a_law_that_intervals_cannot_follow_is_left_open(problem):
+    found = certificate.check(replace(problem, controller=Unsmooth()))
+    assert found.status is Status.UNDECIDED
+    assert "cannot be evaluated on intervals" in found.claim

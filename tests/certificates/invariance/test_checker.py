@@ -1,0 +1,268 @@
+"""What the checker accepts and what it must refuse: false sets, other claims, garbage, wrong searches."""
+
+import json
+import math
+from dataclasses import replace
+
+import flint
+import numpy as np
+import pytest
+
+from tests.certificates.invariance.loops import drawn, feedback_problem
+from wspd_design.certificates.checking import model_hash
+from wspd_design.certificates.invariance import document, one_sample, search
+from wspd_design.certificates.invariance.ball_plant import BallPlant
+from wspd_design.certificates.invariance.ball_slopes import law_slopes
+from wspd_design.certificates.invariance.checker import check
+from wspd_design.model.number import atan, clip, exp
+from wspd_design.model.slip import slip_dynamics
+
+
+def changed(text, change, problem=None):
+    """The certificate after a change of its content, for the claim of a problem."""
+    content = json.loads(text)
+    if problem is not None:
+        content["claim_sha256"] = model_hash(problem)
+    change(content)
+    return json.dumps(content)
+
+
+def refused(problem, text):
+    verdict = check(problem, text)
+    assert not verdict.accepted
+    assert all(math.isnan(bound) for bound in verdict.slips)
+    return verdict.reason
+
+
+def test_true_sets_are_accepted(problem, text, found):
+    verdict = check(problem, text)
+    assert verdict.accepted, verdict.reason
+    low, high = verdict.slips
+    cells = json.loads(text)["windows"][0]["columns"]
+    assert low <= min(map(int, cells)) / 128 < 0.14 < (max(map(int, cells)) + 1) / 128 <= high < 0.5
+    assert len(text) < 20_000
+    assert len(found) == len(json.loads(text)["windows"]) == 3
+
+
+def test_other_claims_are_refused(problem, text):
+    for other in (
+        replace(problem, mu0_bounds=(0.9 * problem.mu0_bounds[0], problem.mu0_bounds[1])),
+        replace(problem, mass_bounds=(problem.mass_bounds[0], 1.2 * problem.mass_bounds[1])),
+        replace(problem, inertia_bounds=(0.3 * problem.inertia_bounds[0], problem.inertia_bounds[1])),
+        replace(problem, sample_time=0.2),
+        feedback_problem(sliding_gain=0.2),
+        feedback_problem(rail="polach-dry"),
+    ):
+        assert "another model" in refused(other, text)
+        # Also with the fingerprint forged: the sets themselves do not hold.
+        assert "may leave" in refused(other, changed(text, lambda _: None, other))
+
+
+def test_a_larger_range_of_speed_is_refused(problem, text):
+    for speeds in ((22.0, 26.0), (23.0, 26.5)):
+        other = replace(problem, speeds=speeds)
+        assert "cover" in refused(other, changed(text, lambda _: None, other))
+
+    def stretch(content):
+        content["windows"][-1]["low"] = 12.0
+
+    other = replace(problem, speeds=(12.0, 26.0))
+    assert "may leave" in refused(other, changed(text, stretch, other))
+
+
+def test_gaps_and_jumps_are_refused(problem, text):
+    def drop(content):
+        del content["windows"][1]
+
+    def slit(content):
+        content["windows"][1]["high"] -= 1e-9
+
+    def crowd(content):
+        middle = content["windows"][1]
+        thin = {**middle, "low": middle["high"] - 0.05}
+        content["windows"].insert(1, thin)
+        middle["high"] = thin["low"]
+
+    assert "gap" in refused(problem, changed(text, drop))
+    assert "gap" in refused(problem, changed(text, slit))
+    assert "jump" in refused(problem, changed(text, crowd))
+
+
+def columns(content, window=0):
+    return content["windows"][window]["columns"]
+
+
+def test_a_cell_more_is_refused(problem, text):
+    def add(content):
+        columns(content)["50"] = [*columns(content)["50"], 150, 151]  # large slip under large torque
+
+    def hide(content, level):
+        columns(content)["20"] = [*columns(content)["20"], level, level + 1]
+
+    assert "may leave" in refused(problem, changed(text, add))
+    beside = columns(json.loads(text))["20"][-1] + 6
+    assert "may leave" in refused(problem, changed(text, lambda content: hide(content, beside)))
+    # Far above, the cell stands for torques that no brake has: no state is there, none can leave.
+    assert check(problem, changed(text, lambda content: hide(content, 400))).accepted
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_cell_less_is_refused(problem, text, seed):
+    """Some other cell maps onto what was taken out; the reference row stays."""
+    rng = np.random.default_rng(seed)
+    row = rng.choice([15, 16, 17, 19, 20])
+
+    def remove(content):
+        first, last = columns(content)[str(row)][:2]
+        hole = (first + last) // 2 + int(rng.integers(-4, 5))
+        columns(content)[str(row)] = [first, hole, hole + 1, last]
+
+    assert "may leave" in refused(problem, changed(text, remove))
+
+
+def test_sets_without_the_reference_are_refused(problem, text):
+    def empty(content):
+        content["windows"][0]["columns"] = {}
+
+    assert "no state at the reference" in refused(problem, changed(text, empty))
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (("format",), "wspd-invariant-sets/0"),
+        (("windows",), []),
+        (("windows",), None),
+        (("windows",), [1] * 3),
+        (("windows", 0, "steps"), 0),
+        (("windows", 0, "steps"), 10**9),
+        (("windows", 0, "steps"), True),
+        (("windows", 0, "per_unit"), 100),
+        (("windows", 0, "per_unit"), 2**40),
+        (("windows", 0, "tilt"), float("nan")),
+        (("windows", 0, "high"), float("inf")),
+        (("windows", 0, "columns"), [3]),
+        (("windows", 0, "columns"), {"x": [1, 2]}),
+        (("windows", 0, "columns"), {"17": [1, 2, 3]}),
+        (("windows", 0, "columns"), {"17": [60, 50]}),
+        (("windows", 0, "columns"), {"17": [1.5, 70.5]}),
+        (("windows", 0, "columns"), {"17": [0, 10**12]}),
+        (("windows", 0, "columns"), {"17": [10**400, 10**400 + 1]}),
+    ],
+)
+def test_garbage_is_refused(problem, text, path, value):
+    def plant(content):
+        for key in path[:-1]:
+            content = content[key]
+        content[path[-1]] = value
+
+    assert refused(problem, changed(text, plant))
+
+
+@pytest.mark.parametrize("garbage", ["", "{", "[]", "3", "null", "[" * 100_000, '{"format": 1}'])
+def test_no_certificate_is_refused(problem, garbage):
+    assert refused(problem, garbage)
+
+
+def test_truncated_text_is_refused(problem, text):
+    for length in (10, len(text) // 2, len(text) - 1):
+        assert refused(problem, text[:length])
+
+
+def test_a_law_with_memory_is_refused(problem, text, make_controller):
+    other = replace(problem, controller=make_controller("smc", "polach-wet", sample_time=0.02))
+    assert "memory" in refused(other, changed(text, lambda _: None, other))
+
+
+def test_wrong_searches_are_refused(problem, monkeypatch):
+    """Mutated searches find sets that are too large, and the checker sees each of them."""
+
+    def found_by(other):
+        sets = search.search(other, deadline=math.inf)
+        assert None not in sets
+        return document.write(problem, sets)
+
+    assert check(problem, found_by(problem)).accepted
+    nominal = feedback_problem(spread=0.0)
+    hopeful = replace(nominal, mu0_bounds=problem.mu0_bounds)
+    assert refused(
+        feedback_problem(spread=0.03),
+        changed(found_by(hopeful), lambda _: None, feedback_problem(spread=0.03)),
+    )
+    brake = problem.vehicle.brake
+    quick = replace(brake, fill_time=0.2 * brake.fill_time, vent_time=0.2 * brake.vent_time)
+    assert refused(
+        problem, found_by(replace(problem, vehicle=replace(problem.vehicle, brake=quick)))
+    )  # no lag
+    right = search.images
+
+    def shrunk(*arguments, **options):
+        image = right(*arguments, **options)
+        quarter = np.where(np.isfinite(image.slip_high), (image.slip_high - image.slip_low) / 4.0, 0.0)
+        return replace(image, slip_low=image.slip_low + quarter, slip_high=image.slip_high - quarter)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(search, "images", shrunk)
+        assert refused(problem, found_by(problem))
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            search, "images", lambda p, w, s, z, steps: right(p, replace(w, low=w.high), s, z, steps=steps)
+        )
+        assert refused(problem, found_by(problem))  # top speed only
+    rate = one_sample.slip_rate
+    with monkeypatch.context() as patch:
+        patch.setattr(one_sample, "slip_rate", lambda p, s, v, t: 0.2 * rate(p, s, v, t))
+        assert refused(problem, found_by(problem))  # slow slip
+
+
+def test_rate_on_balls_is_that_of_the_kernels():
+    problem = feedback_problem(spread=0.1)
+    plant = BallPlant(problem)
+    rng = np.random.default_rng(5)
+    for _ in range(300):
+        vehicle, rail = drawn(problem, rng)
+        slip, speed, torque = rng.uniform(0.02, 0.6), rng.uniform(2.0, 34.0), rng.uniform(0.0, 6e4)
+        at = slip_dynamics(vehicle, rail, slip, speed)
+        assert plant.rate(flint.arb(slip), flint.arb(speed), flint.arb(torque)).contains(
+            flint.arb(at.drift + at.gain * torque)
+        )
+        wide = plant.rate(flint.arb(slip, 0.02), flint.arb(speed, 0.1), flint.arb(torque, 50.0))
+        assert wide.contains(flint.arb(at.drift + at.gain * torque))
+        thin = BallPlant(
+            replace(
+                problem,
+                mass_bounds=2 * (vehicle.mass,),
+                inertia_bounds=2 * (vehicle.wheelset_inertia,),
+                mu0_bounds=2 * (rail.mu0,),
+            )
+        ).rate(flint.arb(slip), flint.arb(speed), flint.arb(torque))
+        assert float(thin.rad()) < vehicle.wheel_damping / vehicle.wheel_inertia
+
+
+def test_rate_on_balls_sees_inward_rounding():
+    """The exact value, at 300 bits, of thin arguments lies inside; half the ball would not hold it."""
+    problem = replace(
+        feedback_problem(spread=0.0), vehicle=replace(feedback_problem().vehicle, wheel_damping=0.0)
+    )
+    arguments = [flint.arb(x) for x in (0.137, 11.3, 21234.5)]
+    thin = BallPlant(problem).rate(*arguments)
+    with flint.ctx.workprec(300):
+        exact = BallPlant(problem).rate(*arguments)
+    assert thin.contains(exact)
+    assert 0.0 < float(thin.rad()) < 1e-10
+
+
+def test_slopes_of_balls_enclose_differences():
+    def function(x, y):
+        return (clip(exp(-x) * y / (1.0 + x**2) - atan(y - x), -0.5, 0.6), abs(2.0 - x) - y, 3.0)
+
+    rng = np.random.default_rng(6)
+    for _ in range(100):
+        center, width = rng.uniform(0.3, 2.0, 2), rng.uniform(0.0, 0.1, 2)
+        found = law_slopes(function, tuple(flint.arb(c, w) for c, w in zip(center, width, strict=True)))
+        points = center + width * rng.uniform(-1.0, 1.0, (2, 2))
+        first, second = (function(*map(float, point)) for point in points)
+        for a, b, (value, slopes) in zip(first, second, found, strict=True):
+            assert (value + flint.arb(0, 1e-13)).contains(flint.arb(a))
+            moved = sum((s * (p - q) for s, p, q in zip(slopes, *points, strict=True)), flint.arb(0, 1e-13))
+            assert moved.contains(flint.arb(a - b))
