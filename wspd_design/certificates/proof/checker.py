@@ -36,6 +36,7 @@ class Verdict:
     """What the checker says."""
 
     accepted: bool
+    statement: str = ""  # that was shown
     reason: str
     leaves: int
     seconds: float
@@ -54,17 +55,18 @@ def check(claim: Claim, certificate: str, *, seconds: float = 60.0) -> Verdict:
         A longer check is refused [s].
     """
     started = time.perf_counter()
-    leaves, reason = 0, "every box of the tree satisfies the inequality"
+    leaves, statement, reason = 0, "", "every box of the tree satisfies the inequality"
     try:
         claim, tree = _read(claim, certificate)
         if claim.form is not None and not same(claim.formula(), claim.definition()):
             raise Refused("the arranged form of the expression is not the model's")
         with flint.ctx.workprec(PRECISION):
             leaves = _replay(claim, tree, started + seconds)
+        statement = claim.statement()
     except Refused as refusal:
         reason = str(refusal)
     taken = time.perf_counter() - started
-    return Verdict(accepted=leaves > 0, reason=reason, leaves=leaves, seconds=taken)
+    return Verdict(accepted=leaves > 0, statement=statement, reason=reason, leaves=leaves, seconds=taken)
 
 
 def value(claim: Claim, point: dict[str, Fraction]) -> tuple[Fraction, Fraction]:

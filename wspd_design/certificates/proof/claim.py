@@ -79,6 +79,10 @@ class Claim:
         if len({v.name for v in self.variables}) < len(self.variables):
             raise ValueError(f"{self.name}: two variables have the same name")
 
+    def statement(self) -> str:
+        """Return the inequality in words."""
+        return f"{self.name} {self.relation} {text(self.bound)} {self.unit}"
+
     @property
     def free(self) -> tuple[Variable, ...]:
         """Variables that span the box, in the order of the letters of a split tree."""

@@ -149,7 +149,7 @@ def _checked(
         return _finding(claim, found, Status.UNDECIDED, attained, far, started, asked, reason=reason)
     proof = Proof(
         claim=claim.name,
-        statement=f"{claim.name} {claim.relation} {text(claim.bound)} {claim.unit}",
+        statement=verdict.statement,
         claim_hash=claim.digest(),
         certificate=certificate,
         leaves=verdict.leaves,

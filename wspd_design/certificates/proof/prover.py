@@ -12,6 +12,7 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, TypeAlias
 
+from wspd_design.certificates.proof.boxes import Boxes, joined
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.intervals import Backend, Intervals, default_backend
 from wspd_design.certificates.proof.tape import Tape, enclosing, trace
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-    Numbers = NDArray[np.intp]
 
 Progress: TypeAlias = Callable[[float], None]
 """Told the share of the box that is decided, between 0 and 1."""
@@ -104,22 +104,6 @@ class _Node:
 
 
 @dataclass(slots=True)
-class _Boxes:
-    """Boxes that wait: corners (variables, boxes) in [0, 1], upper bounds, nodes and shares."""
-
-    low: "Array"
-    high: "Array"
-    upper: "Array"
-    node: "Numbers"
-    share: "Array"
-
-    def take(self, which: "Numbers") -> "_Boxes":
-        return _Boxes(
-            self.low[:, which], self.high[:, which], self.upper[which], self.node[which], self.share[which]
-        )
-
-
-@dataclass(slots=True)
 class _Search:
     claim: Claim
     backend: Backend
@@ -129,7 +113,7 @@ class _Search:
     best: float = -inf  # reached at a point, for certain
     best_place: "Array | None" = None
     ceiling: float = -inf  # largest upper bound of a decided box
-    pending: "_Boxes | None" = None
+    pending: "Boxes | None" = None
     count: int = 0
     seconds: float = 0.0
 
@@ -144,7 +128,7 @@ class _Search:
         started = time.perf_counter()
         size = len(self.claim.free)
         self._look_around(size)
-        waiting = _Boxes(
+        waiting = Boxes(
             np.zeros((size, 1)), np.ones((size, 1)), np.array([inf]), np.zeros(1, dtype=int), np.ones(1)
         )
         while waiting.upper.size:
@@ -155,7 +139,7 @@ class _Search:
             order = np.argsort(-waiting.upper)
             batch, rest = waiting.take(order[:BATCH]), waiting.take(order[BATCH:])
             fresh = self._advance(batch, threshold)
-            waiting = _joined(rest, fresh)
+            waiting = joined(rest, fresh)
             progress(1.0 - float(waiting.share.sum()))
         self.pending = waiting
         self.seconds = time.perf_counter() - started
@@ -212,7 +196,7 @@ class _Search:
     def _value(self, found: Intervals) -> Intervals:
         return found if self.sign > 0.0 else -found
 
-    def _advance(self, boxes: _Boxes, threshold: float) -> _Boxes:
+    def _advance(self, boxes: Boxes, threshold: float) -> Boxes:
         """Decide, reduce or halve each box; return the new ones."""
         import numpy as np
 
@@ -226,7 +210,8 @@ class _Search:
         if gradient is None:  # the expression is constant
             gradient = self.backend.Interval(np.zeros_like(boxes.low), np.zeros_like(boxes.low))
         gradient = self._value(gradient)
-        low, high = np.nan_to_num(gradient.lo, nan=-inf), np.nan_to_num(gradient.hi, nan=inf)
+        low = np.where(np.isnan(gradient.lo), -inf, gradient.lo)
+        high = np.where(np.isnan(gradient.hi), inf, gradient.hi)
         low, high = np.broadcast_to(low, boxes.low.shape), np.broadcast_to(high, boxes.low.shape)
         centered = self._mean_value(boxes, middle, center, low, high)
         decided = (plain <= threshold) | (centered <= threshold)
@@ -240,7 +225,7 @@ class _Search:
         return self._divide(boxes.take(keep), low[:, keep], high[:, keep])
 
     def _mean_value(
-        self, boxes: _Boxes, middle: "Array", center: Intervals, low: "Array", high: "Array"
+        self, boxes: Boxes, middle: "Array", center: Intervals, low: "Array", high: "Array"
     ) -> "Array":
         """Upper bound by the mean value form."""
         found = center
@@ -249,7 +234,7 @@ class _Search:
             found = found + self.backend.Interval(low[row], high[row]) * reach
         return _upper(found)
 
-    def _divide(self, boxes: _Boxes, low: "Array", high: "Array") -> _Boxes:
+    def _divide(self, boxes: Boxes, low: "Array", high: "Array") -> Boxes:
         """Reduce to a face where the sign of a slope is known, else halve where it matters most."""
         import numpy as np
 
@@ -262,18 +247,18 @@ class _Search:
         for k in np.flatnonzero(reduced):
             rows = np.flatnonzero(rising[:, k] | falling[:, k])
             self.nodes[boxes.node[k]].faces += "".join(chr(ord("A") + row) for row in rows)
-        faces = _Boxes(
+        faces = Boxes(
             corner_low[:, reduced],
             corner_high[:, reduced],
             boxes.upper[reduced],
             boxes.node[reduced],
             boxes.share[reduced],
         )
-        return _joined(
+        return joined(
             faces, self._halve(boxes.take(np.flatnonzero(~reduced)), low[:, ~reduced], high[:, ~reduced])
         )
 
-    def _halve(self, boxes: _Boxes, low: "Array", high: "Array") -> _Boxes:
+    def _halve(self, boxes: Boxes, low: "Array", high: "Array") -> Boxes:
         import numpy as np
 
         if boxes.upper.size == 0:
@@ -295,9 +280,9 @@ class _Search:
             self.nodes += [_Node(), _Node()]
         numbers = first + 2 * which
         half = 0.5 * boxes.share
-        return _joined(
-            _Boxes(boxes.low, lower_high, boxes.upper, numbers, half),
-            _Boxes(upper_low, boxes.high, boxes.upper, numbers + 1, half),
+        return joined(
+            Boxes(boxes.low, lower_high, boxes.upper, numbers, half),
+            Boxes(upper_low, boxes.high, boxes.upper, numbers + 1, half),
         )
 
     def _tree(self) -> str:
@@ -315,15 +300,3 @@ def _upper(found: Intervals) -> "Array":
     import numpy as np
 
     return np.where(np.isnan(found.hi), inf, found.hi)
-
-
-def _joined(a: _Boxes, b: _Boxes) -> _Boxes:
-    import numpy as np
-
-    return _Boxes(
-        np.concatenate([a.low, b.low], axis=1),
-        np.concatenate([a.high, b.high], axis=1),
-        np.concatenate([a.upper, b.upper]),
-        np.concatenate([a.node, b.node]),
-        np.concatenate([a.share, b.share]),
-    )
