@@ -123,10 +123,10 @@ def _proofs(certificate: Certificate) -> Table:
             Column(title="Proved"),
             Column(title="Boxes", align="right"),
             Column(title="Size", unit="bytes", align="right"),
-            Column(title="Claim"),
+            Column(title="SHA-256"),
         ),
         rows=tuple(_proof(each) for each in certificate.proofs),
-        caption="What the independent checker accepted; boxes that it decided, size of the proof and fingerprint of "
+        caption="What the independent checker accepted; boxes that it decided, size of the proof and SHA-256 of "
         f"the claim. The proofs are attached as {file_name(certificate)}.",
         anchor=f"{check_anchor(certificate)}-proofs",
     )
