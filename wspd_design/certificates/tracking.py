@@ -67,7 +67,7 @@ def check(problem: Problem) -> Certificate:
         ),
         method="simulation of one stop, valve edge to valve edge",
         resolution=f"one run; {judged.size} instants are judged",
-        reference="eqs. (25), (37); findings, sections 1 and 3",
+        reference="eqs. (25), (37); theory page, layer",
         series=(
             series("slip", "time [s]", "slip [-]", run.time, run.slip[:, 0]),
             level("reference", "time [s]", "slip [-]", run.time, reference),
