@@ -83,6 +83,6 @@ def _show(path: Path, design: str, found: Replayed) -> None:
     elif found.missing:
         lines.append(f"That does not prove {found.check}, which needs {'; '.join(found.missing)}.")
     else:
-        lines.append(f"These are all inequalities that {found.check} needs.")
+        lines.append(f"These proofs are all that {found.check} needs.")
     for line in lines:
         out.print(Padding(Text(line), (0, 0, 0, 2)))
