@@ -72,7 +72,7 @@ def check(problem: Problem) -> Certificate:
         method="integration with Radau's method, trapezoids between its instants",
         resolution=f"{len(time)} instants; the Lipschitz constant is the steepest difference of two "
         "neighbors",
-        reference="eqs. (45)-(48); theory page, barbalat",
+        reference="eqs. (45)-(48); docs/theory.md#barbalat",
         series=(
             series("integral of abs(s_D)", "time [s]", "integral [s]", time, growing),
             level(name, "time [s]", "integral [s]", time, bound),

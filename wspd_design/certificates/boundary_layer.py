@@ -94,7 +94,7 @@ def check(problem: Problem) -> Certificate:
         ),
         method="exact rational arithmetic on the gains as they are stored; the reaching condition as its own check",
         resolution=f"exact; reaching: {reached.resolution}",
-        reference="eqs. (21), (22), (25), (37); theory page, layer",
+        reference="eqs. (21), (22), (25), (37); docs/theory.md#layer",
         engine=reached.engine,
         proofs=reached.proofs,
         series=_plots(float(ultimate), float(transient), float(rate)),

@@ -137,7 +137,7 @@ def check(problem: Problem) -> Certificate:
         method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}; derivatives by "
         "differences along the flow",
         resolution=f"{len(run.time)} instants; a rise below {TOLERANCE:g} of the maximum counts as rounding",
-        reference="eqs. (39)-(44) repaired; theory page, energy",
+        reference="eqs. (39)-(44) repaired; docs/theory.md#energy",
         series=(
             series("V repaired", "time [s]", "V [N m s]", run.time, values),
             series("slip", "time [s]", "slip [-]", run.time, run.slip),

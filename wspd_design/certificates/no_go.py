@@ -70,7 +70,7 @@ def check(problem: Problem) -> Certificate:
         ),
         method="crossings by bisection, then interval branch and bound, replayed by the independent checker",
         resolution=f"{GRID_SPEEDS} speeds to find the interval; {finding.boxes} boxes to prove it",
-        reference="eqs. (14), (19); theory page, no-go",
+        reference="eqs. (14), (19); docs/theory.md#no-go",
         undecided=finding.undecided,
         engine=engine(),
         proofs=findings.proofs(finding),

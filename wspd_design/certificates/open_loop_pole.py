@@ -100,7 +100,7 @@ def check(problem: Problem) -> Certificate:
         method="interval branch and bound, replayed by the independent checker; a witness is evaluated in exact "
         "balls",
         resolution=f"{highest.boxes + lowest.boxes} boxes; both ends within {TOLERANCE:g} 1/s",
-        reference="eqs. (14), (19); theory page, no-go",
+        reference="eqs. (14), (19); docs/theory.md#no-go",
         undecided=findings.undecided(highest, lowest),
         engine=engine(),
         proofs=findings.proofs(highest, lowest),

@@ -194,7 +194,7 @@ def check(problem: Problem) -> Certificate:
         ),
         method="interval branch and bound, replayed by the independent checker",
         resolution=f"{needed.boxes + slowing.boxes} boxes; the smallest W0 within {TOLERANCE:g} m/s2",
-        reference="eqs. (20), (23)-(25) with W = W0/v; theory page, reaching",
+        reference="eqs. (20), (23)-(25) with W = W0/v; docs/theory.md#reaching",
         undecided=undecided(needed, slowing),
         engine=engine(),
         proofs=proofs(needed, slowing),

@@ -101,7 +101,7 @@ def check(problem: Problem) -> Certificate:
         method="Routh's conditions of the linearized loop by interval branch and bound; proofs are replayed by "
         "the independent checker, a witness is evaluated in exact balls",
         resolution="; ".join(f"{each.claim.name}: {each.boxes} boxes" for each in found),
-        reference="eqs. (14), (23); theory page, routh",
+        reference="eqs. (14), (23); docs/theory.md#routh",
         undecided=worst.undecided,
         engine=engine(),
         proofs=findings.proofs(*found),

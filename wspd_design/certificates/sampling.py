@@ -91,6 +91,6 @@ def check(problem: Problem) -> Certificate:
         method="exact zero-order-hold discretization; grid over speed, Sobol sampling, local optimization",
         resolution=f"{len(poles.speeds)} speeds with all corners of the parameters, "
         f"{highest.evaluations} further points",
-        reference="eqs. (13)-(15), (19); theory page, routh",
+        reference="eqs. (13)-(15), (19); docs/theory.md#routh",
         series=slip_pole.plots(poles, "p_max", limit),
     )

@@ -126,7 +126,7 @@ def check(problem: Problem) -> Certificate:
         assumptions=("T = u: no valve lag, no sampling", "slip reference constant"),
         method="interval branch and bound, replayed by the independent checker",
         resolution=f"{release.boxes + force.boxes} boxes; torques within {TOLERANCE:g} N m",
-        reference="eqs. (23), (27); theory page, existence",
+        reference="eqs. (23), (27); docs/theory.md#existence",
         undecided=findings.undecided(release, force),
         engine=engine(),
         proofs=findings.proofs(release, force, *(() if until is None else (until,))),

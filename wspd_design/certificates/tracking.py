@@ -67,7 +67,7 @@ def check(problem: Problem) -> Certificate:
         ),
         method="simulation of one stop, valve edge to valve edge",
         resolution=f"one run; {judged.size} instants are judged",
-        reference="eqs. (25), (37); theory page, layer",
+        reference="eqs. (25), (37); docs/theory.md#layer",
         series=(
             series("slip", "time [s]", "slip [-]", run.time, run.slip[:, 0]),
             level("reference", "time [s]", "slip [-]", run.time, reference),
