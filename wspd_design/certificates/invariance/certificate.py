@@ -123,7 +123,7 @@ def _undecided(problem: Problem, found: Sequence[Found | None]) -> Certificate:
         claim=_claim(problem),
         status=Status.UNDECIDED,
         explanation=". ".join((*parts, _authority(problem), _nominal(problem))),
-        undecided=open_width / (problem.speeds[1] - problem.speeds[0]),
+        undecided=min(1.0, open_width / (problem.speeds[1] - problem.speeds[0])),
     )
 
 

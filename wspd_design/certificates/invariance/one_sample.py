@@ -8,7 +8,8 @@ fills, vents and holds. With X = T/2 - R f and the train's deceleration a = (f_d
 This is scalar in the slip and rises with the torque, so the largest slip of a cell never exceeds that of a wheel
 that starts at its upper edge under its largest torque, and correspondingly below (comparison theorem). The bound
 is followed over steps of the sample: if the rate is at most s while the slip lies in [u - d, u + e], and s dt <= e,
-a slip that is at most u now stays below u + max(0, s dt) and ends below u + max(s dt, -d).
+a slip that is at most u now stays below u + max(0, s dt) and ends below u + max(s dt, -d). Where the creep force is
+too steep for the step, on the adhering side of the curve, no such e is found and the cell counts as leaving.
 
 The creep force grows with the friction and with the load at given slip and speed, since both parts g of its shape,
 x/(1 + x^2) and atan x, have g - x g' >= 0. Hence it is evaluated at the ends of their ranges.

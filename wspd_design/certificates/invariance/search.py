@@ -27,7 +27,8 @@ STEPS_PER_SWING = 15.0  # steps of a sample, for each unit of slip that T_max wo
 MOST_STEPS = 40
 SLACK = 0.1  # of a cell, that images are widened by
 TILT_RATIO = 1.3  # from one tilt to the next
-TRIALS = ((1.0, 128), (0.6, 128), (1.0, 256))  # tilt over that of the law, cells per unit
+COARSE = ((1.0, 128), (0.6, 128))  # tilt over that of the law, cells per unit
+FINE = (1.0, 256)  # tried unless the next slower window failed already
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,7 +121,9 @@ def search(
         progress(f"{window.low * 3.6:.1f} to {window.high * 3.6:.1f} km/h")
         slower = results[-1] if results else None
         best = None
-        for tilt, per_unit in TRIALS:
+        # Without a tilt there is but one coarse trial.
+        trials = COARSE if window.tilt else COARSE[:1]
+        for tilt, per_unit in trials if results and slower is None else (*trials, FINE):
             tilted = replace(window, tilt=tilt * window.tilt)
             best = largest(problem, start_region(problem, tilted, per_unit), slower)
             if best is None and slower is not None:
