@@ -9,7 +9,7 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.suite import NAMES, verify
 from wspd_design.parameters.errors import UserError
 
-EXACT = {"derivation", "surface_hurwitz", "gain_positive"}
+EXACT = {"derivation", "surface_hurwitz", "gain_positive", "stop_bound"}
 
 
 @pytest.fixture(scope="module", params=[("afsmc", "polach-dry"), ("smc", "polach-wet")])

@@ -11,7 +11,7 @@ from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.plant import plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim
-from wspd_design.certificates.proof.engine import Finding, enclose, engine, settle
+from wspd_design.certificates.proof.engine import Finding, enclose, engine, settle, versions
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Series, Status
 from wspd_design.certificates.sliding_exists import torque_claim
@@ -251,7 +251,7 @@ def _refutation(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
         method="V2' at s = 0 in balls, minimized over all ideal weights and bounds that (34) admits",
         resolution=f"{SPEEDS} speeds",
         reference="eqs. (33), (34), (39)-(44)",
-        engine=engine(),
+        engine=f"python-flint {versions()['python-flint']}",
         series=_plots((speeds * KMH).tolist(), lowest),
     )
 

@@ -47,7 +47,7 @@ def check(problem: Problem) -> Certificate:
             for plant, (momentum, energy) in residuals.items()
         )
         + ".",
-        margin=Range(low=None, high=1.0 - used, unit="of the limits"),
+        margin=Range(low=None, high=1.0 - used if closed else min(0.0, 1.0 - used), unit="of the limits"),
         worst_point=where,
         witness=() if closed else where,
         assumptions=("nominal parameters", "exact measurement"),

@@ -146,7 +146,7 @@ def _proved(problem: Problem, found: Quadratic, ends: tuple[Finding, ...]) -> tu
         return None, verdict.reason
     proof = Proof(
         claim="common quadratic function",
-        statement="x'Px falls on the polytope, continuous and sampled",
+        statement=verdict.statement,
         claim_hash=first.claim_hash,
         certificate=text,
         leaves=verdict.leaves,

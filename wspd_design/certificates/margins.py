@@ -1,6 +1,7 @@
 """How much the loop near its reference bears: gain, phase, delay and disk margin over speed, also as sampled."""
 
 import math
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -166,7 +167,10 @@ def margins(opened: Any) -> Margins:
     highest = math.pi / sample_time if sample_time else HIGHEST_FREQUENCY
     frequencies = np.geomspace(LOWEST_FREQUENCY, highest * (1.0 - 1e-6), FREQUENCIES)
     disk, _, _ = control.disk_margins(opened, frequencies)
-    gains, phases, _, _, crossings, _ = control.stability_margins(opened, returnall=True)
+    with warnings.catch_warnings():
+        # It says that it interpolates where the polynomial method would lose digits.
+        warnings.filterwarnings("ignore", "stability_margins: Falling back", UserWarning)
+        gains, phases, _, _, crossings, _ = control.stability_margins(opened, returnall=True)
     # At both ends of the frequency range the loop is real; python-control looks only between them.
     ends = [opened(z, warn_infinite=False).real for z in ((1.0, -1.0) if sample_time else (0.0,))]
     factors = np.array([*gains, *(-1.0 / end for end in ends if -np.inf < end < 0.0)])

@@ -14,6 +14,7 @@ matrix exponential is enclosed. It is affine in gamma, and x'Px is convex, so th
 """
 
 import json
+import re
 import time
 from dataclasses import dataclass
 from fractions import Fraction
@@ -36,8 +37,10 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 FORMAT = "wspd-quadratic/1"
+STATEMENT = "one quadratic function falls along the continuous and the sampled loop"
 MOST_BYTES = 4_000_000
 MOST_DIGITS = 60  # of a number in a certificate
+NUMBER = re.compile(r"-?[0-9]+(/[0-9]+)?")
 MOST_PARTS = 20_000  # of the interval of q
 
 Interval: TypeAlias = tuple[Fraction, Fraction]
@@ -175,7 +178,13 @@ def check_quadratic(certificate: str, problem: Problem) -> Verdict:
         parts = _replay(certificate, problem)
     except Refused as refusal:
         reason = str(refusal)
-    return Verdict(accepted=parts > 0, reason=reason, leaves=parts, seconds=time.perf_counter() - started)
+    return Verdict(
+        accepted=parts > 0,
+        statement=STATEMENT if parts else "",
+        reason=reason,
+        leaves=parts,
+        seconds=time.perf_counter() - started,
+    )
 
 
 def certificate_text(found: Quadratic, proofs: tuple[str, str]) -> str:
@@ -267,6 +276,7 @@ def _read(certificate: str) -> tuple[Quadratic, tuple[str, str]]:
 
 
 def _number(text: str) -> Fraction:
-    if not isinstance(text, str) or len(text) > MOST_DIGITS:
+    """Read p or p/q; powers of ten could stand for numbers that fill the memory."""
+    if not isinstance(text, str) or len(text) > MOST_DIGITS or not NUMBER.fullmatch(text):
         raise ValueError("no number")
     return Fraction(text)

@@ -6,7 +6,7 @@ from wspd_design.certificates import domain
 from wspd_design.certificates.adhesion_limit import INSTANTS, SPEEDS, Limit, NoBound, stop_limit
 from wspd_design.certificates.checking import OutsideModel, certified, level, series
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.proof.engine import engine
+from wspd_design.certificates.proof.engine import versions
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Series, Status
 from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario
@@ -72,7 +72,7 @@ def check(problem: Problem) -> Certificate:
         "the speed from below",
         resolution=f"{SPEEDS} intervals of speed, {INSTANTS} instants of the change from filling to adhesion",
         reference="eqs. (1), (2), (5)-(9); findings, section 2, any controller",
-        engine=engine(),
+        engine=f"python-flint {versions()['python-flint']}",
         series=_plots(problem, limit, run),
     )
 

@@ -1,0 +1,37 @@
+"""Balls and the doubles around them."""
+
+import math
+from fractions import Fraction
+
+import pytest
+from flint import arb
+
+from wspd_design.certificates.balls import above, ball, below, point
+
+THIRD = Fraction(1, 3)
+
+
+def test_point_of_a_fraction_contains_it():
+    assert bool(point(THIRD) * 3 - 1 < arb(2) ** -40)
+    assert point(0.1).contains(arb(0.1))
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.1, 0.3), (-2.0, 5.0), (1e-9, 1e9), (THIRD, Fraction(2, 3))])
+def test_ball_contains_its_ends_and_what_lies_between(low, high):
+    found = ball(low, high)
+    assert found.contains(point(float(low) + 0.3 * (float(high) - float(low))))
+    assert found.contains(point(low))
+    assert found.contains(point(high))
+
+
+@pytest.mark.parametrize("number", [THIRD, -THIRD, Fraction(1, 2), Fraction(10**30 + 1, 7)])
+def test_doubles_enclose(number):
+    exact = point(number)
+    low, high = Fraction(below(exact)), Fraction(above(exact))
+    assert low <= number <= high
+    assert high - low <= abs(number) * Fraction(1, 2**48)
+
+
+def test_unbounded_ball():
+    assert above(arb.nan()) == math.inf
+    assert below(1 / ball(-1.0, 1.0)) == -math.inf
