@@ -122,6 +122,7 @@ def test_other_loops_are_refused(problem, content, make_problem, make_controller
         replace(problem, mu0_bounds=(0.44, 0.7)),
         replace(problem, inertia_bounds=(300.0, 860.0)),
         replace(problem, sample_time=0.1),
+        replace(problem, slip=0.1),
         replace(problem, controller=replace(law, gains=replace(law.gains, torque_gain=1.0))),
         replace(problem, controller=replace(law, gains=replace(law.gains, sliding_gain=-20.0))),
         replace(

@@ -205,6 +205,8 @@ def _replay(certificate: str, problem: Problem) -> int:
     law = problem.controller
     if not isinstance(law, TorqueFeedback):
         raise Refused("the controller is no static law with torque feedback")
+    if law.gains.slip_reference != problem.slip:
+        raise Refused("the problem speaks about another slip than the reference of the law")
     found, proofs = _read(certificate)
     relations: tuple[Relation, Relation] = (">=", "<=")
     for relation, bound, proof in zip(relations, found.poles, proofs, strict=True):

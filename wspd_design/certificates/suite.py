@@ -27,9 +27,8 @@ from wspd_design.certificates import (
     well_posed,
 )
 from wspd_design.certificates.invariance import certificate as sampled_invariance
+from wspd_design.certificates.linear_loop import LinearLaw
 from wspd_design.certificates.records import Certificate, Problem
-from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
-from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.parameters.errors import UserError
 
 MODULES = (
@@ -92,7 +91,7 @@ def verify(
             offer = f', did you mean "{near[0]}"?' if near else ""
             raise UserError(f'unknown check "{name}"{offer}; available: {", ".join(NAMES)}')
     _agree("sample time", problem.sample_time, problem.controller.sample_time)
-    if isinstance(problem.controller, (AdaptiveFuzzy, SlidingMode)):
+    if isinstance(problem.controller, LinearLaw):
         _agree("slip reference", problem.slip, problem.controller.gains.slip_reference)
     certificates = []
     for module in MODULES:
