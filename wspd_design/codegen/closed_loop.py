@@ -10,11 +10,12 @@ from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
 from wspd_design.codegen.kernels import PARAMETERS, closed_loop_kernels
+from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.four_axle import AXLES
@@ -39,7 +40,6 @@ LANE_TOTALS = (
 )
 STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
 RAIL_NUMBERS = 5
-GOOD, BUFFER_FULL, BAD_COMMAND = range(3)
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 
 
@@ -209,43 +209,8 @@ class ClosedLoop:
         )
 
 
-class SampledPlant(Protocol):
-    """One stop that is advanced from sample to sample."""
-
-    def running(self) -> bool:
-        """Tell whether the train moves and the time limit is not reached."""
-
-    def measure(self) -> list[Measurement]:
-        """Return what the controller of each axle sees."""
-
-    def advance(self, commands: list[Command]) -> int:
-        """Run to the next sample; 0 when all went well."""
-
-
-def drive(plant: SampledPlant, controller: Controller, sample_rows: int) -> tuple[int, "Array"]:
-    """Close the loop in Python: one controller per axle. Returns the result code and the samples."""
-    import numpy as np
-
-    states = [controller.start(measurement) for measurement in plant.measure()]
-    rows: list[list[float]] = []
-    result = GOOD
-    while plant.running() and result == GOOD:
-        if len(rows) == sample_rows:
-            result = BUFFER_FULL
-            break
-        seen = plant.measure()
-        decided = [controller.step(state, m) for state, m in zip(states, seen, strict=True)]
-        states, commands = [state for state, _ in decided], [command for _, command in decided]
-        by_element = zip(*states, strict=True) if states[0] else ()
-        lists = [*by_element, *zip(*commands, strict=True), *zip(*seen, strict=True)]
-        rows.append([len(rows) * controller.sample_time, *(float(x) for element in lists for x in element)])
-        result = plant.advance(commands)
-    width = 1 + AXLES * (len(states[0]) + 5)
-    return result, np.asarray(rows, dtype=np.float64).reshape(len(rows), width)
-
-
 class _Plant:
-    """The compiled plant behind the interface of :class:`SampledPlant`."""
+    """The compiled plant behind the interface of :class:`~wspd_design.codegen.sampled.SampledPlant`."""
 
     def __init__(self, library: ctypes.CDLL, buffer: Any) -> None:
         self._library, self._buffer = library, buffer

@@ -8,18 +8,15 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.closed_loop import (
-    BAD_COMMAND,
-    BUFFER_FULL,
-    GOOD,
     LANE_TOTALS,
     RAIL_NUMBERS,
     STOP_TOTALS,
     LoopInput,
     LoopOutput,
-    drive,
 )
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.kernels import PARAMETERS, Kernels, closed_loop_kernels, controller_kernels
+from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
 from wspd_design.codegen.virtual_step import (
     END_SPEED,
     INERTIA,

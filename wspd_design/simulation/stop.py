@@ -11,13 +11,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from wspd_design.codegen.closed_loop import (
-    BAD_COMMAND,
     LoopInput,
     LoopOutput,
     load_closed_loop,
 )
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.sampled import BAD_COMMAND
 from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants

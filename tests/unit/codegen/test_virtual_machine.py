@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.codegen import closed_loop
+from wspd_design.codegen import closed_loop, sampled
 from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.virtual_machine import run_virtual
@@ -33,7 +33,7 @@ def both(vehicle, law, scenario):
 
 
 def assert_same(virtual, compiled, tolerance=1e-9):
-    assert virtual.result == compiled.result == closed_loop.GOOD
+    assert virtual.result == compiled.result == sampled.GOOD
     assert virtual.steps == compiled.steps
     assert virtual.stopped.all()
     assert compiled.stopped.all()
@@ -124,7 +124,7 @@ def test_a_bad_command_is_told(er24pc, make_controller):
     law_command = make_controller("none").step((), None)[1]
     rail = load_rail("table10-dry")
     compiled, virtual = both(er24pc, Overfilling(), Scenario(rail=rail, initial_speed=SPEED))
-    assert compiled.result == virtual.result == closed_loop.BAD_COMMAND
+    assert compiled.result == virtual.result == sampled.BAD_COMMAND
     assert virtual.bad_command == pytest.approx(compiled.bad_command, rel=1e-12)
     assert compiled.bad_command == pytest.approx((0.6, 1.2, 0.0))
 
