@@ -1,11 +1,11 @@
 """Files that the commands write: checked before the work starts, and whole or not at all."""
 
 import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.writing import write_whole
 
 
 def check_output(path: Path, *, force: bool) -> None:
@@ -72,17 +72,4 @@ def write_file(path: Path, write: Callable[[Path], object], *, force: bool) -> N
         Whether an existing file may be replaced.
     """
     check_output(path, force=force)
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        os.close(handle)
-        try:
-            write(Path(temporary))
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
-    except OSError as error:
-        raise UserError(
-            f"cannot write {path} ({error.strerror}); choose a folder that exists and can be written"
-        ) from None
+    write_whole(path, write)
