@@ -70,10 +70,26 @@ class Series:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Map:
+    """Samples of a quantity over two others, for the plot beside the verdict."""
+
+    name: str
+    x_label: str
+    y_label: str
+    value_label: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    values: tuple[tuple[float, ...], ...]  # a row for each y
+    limit: float | None = None  # of the values, where the verdict would change
+    worst: tuple[float, float] | None = None  # x and y of the tightest point
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Certificate:
     """A claim about a closed loop and its verdict.
 
-    ``margin`` is positive when the claim holds: how far the tightest point is from the limit.
+    ``margin`` is positive when the claim holds: how far the tightest point is from the limit. A ``limitation`` says
+    what the loop cannot do, so that its proof is no good news.
     """
 
     name: str
@@ -81,6 +97,7 @@ class Certificate:
     claim: str
     status: Status
     explanation: str
+    limitation: bool = False
     margin: Range | None = None
     worst_point: tuple[Point, ...] = ()
     witness: tuple[Point, ...] = ()
@@ -95,6 +112,7 @@ class Certificate:
     engine: str = ""  # versions of what searched and what checked
     proofs: tuple[Proof, ...] = field(default=(), repr=False)
     series: tuple[Series, ...] = field(default=(), repr=False)
+    maps: tuple[Map, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

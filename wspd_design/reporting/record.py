@@ -64,7 +64,7 @@ def _design(design: Design) -> dict[str, Any]:
 
 def _check(certificate: Certificate) -> dict[str, Any]:
     # Times are no property of the design and would change the file with every run; the proofs have their own files.
-    left_out = ("series", "seconds", "proofs")
+    left_out = ("series", "maps", "seconds", "proofs")
     record = {key: value for key, value in asdict(certificate).items() if key not in left_out}
     hypotheses = [{"text": each.text, "status": each.status.name} for each in certificate.hypotheses]
     proofs = [
