@@ -116,6 +116,15 @@ def test_selected_checks_and_progress(make_problem, make_controller):
     assert told == [certificate.title for certificate in found]
 
 
+def test_progress_while_boxes_are_split(make_problem, make_controller):
+    told = []
+    (found,) = verify(make_problem(make_controller("smc")), only=("reaching",), progress=told.append)
+    assert told[0] == found.title
+    shares = [line.removeprefix(f"{found.title}: ") for line in told[1:]]
+    assert shares[-1] == "100% of the box decided"
+    assert len(set(shares)) > 2
+
+
 def test_unknown_check_is_refused_with_the_nearest_name(make_problem, make_controller):
     with pytest.raises(UserError, match='"reching", did you mean "reaching"'):
         verify(make_problem(make_controller("none")), only=("reching",))

@@ -28,6 +28,7 @@ from wspd_design.certificates import (
 )
 from wspd_design.certificates.invariance import certificate as sampled_invariance
 from wspd_design.certificates.linear_loop import LinearLaw
+from wspd_design.certificates.progress import Listener, listening
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.parameters.errors import UserError
 
@@ -73,7 +74,7 @@ def verify(
     only : collection of str, optional
         Names of the checks to run, from :data:`NAMES`; all by default.
     progress : callable, optional
-        Told the title of each check before it starts.
+        Told the title of each check before it starts, and while it searches how far it has come.
 
     Returns
     -------
@@ -97,8 +98,13 @@ def verify(
     for module in MODULES:
         if only is None or module.NAME in only:
             progress(module.TITLE)
-            certificates.append(module.check(problem))
+            with listening(_at(module.TITLE, progress)):
+                certificates.append(module.check(problem))
     return tuple(certificates)
+
+
+def _at(title: str, progress: Callable[[str], None]) -> Listener:
+    return lambda share: progress(f"{title}: {share:.0%} of the box decided")
 
 
 def _agree(name: str, stated: float, used: float) -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from wspd_design.certificates import domain, reaching
 from wspd_design.certificates.model_error import mismatch
+from wspd_design.certificates.progress import listening
 from wspd_design.certificates.proof import engine, outward
 from wspd_design.certificates.proof.checker import check, value
 from wspd_design.certificates.proof.prover import Budget, extreme, prove
@@ -81,7 +82,8 @@ def test_used_up_budget_is_undecided(reference_claim):
 
 def test_progress_rises_to_one(reference_claim):
     told = []
-    prove(reference_claim, progress=told.append)
+    with listening(told.append):
+        prove(reference_claim)
     assert told[-1] == pytest.approx(1.0)
     assert all(0.0 <= share <= 1.0 for share in told)
     assert told == sorted(told)

@@ -6,12 +6,12 @@ set is therefore kept only with images inside itself *and* inside the set of the
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.invariance.cells import CellSet, inside, largest_kept, touched
 from wspd_design.certificates.invariance.one_sample import Images, Window, images, largest_deceleration
+from wspd_design.certificates.progress import tell
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.model.slip import slip_dynamics
@@ -95,9 +95,7 @@ def _fill(problem: Problem, speed: float, slip: float, share: float) -> float:
     return float(command.fill)
 
 
-def search(
-    problem: Problem, *, deadline: float, progress: Callable[[str], None] = lambda _: None
-) -> list[Found | None]:
+def search(problem: Problem, *, deadline: float) -> list[Found | None]:
     """Find the sets of all windows, the slowest first.
 
     Parameters
@@ -106,8 +104,6 @@ def search(
         Closed loop with a law without memory.
     deadline : float
         Reading of ``time.process_time`` after which windows are left out [s].
-    progress : callable, optional
-        Told each window before it is searched.
 
     Returns
     -------
@@ -115,10 +111,11 @@ def search(
         None for a window in which nothing was found; windows for which no time was left are missing.
     """
     results: list[Found | None] = []
-    for window in windows(problem):
+    slices = windows(problem)
+    for window in slices:
         if time.process_time() > deadline:
             break
-        progress(f"{window.low * 3.6:.1f} to {window.high * 3.6:.1f} km/h")
+        tell(len(results) / len(slices))
         slower = results[-1] if results else None
         best = None
         # Without a tilt there is but one coarse trial.

@@ -10,7 +10,7 @@ from math import floor, inf, log10, nextafter
 
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.claim import Claim, text
-from wspd_design.certificates.proof.prover import Budget, Outcome, Progress, extreme, prove
+from wspd_design.certificates.proof.prover import Budget, Outcome, extreme, prove
 from wspd_design.certificates.records import Proof, Range, Status
 
 PACKAGES = ("crival", "casadi", "python-flint", "sympy")
@@ -52,7 +52,6 @@ def settle(
     *,
     tolerance: float,
     budget: Budget | None = None,
-    progress: Progress = lambda _share: None,
 ) -> Finding:
     """Prove a claim with nearly the tightest bound that holds, or refute it, or say how far one got.
 
@@ -64,8 +63,6 @@ def settle(
         Width of the enclosure of the extreme value, in the unit of the claim.
     budget : Budget, optional
         Of each run of the prover.
-    progress : callable, optional
-        Told the share of the box that is decided.
 
     Returns
     -------
@@ -75,11 +72,11 @@ def settle(
         asked.
     """
     started = time.perf_counter()
-    found = extreme(claim, tolerance=tolerance, budget=budget, progress=progress)
+    found = extreme(claim, tolerance=tolerance, budget=budget)
     target = tightest(claim, found, tolerance)
     if not _denied(claim, found) and not _at_least(target, claim):
         # The bound lies within the tolerance of the extreme value, or the budget was used up.
-        target, found = claim, prove(claim, budget=budget, progress=progress)
+        target, found = claim, prove(claim, budget=budget)
     attained = checker.value(claim, found.point)
     if _denied(claim, found) and (
         (attained[0] > claim.bound) if claim.relation == "<=" else (attained[1] < claim.bound)
@@ -108,7 +105,6 @@ def enclose(
     *,
     tolerance: float,
     budget: Budget | None = None,
-    progress: Progress = lambda _share: None,
 ) -> Finding:
     """Prove nearly the tightest bound of a claim's expression; the bound of the claim itself does not matter.
 
@@ -120,8 +116,6 @@ def enclose(
         Width of the enclosure of the extreme value, in the unit of the claim.
     budget : Budget, optional
         Of the prover.
-    progress : callable, optional
-        Told the share of the box that is decided.
 
     Returns
     -------
@@ -129,7 +123,7 @@ def enclose(
         PROVED or UNDECIDED; its claim has the bound that was proved.
     """
     started = time.perf_counter()
-    found = extreme(claim, tolerance=tolerance, budget=budget, progress=progress)
+    found = extreme(claim, tolerance=tolerance, budget=budget)
     attained = checker.value(claim, found.point)
     return _checked(tightest(claim, found, tolerance), found, attained, started, claim.bound)
 

@@ -6,12 +6,12 @@ slope matters most. Internally every claim is an upper bound; one from below is 
 """
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
+from wspd_design.certificates.progress import tell
 from wspd_design.certificates.proof.boxes import Boxes, joined
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.intervals import Backend, Intervals, default_backend
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-
-Progress: TypeAlias = Callable[[float], None]
-"""Told the share of the box that is decided, between 0 and 1."""
 
 BATCH = 512
 SAMPLES = 2048  # of the first look at the box
@@ -57,7 +54,6 @@ def extreme(
     *,
     tolerance: float,
     budget: Budget | None = None,
-    progress: Progress = lambda _share: None,
     backend: Backend | None = None,
 ) -> Outcome:
     """Enclose the supremum of a claim's expression, or the infimum for ``>=``; the bound does not matter.
@@ -70,13 +66,11 @@ def extreme(
         Width of the enclosure, in the unit of the claim.
     budget : Budget, optional
         When it is used up, the enclosure is wider and a share of the box undecided.
-    progress : callable, optional
-        Told the share that is decided.
     backend : Backend, optional
         Intervals arithmetic.
     """
     search = _Search(claim, backend or default_backend())
-    search.run(None, tolerance, budget or Budget(), progress)
+    search.run(None, tolerance, budget or Budget())
     return search.outcome()
 
 
@@ -84,13 +78,12 @@ def prove(
     claim: Claim,
     *,
     budget: Budget | None = None,
-    progress: Progress = lambda _share: None,
     backend: Backend | None = None,
 ) -> Outcome:
     """Split the box until the claim is shown everywhere, or a point denies it, or the budget is used up."""
     search = _Search(claim, backend or default_backend())
     low, high = enclosing(claim.bound)
-    search.run(low if claim.relation == "<=" else -high, 0.0, budget or Budget(), progress)
+    search.run(low if claim.relation == "<=" else -high, 0.0, budget or Budget())
     return search.outcome()
 
 
@@ -121,7 +114,7 @@ class _Search:
         self.tape = trace(self.claim, self.backend)
         self.sign = 1.0 if self.claim.relation == "<=" else -1.0
 
-    def run(self, bound: float | None, tolerance: float, budget: Budget, progress: Progress) -> None:
+    def run(self, bound: float | None, tolerance: float, budget: Budget) -> None:
         """Decide boxes against the bound, or against the best point plus the tolerance."""
         import numpy as np
 
@@ -140,7 +133,7 @@ class _Search:
             batch, rest = waiting.take(order[:BATCH]), waiting.take(order[BATCH:])
             fresh = self._advance(batch, threshold)
             waiting = joined(rest, fresh)
-            progress(1.0 - float(waiting.share.sum()))
+            tell(1.0 - float(waiting.share.sum()))
         self.pending = waiting
         self.seconds = time.perf_counter() - started
 
