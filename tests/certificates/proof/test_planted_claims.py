@@ -112,7 +112,7 @@ def test_wrong_arrangement_is_refused(proved, forge):
         (lambda tree: "\u212a" + tree, "unknown step"),
         (lambda _: "a" * 1000, "halved more than"),
         (lambda _: "." * 500_000, "too long"),
-        (lambda _: "", "no tree"),
+        (lambda _: "", "ends before"),
         (lambda _: None, "no tree"),
         (lambda _: ["."], "no tree"),
         (lambda _: 5, "no tree"),

@@ -28,8 +28,6 @@ class Backend(Protocol):
     exp: Callable[[Intervals], Intervals]
     log: Callable[[Intervals], Intervals]
     atan: Callable[[Intervals], Intervals]
-    min: Callable[[Intervals, Intervals], Intervals]
-    max: Callable[[Intervals, Intervals], Intervals]
 
 
 def default_backend() -> Backend:

@@ -97,13 +97,3 @@ def log(x: Interval) -> Interval:
 def atan(x: Interval) -> Interval:
     """Inverse tangent."""
     return _widened(np.arctan(x.lo), np.arctan(x.hi))
-
-
-def min(x: Interval, y: Interval) -> Interval:
-    """Smaller of two."""
-    return Interval(np.minimum(x.lo, y.lo), np.minimum(x.hi, y.hi))
-
-
-def max(x: Interval, y: Interval) -> Interval:
-    """Larger of two."""
-    return Interval(np.maximum(x.lo, y.lo), np.maximum(x.hi, y.hi))

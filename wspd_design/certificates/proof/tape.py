@@ -149,7 +149,7 @@ OPERATIONS = frozenset(
     f"OP_{name}"
     for name in (
         *("ADD", "SUB", "MUL", "DIV", "NEG", "TWICE", "SQ", "INV", "SQRT", "EXP", "LOG", "ATAN"),
-        *("FABS", "FMIN", "FMAX", "POW", "CONSTPOW", "ASSIGN"),
+        *("FABS", "POW", "CONSTPOW", "ASSIGN"),
     )
 )
 
@@ -229,29 +229,13 @@ class Ring:
 
     def fabs(self, x: Jet) -> Jet:
         """Magnitude; where the sign is open its slope may be any of Clarke's."""
-        return self.fmax(x, self.neg(x))
-
-    def fmax(self, x: Jet, y: Jet) -> Jet:
-        """Larger of two."""
-        return self._chosen(x, y, self.backend.max(x.value, y.value), (x.value - y.value))
-
-    def fmin(self, x: Jet, y: Jet) -> Jet:
-        """Smaller of two."""
-        return self._chosen(x, y, self.backend.min(x.value, y.value), (y.value - x.value))
-
-    def _chosen(self, x: Jet, y: Jet, value: Intervals, preference: Intervals) -> Jet:
-        """Give the slope of ``x`` where the preference is positive, of ``y`` where negative, else their hull."""
         import numpy as np
 
-        if x.slope is None and y.slope is None:
-            return Jet(value, None)
-        zero = self.zero
-        first, second = x.slope or zero, y.slope or zero
-        low = np.where(preference.lo >= 0.0, first.lo, np.minimum(first.lo, second.lo))
-        high = np.where(preference.lo >= 0.0, first.hi, np.maximum(first.hi, second.hi))
-        low = np.where(preference.hi <= 0.0, second.lo, low)
-        high = np.where(preference.hi <= 0.0, second.hi, high)
-        return Jet(value, self.backend.Interval(low, high))
+        low, high = x.value.lo, x.value.hi
+        value = self.backend.Interval(np.maximum(0.0, np.maximum(low, -high)), np.maximum(-low, high))
+        positive, negative = low >= 0.0, (high <= 0.0) & (low < 0.0)
+        sign = self.backend.Interval(np.where(positive, 1.0, -1.0), np.where(negative, -1.0, 1.0))
+        return Jet(value, _scaled(x.slope, sign))
 
     def power(self, x: Jet, y: Jet) -> Jet:
         """Power with a constant exponent; a broken one needs a positive base."""

@@ -14,7 +14,7 @@ from wspd_design.certificates.proof.checker import value
 from wspd_design.certificates.proof.claim import Claim, variable
 from wspd_design.certificates.proof.engine import settle
 from wspd_design.certificates.proof.tape import trace
-from wspd_design.model.number import atan, exp, maximum, minimum
+from wspd_design.model.number import atan, exp
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 
@@ -113,12 +113,17 @@ def test_scaling_of_a_variable_does_not_change_the_verdict(power, bound):
     assert one.extreme.low == pytest.approx(other.extreme.low, abs=2e-2)
 
 
-def test_maximum_and_minimum_choose_their_slopes():
-    claim = replace(CLAIM, expression=lambda x: maximum(x["s"], 0.1) + minimum(x["v"], 1.0))
-    found = trace(claim, ival).evaluate(np.array([[0.5], [0.0]]), np.array([[1.0], [1.0]]))
-    assert found.gradient.lo[0, 0] == pytest.approx(0.58)
-    assert found.gradient.hi[0, 0] == pytest.approx(0.58)
-    assert found.gradient.lo[1, 0] == found.gradient.hi[1, 0] == 0.0
+@pytest.mark.parametrize(("offset", "slopes"), [(1.0, (1.0, 1.0)), (-1.0, (-1.0, -1.0)), (-0.3, (-1.0, 1.0))])
+def test_magnitude_has_the_slopes_of_its_sign(offset, slopes):
+    claim = replace(CLAIM, expression=lambda x: abs(x["s"] + offset))
+    found = trace(claim, ival).evaluate(np.array([[0.0], [0.0]]), np.array([[1.0], [1.0]]))
+    (slip,) = (v for v in claim.free if v.name == "s")
+    width = float(slip.high - slip.low)
+    assert found.gradient.lo[0, 0] == pytest.approx(slopes[0] * width)
+    assert found.gradient.hi[0, 0] == pytest.approx(slopes[1] * width)
+    ends = [abs(float(end) + offset) for end in (slip.low, slip.high)]
+    assert found.value.hi[0] == pytest.approx(max(ends))
+    assert found.value.lo[0] == pytest.approx(0.0 if slopes[0] != slopes[1] else min(ends))
 
 
 def test_operation_without_interval_form_is_refused():
