@@ -42,6 +42,7 @@ def _printed_gains(**changes):
             "slip_reference": SLIP_REFERENCE,
             "dead_zone": False,
             "hold_when_saturated": False,
+            "scheduled_rates": False,
             **changes,
         }
     )

@@ -42,8 +42,8 @@ class RepairedRun:
 
 
 def repaired_run(problem: Problem, law: AdaptiveFuzzy) -> RepairedRun:
-    """Run the law with dead zone, whatever its own setting, in the setting of the proof."""
-    gains = replace(law.gains, dead_zone=True)
+    """Run the law with dead zone and constant rates, whatever its own setting, in the setting of the proof."""
+    gains = replace(law.gains, dead_zone=True, scheduled_rates=False)
     plant = (problem.vehicle, problem.rail, gains)
     run = adaptive_run(*plant, speeds=problem.speeds)
     target = ideal(*plant, run, reserve(problem))
@@ -103,8 +103,9 @@ def check(problem: Problem) -> Certificate:
     )
     same = (
         "the adaptation of the law itself"
-        if law.gains.dead_zone
-        else "the gains of the law as they are, with the repaired adaptation (dead zone) in place of its own"
+        if law.gains.dead_zone and not law.gains.scheduled_rates
+        else "the gains of the law as they are, with the repaired adaptation (dead zone, constant rates) in place of "
+        "its own"
     )
     return Certificate(
         name=NAME,

@@ -89,7 +89,7 @@ def adaptive_run(
         surface = sliding_variable(gains, error, integral)
         torque = torque_demand(gains, surface, tuple(weights), bound)
         plant = slip_dynamics(vehicle, rail, slip, speed)
-        adapted = adaptation(gains, surface)
+        adapted = adaptation(gains, surface, speed)
         return [
             -plant.deceleration,
             plant.drift + plant.gain * torque,

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from wspd_design.controllers.protocol import Command, Measurement, State, pulse_width
 from wspd_design.model.generated import sliding_surface
-from wspd_design.model.number import Number, clip, exp, minimum, saturation, where
+from wspd_design.model.number import Number, clip, exp, maximum, minimum, saturation, where
 from wspd_design.model.slip import slip_ratio
+from wspd_design.parameters.loading import constants
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,7 +16,8 @@ class AdaptiveFuzzyGains:
 
     The printed law adapts with s itself (``dead_zone`` false) and never stops adapting. The repaired law, for
     which V does not increase, adapts with the part of s outside the boundary layer and holds its weights while
-    the command pushes further into the limit of the brake.
+    the command pushes further into the limit of the brake. With scheduled rates, alpha/v with v in m/s, it adapts
+    in sigma = integral of dt/v, in which a stop has no end.
     """
 
     slip_reference: float  # -
@@ -31,6 +33,7 @@ class AdaptiveFuzzyGains:
     torque_unit: float  # N m
     dead_zone: bool
     hold_when_saturated: bool
+    scheduled_rates: bool
 
 
 class Adaptation(NamedTuple):
@@ -61,7 +64,7 @@ class AdaptiveFuzzy:
         error = sliding_surface.slip_error(self.gains.slip_reference, slip)
         surface = sliding_variable(self.gains, error, integral)
         demand = torque_demand(self.gains, surface, tuple(weights), bound) / self.max_torque
-        rates = adaptation(self.gains, surface)
+        rates = adaptation(self.gains, surface, measurement.speed)
         span = self.sample_time
         if self.gains.hold_when_saturated:
             pushing_up = where(demand > 1.0, surface > 0.0, False)
@@ -103,11 +106,23 @@ def torque_demand(
     return gains.torque_unit * (fuzzy + bound * saturation(surface / gains.boundary_layer))
 
 
-def adaptation(gains: AdaptiveFuzzyGains, surface: Number) -> Adaptation:
-    """Adaptation laws (41), (42): rates of the weights and of the bound [units of u per second]."""
+def adaptation(gains: AdaptiveFuzzyGains, surface: Number, speed: Number) -> Adaptation:
+    """Adaptation laws (41), (42): rates of the weights and of the bound [units of u per second].
+
+    Parameters
+    ----------
+    gains : AdaptiveFuzzyGains
+        Law.
+    surface : number
+        Sliding variable s.
+    speed : number
+        Of the train, by which scheduled rates are divided [m/s].
+    """
     driving = surface
     if gains.dead_zone:
         driving = surface - gains.boundary_layer * saturation(surface / gains.boundary_layer)
+    if gains.scheduled_rates:
+        driving = driving / maximum(speed, constants().slip_regularization_speed)
     strengths = firing_strengths(gains, surface)
     return Adaptation(
         weights=tuple(gains.weight_rate * driving * w for w in strengths),

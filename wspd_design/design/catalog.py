@@ -117,6 +117,7 @@ def paper_design(vehicle: Vehicle, rail: Rail, specification: Specification) -> 
     for name, text in (
         ("dead_zone", "eqs. (41), (42) adapt with s itself"),
         ("hold_when_saturated", "the paper adapts at all times"),
+        ("scheduled_rates", "the rates of eqs. (41), (42) are constant"),
     ):
         gains.append(Gain(name=name, value=False, unit="-", why=f"printed: {text}"))
     order = GAINS_OF["afsmc"].index

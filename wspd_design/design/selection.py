@@ -182,6 +182,12 @@ def _adaptive_gains(
             unit="-",
             why="hold the adaptation while the command pushes beyond 0 or T_max: the repaired V needs it",
         ),
+        Gain(
+            name="scheduled_rates",
+            value=False,
+            unit="-",
+            why="constant rates, as printed; rates alpha/v, which Barbalat's lemma needs, would grow as the train slows",
+        ),
     )
 
 

@@ -92,19 +92,26 @@ def test_torque_demand_is_36_with_37(printed_gains):
 def test_adaptation_is_41_and_42(printed_gains):
     gains = printed_gains()
     for s in (-126.0, 0.5, 80.0):
-        rates = adaptation(gains, s)
+        rates = adaptation(gains, s, 20.0)
         assert rates.weights == pytest.approx([10.0 * s * w for w in plain_strengths(gains, s)], rel=1e-12)
         assert rates.bound == pytest.approx(0.85 * abs(s))
 
 
 def test_dead_zone_adapts_with_the_part_outside_the_layer(printed_gains):
     gains = printed_gains(dead_zone=True, boundary_layer=20.0)
-    inside = adaptation(gains, -19.9)
+    inside = adaptation(gains, -19.9, 20.0)
     assert inside.bound == 0.0
     assert set(inside.weights) == {0.0}
-    outside = adaptation(gains, -50.0)
+    outside = adaptation(gains, -50.0, 20.0)
     assert outside.bound == pytest.approx(0.85 * 30.0)
     assert sum(outside.weights) == pytest.approx(10.0 * -30.0)
+
+
+def test_scheduled_rates_fall_with_the_speed(printed_gains):
+    """In sigma = integral of dt/v they are those of the law at 1 m/s."""
+    plain, scheduled = (adaptation(printed_gains(scheduled_rates=on), 80.0, 25.0) for on in (False, True))
+    assert scheduled.weights == pytest.approx([rate / 25.0 for rate in plain.weights], rel=1e-12)
+    assert scheduled.bound == pytest.approx(plain.bound / 25.0, rel=1e-12)
 
 
 def test_first_sample_by_hand(law):

@@ -174,6 +174,7 @@ def test_repairs_are_on_in_a_design_and_off_in_the_printed_one(er24pc, rail):
     ):
         assert made.gain("dead_zone") is on
         assert made.gain("hold_when_saturated") is on
+        assert made.gain("scheduled_rates") is False
 
 
 def test_printed_design_is_section_7_of_the_paper(er24pc, rail):
