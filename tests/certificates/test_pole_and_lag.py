@@ -2,27 +2,29 @@
 
 from dataclasses import dataclass, replace
 
+import flint
 import numpy as np
 import pytest
 from scipy.signal import cont2discrete
 
 from wspd_design.certificates import open_loop_pole, sampling
+from wspd_design.certificates.proof import checker
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.slip_pole import pole_map
 from wspd_design.controllers.protocol import pulse_width
 from wspd_design.model.slip import slip_dynamics
 
-FINDINGS = {  # nominal pole at slip 0.14 and 33.3, 20, 10, 5 m/s on the calibrated vehicle [1/s]
+KNOWN = {  # nominal pole at slip 0.14 and 33.3, 20, 10, 5 m/s on the calibrated vehicle [1/s]
     "polach-dry": (1.00, 3.01, 6.79, 9.92),
     "polach-wet": (0.97, 1.27, 1.25, 0.49),
 }
 
 
-@pytest.mark.parametrize("rail", FINDINGS)
-def test_pole_over_speed_agrees_with_the_findings(make_problem, make_controller, rail):
+@pytest.mark.parametrize("rail", KNOWN)
+def test_pole_over_speed_agrees_with_known_values(make_problem, make_controller, rail):
     poles = pole_map(make_problem(make_controller("afsmc"), rail=rail))
     found = np.interp((33.3, 20.0, 10.0, 5.0), poles.speeds, poles.nominal)
-    assert found == pytest.approx(FINDINGS[rail], rel=0.03)
+    assert found == pytest.approx(KNOWN[rail], rel=0.03)
     assert np.all(poles.worst >= poles.nominal)
     assert poles.highest.value >= poles.worst.max() - 1e-9
 
@@ -50,7 +52,7 @@ def test_rail_without_falling_friction_passes(make_problem, make_controller):
 def test_fast_valve_passes(make_problem, make_controller, fast_vehicle):
     problem = make_problem(make_controller("afsmc"), vehicle=fast_vehicle)
     assert open_loop_pole.check(problem).status is Status.PROVED
-    assert sampling.check(replace(problem, sample_time=0.01)).status is Status.EVIDENCE
+    assert sampling.check(replace(problem, sample_time=0.01)).status is Status.PROVED
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,18 +98,57 @@ def _stabilizable(pole, sample_time, lag):
 
 @pytest.mark.parametrize(("sample_time", "lag"), [(0.1, 0.6), (0.02, 0.6), (0.3, 0.2), (1.0, 0.1)])
 def test_largest_pole_parts_what_a_gain_can_stabilize(sample_time, lag):
-    limit = sampling.largest_pole(sample_time, lag)
-    assert limit < 1.0 / lag
-    assert _stabilizable(0.99 * limit, sample_time, lag)
-    assert not _stabilizable(1.01 * limit, sample_time, lag)
+    low, high = sampling.largest_pole(sample_time, lag)
+    assert low < high < 1.0 / lag
+    assert high - low < 1e-14 * high
+    assert _stabilizable(0.99 * low, sample_time, lag)
+    assert not _stabilizable(1.01 * high, sample_time, lag)
 
 
 def test_largest_pole_counts_half_a_sample_as_lag():
-    assert sampling.largest_pole(0.1, 0.6) == pytest.approx(1.0 / 0.65, rel=1e-4)
+    assert sampling.largest_pole(0.1, 0.6)[0] == pytest.approx(1.0 / 0.65, rel=1e-4)
+
+
+@pytest.mark.parametrize("pole", [0.3, 1.2, 1.5384, 1.5386, 4.0])
+def test_condition_on_the_pole_is_that_of_the_discretized_plant(pole):
+    """SciPy's discretization: the second root of the loop with K = p leaves the circle where the condition says."""
+    plant = ([[pole, 1.0], [0.0, -1.0 / 0.6]], [[0.0], [1.0 / 0.6]], [[1.0, 0.0]], [[0.0]])
+    transition, entry, *_ = cont2discrete(tuple(map(np.array, plant)), 0.1)
+    roots = np.linalg.eigvals(transition - pole * entry @ np.array([[1.0, 0.0]])).real
+    assert np.abs(roots - 1.0).min() < 1e-9
+    second = roots[np.argmax(np.abs(roots - 1.0))]
+    assert bool(sampling.lacking(pole, 0.1, 0.6) > 0) is (second > 1.0)
+    expected = (second - 1.0) * (1.0 + pole * 0.6)
+    assert float(sampling.lacking(pole, 0.1, 0.6)) == pytest.approx(expected, abs=1e-9)
+
+
+def test_sampling_is_proved_and_refuted_for_certain(make_problem, make_controller, fast_vehicle):
+    problem = make_problem(make_controller("smc"), vehicle=fast_vehicle, sample_time=0.02)
+    good = sampling.check(problem)
+    assert good.status is Status.PROVED
+    assert 0.0 < good.margin.low <= good.margin.high
+    (proof,) = good.proofs
+    assert checker.check(sampling.claim(problem), proof.certificate).accepted
+    assert not checker.check(sampling.claim(replace(problem, sample_time=0.5)), proof.certificate).accepted
+    bad = sampling.check(replace(problem, sample_time=0.5))
+    assert bad.status is Status.REFUTED
+    assert not bad.proofs
+    pole = {point.name: point.value for point in bad.witness}["slip pole"]
+    assert not _stabilizable(pole, 0.5, 0.02)
+
+
+def test_pole_too_close_to_the_limit_is_neither(make_problem, make_controller, monkeypatch):
+    """If the condition cannot tell the sign at the witness, nothing is refuted."""
+    problem = make_problem(make_controller("smc"))
+    assert sampling.check(problem).status is Status.REFUTED
+    limit = sampling.largest_pole(0.1, 0.6)
+    monkeypatch.setattr(sampling, "largest_pole", lambda *_: limit)
+    monkeypatch.setattr(sampling, "lacking", lambda *_: flint.arb(0, 1))
+    assert sampling.check(problem).status is Status.UNDECIDED
 
 
 def test_slow_sampling_is_refuted_where_fast_sampling_passes(make_problem, make_controller, fast_vehicle):
     law = make_controller("smc")
     problem = make_problem(law, vehicle=fast_vehicle)
-    assert sampling.check(replace(problem, sample_time=0.02)).status is Status.EVIDENCE
+    assert sampling.check(replace(problem, sample_time=0.02)).status is Status.PROVED
     assert sampling.check(replace(problem, sample_time=0.5)).status is Status.REFUTED
