@@ -204,3 +204,23 @@ def test_point_outside_the_box_is_no_witness(reference_claim):
     assert low <= high < reference_claim.bound
     with pytest.raises(ValueError, match="outside the box"):
         value(reference_claim, {**point, "speed": Fraction(1)})
+
+
+def test_limit_of_the_kernels_is_taken_from_the_arranged_form():
+    """1/x times x^2 at zero; another form is not believed."""
+
+    def claim(form):
+        return Claim(
+            name="limit",
+            variables=(variable("x", (0.0, 2.0), "-"),),
+            expression=lambda x: 1.0 / x["x"] * x["x"] ** 2 + 3.0,
+            form=form,
+            relation="<=",
+            bound=Fraction(5),
+            unit="-",
+        )
+
+    assert value(claim(lambda x: x["x"] + 3.0), {"x": Fraction(0)}) == (3, 3)
+    for form in (lambda x: x["x"] + 2.0, None):
+        with pytest.raises(ValueError, match="not defined"):
+            value(claim(form), {"x": Fraction(0)})

@@ -72,6 +72,8 @@ def check(claim: Claim, certificate: str, *, seconds: float = 60.0) -> Verdict:
 def value(claim: Claim, point: dict[str, Fraction]) -> tuple[Fraction, Fraction]:
     """Enclose the expression, as the model's kernels have it, at one point of the box.
 
+    Where the kernels divide by zero, the arranged form stands for their limit.
+
     Parameters
     ----------
     claim : Claim
@@ -92,6 +94,8 @@ def value(claim: Claim, point: dict[str, Fraction]) -> tuple[Fraction, Fraction]
         box.append((_fmpq(at), _fmpq(at)))
     with flint.ctx.workprec(PRECISION):
         found, _ = Program(claim.definition(), claim.variables).run(_ends(box))
+        if not finite(found) and same(claim.formula(), claim.definition()):
+            found, _ = Program(claim.formula(), claim.variables).run(_ends(box))
         if not finite(found):
             raise Refused("the expression is not defined at this point")
         return _rational(found[0].lower()), _rational(found[1].upper())
