@@ -117,7 +117,7 @@ def test_condition_on_the_pole_is_that_of_the_discretized_plant(pole):
     roots = np.linalg.eigvals(transition - pole * entry @ np.array([[1.0, 0.0]])).real
     assert np.abs(roots - 1.0).min() < 1e-9
     second = roots[np.argmax(np.abs(roots - 1.0))]
-    assert bool(sampling.lacking(pole, 0.1, 0.6) > 0) is (second > 1.0)
+    assert bool(sampling.lacking(pole, 0.1, 0.6) > 0) == (second > 1.0)
     expected = (second - 1.0) * (1.0 + pole * 0.6)
     assert float(sampling.lacking(pole, 0.1, 0.6)) == pytest.approx(expected, abs=1e-9)
 
