@@ -29,6 +29,7 @@ from wspd_design.certificates import (
 from wspd_design.certificates.invariance import certificate as sampled_invariance
 from wspd_design.certificates.linear_loop import LinearLaw
 from wspd_design.certificates.progress import Listener, listening
+from wspd_design.certificates.proof.prover import Budget, within
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.parameters.errors import UserError
 
@@ -64,6 +65,7 @@ def verify(
     *,
     only: Collection[str] | None = None,
     progress: Callable[[str], None] = lambda _: None,
+    budget: Budget | None = None,
 ) -> tuple[Certificate, ...]:
     """Run the checks.
 
@@ -75,6 +77,8 @@ def verify(
         Names of the checks to run, from :data:`NAMES`; all by default.
     progress : callable, optional
         Told the title of each check before it starts, and while it searches how far it has come.
+    budget : Budget, optional
+        Of each search on boxes; a claim on which it is used up stays undecided.
 
     Returns
     -------
@@ -98,7 +102,7 @@ def verify(
     for module in MODULES:
         if only is None or module.NAME in only:
             progress(module.TITLE)
-            with listening(_at(module.TITLE, progress)):
+            with listening(_at(module.TITLE, progress)), within(budget or Budget()):
                 certificates.append(module.check(problem))
     return tuple(certificates)
 

@@ -14,7 +14,7 @@ from wspd_design.certificates.model_error import mismatch
 from wspd_design.certificates.progress import listening
 from wspd_design.certificates.proof import engine, outward
 from wspd_design.certificates.proof.checker import check, value
-from wspd_design.certificates.proof.prover import Budget, extreme, prove
+from wspd_design.certificates.proof.prover import Budget, extreme, prove, within
 from wspd_design.certificates.records import Status
 
 TRUE_SUPREMUM = 24.79297  # m/s2, enclosed by 24.79296 and 24.79298
@@ -72,7 +72,8 @@ def test_verdict_near_the_supremum(reference_claim, distance):
 
 
 def test_used_up_budget_is_undecided(reference_claim):
-    found = engine.settle(reference_claim, tolerance=1e-6, budget=Budget(boxes=100))
+    with within(Budget(boxes=100)):
+        found = engine.settle(reference_claim, tolerance=1e-6)
     assert found.status is Status.UNDECIDED
     assert found.proof is None
     assert 0.0 < found.undecided <= 1.0

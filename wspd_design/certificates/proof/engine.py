@@ -10,7 +10,7 @@ from math import floor, inf, log10, nextafter
 
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.claim import Claim, text
-from wspd_design.certificates.proof.prover import Budget, Outcome, extreme, prove
+from wspd_design.certificates.proof.prover import Outcome, extreme, prove
 from wspd_design.certificates.records import Proof, Range, Status
 
 PACKAGES = ("crival", "casadi", "python-flint", "sympy")
@@ -51,7 +51,6 @@ def settle(
     claim: Claim,
     *,
     tolerance: float,
-    budget: Budget | None = None,
 ) -> Finding:
     """Prove a claim with nearly the tightest bound that holds, or refute it, or say how far one got.
 
@@ -61,8 +60,6 @@ def settle(
         What is asked.
     tolerance : float
         Width of the enclosure of the extreme value, in the unit of the claim.
-    budget : Budget, optional
-        Of each run of the prover.
 
     Returns
     -------
@@ -72,11 +69,11 @@ def settle(
         asked.
     """
     started = time.perf_counter()
-    found = extreme(claim, tolerance=tolerance, budget=budget)
+    found = extreme(claim, tolerance=tolerance)
     target = tightest(claim, found, tolerance)
     if not _denied(claim, found) and not _at_least(target, claim):
         # The bound lies within the tolerance of the extreme value, or the budget was used up.
-        target, found = claim, prove(claim, budget=budget)
+        target, found = claim, prove(claim)
     attained = checker.value(claim, found.point)
     if _denied(claim, found) and (
         (attained[0] > claim.bound) if claim.relation == "<=" else (attained[1] < claim.bound)
@@ -104,7 +101,6 @@ def enclose(
     claim: Claim,
     *,
     tolerance: float,
-    budget: Budget | None = None,
 ) -> Finding:
     """Prove nearly the tightest bound of a claim's expression; the bound of the claim itself does not matter.
 
@@ -114,8 +110,6 @@ def enclose(
         Expression, box and direction.
     tolerance : float
         Width of the enclosure of the extreme value, in the unit of the claim.
-    budget : Budget, optional
-        Of the prover.
 
     Returns
     -------
@@ -123,7 +117,7 @@ def enclose(
         PROVED or UNDECIDED; its claim has the bound that was proved.
     """
     started = time.perf_counter()
-    found = extreme(claim, tolerance=tolerance, budget=budget)
+    found = extreme(claim, tolerance=tolerance)
     attained = checker.value(claim, found.point)
     return _checked(tightest(claim, found, tolerance), found, attained, started, claim.bound)
 
@@ -134,7 +128,10 @@ def _checked(
     """Let the checker decide about what the prover found."""
     far = _far(claim, found)
     if not found.tree:
-        share = f"{found.undecided:.2g} of the box is undecided after {found.boxes} boxes"
+        share = (
+            f"{found.undecided:.2g} of the box is undecided after {found.boxes} boxes and {found.seconds:.0f} s; "
+            "more time may decide it"
+        )
         return _finding(claim, found, Status.UNDECIDED, attained, far, started, asked, reason=share)
     certificate = certificate_text(claim, found)
     verdict = checker.check(claim, certificate)

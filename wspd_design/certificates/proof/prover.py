@@ -6,6 +6,9 @@ slope matters most. Internally every claim is an upper bound; one from below is 
 """
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
@@ -30,10 +33,23 @@ POLISH = 12  # rounds of narrowing around the best sample
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Budget:
-    """When the prover gives up."""
+    """When a run of the prover gives up."""
 
     seconds: float = 20.0
     boxes: int = 2_000_000
+
+
+_budget: ContextVar[Budget] = ContextVar("budget", default=Budget())
+
+
+@contextmanager
+def within(budget: Budget) -> Iterator[None]:
+    """Give every run of the prover inside the block this budget."""
+    token = _budget.set(budget)
+    try:
+        yield
+    finally:
+        _budget.reset(token)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +69,6 @@ def extreme(
     claim: Claim,
     *,
     tolerance: float,
-    budget: Budget | None = None,
     backend: Backend | None = None,
 ) -> Outcome:
     """Enclose the supremum of a claim's expression, or the infimum for ``>=``; the bound does not matter.
@@ -64,26 +79,28 @@ def extreme(
         Expression, box and direction.
     tolerance : float
         Width of the enclosure, in the unit of the claim.
-    budget : Budget, optional
-        When it is used up, the enclosure is wider and a share of the box undecided.
     backend : Backend, optional
         Intervals arithmetic.
+
+    Returns
+    -------
+    Outcome
+        When the budget is used up, the enclosure is wider and a share of the box undecided.
     """
     search = _Search(claim, backend or default_backend())
-    search.run(None, tolerance, budget or Budget())
+    search.run(None, tolerance)
     return search.outcome()
 
 
 def prove(
     claim: Claim,
     *,
-    budget: Budget | None = None,
     backend: Backend | None = None,
 ) -> Outcome:
     """Split the box until the claim is shown everywhere, or a point denies it, or the budget is used up."""
     search = _Search(claim, backend or default_backend())
     low, high = enclosing(claim.bound)
-    search.run(low if claim.relation == "<=" else -high, 0.0, budget or Budget())
+    search.run(low if claim.relation == "<=" else -high, 0.0)
     return search.outcome()
 
 
@@ -114,11 +131,11 @@ class _Search:
         self.tape = trace(self.claim, self.backend)
         self.sign = 1.0 if self.claim.relation == "<=" else -1.0
 
-    def run(self, bound: float | None, tolerance: float, budget: Budget) -> None:
+    def run(self, bound: float | None, tolerance: float) -> None:
         """Decide boxes against the bound, or against the best point plus the tolerance."""
         import numpy as np
 
-        started = time.perf_counter()
+        started, budget = time.perf_counter(), _budget.get()
         size = len(self.claim.free)
         self._look_around(size)
         waiting = Boxes(
