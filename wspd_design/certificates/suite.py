@@ -29,7 +29,7 @@ from wspd_design.certificates import (
 from wspd_design.certificates.invariance import certificate as sampled_invariance
 from wspd_design.certificates.linear_loop import LinearLaw
 from wspd_design.certificates.progress import Listener, listening
-from wspd_design.certificates.proof.prover import Budget, within
+from wspd_design.certificates.proof.prover import DEFAULT_BUDGET, Budget, within
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.parameters.errors import UserError
 
@@ -65,7 +65,7 @@ def verify(
     *,
     only: Collection[str] | None = None,
     progress: Callable[[str], None] = lambda _: None,
-    budget: Budget | None = None,
+    budget: Budget = DEFAULT_BUDGET,
 ) -> tuple[Certificate, ...]:
     """Run the checks.
 
@@ -102,7 +102,7 @@ def verify(
     for module in MODULES:
         if only is None or module.NAME in only:
             progress(module.TITLE)
-            with listening(_at(module.TITLE, progress)), within(budget or Budget()):
+            with listening(_at(module.TITLE, progress)), within(budget):
                 certificates.append(module.check(problem))
     return tuple(certificates)
 

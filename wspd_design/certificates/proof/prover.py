@@ -39,7 +39,8 @@ class Budget:
     boxes: int = 2_000_000
 
 
-_budget: ContextVar[Budget] = ContextVar("budget", default=Budget())
+DEFAULT_BUDGET = Budget()
+_budget: ContextVar[Budget] = ContextVar("budget", default=DEFAULT_BUDGET)
 
 
 @contextmanager
