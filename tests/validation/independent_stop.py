@@ -50,6 +50,7 @@ class IndependentStop:
 
     def rates(self, t, y, fill, vent, locked):
         v, omega, _, p = y
+        t += self.braking_time
         f = self.creep_force(v, omega)
         a0, a1, a2 = self.resistance
         damping = self.damping[0] * math.exp(-self.damping[1] * t)
@@ -62,9 +63,12 @@ class IndependentStop:
             fill * (supply - p) / self.brake.fill_time - vent * p / self.brake.vent_time,
         )
 
-    def run(self, controller, initial_speed, duration=math.inf):
+    def run(self, controller, initial_speed, duration=math.inf, *, slip=0.0, torque=0.0, braking_time=0.0):
         """Brake to standstill, or for a duration; return the states (v, omega, distance, P/P_max) and the time."""
-        y = np.array([initial_speed, initial_speed / self.R, 0.0, 0.0])
+        y = np.array(
+            [initial_speed, initial_speed * (1.0 - slip) / self.R, 0.0, torque / self.brake.max_torque]
+        )
+        self.braking_time = braking_time
         state = controller.start(self._measure(y))
         t, locked, sample, h = 0.0, False, 0, controller.sample_time
         while t < duration:

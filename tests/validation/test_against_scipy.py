@@ -9,7 +9,7 @@ from wspd_design.model.generated import motion as generated
 from wspd_design.parameters.loading import constants, load_rail
 from wspd_design.simulation import loop_input as module
 from wspd_design.simulation.metrics import momentum_residual
-from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.stop import simulate
 
 INITIAL_SPEED = 120.0 / 3.6
@@ -31,6 +31,20 @@ def test_stop(er24pc, make_controller, stop, controller, rail):
     assert run.time[-1] == pytest.approx(time, rel=1e-5)
     if controller == "none":
         assert run.totals.lock_time > 15.0
+
+
+@pytest.mark.parametrize(("controller", "rail"), [("none", "polach-wet"), ("trenitalia", "polach-dry")])
+def test_stop_from_a_state(er24pc, make_controller, controller, rail):
+    track, speed = load_rail(rail), 60.0 / 3.6
+    law, begin = make_controller(controller, rail), {"slip": 0.2, "torque": 22e3, "braking_time": 1.5}
+    time, (_, _, distance, _) = IndependentStop(er24pc, track).run(law, speed, **begin)
+    run = simulate(
+        er24pc, law, Scenario(rail=track, initial_speed=speed, start=Start(**begin)), plant="quarter"
+    )
+    assert run.totals.distance == pytest.approx(distance, rel=1e-5)
+    assert run.time[-1] == pytest.approx(time, rel=1e-5)
+    rolling = simulate(er24pc, law, Scenario(rail=track, initial_speed=speed), plant="quarter")
+    assert run.totals.distance < 0.97 * rolling.totals.distance
 
 
 def three_seconds(er24pc, make_controller, monkeypatch, name):

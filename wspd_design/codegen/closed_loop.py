@@ -93,6 +93,8 @@ class LoopInput:
     stop_parameters: "Array"  # (PARAMETERS, stops)
     lane_parameters: "Array"  # (PARAMETERS, lanes)
     speeds: "Array"  # (stops,), initial [m/s]
+    wheel_speeds: "Array"  # (lanes,), initial [rad/s]
+    pressures: "Array"  # (lanes,), of the cylinders, initial [Pa]
     settings: Settings
     patch_starts: "Array | None" = None  # (patches,) [m]
     patch_rails: "Array | None" = None  # (patches, axles, RAIL_NUMBERS)
@@ -178,8 +180,9 @@ class ClosedLoop:
             first, second = given.held_speeds
             head.hold_points = given.held_slips.shape[1]
             head.hold_first, head.hold_spacing = math.log(first), math.log(second / first)
-        given_blocks = (given.stop_parameters, given.lane_parameters, given.speeds)
-        blocks = [np.ascontiguousarray(block, dtype=np.float64) for block in given_blocks]
+        numbers = (given.stop_parameters, given.lane_parameters)
+        initial = (given.speeds, given.wheel_speeds, given.pressures)
+        blocks = [np.ascontiguousarray(block, dtype=np.float64) for block in (*numbers, *initial)]
         self._library.wspd_begin(buffer, *(_pointer(block) for block in blocks))
         return buffer, trace, [keep, blocks]
 

@@ -25,6 +25,7 @@ class Surroundings:
 
     grade_force: float = 0.0  # N, positive uphill
     axle_offset: float = 0.0  # m, behind the first axle
+    braking_time: float = 0.0  # s, from the application of the brake to the begin of the stop
 
 
 _RECORDS: tuple[tuple[str, type], ...] = (
@@ -103,7 +104,7 @@ def closed_loop_kernels(
     )
     track = replace(rail, **symbols["rail"])
 
-    plant = _plant_functions(loco, track, p, symbols["surroundings"]["grade_force"], disturbed)
+    plant = _plant_functions(loco, track, p, Surroundings(**symbols["surroundings"]), disturbed)
     stop_constants, (loads, train) = hoist(plant[:2], 1, "stop_constants")
     lane_constants, (condition, axle) = hoist(plant[2:4], 1, "lane_constants")
     window_constants, (actuator,) = hoist(plant[4:], 2, "window_constants")
@@ -123,7 +124,9 @@ def closed_loop_kernels(
     )
 
 
-def _plant_functions(loco: Vehicle, track: Rail, p: Any, grade_force: Any, disturbed: bool) -> list[Any]:
+def _plant_functions(
+    loco: Vehicle, track: Rail, p: Any, surroundings: Surroundings, disturbed: bool
+) -> list[Any]:
     """Trace the plant; the first input of every function is the parameter vector."""
     import casadi as ca
 
@@ -138,9 +141,10 @@ def _plant_functions(loco: Vehicle, track: Rail, p: Any, grade_force: Any, distu
         speed=speed,
         creep_forces=tuple(force[i] for i in range(AXLES)),
         pitch=motions,
-        grade_force=grade_force,
+        grade_force=surroundings.grade_force,
     )
-    condition = four_axle.axle_condition(loco, time=time, wheel_load=load)
+    braking_time = time + surroundings.braking_time
+    condition = four_axle.axle_condition(loco, time=braking_time, wheel_load=load)
     axle = four_axle.axle_motion(
         loco,
         track,
@@ -153,10 +157,10 @@ def _plant_functions(loco: Vehicle, track: Rail, p: Any, grade_force: Any, distu
     rolling = where(locked != 0.0, 0.0, axle.wheel_acceleration)
     passed = where(locked != 0.0, 2.0 * loco.wheel_radius * axle.creep_force, demand)
     valves = ca.SX.sym("valves", 4)
-    pressures = _pressure(loco.brake, time, *(valves[i] for i in range(4)))
+    pressures = _pressure(loco.brake, time, surroundings.braking_time, *(valves[i] for i in range(4)))
     torque = brake_model.braking_torque(loco.brake, pressures[0])
     if disturbed:
-        torque *= 1.0 + brake_model.torque_disturbance(loco.brake, time)
+        torque *= 1.0 + brake_model.torque_disturbance(loco.brake, braking_time)
     return [
         ca.Function("loads_kernel", [p, pitch], [ca.vertcat(*loads)]),
         ca.Function(
@@ -175,11 +179,19 @@ def _plant_functions(loco: Vehicle, track: Rail, p: Any, grade_force: Any, distu
 
 
 def _pressure(
-    brake: Brake, time: Any, start: Any, start_pressure: Any, fill_end: Any, vent_end: Any
+    brake: Brake, time: Any, before: Any, start: Any, start_pressure: Any, fill_end: Any, vent_end: Any
 ) -> tuple[Any, Any]:
-    """Cylinder pressure under fill, then vent, then hold; and what it would be without the venting."""
+    """Cylinder pressure under fill, then vent, then hold; and what it would be without the venting.
+
+    The brake was applied ``before`` the time zero [s].
+    """
     filled = generated.filled_pressure(
-        minimum(time, fill_end), start, start_pressure, brake.max_pressure, brake.supply_rate, brake.fill_time
+        minimum(time, fill_end) + before,
+        start + before,
+        start_pressure,
+        brake.max_pressure,
+        brake.supply_rate,
+        brake.fill_time,
     )
     vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
     return generated.vented_pressure(vented_for, filled, brake.vent_time), filled

@@ -93,7 +93,7 @@ class _VirtualPlant:
         self.parameters = self._by_axle.T
         self.state, self.inputs = np.zeros(STATES), np.zeros(functions.single.size1_in(1))
         self.part("speed")[:] = given.speeds[0]
-        self.part("wheel")[:] = given.speeds[0] / self.parameters[RADIUS]
+        self.part("wheel")[:] = given.wheel_speeds
         self.edges: tuple[float, ...] = ()
         self.vented = np.zeros(AXLES)
         self.recorded = -1.0
@@ -109,6 +109,7 @@ class _VirtualPlant:
         self._window = np.zeros((AXLES, 4))
         self._window_constants = _Bound(kernels.window_constants.map(AXLES), self._by_axle, self._window)
         self._write_fixed_inputs()
+        self._close_valves(given.pressures)
 
     def part(self, name: str) -> "Array":
         """One part of the state, to read and to write."""
@@ -169,12 +170,22 @@ class _VirtualPlant:
         fill_end = present + fill * h
         vent_end = np.where(1.0 - fill - vent < 1e-12, present + h, fill_end + vent * h)
         self.vented += self.part("filled") - self.part("pressure")
-        self._window[:] = np.stack(
-            [np.full(AXLES, present), self.part("pressure"), fill_end, vent_end], axis=1
-        )
+        self._set_windows(present, self.part("pressure"), fill_end, vent_end)
+        self.edges = tuple(sorted({*fill_end.tolist(), *vent_end.tolist()}))
+
+    def _close_valves(self, pressures: "Array") -> None:
+        """Begin with these pressures in the cylinders."""
+        self._set_windows(0.0, pressures, 0.0, 0.0)
+        present = [self.kernels.actuator(constants, 0.0) for constants in self._window_constants.outputs[0]]
+        for name, values in zip(("pressure", "torque", "filled"), zip(*present, strict=True), strict=True):
+            self.part(name)[:] = [float(value) for value in values]
+
+    def _set_windows(self, *pattern: "float | Array") -> None:
+        """Work out the constants of the actuators: start, pressure there, end of filling, end of venting."""
+        for column, values in enumerate(pattern):
+            self._window[:, column] = values
         self._window_constants.call()
         self._give("window_constants", self._window_constants.outputs[0].ravel())
-        self.edges = tuple(sorted({*fill_end.tolist(), *vent_end.tolist()}))
 
     def _advance_to(self, goal: float) -> int:
         result = GOOD

@@ -17,7 +17,7 @@ from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.four_axle import AXLES
 from wspd_design.simulation.loop_input import loop_input
-from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.stop import run_loop
 
 if TYPE_CHECKING:
@@ -73,10 +73,15 @@ def ideal_stop(
     Raises
     ------
     UserError
-        For a change of rail along the track: its peak slip is not known in advance.
+        For a change of rail along the track: its peak slip is not known in advance. For a stop that does not
+        start rolling with empty cylinders.
     """
     import numpy as np
 
+    if scenario.start != Start():
+        raise UserError(
+            "the bound is known for a stop that starts rolling with empty cylinders; leave start out"
+        )
     if scenario.patches:
         raise UserError("the bound is not known for a change of rail along the track; leave the patches out")
     if instantaneous:

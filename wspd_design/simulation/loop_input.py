@@ -10,10 +10,11 @@ from wspd_design.codegen.kernels import Surroundings, parameter_values
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
-from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.records import Brake, Rail, Vehicle
 from wspd_design.plants.four_axle import AXLES
 from wspd_design.plants.quarter import quarter
-from wspd_design.simulation.records import PLANTS, Scenario
+from wspd_design.simulation.records import PLANTS, Scenario, Start
+from wspd_design.simulation.start import available_torque
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,7 +32,7 @@ def loop_input(
 ) -> LoopInput:
     """Numbers of one or several stops for the closed loop.
 
-    Stops side by side may differ in the numbers of vehicle, rail, initial speed and seed; patches, grade,
+    Stops side by side may differ in the numbers of vehicle, rail, initial speed, start and seed; patches, grade,
     sensing and load irregularity are those of the first.
     """
     import numpy as np
@@ -39,12 +40,20 @@ def loop_input(
     scenario = cases[0][1]
     sensing = scenario.sensing
     _check(scenario, controller, plant)
+    for vehicle, each in cases:
+        _check_start(vehicle, each.start)
     placed = [(_flat(vehicle) if plant == "quarter" else vehicle, each) for vehicle, each in cases]
     grade = constants().gravity * scenario.grade
     columns = [
         [
             parameter_values(
-                vehicle, rail, Surroundings(grade_force=vehicle.mass * grade, axle_offset=offset)
+                vehicle,
+                rail,
+                Surroundings(
+                    grade_force=vehicle.mass * grade,
+                    axle_offset=offset,
+                    braking_time=each.start.braking_time,
+                ),
             )
             for vehicle, each in placed
             for rail, offset in [(_rails(each)[axle], axle_offsets(vehicle, plant)[axle])]
@@ -57,6 +66,8 @@ def loop_input(
         stop_parameters=np.array(columns[0]).T,
         lane_parameters=np.array([row for axle in columns for row in axle]).T,
         speeds=np.array([each.initial_speed for _, each in cases]),
+        wheel_speeds=np.tile([_rim_speed(each) / vehicle.wheel_radius for vehicle, each in cases], AXLES),
+        pressures=np.tile([_pressure(vehicle.brake, each.start) for vehicle, each in cases], AXLES),
         settings=_settings(cases, controller, refinement),
         patch_starts=np.array([patch.start for patch in scenario.patches]) if scenario.patches else None,
         patch_rails=_patch_rails(scenario) if scenario.patches else None,
@@ -82,6 +93,24 @@ def _check(scenario: Scenario, controller: Controller, plant: str) -> None:
         )
     if plant == "quarter" and (scenario.axle_rails is not None or scenario.load_irregularity is not None):
         raise UserError('rails and loads of single axles need the plant "four-axle"')
+
+
+def _check_start(vehicle: Vehicle, start: Start) -> None:
+    most = available_torque(vehicle.brake, start.braking_time)
+    if start.torque > most:
+        raise UserError(
+            f"torque = {start.torque:g} N m of the start must not exceed the {most:g} N m that the supply of "
+            f"{vehicle.name} gives {start.braking_time:g} s after the brake was applied; lower it, or start "
+            "with a longer braking time"
+        )
+
+
+def _rim_speed(scenario: Scenario) -> float:
+    return scenario.initial_speed * (1.0 - scenario.start.slip)
+
+
+def _pressure(brake: Brake, start: Start) -> float:
+    return brake.max_pressure * (start.torque / brake.max_torque)
 
 
 def _flat(vehicle: Vehicle) -> Vehicle:

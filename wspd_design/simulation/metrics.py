@@ -8,7 +8,7 @@ from itertools import pairwise
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
-from wspd_design.simulation.records import Ending, Run, Scenario
+from wspd_design.simulation.records import Ending, Run, Scenario, Start
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,25 +51,28 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     Returns
     -------
     Metrics
-        A run that did not come to a standstill gives NaN for lag and plateau.
+        A run that did not come to a standstill gives NaN for lag and plateau; so does one that did not start
+        rolling with empty cylinders, which has no bound either.
     """
     totals, time = run.totals, float(run.time[-1])
     stopped = run.ending is Ending.STOPPED
+    usual = scenario.start == Start()
     judged = totals.judged_time
     mean = totals.slip / judged if judged else math.nan
     square = (
         totals.slip_squared / judged - 2.0 * slip_reference * mean + slip_reference**2 if judged else math.nan
     )
-    bound = math.nan if scenario.patches else ideal_stop(vehicle, scenario, plant=run.plant).distance
+    known = usual and not scenario.patches
+    bound = math.nan if not known else ideal_stop(vehicle, scenario, plant=run.plant).distance
     per_axle = [[(sample.fill, sample.vent) for sample in samples] for samples in run.axle_samples]
     commands = [command for axle in per_axle for command in axle]
     return Metrics(
         distance=totals.distance,
         stopping_time=time,
         torque_integral=totals.torque,
-        lag=2.0 * totals.distance / run.initial_speed - time if stopped else math.nan,
+        lag=2.0 * totals.distance / run.initial_speed - time if stopped and usual else math.nan,
         plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed))
-        if stopped
+        if stopped and usual
         else math.nan,
         slip_mean=mean,
         slip_max=run.slip_max,
@@ -108,8 +111,8 @@ def momentum_residual(run: Run, vehicle: Vehicle) -> float:
     sum of the torque integrals = R m (v0 - v) + 8 I (omega0 - omega) - R int f_d dt - 8 int B omega dt.
     """
     radius, inertia = vehicle.wheel_radius, vehicle.wheelset_inertia
-    rolling = run.initial_speed / radius
-    initial = radius * vehicle.mass * run.initial_speed + inertia * rolling * len(run.final_wheel_speeds)
+    turning = float(run.wheel_speed[0, 0])  # all wheelsets start alike
+    initial = radius * vehicle.mass * run.initial_speed + inertia * turning * len(run.final_wheel_speeds)
     final = radius * vehicle.mass * float(run.speed[-1]) + inertia * sum(run.final_wheel_speeds)
     taken = run.totals.torque + radius * run.totals.resistance_impulse + run.totals.damping_impulse
     return (initial - final - taken) / initial
@@ -117,8 +120,8 @@ def momentum_residual(run: Run, vehicle: Vehicle) -> float:
 
 def energy_residual(run: Run, vehicle: Vehicle) -> float:
     """What is missing in the balance of kinetic energy and work, relative to the initial energy."""
-    rolling = [run.initial_speed / vehicle.wheel_radius] * len(run.final_wheel_speeds)
-    initial = _kinetic_energy(vehicle, run.initial_speed, rolling)
+    turning = [float(run.wheel_speed[0, 0])] * len(run.final_wheel_speeds)
+    initial = _kinetic_energy(vehicle, run.initial_speed, turning)
     final = _kinetic_energy(vehicle, float(run.speed[-1]), run.final_wheel_speeds)
     totals = run.totals
     work = totals.brake_work + totals.sliding_work + totals.resistance_work + totals.damping_work

@@ -1,5 +1,6 @@
 """What goes into a simulated stop and what comes out of it."""
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -45,11 +46,39 @@ class LoadIrregularity:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Start:
+    """State of all wheelsets at the begin of a stop; by default they roll and the brake is applied now.
+
+    The supply (8), the vibration of the pads and the damping of the wheels are as far on as ``braking_time`` says.
+    Load transfer begins with the stop.
+    """
+
+    slip: float = 0.0  # -, share by which the rims are slower than the train
+    torque: float = 0.0  # N m per wheelset, of the cylinder pressure (12)
+    braking_time: float = 0.0  # s, since the brake was applied
+
+    def __post_init__(self) -> None:
+        """Refuse what is no state of a turning wheel."""
+        if not 0.0 <= self.slip < 1.0:
+            raise UserError(
+                f"slip = {self.slip:g} of the start must lie in [0, 1): 0 for rolling wheels; a stop cannot "
+                "start with locked ones"
+            )
+        for name, value, unit in (
+            ("torque", self.torque, "N m"),
+            ("braking time", self.braking_time, "s"),
+        ):
+            if not 0.0 <= value < math.inf:
+                raise UserError(f"{name} = {value:g} {unit} of the start must be finite and not negative")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario:
     """A stop on straight track."""
 
     rail: Rail
     initial_speed: float  # m/s
+    start: Start = Start()
     seed: int = 0
     axle_rails: tuple[Rail, Rail, Rail, Rail] | None = None  # front axle first, in place of ``rail``
     patches: tuple[Patch, ...] = ()

@@ -171,15 +171,17 @@ def _run_record(
 
 
 def _first_row(vehicle: Vehicle, scenario: Scenario, output: LoopOutput) -> "NDArray[np.float64]":
-    """Row of the traces at t = 0: the wheels roll, the cylinders are empty."""
+    """Row of the traces at t = 0, where the load is static."""
     import numpy as np
 
+    speed, slip = scenario.initial_speed, scenario.start.slip
     static = vehicle.mass * constants().gravity / (2 * AXLES)
-    row = np.zeros(output.trace.shape[1])
-    row[1] = scenario.initial_speed
-    row[3 : 3 + AXLES] = scenario.initial_speed / vehicle.wheel_radius
-    row[3 + 3 * AXLES : 3 + 4 * AXLES] = static
-    return row
+    referred = slip * min(speed / constants().slip_regularization_speed, 1.0)
+    alike = (speed * (1.0 - slip) / vehicle.wheel_radius, referred)
+    torques = output.samples[0, -AXLES:]  # as the first sample saw them
+    return np.concatenate(
+        [(0.0, speed, 0.0), np.repeat(alike, AXLES), torques, np.full(AXLES, static), torques]
+    )
 
 
 _noticed: set[str] = set()

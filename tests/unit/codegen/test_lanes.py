@@ -11,7 +11,7 @@ from wspd_design.codegen.closed_loop import ClosedLoop, closed_loop_source, load
 from wspd_design.codegen.compiler import load_library
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.loop_input import loop_input, sample_rows
-from wspd_design.simulation.records import Scenario, Sensing
+from wspd_design.simulation.records import Scenario, Sensing, Start
 
 SPEEDS = (10.0, 9.0, 4.0, 10.0, 0.5, 7.0, 10.0, 8.5)
 
@@ -48,6 +48,18 @@ def test_a_stop_does_not_depend_on_the_stops_beside_it(er24pc, law, scenario, st
     for stop, case in enumerate(several):
         single = alone.run(loop_input([case], law, plant="four-axle"))
         np.testing.assert_array_equal(results(beside, stop, stops), results(single))
+
+
+def test_stops_side_by_side_start_where_each_of_them_starts(er24pc, law, scenario):
+    starts = (Start(), Start(slip=0.3, torque=10e3, braking_time=1.0))
+    several = [(er24pc, replace(scenario, start=start)) for start in starts]
+    loop = load_closed_loop(er24pc, scenario.rail, law, stops=2)
+    beside = loop.run(loop_input(several, law, plant="four-axle"))
+    alone = load_closed_loop(er24pc, scenario.rail, law)
+    singles = [results(alone.run(loop_input([case], law, plant="four-axle"))) for case in several]
+    for stop, single in enumerate(singles):
+        np.testing.assert_array_equal(results(beside, stop, 2), single)
+    assert not np.array_equal(*singles)
 
 
 def test_samples_of_stops_side_by_side(er24pc, law, scenario):

@@ -14,7 +14,7 @@ from wspd_design.codegen.virtual_machine import run_virtual
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation import ideal, stop
 from wspd_design.simulation.loop_input import loop_input, sample_rows
-from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing
+from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing, Start
 from wspd_design.simulation.stop import simulate
 
 SPEED = 60.0 / 3.6
@@ -82,6 +82,12 @@ FEATURES = {
     },
     "dead time of a whole sample": {"sensing": Sensing(dead_time=0.1)},
     "grade": {"grade": -0.02},
+    "start with slip and torque": {"start": Start(slip=0.2, torque=20e3, braking_time=2.0)},
+    "start while the pads vibrate, and a dead time": {
+        "start": Start(torque=15e3, braking_time=0.75),
+        "pad_vibration": True,
+        "sensing": Sensing(dead_time=0.04),
+    },
 }
 
 

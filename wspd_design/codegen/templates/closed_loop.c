@@ -86,10 +86,22 @@ static int advance(Loop *loop)
     return GOOD;
 }
 
+/* Work out the constants of the actuators for the present valve patterns. */
+static void set_windows(Loop *loop)
+{
+    WIDE double window[4 * 2 * LANES];
+    for (int copy = 0; copy < 2; copy++)
+        for (int l = 0; l < LANES; l++) {
+            double *to = window + copy * LANES + l;
+            to[0] = loop->start[l], to[2 * LANES] = loop->start_pressure[l];
+            to[4 * LANES] = loop->fill_end[l], to[6 * LANES] = loop->vent_end[l];
+        }
+    window_constants(loop->lp2, window, loop->window_fixed);
+}
+
 /* Set the valves of the stops whose command takes effect now. */
 static int act(Loop *loop)
 {
-    WIDE double window[4 * 2 * LANES];
     double h = loop->set.sample_time;
     int any = 0;
     for (int s = 0; s < STOPS; s++) {
@@ -112,14 +124,7 @@ static int act(Loop *loop)
         loop->phase[s] = DECIDE;
         any = 1;
     }
-    if (!any) return GOOD;
-    for (int copy = 0; copy < 2; copy++)
-        for (int l = 0; l < LANES; l++) {
-            double *to = window + copy * LANES + l;
-            to[0] = loop->start[l], to[2 * LANES] = loop->start_pressure[l];
-            to[4 * LANES] = loop->fill_end[l], to[6 * LANES] = loop->vent_end[l];
-        }
-    window_constants(loop->lp2, window, loop->window_fixed);
+    if (any) set_windows(loop);
     return GOOD;
 }
 
@@ -161,9 +166,11 @@ long wspd_samples(const Loop *loop)
     return most;
 }
 
-/* Put every stop at its initial speed with rolling wheels and empty cylinders. */
-void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *speed)
+/* Put every stop at its initial speeds and cylinder pressures, with closed valves. */
+void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *speed, const double *wheel,
+                const double *pressure)
 {
+    WIDE double present[2 * LANES] = {0}, pressures[2 * LANES], torques[2 * LANES], filled[2 * LANES];
     memset(loop->lp, 0, (char *)(loop + 1) - (char *)loop->lp);
     memcpy(loop->lp, lp, sizeof loop->lp);
     for (int k = 0; k < PARAMETERS; k++)
@@ -173,7 +180,13 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     loop->recorded = -1.0;
     loop->running = STOPS;
     for (int s = 0; s < STOPS; s++) loop->active[s] = 1.0, loop->now.speed[s] = speed[s];
-    for (int l = 0; l < LANES; l++) loop->now.wheel[l] = speed[l % STOPS] / lp[RADIUS * LANES + l];
+    for (int l = 0; l < LANES; l++) loop->now.wheel[l] = wheel[l], loop->start_pressure[l] = pressure[l];
+    set_windows(loop);
+    actuator_kernel(loop->window_fixed, present, pressures, torques, filled);
+    for (int l = 0; l < LANES; l++) {
+        loop->pressure[l] = pressures[l], loop->filled[l] = filled[l];
+        loop->torque[l] = torques[l];
+    }
 }
 
 /* What the controllers see: speed, wheel speed, torque of every lane. */

@@ -1,0 +1,56 @@
+"""Where a stop may start that does not start rolling: torques of the brake, and the one that holds a slip."""
+
+from dataclasses import replace
+
+from wspd_design.model.generated import brake as generated
+from wspd_design.model.generated import motion
+from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.loading import constants
+from wspd_design.parameters.records import Brake, Rail, Vehicle
+
+_FULL = 40.0  # time constants of the supply (8), after which it lacks less than the last digit of a float
+
+
+def full_supply_time(brake: Brake) -> float:
+    """Time after which the air supply (8) is full [s]."""
+    return _FULL / brake.supply_rate
+
+
+def available_torque(brake: Brake, braking_time: float) -> float:
+    """Torque per wheelset that the supply (8) allows at a time [s] since the brake was applied [N m]."""
+    return brake.max_torque * float(generated.supply_pressure(braking_time, 1.0, brake.supply_rate))
+
+
+def holding_torque(
+    vehicle: Vehicle, rail: Rail, *, slip: float, speed: float, braking_time: float = 0.0, grade: float = 0.0
+) -> float:
+    """Torque per wheelset that keeps the slip where it is, -F/G of eq. (19) [N m].
+
+    Parameters
+    ----------
+    vehicle, rail : Vehicle, Rail
+        The quarter locomotive and its friction.
+    slip : float
+        Slip ratio [-].
+    speed : float
+        Train speed, positive [m/s].
+    braking_time : float
+        Time since the brake was applied, by which the damping of the wheels has decayed [s].
+    grade : float
+        Rise over run, positive uphill [-].
+
+    Returns
+    -------
+    float
+        Above the largest torque of the brake where that cannot hold the slip, and negative where only a driven
+        wheel would keep it.
+    """
+    damping = motion.wheel_damping(braking_time, vehicle.wheel_damping, vehicle.wheel_damping_decay)
+    climbing = vehicle.mass * constants().gravity * grade
+    present = replace(
+        vehicle,
+        wheel_damping=float(damping),
+        resistance_constant=vehicle.resistance_constant + climbing,
+    )
+    found = slip_dynamics(present, rail, slip, speed)
+    return -float(found.drift) / float(found.gain)
