@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.proof_run import ProofRun
+from wspd_design.certificates.balls import point
+from wspd_design.certificates.proof_run import ProofRun, State
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzyGains, firing_strengths, sliding_variable
 from wspd_design.model.generated import sliding_surface
-from wspd_design.model.number import saturation
+from wspd_design.model.number import Number, saturation
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -23,25 +24,28 @@ CHOICE = "b* and psi chosen after the run such that V starts as low as psi >= su
 class Ideal:
     """Constant ideal weights and a bound that holds along one run [units of u]."""
 
-    weights: "Array"
-    bound: float
+    weights: tuple[Number, ...]
+    bound: Number
+
+    def exact(self) -> "Ideal":
+        """Return the same numbers as balls."""
+        return Ideal(weights=tuple(map(point, self.weights)), bound=point(self.bound))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Signals:
-    """What the candidates for V are made of, over time; torques in N m."""
+    """What the candidates for V are made of, over time or at one state; torques in N m."""
 
-    speed: "Array"  # m/s
-    surface: "Array"  # s
-    dead_zone: "Array"  # s_D, part of s / K_P outside the layer
-    outside: "Array"  # whether s is outside the layer
-    gain: "Array"  # 1/(N m s), G
-    gain_rate: "Array"  # G' = G a / v
-    deceleration: "Array"  # m/s2
-    approximation_error: "Array"  # xi = u* - b*'w
-    weight_error_squared: "Array"
-    bound_error: "Array"
-    bound: float  # psi
+    speed: Number  # m/s
+    surface: Number  # s
+    dead_zone: Number  # s_D, part of s / K_P outside the layer
+    gain: Number  # 1/(N m s), G
+    gain_rate: Number  # G' = G a / v
+    deceleration: Number  # m/s2
+    approximation_error: Number  # xi = u* - b*'w
+    weight_error_squared: Number
+    bound_error: Number
+    bound: Number  # psi
 
 
 def ideal(vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, run: ProofRun, reserve: float) -> Ideal:
@@ -64,7 +68,9 @@ def ideal(vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, run: ProofRun
     import numpy as np
     from scipy.optimize import minimize
 
-    strengths, torque, margin = _ideal_torque(vehicle, rail, gains, run.states, reserve)
+    strengths, torque = map(np.array, _ideal_torque(vehicle, rail, gains, run.states))
+    fastest = slip_dynamics(vehicle, rail, run.slip[0], run.speed[0])
+    margin = reserve / float(fastest.gain * run.speed[0]) / gains.torque_unit
     start = np.array(gains.initial_weights)
 
     def energy(x: "Array") -> float:
@@ -88,48 +94,42 @@ def ideal(vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, run: ProofRun
     )
     weights = found.x[:-1] if np.all(np.isfinite(found.x)) else guess[:-1]
     rest = np.abs(torque - weights @ strengths).max()
-    return Ideal(weights=weights, bound=float(rest) + margin)
+    return Ideal(weights=tuple(weights.tolist()), bound=float(rest) + margin)
 
 
-def signals(
-    vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, states: "Array", target: Ideal
-) -> Signals:
-    """Evaluate the errors of the law along states of the idealized loop."""
-    import numpy as np
-
+def signals(vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, states: State, target: Ideal) -> Signals:
+    """Evaluate the errors of the law at states of the idealized loop: arrays over time, or balls at one instant."""
     unit = gains.torque_unit
-    strengths, torque, _ = _ideal_torque(vehicle, rail, gains, states, 0.0)
+    strengths, torque = _ideal_torque(vehicle, rail, gains, states)
     speed, slip, integral = states[:3]
     plant = slip_dynamics(vehicle, rail, slip, speed)
     surface = sliding_variable(gains, sliding_surface.slip_error(gains.slip_reference, slip), integral)
     layer = gains.boundary_layer
-    differences = target.weights[:, None] - states[3:-1]
+    fuzzy = sum(b * w for b, w in zip(target.weights, strengths, strict=True))
     return Signals(
         speed=speed,
         surface=surface,
         dead_zone=(surface - layer * saturation(surface / layer)) / gains.proportional_gain,
-        outside=np.abs(surface) > layer,
         gain=plant.gain,
         gain_rate=plant.gain * plant.deceleration / speed,
         deceleration=plant.deceleration,
-        approximation_error=unit * (torque - target.weights @ strengths),
-        weight_error_squared=unit**2 * np.sum(differences**2, axis=0),
-        bound_error=unit * (target.bound - states[-1]),
-        bound=unit * target.bound,
+        approximation_error=(torque - fuzzy) * unit,
+        weight_error_squared=sum(
+            ((b - now) * unit) ** 2 for b, now in zip(target.weights, states[3:-1], strict=True)
+        ),
+        bound_error=(target.bound - states[-1]) * unit,
+        bound=target.bound * unit,
     )
 
 
 def _ideal_torque(
-    vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, states: "Array", reserve: float
-) -> tuple["Array", "Array", float]:
-    """Rule strengths w, ideal torque u* and the reserve eta/g, the last two in units of u."""
-    import numpy as np
-
+    vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains, states: State
+) -> tuple[tuple[Number, ...], Number]:
+    """Rule strengths w and ideal torque u*, the latter in units of u."""
     speed, slip, integral = states[:3]
     error = sliding_surface.slip_error(gains.slip_reference, slip)
-    rate = gains.integral_gain / gains.proportional_gain
     plant = slip_dynamics(vehicle, rail, slip, speed)
-    torque = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, error, rate)
-    strengths = np.array(firing_strengths(gains, sliding_variable(gains, error, integral)))
-    margin = reserve / float(plant.gain[0] * speed[0])
-    return strengths, torque / gains.torque_unit, margin / gains.torque_unit
+    # K_I e/K_P in this order, since a quotient of two gains would be rounded.
+    scaled = error / gains.proportional_gain
+    torque = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, scaled, gains.integral_gain)
+    return firing_strengths(gains, sliding_variable(gains, error, integral)), torque / gains.torque_unit

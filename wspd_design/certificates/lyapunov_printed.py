@@ -1,27 +1,35 @@
 """V2 of (43) as printed, along the loop of the adaptive fuzzy law in exactly the setting of its proof."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TypeAlias
 
 from wspd_design.certificates import domain, laws
-from wspd_design.certificates.adaptive_error import CHOICE, ideal, signals
+from wspd_design.certificates.adaptive_error import CHOICE, Ideal, ideal, signals
+from wspd_design.certificates.balls import point
 from wspd_design.certificates.checking import certified, series
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.proof_run import (
     ASSUMPTIONS,
     RELATIVE_TOLERANCE,
+    State,
+    adaptive_flow,
     adaptive_run,
+    certain_rise,
     cut_short,
+    exact_plant,
+    exact_rate,
     largest_rise,
     numeric_rate,
     verdict,
 )
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
-from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.model.generated import adaptive_fuzzy as generated
+from wspd_design.model.number import Number
+from wspd_design.parameters.records import Rail, Vehicle
 
-if TYPE_CHECKING:
-    from wspd_design.certificates.proof_run import Array
+Function: TypeAlias = Callable[[State], Number]
 
 NAME, TITLE = "lyapunov_printed", "V2 of the paper"
 TOLERANCE = 100.0 * RELATIVE_TOLERANCE  # of the largest V2
@@ -47,71 +55,67 @@ def check(problem: Problem) -> Certificate:
     plant = (problem.vehicle, problem.rail, gains)
     run = adaptive_run(*plant, speeds=problem.speeds)
     target = ideal(*plant, run, reserve(problem))
-    rates = (gains.torque_unit * gains.weight_rate, gains.torque_unit * gains.bound_rate)
-
-    def candidate(states: "Array") -> "Array":
-        at = signals(*plant, states, target)
-        value: Array = generated.lyapunov_printed(
-            at.surface, at.gain, at.weight_error_squared, at.bound_error, gains.proportional_gain, *rates
-        )
-        return value
-
+    candidate, claimed_rate, true_rate = _functions(plant, target)
     values = candidate(run.states)
     rise, start, end = largest_rise(values)
     rises = not rise <= TOLERANCE * float(values.max())
     at = signals(*plant, run.states, target)
-    claimed = generated.lyapunov_printed_rate_claimed(at.surface, at.gain, at.approximation_error, at.bound)
-    true = generated.lyapunov_printed_rate_true(
-        at.surface,
-        at.gain,
-        at.gain_rate,
-        at.approximation_error,
-        at.bound,
-        at.weight_error_squared,
-        at.bound_error,
-        *rates,
-    )
-    measured = numeric_rate(candidate, run)
     # Inside the layer sat(s) replaces the sgn(s) of both formulas.
-    scale = float(np.abs(measured[at.outside]).max(initial=0.0))
-    deviations = [
-        float(np.abs(measured - formula)[at.outside].max(initial=0.0)) for formula in (claimed, true)
-    ]
-    verdicts = [
-        Status.EVIDENCE if deviation <= RATE_TOLERANCE * scale else Status.REFUTED for deviation in deviations
-    ]
-    if not at.outside.any():
-        verdicts = [Status.UNDECIDED, Status.UNDECIDED]
+    outside = np.abs(at.surface) > gains.boundary_layer
+    claimed, true = claimed_rate(run.states), true_rate(run.states)
+    measured = numeric_rate(candidate, run)
+    scale = float(np.abs(measured[outside]).max(initial=0.0))
+    nominal = (problem.vehicle.mass, problem.vehicle.wheelset_inertia, problem.rail.mu0)
+    exact = (*exact_plant(problem, *nominal), gains)
+    functions = _functions(exact, target.exact())
+    flow = adaptive_flow(*exact)
+    deviations, verdicts = [], []
+    for formula, exact_formula in ((claimed, functions[1]), (true, functions[2])):
+        differences = np.where(outside, np.abs(measured - formula), 0.0)
+        worst = run.states[:, int(np.argmax(differences))].tolist()
+        difference = exact_rate(functions[0], flow, worst) - exact_formula(tuple(map(point, worst)))
+        deviations.append(float(differences.max()))
+        verdicts.append(_formula_verdict(deviations[-1], scale, certain=not difference.contains(0)))
     reason = "The derivative along the run is neither the claimed one nor the one with the terms of G'."
     if verdicts == [Status.REFUTED, Status.EVIDENCE]:
         reason = "The derivative along the run is not (44), which leaves out G'/2 times the squared errors "
         reason += "of weights and bound; G' > 0 while braking. The proof fails, whatever the slip does."
-    where = (
+    # Where (44) itself speaks first, which has sgn(s) in it, then inside the layer.
+    order = np.lexsort((-measured, ~outside)).tolist() if rises else []
+
+    def admits(state: State) -> bool:
+        """Whether psi bounds the approximation error, as (34) asks for."""
+        here = signals(*exact, state, target.exact())
+        return bool(abs(here.approximation_error) <= here.bound)
+
+    shown = certain_rise(functions[0], flow, run, order, speaks=admits)
+    status = verdict(rises, shown is not None, [run])
+    where: tuple[Point, ...] = (
         Point(name="V2 before", value=float(values[start]), unit="-"),
         Point(name="time before", value=float(run.time[start]), unit="s"),
         Point(name="V2 after", value=float(values[end]), unit="-"),
         Point(name="time after", value=float(run.time[end]), unit="s"),
-        Point(name="speed after", value=float(run.speed[end]) * KMH, unit="km/h"),
-        Point(name="slip after", value=float(run.slip[end]), unit="-"),
     )
+    if shown is not None:
+        where = (*run.state(*shown, "dV2/dt", "1/s"), *where)
     axes = ("time [s]", "V2 [-]")
     return Certificate(
         name=NAME,
         title=TITLE,
         claim=f"V2 of (43) does not rise along the closed loop, as (44) says, from "
         f"{problem.speeds[1] * KMH:.3g} to {problem.speeds[0] * KMH:.3g} km/h on {problem.rail.name}.",
-        status=verdict(rises, [run]),
+        status=status,
         explanation=(
             f"V2 starts at {values[0]:.3g}, is {values[start]:.3g} at {run.time[start]:.3g} s and then "
             f"rises to {values[end]:.3g} at {run.time[end]:.3g} s. The slip ends at {run.slip[-1]:.4f}, its "
-            f"reference is {gains.slip_reference:g}. {reason}"
+            f"reference is {gains.slip_reference:g}. {run.certainty(shown, 'dV2/dt', '1/s')} {reason}"
             if rises
             else f"V2 falls from {values[0]:.3g} to {values[-1]:.3g} without rising in this run."
         )
         + cut_short([run]),
         margin=Range(low=None, high=TOLERANCE - rise / float(values.max()), unit="of max V2"),
         worst_point=where,
-        witness=where if rises else (),
+        witness=where if shown is not None else (),
         hypotheses=(
             Hypothesis(
                 text=f"dV2/dt is what (44) says: it differs from the differences of V2 by up to "
@@ -126,9 +130,9 @@ def check(problem: Problem) -> Certificate:
         ),
         assumptions=(*ASSUMPTIONS, "continuous adaptation", CHOICE),
         method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}; derivatives by "
-        "differences along the flow, outside the layer",
+        "differences along the flow, outside the layer; at the witness by forward derivatives in balls",
         resolution=f"{len(run.time)} instants; a rise below {TOLERANCE:g} of the maximum counts as rounding",
-        reference="eqs. (39)-(44)",
+        reference="eqs. (39)-(44); docs/theory.md#printed",
         series=(
             series("V2 as printed", *axes, run.time, values),
             series("measured", "time [s]", "dV2/dt [1/s]", run.time, measured),
@@ -137,3 +141,39 @@ def check(problem: Problem) -> Certificate:
             series("slip", "time [s]", "slip [-]", run.time, run.slip),
         ),
     )
+
+
+def _functions(
+    plant: tuple[Vehicle, Rail, AdaptiveFuzzyGains], target: Ideal
+) -> tuple[Function, Function, Function]:
+    """V2, its derivative as (44) claims it, and with the terms of G', of states in whatever numbers."""
+    gains = plant[2]
+    # In the numbers of the target, so that products of two gains are exact in balls.
+    unit = gains.torque_unit + 0 * target.bound
+    rates = (unit * gains.weight_rate, unit * gains.bound_rate)
+
+    def candidate(states: State) -> Number:
+        at = signals(*plant, states, target)
+        return generated.lyapunov_printed(
+            at.surface, at.gain, at.weight_error_squared, at.bound_error, gains.proportional_gain, *rates
+        )
+
+    def claimed(states: State) -> Number:
+        at = signals(*plant, states, target)
+        return generated.lyapunov_printed_rate_claimed(at.surface, at.gain, at.approximation_error, at.bound)
+
+    def true(states: State) -> Number:
+        at = signals(*plant, states, target)
+        errors = at.approximation_error, at.bound, at.weight_error_squared, at.bound_error
+        return generated.lyapunov_printed_rate_true(at.surface, at.gain, at.gain_rate, *errors, *rates)
+
+    return candidate, claimed, true
+
+
+def _formula_verdict(deviation: float, scale: float, *, certain: bool) -> Status:
+    """Verdict on a formula for the derivative; ``certain`` says that it is wrong at a state in balls."""
+    if scale == 0.0:  # the run never leaves the layer
+        return Status.UNDECIDED
+    if deviation <= RATE_TOLERANCE * scale:
+        return Status.EVIDENCE
+    return Status.REFUTED if certain else Status.UNDECIDED

@@ -1,6 +1,7 @@
 """V = s^2/2 of (24) along the loop of the sliding-mode law: it must not rise outside the boundary layer."""
 
 from itertools import product
+from typing import TypeAlias
 
 from wspd_design.certificates import domain, laws
 from wspd_design.certificates.checking import certified, level, series
@@ -9,14 +10,24 @@ from wspd_design.certificates.proof_run import (
     ASSUMPTIONS,
     RELATIVE_TOLERANCE,
     ProofRun,
+    State,
+    certain_rise,
     cut_short,
+    exact_law,
+    exact_plant,
     largest_rise,
+    numeric_rate,
+    sliding_flow,
     sliding_run,
     verdict,
 )
 from wspd_design.certificates.records import Certificate, Point, Problem, Range
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
+from wspd_design.model.number import Number
+
+Rise: TypeAlias = tuple[ProofRun, tuple[float, float, float], int, int]
+"""A run, its mass, inertia and mu0, and the instants between which V rises."""
 
 NAME, TITLE = "lyapunov_surface", "V of the sliding mode"
 TOLERANCE = 100.0 * RELATIVE_TOLERANCE  # of the largest V
@@ -39,14 +50,12 @@ def check(problem: Problem) -> Certificate:
     parameters = list(dict.fromkeys([nominal, *corners]))
     edge = float(sliding_surface.lyapunov_surface(law.gains.boundary_layer))
     curves, runs = [], []
-    worst: tuple[float, ProofRun, tuple[float, float, float], int, int] | None = None
+    worst: tuple[float, *Rise] | None = None
     for chosen, slip in product(parameters, problem.slips):
         vehicle, rail = domain.varied(problem, *chosen)
         run = sliding_run(vehicle, rail, law, speeds=problem.speeds, slip=slip)
         runs.append(run)
-        error = sliding_surface.slip_error(law.gains.slip_reference, run.slip)
-        surface = sliding_surface.sliding_variable(error, run.integral, 1.0, law.gains.surface_rate)
-        values = sliding_surface.lyapunov_surface(surface)
+        values = sliding_surface.lyapunov_surface(_surface(law, run.states))
         # Inside the layer V may do as it likes, below the value at its edge.
         rise, start, end = largest_rise(np.maximum(values, edge))
         rise /= max(float(values.max()), edge)
@@ -57,25 +66,27 @@ def check(problem: Problem) -> Certificate:
     assert worst is not None
     rise, run, (mass, inertia, mu0), start, end = worst
     rises = not rise <= TOLERANCE
-    where = (
-        Point(name="time", value=float(run.time[end]), unit="s"),
-        Point(name="rising since", value=float(run.time[start]), unit="s"),
-        Point(name="slip", value=float(run.slip[end]), unit="-"),
-        Point(name="speed", value=float(run.speed[end]) * KMH, unit="km/h"),
+    shown = _certain_rise(problem, law, worst[1:]) if rises else None
+    where: tuple[Point, ...] = (
         Point(name="mass", value=mass, unit="kg"),
         Point(name="wheelset inertia", value=inertia, unit="kg m2"),
         Point(name="mu0", value=mu0, unit="-"),
+        Point(name="rising since", value=float(run.time[start]), unit="s"),
+        Point(name="rising until", value=float(run.time[end]), unit="s"),
     )
+    if shown is not None:
+        where = (*run.state(*shown, "dV/dt", "1/s"), *where)
     return Certificate(
         name=NAME,
         title=TITLE,
         claim=f"V = sbar^2/2, sbar = s/K_P, does not rise while abs(sbar) > {law.gains.boundary_layer:g}, "
         f"from slip {problem.slips[0]:g} and {problem.slips[1]:g} at {problem.speeds[1] * KMH:.3g} km/h down "
         f"to {problem.speeds[0] * KMH:.3g} km/h.",
-        status=verdict(rises, runs),
+        status=verdict(rises, shown is not None, runs),
         explanation=(
             f"V rises by {rise:.3g} of its maximum between {run.time[start]:.3g} s and "
-            f"{run.time[end]:.3g} s: the switching gain does not outweigh the model error there."
+            f"{run.time[end]:.3g} s: the switching gain does not outweigh the model error there. "
+            f"{run.certainty(shown, 'dV/dt', '1/s')}"
             if rises
             else f"In all {len(runs)} runs the distance to the surface only shrinks until the layer is "
             "reached, and the state stays inside."
@@ -83,11 +94,36 @@ def check(problem: Problem) -> Certificate:
         + cut_short(runs),
         margin=Range(low=None, high=TOLERANCE - rise, unit="of max V"),
         worst_point=where,
-        witness=where if rises else (),
+        witness=where if shown is not None else (),
         assumptions=(ASSUMPTIONS[0], "quarter locomotive with static wheel load", ASSUMPTIONS[2]),
-        method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}",
+        method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}; at a witness the "
+        "derivative by forward derivatives in balls",
         resolution=f"{len(runs)} runs: nominal parameters and all corners of their bounds, each from two "
         f"slips; a rise below {TOLERANCE:g} of the maximum counts as rounding",
-        reference="eqs. (24), (25)",
+        reference="eqs. (24), (25); docs/theory.md#reaching",
         series=(*curves, level("edge of the layer", "time [s]", "V [-]", run.time, edge)),
     )
+
+
+def _surface(law: SlidingMode, states: State) -> Number:
+    """Return sbar of states in whatever numbers."""
+    _, slip, integral = states
+    error = sliding_surface.slip_error(law.gains.slip_reference, slip)
+    return sliding_surface.sliding_variable(error, integral, 1.0, law.gains.surface_rate)
+
+
+def _certain_rise(problem: Problem, law: SlidingMode, worst: Rise) -> tuple[int, float] | None:
+    """Look for a state outside the layer at which V rises for certain, in the span of a run in which it rises."""
+    import numpy as np
+
+    run, parameters, start, end = worst
+
+    def candidate(states: State) -> Number:
+        return sliding_surface.lyapunov_surface(_surface(law, states))
+
+    def outside(state: State) -> bool:
+        return bool(abs(_surface(law, state)) > law.gains.boundary_layer)
+
+    flow = sliding_flow(*exact_plant(problem, *parameters), exact_law(law))
+    order = start + np.argsort(-numeric_rate(candidate, run)[start : end + 1])
+    return certain_rise(candidate, flow, run, order.tolist(), speaks=outside)

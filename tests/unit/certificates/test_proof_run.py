@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import flint
 import numpy as np
 import pytest
 
@@ -10,6 +11,7 @@ from wspd_design.certificates.proof_run import (
     ProofRun,
     adaptive_run,
     cut_short,
+    exact_rate,
     largest_rise,
     numeric_rate,
     sliding_run,
@@ -18,6 +20,7 @@ from wspd_design.certificates.proof_run import (
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.controllers.sliding_mode import sliding_torque
+from wspd_design.model.number import saturation
 from wspd_design.parameters.loading import load_rail
 
 
@@ -71,6 +74,18 @@ def test_numeric_rate_is_the_derivative_along_the_flow():
     assert numeric_rate(product, run) == pytest.approx(exact, rel=1e-6, abs=1e-6)
 
 
+def test_exact_rate_is_the_derivative_along_the_flow():
+    def flow(x):
+        return [x[1], -4.0 * x[0]]
+
+    rate = exact_rate(lambda x: x[0] ** 2 + abs(x[1]) + saturation(x[0]), flow, (0.3, -0.7))
+    with flint.ctx.workprec(300):
+        x, y = flint.arb(0.3), flint.arb(-0.7)
+        exact = 2 * x * y - (-4 * x) + y
+    assert rate.contains(exact)
+    assert float(rate.rad()) < 1e-14
+
+
 @pytest.mark.parametrize(
     ("values", "expected"),
     [
@@ -88,7 +103,8 @@ def test_run_that_locks_is_cut_short_and_supports_nothing(er24pc, make_controlle
     backwards = replace(law, gains=replace(law.gains, switching_gain=-30.0, slip_reference=0.1))
     run = sliding_run(er24pc, load_rail("polach-dry"), backwards, speeds=(3.0, 30.0), slip=0.3)
     assert "leaves the range" in run.cut
-    assert verdict(False, [run]) is Status.UNDECIDED
-    assert verdict(True, [run]) is Status.REFUTED
-    assert verdict(False, [replace(run, cut="")]) is Status.EVIDENCE
+    assert verdict(False, False, [run]) is Status.UNDECIDED
+    assert verdict(True, True, [run]) is Status.REFUTED
+    assert verdict(True, False, [run]) is Status.UNDECIDED
+    assert verdict(False, False, [replace(run, cut="")]) is Status.EVIDENCE
     assert run.cut in cut_short([run, run])
