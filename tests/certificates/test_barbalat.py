@@ -34,8 +34,8 @@ def test_integral_of_a_law_that_does_not_reach_exceeds_its_bound(make_problem, m
 def test_integral_under_wrong_adaptation_exceeds_its_bound(make_problem, make_controller, monkeypatch):
     right = law_module.adaptation
 
-    def wrong(gains, surface):
-        rates = right(gains, surface)
+    def wrong(gains, surface, speed):
+        rates = right(gains, surface, speed)
         return rates._replace(weights=tuple(0.0 for _ in rates.weights), bound=0.0)
 
     monkeypatch.setattr("wspd_design.certificates.proof_run.adaptation", wrong)

@@ -23,7 +23,7 @@ NAME, TITLE = "afsmc_energy", "Energy of the adaptive law"
 TORQUE_TOLERANCE, DECELERATION_TOLERANCE = 50.0, 0.05  # N m, m/s2
 CHOICES = 401  # of the constant ideal weight
 SPEEDS = 41
-LIMITS = 4  # hypotheses that hold without limits of the brake; the others speak about those
+LIMITS = 5  # hypotheses that hold without limits of the brake; the others speak about those
 
 
 @certified(name=NAME, title=TITLE)
@@ -50,7 +50,14 @@ class Energy:
     highest_bound: Ball  # N m, of psi_hat
 
 
-def energy(problem: Problem, gains: AdaptiveFuzzyGains, lowest: float, highest: float, eta: float) -> Energy:
+def energy(
+    problem: Problem,
+    gains: AdaptiveFuzzyGains,
+    lowest: float,
+    highest: float,
+    eta: float,
+    factor: float,
+) -> Energy:
     """Bounds for all time, from V = v s_D^2/(2 g) + abs(b~)^2/(2 alpha1) + psi~^2/(2 alpha2).
 
     With g = R/I_w, s_D' = G (u* - u) outside the layer, and the adaptation with s_D,
@@ -72,6 +79,8 @@ def energy(problem: Problem, gains: AdaptiveFuzzyGains, lowest: float, highest: 
         Lower bound of u* - eta/g and upper bound of u* + eta/g on the domain [N m].
     eta : float
         Reaching rate [m/s2].
+    factor : float
+        Of s_D^2/(2 g) in V: the speed at the start [m/s]; in sigma = integral of dt/v it is 1.
     """
     unit = gains.torque_unit
     # The law adapts with s, which counts K_P times s / K_P.
@@ -95,7 +104,7 @@ def energy(problem: Problem, gains: AdaptiveFuzzyGains, lowest: float, highest: 
     radius = point(problem.vehicle.wheel_radius)
     outside = point(gains.slip_reference) - point(gains.boundary_layer) / gains.proportional_gain
     distance = outside if outside > 0 else point(0.0)  # of a rolling wheel from the layer
-    kinetic = point(problem.speeds[1]) * distance**2 / 2
+    kinetic = point(factor) * distance**2 / 2
     start = kinetic * heavy / radius + stored
     return Energy(
         weight=beta,
@@ -115,28 +124,25 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
     low, high = enclose(least, tolerance=TORQUE_TOLERANCE), enclose(most, tolerance=TORQUE_TOLERANCE)
     braking = settle(deceleration, tolerance=DECELERATION_TOLERANCE)
     enclosed = findings.status(low, high)
-    signs = min(
-        gains.weight_rate,
-        gains.bound_rate,
-        gains.proportional_gain,
-        gains.integral_gain,
-        gains.boundary_layer,
-    )
+    signs = smallest_gain(gains)
     hypotheses = (
-        _exact("K_P, K_I, Phi and both adaptation rates are positive", signs > 0.0),
+        exact("K_P, K_I, Phi and both adaptation rates are positive", signs > 0.0),
+        exact("the adaptation rates do not depend on the speed", not gains.scheduled_rates),
         Hypothesis(text="G > 0 on the domain: a quotient of positive numbers", status=Status.PROVED),
         findings.hypothesis("the train decelerates, a >= 0, on the domain", braking),
         Hypothesis(text="psi >= abs(u* - beta) + eta/g on the domain", status=enclosed),
         Hypothesis(
             text=f"eta/g <= u* <= {limit / 1e3:g} kN m - eta/g on the domain",
-            status=_inside(low, high, limit),
+            status=inside(low, high, limit),
         ),
-        _exact("the adaptation is held while the command pushes beyond the brake", gains.hold_when_saturated),
+        exact("the adaptation is held while the command pushes beyond the brake", gains.hold_when_saturated),
     )
     status = laws.of_theorem(hypotheses)
     where: tuple[Point, ...] = ()
     if signs > 0.0 and enclosed is Status.PROVED:
-        found = energy(problem, gains, float(low.claim.bound), float(high.claim.bound), eta)
+        found = energy(
+            problem, gains, float(low.claim.bound), float(high.claim.bound), eta, problem.speeds[1]
+        )
         integral, error, top = (above(x) for x in (found.integral, found.weight_error, found.highest_bound))
         numbers = f"the integral of abs(s_D) is at most {_up(integral)} s, the weights stay within "
         numbers += f"{_up(error / 1e3)} kN m of {found.weight / 1e3:.3g} kN m, and psi_hat below {_up(top / 1e3)} kN m"
@@ -185,6 +191,17 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
     )
 
 
+def smallest_gain(gains: AdaptiveFuzzyGains) -> float:
+    """Return the smallest of the gains that must be positive."""
+    return min(
+        gains.weight_rate,
+        gains.bound_rate,
+        gains.proportional_gain,
+        gains.integral_gain,
+        gains.boundary_layer,
+    )
+
+
 def claims(problem: Problem, law: AdaptiveFuzzy) -> tuple[Claim, Claim, Claim]:
     """Claims about u* - eta/g, u* + eta/g and the deceleration on the domain."""
     deceleration = Claim(
@@ -200,7 +217,7 @@ def claims(problem: Problem, law: AdaptiveFuzzy) -> tuple[Claim, Claim, Claim]:
     return torque_claim(problem, law, ">=", 0.0), torque_claim(problem, law, "<=", limit), deceleration
 
 
-def _inside(low: Finding, high: Finding, limit: float) -> Status:
+def inside(low: Finding, high: Finding, limit: float) -> Status:
     """Whether u* stays inside the range of the brake by eta/g."""
     if findings.status(low, high) is Status.PROVED and low.claim.bound >= 0 and high.claim.bound <= limit:
         return Status.PROVED
@@ -285,7 +302,8 @@ def _plots(speeds: Sequence[float], lowest: Sequence[float]) -> tuple[Series, ..
     )
 
 
-def _exact(text: str, holds: bool) -> Hypothesis:
+def exact(text: str, holds: bool) -> Hypothesis:
+    """State a condition that is decided by comparing numbers."""
     return Hypothesis(text=text, status=Status.PROVED if holds else Status.REFUTED)
 
 

@@ -9,6 +9,7 @@ from wspd_design.certificates.lyapunov_repaired import repaired_run
 from wspd_design.certificates.proof_run import ASSUMPTIONS, ProofRun, sliding_run
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
+from wspd_design.certificates.sigma_time import convergence
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
@@ -30,6 +31,8 @@ def check(problem: Problem) -> Certificate:
     if not isinstance(law, (AdaptiveFuzzy, SlidingMode)):
         return laws.no_surface(problem, NAME, "s tends to 0 as t tends to infinity.")
     domain.box(problem)
+    if isinstance(law, AdaptiveFuzzy) and law.gains.scheduled_rates:
+        return convergence(problem, law)
     time, dead_zone, bound, name = (
         _adaptive(problem, law) if isinstance(law, AdaptiveFuzzy) else _sliding(problem, law)
     )
