@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from wspd_design.certificates import margins
-from wspd_design.certificates.linear_loop import feedback
+from wspd_design.certificates.linear_loop import feedback, loop_at, outermost, variables
 from wspd_design.certificates.records import Status
+from wspd_design.controllers.protocol import Measurement
+from wspd_design.model.slip import slip_dynamics
 
 
 def test_known_loop():
@@ -88,3 +90,75 @@ def test_too_slow_sampling_is_seen(problem):
     verdict = margins.check(slow)
     assert verdict.status is Status.REFUTED
     assert "at 0 of 25 speeds as continuous loop" in verdict.explanation
+
+
+@pytest.mark.parametrize("name", ["afsmc", "smc", "torque-feedback"])
+@pytest.mark.parametrize("sampled", [False, True])
+def test_enclosed_poles_are_those_of_the_floats(make_problem, make_controller, name, sampled):
+    problem = make_problem(make_controller(name))
+    for speed in (3.0, 9.0, 30.0):
+        sample_time = problem.sample_time if sampled else None
+        opened = margins.loop(problem, problem.controller, speed, sample_time=sample_time)
+        poles = control.feedback(opened, 1).poles()
+        expected = np.abs(poles).max() if sampled else poles.real.max()
+        found = outermost(problem, problem.controller, speed, sampled=sampled)
+        assert found == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["afsmc", "smc"])
+def test_witness_is_unstable(make_problem, make_controller, name):
+    """Eigenvalues of the continuous loop in slip, torque and integral, from differences of the drift."""
+    problem = make_problem(make_controller(name))
+    verdict = margins.check(problem)
+    assert verdict.status is Status.REFUTED
+    at = {point.name: point.value for point in verdict.witness}
+    speed, gains = at["speed"] / 3.6, feedback(problem.controller, at["speed"] / 3.6)
+    step = 1e-6
+    more, less = (slip_dynamics(problem.vehicle, problem.rail, 0.14 + d, speed) for d in (step, -step))
+    pole, gain = (more.drift - less.drift) / (2.0 * step), more.gain
+    matrix = [
+        [pole, -gain, 0.0],
+        [gains.proportional / 0.6, -1.0 / 0.6, gains.integral / 0.6],
+        [1.0, 0.0, 0.0],
+    ]
+    assert np.linalg.eigvals(matrix).real.max() == pytest.approx(at["real part of a pole"], rel=1e-4)
+    assert at["real part of a pole"] > 0.0
+
+
+def test_what_only_floats_see_is_undecided(make_problem, make_controller, monkeypatch):
+    monkeypatch.setattr(margins, "outermost", lambda *_, **__: -math.inf)
+    verdict = margins.check(make_problem(make_controller("afsmc")))
+    assert verdict.status is Status.UNDECIDED
+    assert not verdict.witness
+    assert "at none of them" in verdict.explanation
+
+
+@pytest.mark.parametrize("name", ["afsmc", "smc", "torque-feedback"])
+def test_a_law_for_another_brake_has_other_gains(make_problem, make_controller, er24pc, name):
+    """By differences of what the law commands on a brake that is half as strong as its own."""
+    weak = replace(er24pc, brake=replace(er24pc.brake, max_torque=30e3))
+    law = make_controller(name, "polach-wet")
+    problem = make_problem(law, vehicle=weak, rail="polach-wet")
+    speed, slip = 12.0, 0.14
+    plant = slip_dynamics(er24pc, problem.rail, slip, speed)
+    middle = -plant.drift / plant.gain  # holds the slip
+    memory = law.start(Measurement(speed=speed, wheel_speed=0.0, torque=0.0))
+    if name == "afsmc":  # weights that are moved alike move the torque into the limits and leave its slope
+        memory = (0.0, *(each + 30.0 for each in memory[1:-1]), memory[-1])
+
+    def commanded(slip, torque):
+        wheel = speed * (1.0 - slip) / er24pc.wheel_radius
+        _, command = law.step(memory, Measurement(speed=speed, wheel_speed=wheel, torque=torque))
+        assert 0.0 < command.fill < 1.0
+        return 30e3 * command.fill
+
+    _, gains = loop_at(
+        problem, law, {v.name: float(v.low) for v in variables(problem, law)} | {"speed": speed}
+    )
+    step = 1e-7
+    by_slip = (commanded(slip - step, middle) - commanded(slip + step, middle)) / (2.0 * step)
+    by_torque = (commanded(slip, middle + 1.0) - commanded(slip, middle - 1.0)) / 2.0
+    assert gains.proportional == pytest.approx(by_slip, rel=1e-4)
+    assert gains.torque == pytest.approx(-by_torque, rel=1e-6, abs=1e-9)
+    whole = feedback(law, speed)
+    assert gains.proportional == pytest.approx(0.5 * whole.proportional, rel=1e-12)

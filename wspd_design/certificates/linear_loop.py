@@ -9,9 +9,10 @@ the characteristic polynomial
 For the sliding mode on its own design model this is tau q^3 + (1 - p tau) q^2 + (c + k) q + k c.
 """
 
+import math
 from typing import NamedTuple, TypeAlias
 
-from wspd_design.certificates.balls import above, below, point
+from wspd_design.certificates.balls import Ball, above, ball, below, point
 from wspd_design.certificates.plant import (
     Values,
     forces,
@@ -33,6 +34,8 @@ from wspd_design.parameters.records import Rail, Vehicle
 
 LinearLaw: TypeAlias = AdaptiveFuzzy | SlidingMode | TorqueFeedback
 """Laws that are linear near their reference."""
+
+PRECISION = 128  # bits, of enclosed poles
 
 
 class Plant(NamedTuple):
@@ -84,6 +87,17 @@ def feedback(
     return Feedback(
         proportional=slope * law.gains.proportional_gain, integral=slope * law.gains.integral_gain, torque=0.0
     )
+
+
+def on_brake(law: LinearLaw, gains: Feedback, max_torque: float) -> Feedback:
+    """Return the gains of a law on a brake with another T_max [N m] than its own: a duty is worth that torque.
+
+    The gain of the torque is rounded to the next double; P and I are what the numbers they are made of have them.
+    """
+    own = law.max_torque if isinstance(law, AdaptiveFuzzy) else law.vehicle.brake.max_torque
+    if own == max_torque:
+        return gains
+    return Feedback(*(gain * max_torque / own for gain in gains))
 
 
 def nominal(vehicle: Vehicle, rail: Rail, slip: Number, speed: Number) -> Plant:
@@ -144,6 +158,7 @@ def loop_at(
 
     ``arranged`` gives the same functions in the form that is tight on intervals.
     """
+    max_torque = problem.vehicle.brake.max_torque
     speed, slip = values["speed"], values["slip"]
     if arranged:
         gain = slip_gain(speed, values["wheelset inertia"] / 2.0, values["wheel_radius"])
@@ -152,10 +167,68 @@ def loop_at(
         dynamics = plant_dynamics(problem, values)
         plant = Plant(pole=dynamics.pole, gain=dynamics.gain)
     if not isinstance(law, SlidingMode):
-        return plant, feedback(law, speed, slope=values.get("du/ds"))
+        return plant, on_brake(law, feedback(law, speed, slope=values.get("du/ds")), max_torque)
     vehicle, rail = records_of(values, law.vehicle, law.rail, "model ")
     model = nominal(vehicle, rail, slip, speed)
     if arranged:
         gain = slip_gain(speed, vehicle.wheel_inertia, vehicle.wheel_radius)
         model = Plant(pole=forces(vehicle, rail, slip, speed).pole, gain=gain)
-    return plant, feedback(law, speed, model=model)
+    return plant, on_brake(law, feedback(law, speed, model=model), max_torque)
+
+
+def outermost(problem: Problem, law: LinearLaw, speed: float, *, sampled: bool) -> float:
+    """Lower bound of how far a pole of the loop lies out, with the nominal parameters at a speed [m/s].
+
+    In balls, with the integral of the law as it is summed if it is sampled. The poles are enclosed by Arb.
+
+    Returns
+    -------
+    float
+        Of the largest real part [1/s], or of the largest magnitude [-] if sampled; minus infinity if the poles cannot
+        be enclosed.
+    """
+    from flint import acb_mat, ctx
+
+    vehicle = problem.vehicle
+    nominal_values = {
+        "speed": speed,
+        "mass": vehicle.mass,
+        "wheelset inertia": vehicle.wheelset_inertia,
+        "mu0": problem.rail.mu0,
+    }
+    with ctx.workprec(PRECISION):
+        values = {v.name: ball(v.low, v.high) for v in variables(problem, law)}
+        values |= {name: point(value) for name, value in nominal_values.items()}
+        plant, gains = loop_at(problem, law, values)
+        make = _sampled if sampled else _continuous
+        matrix = make(plant, point(lag_of(problem)), gains, point(problem.sample_time))
+        if gains.integral == 0.0:
+            matrix = [row[:2] for row in matrix[:2]]
+        try:
+            poles = acb_mat(matrix).eig(multiple=True)
+        except ValueError:
+            return -math.inf
+        return max(below(abs(pole) if sampled else pole.real) for pole in poles)
+
+
+def _continuous(plant: Plant, lag: Ball, gains: Feedback, _: Ball) -> list[list[Ball]]:
+    """Matrix of the loop in error, torque and integral."""
+    row = [gains.proportional / lag, -(1 + gains.torque) / lag, gains.integral / lag]
+    return [[plant.pole, -plant.gain, 0], row, [1, 0, 0]]
+
+
+def _sampled(plant: Plant, lag: Ball, gains: Feedback, span: Ball) -> list[list[Ball]]:
+    """Matrix from one sample to the next, the command held in between."""
+    from flint import arb_mat
+
+    generator = arb_mat([[plant.pole, -plant.gain, 0], [0, -1 / lag, 1 / lag], [0, 0, 0]])
+    step = (generator * span).exp()
+    rows = [
+        [
+            step[k, 0] + step[k, 2] * gains.proportional,
+            step[k, 1] - step[k, 2] * gains.torque,
+            step[k, 2] * gains.integral,
+        ]
+        for k in range(2)
+    ]
+    return [*rows, [span, 0, 1]]

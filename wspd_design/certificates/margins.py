@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 from wspd_design.certificates import domain, laws
 from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.linear_loop import LinearLaw, feedback, lag_of, nominal
+from wspd_design.certificates.linear_loop import (
+    LinearLaw,
+    feedback,
+    lag_of,
+    nominal,
+    on_brake,
+    outermost,
+)
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 
 if TYPE_CHECKING:
@@ -40,6 +47,28 @@ class Margins:
 UNSTABLE = Margins(stable=False, gain_up=1.0, gain_down=1.0, phase=0.0, delay=0.0, disk=0.0)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unstable:
+    """A speed at which a pole lies outside for certain."""
+
+    speed: float  # m/s
+    sampled: bool
+    least: float  # real part [1/s] or, of the sampled loop, magnitude [-] that a pole exceeds
+
+    def witness(self, problem: Problem) -> tuple[Point, ...]:
+        """Return the point with the nominal parameters."""
+        return (
+            Point(name="slip", value=problem.slip, unit="-"),
+            Point(name="speed", value=self.speed * KMH, unit="km/h"),
+            Point(name="mass", value=problem.vehicle.mass, unit="kg"),
+            Point(name="wheelset inertia", value=problem.vehicle.wheelset_inertia, unit="kg m2"),
+            Point(name="mu0", value=problem.rail.mu0, unit="-"),
+            Point(name="magnitude of a sampled pole", value=self.least, unit="-")
+            if self.sampled
+            else Point(name="real part of a pole", value=self.least, unit="1/s"),
+        )
+
+
 @certified(name=NAME, title=TITLE)
 def check(problem: Problem) -> Certificate:
     """Work out the margins at speeds over the range, with nominal parameters."""
@@ -55,8 +84,9 @@ def check(problem: Problem) -> Certificate:
     worst = min(range(SPEEDS), key=lambda i: min(continuous[i].disk, sampled[i].disk))
     tightest = min(continuous[worst], sampled[worst], key=lambda each: each.disk)
     stable = tightest.stable
-    unstable = [sum(not each.stable for each in found) for found in (continuous, sampled)]
-    speed = float(speeds[worst]) * KMH
+    unstable = [[k for k in range(SPEEDS) if not each[k].stable] for each in (continuous, sampled)]
+    beyond = _certain(problem, law, [speeds[each].tolist() for each in unstable])
+    speed = (beyond.speed if beyond else float(speeds[worst])) * KMH
     where = (
         Point(name="speed", value=speed, unit="km/h"),
         Point(name="gain margin up", value=_decibel(tightest.gain_up), unit="dB"),
@@ -65,6 +95,9 @@ def check(problem: Problem) -> Certificate:
         Point(name="delay margin", value=tightest.delay, unit="s"),
         Point(name="disk margin", value=tightest.disk, unit="-"),
     )
+    status = Status.EVIDENCE
+    if not stable:
+        status = Status.REFUTED if beyond else Status.UNDECIDED
     x = "speed [km/h]"
     kinds = (("continuous", continuous), ("sampled", sampled))
     return Certificate(
@@ -73,27 +106,29 @@ def check(problem: Problem) -> Certificate:
         claim=f"With the nominal parameters the loop near slip {problem.slip:g} is stable at every speed from "
         f"{problem.speeds[0] * KMH:.3g} to {problem.speeds[1] * KMH:.3g} km/h, continuous and sampled every "
         f"{problem.sample_time * 1e3:g} ms, and bears changes of gain and phase at the valve.",
-        status=Status.EVIDENCE if stable else Status.REFUTED,
+        status=status,
         explanation=(
             f"Tightest at {speed:.3g} km/h: the gain may change by {_decibel(tightest.gain_down):.3g} to "
             f"{_decibel(tightest.gain_up):.3g} dB, the phase by {math.degrees(tightest.phase):.3g} degrees, "
             f"the delay may grow by {tightest.delay * 1e3:.3g} ms; disk margin {tightest.disk:.3g}."
             if stable
-            else f"Unstable at {unstable[0]} of {SPEEDS} speeds as continuous loop and at {unstable[1]} as "
-            f"sampled loop, for example at {speed:.3g} km/h: there is no margin."
+            else f"Unstable at {len(unstable[0])} of {SPEEDS} speeds as continuous loop and at {len(unstable[1])} as "
+            f"sampled loop: there is no margin. {_exactly(beyond)}"
         ),
         margin=Range(low=None, high=tightest.disk, unit="-"),
         worst_point=where,
-        witness=() if stable else where,
+        witness=beyond.witness(problem) if beyond else (),
         assumptions=(
             "frozen train speed",
             "averaged valve with the slower of its two time constants",
             "nominal parameters",
             "torque command held over a sample: pulse width modulation without ripple, no computing time",
         ),
-        method="python-control on the linear loop opened at the valve command; zero-order hold at the sample time",
+        method="python-control on the linear loop opened at the valve command; zero-order hold at the sample time; "
+        "a witness by poles that Arb encloses",
         resolution=f"{SPEEDS} speeds, {FREQUENCIES} frequencies for the disk margin",
-        reference="eqs. (14), (19), (22); Seiler, Packard and Gahinet (2020), An introduction to disk margins",
+        reference="eqs. (14), (19), (22); docs/theory.md#routh; Seiler, Packard and Gahinet (2020), An introduction to "
+        "disk margins",
         series=(
             *(series(name, x, "disk margin [-]", speeds * KMH, _of(found, "disk")) for name, found in kinds),
             *(
@@ -107,6 +142,27 @@ def check(problem: Problem) -> Certificate:
             level("half a sample", x, "delay margin [s]", speeds * KMH, problem.sample_time / 2.0),
         ),
     )
+
+
+def _certain(problem: Problem, law: LinearLaw, speeds: list[list[float]]) -> Unstable | None:
+    """Look for a speed at which the loop is unstable for certain, among those where floats say so."""
+    for sampled, tried in zip((False, True), speeds, strict=True):
+        for speed in tried:
+            least = outermost(problem, law, speed, sampled=sampled)
+            if least > (1.0 if sampled else 0.0):
+                return Unstable(speed=speed, sampled=sampled, least=least)
+    return None
+
+
+def _exactly(beyond: Unstable | None) -> str:
+    if beyond is None:
+        return "But at none of them exact arithmetic shows a pole outside."
+    size = (
+        f"a sampled pole has a magnitude of at least {beyond.least:.4g}"
+        if beyond.sampled
+        else f"a pole has a real part of at least {beyond.least:.3g} 1/s"
+    )
+    return f"At {beyond.speed * KMH:.3g} km/h {size}, in exact arithmetic."
 
 
 def loop(problem: Problem, law: LinearLaw, speed: float, *, sample_time: float | None = None) -> Any:
@@ -134,7 +190,7 @@ def loop(problem: Problem, law: LinearLaw, speed: float, *, sample_time: float |
     vehicle = problem.vehicle
     dynamics = nominal(vehicle, problem.rail, problem.slip, speed)
     lag, limit = lag_of(problem), vehicle.brake.max_torque
-    gains = feedback(law, speed)
+    gains = on_brake(law, feedback(law, speed), limit)
     plant = control.ss(
         np.array([[dynamics.pole, dynamics.gain * limit], [0.0, -1.0 / lag]]),
         np.array([[0.0], [1.0 / lag]]),
