@@ -112,7 +112,14 @@ def test_brake_that_suffices_makes_it_a_proof(make_problem, make_controller):
 
 
 @pytest.mark.parametrize(
-    "changes", [{"hold_when_saturated": False}, {"weight_rate": -92.0}, {"integral_gain": 0.0}]
+    "changes",
+    [
+        {"hold_when_saturated": False},
+        {"weight_rate": -92.0},
+        {"integral_gain": 0.0},
+        {"bound_rate": float("nan")},
+        {"boundary_layer": float("nan")},
+    ],
 )
 def test_planted_law_loses_a_hypothesis(make_problem, make_controller, changes):
     law = designed(make_controller, **changes)

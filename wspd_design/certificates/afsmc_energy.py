@@ -12,6 +12,7 @@ from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.plant import plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.engine import Finding, enclose, engine, settle, versions
+from wspd_design.certificates.proof_run import exact_plant
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Series, Status
 from wspd_design.certificates.sliding_exists import torque_claim
@@ -85,13 +86,13 @@ def energy(
     unit = gains.torque_unit
     # The law adapts with s, which counts K_P times s / K_P.
     rates = [point(unit) * gains.proportional_gain * rate for rate in (gains.weight_rate, gains.bound_rate)]
-    starts = [unit * weight for weight in gains.initial_weights]
-    guessed = unit * gains.initial_bound
+    starts = [point(unit) * weight for weight in gains.initial_weights]
+    guessed = point(unit) * gains.initial_bound
 
     def adaptive(beta: float) -> tuple[Ball, float]:
         """What weights and bound contribute to V(0), and psi."""
         bound = max(
-            math.nextafter(highest - beta, math.inf), math.nextafter(beta - lowest, math.inf), guessed
+            math.nextafter(highest - beta, math.inf), math.nextafter(beta - lowest, math.inf), above(guessed)
         )
         squares = sum(((point(beta) - b) ** 2 for b in starts), point(0.0))
         return squares / rates[0] / 2 + (point(bound) - guessed) ** 2 / rates[1] / 2, bound
@@ -103,7 +104,9 @@ def energy(
     light, heavy = (point(each) for each in problem.inertia_bounds)
     radius = point(problem.vehicle.wheel_radius)
     outside = point(gains.slip_reference) - point(gains.boundary_layer) / gains.proportional_gain
-    distance = outside if outside > 0 else point(0.0)  # of a rolling wheel from the layer
+    distance = (
+        outside if outside > 0 else point(0.0)
+    )  # from the layer, of a rolling wheel or one that slips more
     kinetic = point(factor) * distance**2 / 2
     start = kinetic * heavy / radius + stored
     return Energy(
@@ -155,7 +158,7 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
         )
         layer = gains.boundary_layer / gains.proportional_gain
         seconds = integral / layer
-        meaning = f"The surface is more than one further layer, {layer:.3g}, away for at most {seconds:.3g} s in all."
+        meaning = f"The surface is more than one further layer, {layer:.3g}, away for at most {_up(seconds)} s in all."
     else:
         numbers, meaning = "V bounds error and weights", "There is no bound to state."
     open_ones = [each.text for each in hypotheses if each.status is not Status.PROVED]
@@ -163,8 +166,8 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
     return Certificate(
         name=NAME,
         title=TITLE,
-        claim=f"From rolling at {problem.speeds[1] * KMH:.3g} km/h on, as long as the slip stays on "
-        f"{domain.described(problem)}, {numbers}.",
+        claim=f"From a slip below the reference at {problem.speeds[1] * KMH:.3g} km/h on, without an integral of the "
+        f"error yet and as long as the slip stays on {domain.described(problem)}, {numbers}.",
         status=status,
         explanation=f"{meaning} "
         + (f"Not shown: {'; '.join(open_ones)}." if open_ones else "All that it needs is proved.")
@@ -184,7 +187,7 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
         method="repaired Lyapunov function V; torques and deceleration enclosed by interval branch and bound and "
         "replayed by the checker; the rest in balls",
         resolution=f"{low.boxes + high.boxes + braking.boxes} boxes; torques within {TORQUE_TOLERANCE:g} N m",
-        reference="eqs. (39)-(44) repaired; findings, section 2, repair of (43)",
+        reference="eqs. (39)-(44) repaired; docs/theory.md#energy",
         undecided=findings.undecided(low, high, braking),
         engine=engine(),
         proofs=findings.proofs(low, high, braking),
@@ -192,14 +195,15 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
 
 
 def smallest_gain(gains: AdaptiveFuzzyGains) -> float:
-    """Return the smallest of the gains that must be positive."""
-    return min(
+    """Return the smallest of the gains that must be positive; one that is no number counts as the smallest."""
+    needed = (
         gains.weight_rate,
         gains.bound_rate,
         gains.proportional_gain,
         gains.integral_gain,
         gains.boundary_layer,
     )
+    return -math.inf if any(math.isnan(each) for each in needed) else min(needed)
 
 
 def claims(problem: Problem, law: AdaptiveFuzzy) -> tuple[Claim, Claim, Claim]:
@@ -267,7 +271,7 @@ def _refutation(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
         ),
         method="V2' at s = 0 in balls, minimized over all ideal weights and bounds that (34) admits",
         resolution=f"{SPEEDS} speeds",
-        reference="eqs. (33), (34), (39)-(44)",
+        reference="eqs. (33), (34), (39)-(44); docs/theory.md#printed",
         engine=f"python-flint {versions()['python-flint']}",
         series=_plots((speeds * KMH).tolist(), lowest),
     )
@@ -280,8 +284,9 @@ def printed_rate(problem: Problem, law: AdaptiveFuzzy, speed: float) -> Ball:
     psi >= abs(u* - b*'w). With the law's own w, b_hat and psi_hat the errors have to make up for
     d = abs(u* - b_hat'w) - psi_hat; the cheapest way costs d^2/(alpha1 abs(w)^2 + alpha2).
     """
-    gains = law.gains
-    plant = slip_dynamics(problem.vehicle, problem.rail, problem.slip, point(speed))
+    gains, vehicle = law.gains, problem.vehicle
+    exact_numbers = exact_plant(problem, vehicle.mass, vehicle.wheelset_inertia, problem.rail.mu0)
+    plant = slip_dynamics(*exact_numbers, point(problem.slip), point(speed))
     ideal = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, 0.0, 0.0) / gains.torque_unit
     strengths = firing_strengths(gains, point(0.0))
     fuzzy = sum((w * b for w, b in zip(strengths, gains.initial_weights, strict=True)), point(0.0))

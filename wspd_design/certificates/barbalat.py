@@ -64,7 +64,8 @@ def check(problem: Problem) -> Certificate:
             _endless(law),
             Hypothesis(
                 text=f"the integral of abs(s_D) is at most {name}",
-                status=Status.EVIDENCE if within else Status.REFUTED,
+                # Trapezoids between floats cannot refute a bound.
+                status=Status.EVIDENCE if within else Status.UNDECIDED,
             ),
             Hypothesis(
                 text=f"s_D is Lipschitz continuous, with a constant of at least {lipschitz:.3g} 1/s",

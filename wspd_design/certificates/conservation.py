@@ -46,7 +46,8 @@ def check(problem: Problem) -> Certificate:
             f"{plant}: momentum {momentum:.2g}, energy {energy:.2g}"
             for plant, (momentum, energy) in residuals.items()
         )
-        + ".",
+        + "."
+        + ("" if closed else " The claim is about simulated stops: the witness is the stop itself."),
         margin=Range(low=None, high=1.0 - used if closed else min(0.0, 1.0 - used), unit="of the limits"),
         worst_point=where,
         witness=() if closed else where,
@@ -54,5 +55,5 @@ def check(problem: Problem) -> Certificate:
         method="integrals of torque, resistance, damping and sliding along the simulated stop against the change "
         "of momentum and kinetic energy",
         resolution=f"one stop on each plant: {', '.join(residuals)}",
-        reference="eqs. (1), (2); Table 10",
+        reference="eqs. (1), (2); Table 10; docs/theory.md#bound",
     )

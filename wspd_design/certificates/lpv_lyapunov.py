@@ -88,8 +88,8 @@ def check(problem: Problem) -> Certificate:
     explanation = {
         Status.PROVED: "",
         Status.UNDECIDED: f"{polytope}. Nothing is shown: {why}.",
-        Status.REFUTED: f"{polytope}. At the witness the loop with these gains is unstable, so that no such function "
-        "can exist.",
+        Status.REFUTED: f"{polytope}. At the witness the loop with these gains is unstable in exact arithmetic, so that "
+        "no such function can exist.",
     }[status]
     margin = Range(low=None, high=1.0 - worst, unit="per sample")
     if found is not None and status is Status.PROVED:
@@ -119,7 +119,7 @@ def check(problem: Problem) -> Certificate:
         "matrix exponentials enclosed by Arb on parts that cover the interval",
         resolution=f"ends of the polytope within {TOLERANCE:g} 1/s"
         + (f"; {proof.leaves} parts of its interval" if proof is not None else ""),
-        reference="eqs. (14), (19); findings, section 2, relative degree 2",
+        reference="eqs. (14), (19); docs/theory.md#lpv",
         engine=engine(),
         proofs=() if proof is None else (proof,),
         series=curves,

@@ -56,7 +56,13 @@ def check(problem: Problem) -> Certificate:
         explanation=f"The slip strays as far as {run.slip[worst, 0]:.3f} from its reference "
         f"{reference:g} and is outside the bound at {outside:.0%} of the judged instants; its rms about "
         f"the reference above {JUDGING_SPEED * KMH:.0f} km/h is {figures.slip_rms:.3f}. The wheels lock for "
-        f"{figures.lock_time:.2g} s; {run.ending.value}.",
+        f"{figures.lock_time:.2g} s; {run.ending.value}."
+        + (
+            ""
+            if stays
+            else " The claim is about a simulated stop: the witness is this stop itself; the step check of wspd "
+            "simulate says how far its steps can be trusted."
+        ),
         margin=Range(low=None, high=bound - float(errors[worst]), unit="-"),
         worst_point=where,
         witness=() if stays else where,
