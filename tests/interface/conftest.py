@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import pytest
 
+from wspd_design.certificates.certificate_file import certificate_text
+from wspd_design.certificates.records import Certificate, Point, Status
 from wspd_design.cli.app import run
 from wspd_design.design.file import design_text
 from wspd_design.design.records import Specification
@@ -45,4 +47,26 @@ def smc_text():
 def smc_file(tmp_path, smc_text):
     path = tmp_path / "smc.toml"
     path.write_text(smc_text)
+    return path
+
+
+@pytest.fixture
+def witness_file(tmp_path):
+    """A certificate that is refuted at 36 km/h, with other mass, inertia and friction than the paper's vehicle."""
+    values = (("slip", 0.2, "-"), ("speed", 36.0, "km/h"), ("mass", 70e3, "kg"), ("mu0", 0.3, "-"))
+    certificate = Certificate(
+        name="open_loop_pole",
+        title="Slip pole",
+        claim="The slip pole does not exceed 1/tau.",
+        status=Status.REFUTED,
+        explanation="It does.",
+        witness=(
+            *(Point(name=name, value=value, unit=unit) for name, value, unit in values),
+            Point(name="wheelset inertia", value=700.0, unit="kg m2"),
+            Point(name="slip pole", value=3.0, unit="1/s"),
+        ),
+        method="none",
+    )
+    path = tmp_path / "witness.json"
+    path.write_text(certificate_text(certificate))
     return path

@@ -25,6 +25,7 @@ STOP = {
     "sample_time_s": NUMBER,
     "initial_speed_m_s": NUMBER,
     "scenario": dict,
+    "witness": (dict, type(None)),
     "slip_reference": NUMBER,
     "ending": str,
     "distance_m": NUMBER,
@@ -50,6 +51,7 @@ STOP = {
     "version": str,
 }
 SCENARIO = {
+    "start": dict,
     "axle_rails": (list, type(None)),
     "patches": list,
     "grade": NUMBER,
@@ -58,6 +60,17 @@ SCENARIO = {
     "pulses_per_turn": int,
     "reference_error": NUMBER,
     "dead_time_s": NUMBER,
+}
+START = {"slip": NUMBER, "torque_Nm": NUMBER, "braking_time_s": NUMBER}
+WITNESS = {
+    "check": str,
+    "status": str,
+    "same_problem": bool,
+    "mass_kg": NUMBER,
+    "wheelset_inertia_kg_m2": NUMBER,
+    "mu0": NUMBER,
+    "holding_torque_Nm": NUMBER,
+    "left_after_s": (*NUMBER, type(None)),
 }
 STEP_CHECK = {
     "distance": NUMBER,
@@ -75,6 +88,7 @@ CAMPAIGN = {
     "sample_time_s": NUMBER,
     "initial_speed_m_s": NUMBER,
     "scenario": dict,
+    "witness": (dict, type(None)),
     "runs": int,
     "runs_wanted": int,
     "complete": bool,
@@ -109,6 +123,7 @@ CHECK = {
     "claim": str,
     "status": str,
     "explanation": str,
+    "limitation": bool,
     "margin": (dict, type(None)),
     "worst_point": list,
     "witness": list,
@@ -189,6 +204,8 @@ def test_stop(wspd):
     assert_form(found["step_check"], STEP_CHECK)
     assert found["step_check"]["distance"] == made.check.distance
     assert_form(found["scenario"], SCENARIO)
+    assert_form(found["scenario"]["start"], START)
+    assert found["witness"] is None
     assert found["plant"] == "four-axle"
     assert found["torque_integral_kNms"] == pytest.approx(figures.torque_integral / 1000.0, rel=1e-15)
     assert found["ending"] == "stopped"
@@ -204,6 +221,7 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
     found = only_object(wspd("simulate", "trenitalia", *SLOW, *options, "--json"))
     assert_form(found["scenario"], SCENARIO)
     assert found["scenario"] == {
+        "start": {"slip": 0.0, "torque_Nm": 0.0, "braking_time_s": 0.0},
         "axle_rails": ["polach-wet", "polach-wet", "polach-dry", "polach-dry"],
         "patches": [{"start_m": 2.0, "rail": "low-adhesion"}],
         "grade": -0.005,
@@ -216,6 +234,23 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
     assert found["distance_m"] != pytest.approx(plain["distance_m"], rel=1e-3)
     assert found["bound_m"] is None  # not known for a change of rail
     assert found["efficiency"] is None
+
+
+def test_stop_from_a_witness(wspd, witness_file):
+    found = only_object(wspd("simulate", "smc", "--from-witness", witness_file, "--json"))
+    unknown = ("bound_m", "efficiency", "lag_s", "plateau_m_s2")
+    assert_form(found, STOP | dict.fromkeys(unknown, type(None)))
+    assert_form(found["witness"], WITNESS)
+    assert (found["witness"]["check"], found["witness"]["status"]) == ("open_loop_pole", "REFUTED")
+    assert (found["plant"], found["scenario"]["start"]["slip"]) == ("quarter", 0.2)
+    assert found["initial_speed_m_s"] == pytest.approx(10.0)
+    assert found["witness"]["left_after_s"] > 0.0
+    options = ("--from-witness", witness_file, "--runs", "2", "--nominal", "--json")
+    many = only_object(wspd("simulate", "smc", *options))
+    assert_form(many, CAMPAIGN)
+    assert many["witness"] == {**found["witness"], "left_after_s": None}
+    assert many["scenario"] == found["scenario"]
+    assert many["distance_m"]["max"] == pytest.approx(found["distance_m"], rel=1e-9)
 
 
 def test_a_chaotic_stop_gives_its_spread(wspd, monkeypatch):
@@ -317,6 +352,8 @@ def test_all_keys_are_documented():
     forms = (
         STOP,
         SCENARIO,
+        START,
+        WITNESS,
         STEP_CHECK,
         CAMPAIGN,
         SPREAD,

@@ -9,6 +9,7 @@ from rich.text import Text
 from wspd_design.cli.case import Case
 from wspd_design.cli.console import console, print_json, progress_bar, spaced, table
 from wspd_design.cli.exit_codes import INTERRUPTED
+from wspd_design.cli.from_witness import Origin
 from wspd_design.cli.json_objects import campaign_object
 from wspd_design.cli.stop_figures import number
 from wspd_design.cli.stop_options import disturbances_of, rails_of
@@ -32,6 +33,7 @@ def simulate_campaign(
     output: Path | None,
     force: bool,
     as_json: bool,
+    origin: Origin | None,
 ) -> None:
     """Simulate many stops and say how they spread; an interrupt keeps what is done.
 
@@ -53,6 +55,8 @@ def simulate_campaign(
         Whether an existing file may be replaced.
     as_json : bool
         Print an object in place of the table.
+    origin : Origin or None
+        The witness that the stops start at.
     """
     bounds = () if nominal else _bounds(case, scenario)
     with progress_bar(f"{runs} stops with {case.controller.name}", runs) as tell:
@@ -65,7 +69,7 @@ def simulate_campaign(
         write_table(written, campaign.table, force=force)
     summary = summarize(campaign, wanted=runs)
     if as_json:
-        print_json(campaign_object(summary, case, scenario))
+        print_json(campaign_object(summary, case, scenario, origin))
     elif done:
         _show(summary, case, scenario)
         if written is not None:

@@ -8,13 +8,17 @@ from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.cli.case import Case
 from wspd_design.cli.console import program_version
+from wspd_design.cli.from_witness import LEFT, Origin
 from wspd_design.cli.summary import Summary
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.start import leaving_time
 
 
-def stop_object(trial: Trial, scenario: Scenario, *, slip_reference: float) -> dict[str, Any]:
-    """Return the figures of one stop, ``wspd-stop/1``."""
+def stop_object(
+    trial: Trial, scenario: Scenario, *, slip_reference: float, origin: Origin | None = None
+) -> dict[str, Any]:
+    """Return the figures of one stop, ``wspd-stop/1``; the origin is there if it starts at a witness."""
     run, figures, check = trial.run, trial.metrics, trial.check
     return {
         "schema": "wspd-stop/1",
@@ -25,6 +29,7 @@ def stop_object(trial: Trial, scenario: Scenario, *, slip_reference: float) -> d
         "sample_time_s": run.sample_time,
         "initial_speed_m_s": run.initial_speed,
         "scenario": scenario_object(scenario),
+        "witness": None if origin is None else witness_object(origin, leaving_time(run, LEFT)),
         "slip_reference": slip_reference,
         "ending": run.ending.name.lower(),
         "distance_m": figures.distance,
@@ -58,9 +63,14 @@ def stop_object(trial: Trial, scenario: Scenario, *, slip_reference: float) -> d
 
 
 def scenario_object(scenario: Scenario) -> dict[str, Any]:
-    """Return what disturbs a stop."""
-    rails, sensing = scenario.axle_rails, scenario.sensing
+    """Return where a stop starts and what disturbs it."""
+    rails, sensing, start = scenario.axle_rails, scenario.sensing, scenario.start
     return {
+        "start": {
+            "slip": start.slip,
+            "torque_Nm": start.torque,
+            "braking_time_s": start.braking_time,
+        },
         "axle_rails": None if rails is None else [rail.name for rail in rails],
         "patches": [{"start_m": patch.start, "rail": patch.rail.name} for patch in scenario.patches],
         "grade": scenario.grade,
@@ -72,7 +82,23 @@ def scenario_object(scenario: Scenario) -> dict[str, Any]:
     }
 
 
-def campaign_object(summary: Summary, case: Case, scenario: Scenario) -> dict[str, Any]:
+def witness_object(origin: Origin, left_after: float | None = None) -> dict[str, Any]:
+    """Return the witness that a stop starts at, the numbers of the plant there and when the slip has left it."""
+    return {
+        "check": origin.witness.check,
+        "status": origin.witness.status.name,
+        "same_problem": origin.same_problem,
+        "mass_kg": origin.vehicle.mass,
+        "wheelset_inertia_kg_m2": origin.vehicle.wheelset_inertia,
+        "mu0": origin.rail.mu0,
+        "holding_torque_Nm": origin.holding_torque,
+        "left_after_s": left_after,
+    }
+
+
+def campaign_object(
+    summary: Summary, case: Case, scenario: Scenario, origin: Origin | None = None
+) -> dict[str, Any]:
     """Return what many stops have in common and how they spread, ``wspd-campaign/1``."""
     campaign = summary.campaign
     return {
@@ -84,6 +110,7 @@ def campaign_object(summary: Summary, case: Case, scenario: Scenario) -> dict[st
         "sample_time_s": case.controller.sample_time,
         "initial_speed_m_s": scenario.initial_speed,
         "scenario": scenario_object(scenario),
+        "witness": None if origin is None else witness_object(origin),
         "runs": len(campaign.table),
         "runs_wanted": summary.wanted,
         "complete": campaign.complete,
@@ -103,7 +130,7 @@ def comparison_object(stops: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def verification_object(
     problem: Problem, certificates: Sequence[Certificate], *, plant: str, verdict: str
 ) -> dict[str, Any]:
-    """Return the certificates of a closed loop, ``wspd-verify/1``; series for plots are left out."""
+    """Return the certificates of a closed loop, ``wspd-verify/1``; what is for plots is left out."""
     return {
         "schema": "wspd-verify/1",
         "controller": problem.controller.name,
@@ -151,7 +178,7 @@ def linearization_object(
 
 def _check(certificate: Certificate) -> dict[str, Any]:
     fields = asdict(certificate)
-    del fields["series"]
+    del fields["series"], fields["maps"]
     fields["status"] = certificate.status.name
     fields["hypotheses"] = [
         {"text": hypothesis.text, "status": hypothesis.status.name} for hypothesis in certificate.hypotheses

@@ -1,5 +1,6 @@
 """The options that several commands share, each defined once; the defaults are the paper's case."""
 
+from pathlib import Path
 from typing import Annotated, Any, TypeAlias
 
 import typer
@@ -80,6 +81,30 @@ QuarterOption: TypeAlias = Annotated[
 ]
 SpeedOption: TypeAlias = Annotated[
     str, typer.Option("--speed", metavar="SPEED", help="Initial speed with its unit.", rich_help_panel=CASE)
+]
+StopSpeedOption: TypeAlias = Annotated[
+    str | None,
+    case_option("--speed", "SPEED", "Initial speed with its unit.", f"{SPEED}, or that of the witness"),
+]
+StopPlantOption: TypeAlias = Annotated[
+    str | None,
+    case_option(
+        "--plant",
+        "NAME",
+        f"Model of the vehicle: {' or '.join(PLANTS)}.",
+        f"{PLANT}, but {QUARTER} with --from-witness",
+    ),
+]
+FromWitnessOption: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--from-witness",
+        metavar="FILE",
+        help="Start at the witness of a certificate that is REFUTED: its slip, speed, mass, inertia and mu0, full "
+        "supply, and the torque that holds the slip (docs/json.md).",
+        show_default=False,
+        rich_help_panel=CASE,
+    ),
 ]
 SpeedsOption: TypeAlias = Annotated[
     tuple[str, str] | None, case_option("--speeds", "LOW HIGH", "Range of operation.", SPEEDS)

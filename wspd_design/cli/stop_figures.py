@@ -31,7 +31,7 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     shown.add_row("bound, no controller stops shorter", number(figures.bound, ".1f"), "m")
     shown.add_row("efficiency, bound over distance", number(100.0 * figures.efficiency, ".1f"), "%")
     shown.add_row("time", f"{figures.stopping_time:.2f}", "s")
-    if stopped:
+    if figures.lag == figures.lag:
         shown.add_row("lag of the brake build-up", f"{figures.lag:.2f}", "s")
         shown.add_row("deceleration after it", f"{figures.plateau:.3f}", "m/s^2")
     shown.add_row("torque integral, all wheelsets", f"{figures.torque_integral / 1e3:.1f}", "kN m s")

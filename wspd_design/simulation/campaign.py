@@ -13,7 +13,7 @@ from wspd_design.codegen.sampled import GOOD
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import ParameterSet, Vehicle
-from wspd_design.simulation.loop_input import loop_input
+from wspd_design.simulation.loop_input import first_slip, loop_input
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import run_loop
 
@@ -91,7 +91,7 @@ def simulate_many(
     try:
         for first, count, output in _outputs(cases, controller, plant):
             rows = slice(first, first + count)
-            for name, values in _figures(output, count).items():
+            for name, values in _figures(output, count, scenario).items():
                 table[name][rows] = values
             finished[rows] = True
             progress(int(finished.sum()))
@@ -203,7 +203,7 @@ def _split(case: tuple[Vehicle, Scenario], controller: Controller) -> tuple[Vehi
     return case[0], controller, case[1]
 
 
-def _figures(output: LoopOutput, count: int) -> dict[str, Any]:
+def _figures(output: LoopOutput, count: int, scenario: Scenario) -> dict[str, Any]:
     """Columns of the table for the first ``count`` stops of a chunk."""
     import numpy as np
 
@@ -216,7 +216,7 @@ def _figures(output: LoopOutput, count: int) -> dict[str, Any]:
         "stopping_time_s": totals["time"],
         "torque_integral_kNms": lanes["torque"].sum(axis=0) / 1e3,
         "slip_mean": lanes["slip"].mean(axis=0) / judged,
-        "slip_max": lanes["slip_max"].max(axis=0),
+        "slip_max": np.maximum(lanes["slip_max"].max(axis=0), first_slip(scenario)),
         "lock_time_s": lanes["lock_time"].max(axis=0),
         "stopped": output.stopped[:count],
     }

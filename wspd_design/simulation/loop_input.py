@@ -113,6 +113,11 @@ def _pressure(brake: Brake, start: Start) -> float:
     return brake.max_pressure * (start.torque / brake.max_torque)
 
 
+def first_slip(scenario: Scenario) -> float:
+    """Slip at the begin of a stop, as far as the figures count it [-]."""
+    return scenario.start.slip if scenario.initial_speed > JUDGING_SPEED else 0.0
+
+
 def _flat(vehicle: Vehicle) -> Vehicle:
     """Take the heights out: no load is transferred."""
     return replace(vehicle, body_height=0.0, bogie_height=0.0, traction_rod_height=0.0)

@@ -1,5 +1,6 @@
-"""Where a stop may start that does not start rolling: torques of the brake, and the one that holds a slip."""
+"""Where a stop may start that does not start rolling: the torques there, and when the slip has left it."""
 
+import math
 from dataclasses import replace
 
 from wspd_design.model.generated import brake as generated
@@ -7,6 +8,7 @@ from wspd_design.model.generated import motion
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Rail, Vehicle
+from wspd_design.simulation.records import Run
 
 _FULL = 40.0  # time constants of the supply (8), after which it lacks less than the last digit of a float
 
@@ -54,3 +56,19 @@ def holding_torque(
     )
     found = slip_dynamics(present, rail, slip, speed)
     return -float(found.drift) / float(found.gain)
+
+
+def leaving_time(run: Run, distance: float) -> float:
+    """Time after which the slip of a wheelset is first so far from where it began [s]; NaN if it never is.
+
+    Parameters
+    ----------
+    run : Run
+        The stop.
+    distance : float
+        In slip [-].
+    """
+    import numpy as np
+
+    away = np.flatnonzero((abs(run.slip - run.slip[0]) > distance).any(axis=1))
+    return float(run.time[away[0]]) if away.size else math.nan

@@ -23,7 +23,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.four_axle import AXLES
-from wspd_design.simulation.loop_input import RECORD_INTERVAL, loop_input, sample_rows
+from wspd_design.simulation.loop_input import RECORD_INTERVAL, first_slip, loop_input, sample_rows
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
 
 if TYPE_CHECKING:
@@ -165,7 +165,7 @@ def _run_record(
             vented_pressure=float(lane["vented_pressure"].sum()),
         ),
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
-        slip_max=float(lane["slip_max"].max()),
+        slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),
         engine=engine,
     )
 

@@ -15,7 +15,7 @@ from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.metrics import energy_residual, metrics, momentum_residual
 from wspd_design.simulation.records import PLANTS, Scenario, Start
-from wspd_design.simulation.start import available_torque, full_supply_time, holding_torque
+from wspd_design.simulation.start import available_torque, full_supply_time, holding_torque, leaving_time
 from wspd_design.simulation.stop import simulate
 
 DRY = load_rail("polach-dry")
@@ -177,6 +177,29 @@ def test_momentum_and_energy_are_conserved(er24pc, make_controller, law, plant):
     assert abs(energy_residual(rolling, er24pc)) > 1e-3
 
 
+def test_the_largest_slip_counts_from_the_start(er24pc, make_controller):
+    slow = Start(slip=0.6)  # released wheels spin up at once
+    law = make_controller("none")
+    assert simulate(er24pc, law, scenario(slow, initial_speed=10.0)).slip_max >= 0.6
+    crawling = simulate(er24pc, law, scenario(slow, initial_speed=2.0))  # below 10 km/h nothing counts
+    assert crawling.slip_max == 0.0
+
+
+def test_when_the_slip_has_left_its_start(er24pc):
+    torque = holding_torque(er24pc, DRY, slip=0.14, speed=SPEED, braking_time=60.0)
+    runs = {}
+    for share in (0.99, 1.0):
+        start = Start(slip=0.14, torque=share * torque, braking_time=60.0)
+        runs[share] = simulate(er24pc, Hold(), scenario(start), plant="quarter")
+    times = {share: leaving_time(run, 0.05) for share, run in runs.items()}
+    assert 0.0 < times[0.99] < times[1.0]
+    for share, run in runs.items():
+        before = run.time < times[share]
+        assert abs(run.slip[before] - 0.14).max() <= 0.05
+        assert abs(np.interp(times[share], run.time, run.slip[:, 0]) - 0.14) > 0.05
+    assert math.isnan(leaving_time(runs[1.0], 1.0))
+
+
 def test_figures_of_a_stop_from_rolling_do_not_exist(er24pc, make_controller):
     figures = {
         name: metrics(simulate(er24pc, law, stop), er24pc, stop, slip_reference=0.14)
@@ -198,3 +221,4 @@ def test_a_campaign_starts_there(er24pc, make_controller):
     many = simulate_many(er24pc, law, stop, runs=3)
     single = simulate(er24pc, law, stop)
     np.testing.assert_allclose(many.table["distance_m"], single.totals.distance, rtol=1e-12)
+    np.testing.assert_array_equal(many.table["slip_max"], single.slip_max)

@@ -1,5 +1,6 @@
 """``wspd simulate``: one stop and its figures, or many and their spread."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -9,6 +10,7 @@ from wspd_design.cli import options
 from wspd_design.cli.campaign import simulate_campaign
 from wspd_design.cli.case import Wishes, check_plant, chosen, resolve
 from wspd_design.cli.console import console, print_json, progress
+from wspd_design.cli.from_witness import check_words, origin, read, show_leaving, show_origin
 from wspd_design.cli.json_objects import stop_object
 from wspd_design.cli.stop_figures import show_stop
 from wspd_design.cli.stop_options import StopWords, scenario
@@ -27,9 +29,10 @@ def simulate(
     name: options.ControllerArgument = None,
     controller: options.ControllerOption = None,
     vehicle: options.VehicleOption = None,
-    plant: options.PlantOption = options.PLANT,
+    plant: options.StopPlantOption = None,
     rail: options.RailOption = None,
-    speed: options.SpeedOption = options.SPEED,
+    speed: options.StopSpeedOption = None,
+    from_witness: options.FromWitnessOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
@@ -78,18 +81,25 @@ def simulate(
 
     A train that does not stop is no error: the ending says so, and the exit code is 0.
     """
+    if plant is None:
+        plant = options.PLANT if from_witness is None else options.QUARTER
     check_plant(plant)
     if output is not None:
         check_table(output, force=force)
     if nominal and runs is None:
         raise UserError("--nominal is about many stops; add --runs, for example --runs 1000")
+    witness = None
+    if from_witness is not None:
+        draws = runs is not None and not nominal
+        check_words(named=bool(name or controller), speed=speed, axle_rails=axle_rails, draws=draws)
+        witness = read(from_witness)
     case = resolve(
         chosen(name, controller), Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     )
     stop = scenario(
         case.rail,
         StopWords(
-            speed=speed,
+            speed=options.SPEED if speed is None else speed,
             seed=seed,
             axle_rails=axle_rails,
             patches=patch,
@@ -101,6 +111,12 @@ def simulate(
             dead_time=dead_time,
         ),
     )
+    start = None
+    if witness is not None:
+        start = origin(case, stop, witness)
+        case, stop = replace(case, vehicle=start.vehicle, rail=start.rail), start.scenario
+        if not as_json:
+            show_origin(start)
     if runs is not None:
         simulate_campaign(
             case,
@@ -111,6 +127,7 @@ def simulate(
             output=output,
             force=force,
             as_json=as_json,
+            origin=start,
         )
         return
     reference = case.specification.slip
@@ -120,9 +137,11 @@ def simulate(
     if output is not None:
         write_table(output, traces(made.run), force=force)
     if as_json:
-        print_json(stop_object(made, stop, slip_reference=reference))
+        print_json(stop_object(made, stop, slip_reference=reference, origin=start))
         return
     show_stop(made, stop, reference)
+    if start is not None:
+        show_leaving(made.run)
     if output is not None:
         console().print(f"Traces: {output}", markup=False, soft_wrap=True)
 
