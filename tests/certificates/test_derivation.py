@@ -1,9 +1,14 @@
 """The certificate of the equations runs the installed functions on symbols; a planted fault in any is found."""
 
+import json
+
 import pytest
 
-from wspd_design.certificates import derivation
+from wspd_design.certificates import derivation, exact
+from wspd_design.certificates.certificate_file import certificate_text
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.replay import replay
+from wspd_design.model.equations import load_equations
 from wspd_design.model.generated import adaptive_fuzzy, brake, motion, sliding_surface, slip
 
 
@@ -15,13 +20,35 @@ def problem(make_problem, make_controller):
 def test_the_installed_functions_are_proved(problem):
     found = derivation.check(problem)
     assert found.status is Status.PROVED
-    assert len(found.hypotheses) == len(derivation.IDENTITIES)
-    assert "14" in found.explanation
+    assert len(found.proofs) == len(found.hypotheses) == len(derivation.IDENTITIES)
+
+
+def test_sympy_simplifies_the_same_differences_to_zero():
+    """Another way of deciding: no prime field."""
+    import sympy as sp
+
+    for claim in derivation.claims():
+        assert sp.simplify(sp.nsimplify(claim.left - claim.right)) == 0, claim.name
+
+
+def test_misprints_are_listed_with_what_they_leave_over(problem, monkeypatch):
+    explanation = derivation.check(problem).explanation
+    listed = [entry for entry in load_equations() if entry.verdict == "misprint"]
+    assert {"14", "23", "28", "39"} <= {entry.number for entry in listed}
+    assert "(14): -ū*T_max + ū'*T" in explanation
+    assert all(entry.residual in explanation for entry in listed)
+    monkeypatch.setattr(derivation, "load_equations", lambda: listed[:1])
+    assert derivation.misprints().endswith(f"leaves over: B_W: {listed[0].residual}.")
 
 
 def printed_filling(t, t0, start, full, _rate, tau):
     """Eq. (10) with a supply that is there at once."""
     return start + (full - start) * (1 - brake.exp(-(t - t0) / tau))
+
+
+def printed_rate(s, gain, _gain_rate, xi, psi, *_rest, true=adaptive_fuzzy.lyapunov_printed_rate_claimed):
+    """Eq. (44) without the terms of G'."""
+    return true(s, gain, xi, psi)
 
 
 def energy_without_speed(s, v, g, *rest, true=adaptive_fuzzy.lyapunov_repaired):
@@ -39,14 +66,24 @@ FAULTS = {
     "lag": (brake, "torque_rate", lambda t, u, most, tau, true=brake.torque_rate: true(t, u, most, 2 * tau)),
     "printed filling": (brake, "filled_pressure", printed_filling),
     "equivalent torque": (sliding_surface, "equivalent_torque", lambda f, g, d, e, c: (f + d + c * e) / g),
+    "rate of V2 as printed": (adaptive_fuzzy, "lyapunov_printed_rate_true", printed_rate),
     "energy without the speed": (adaptive_fuzzy, "lyapunov_repaired", energy_without_speed),
 }
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_wrong_function_is_refuted(problem, monkeypatch, fault):
+    kept = certificate_text(derivation.check(problem))
+    assert replay(problem, kept).accepted
     module, name, wrong = FAULTS[fault]
     monkeypatch.setattr(module, name, wrong)
     found = derivation.check(problem)
     assert found.status is Status.REFUTED
     assert sum(h.status is Status.REFUTED for h in found.hypotheses) >= 1
+    assert len(found.proofs) < len(found.hypotheses)
+    # The file of the right function is not for the wrong one, whoever forges the fingerprints.
+    assert "belongs to another claim" in replay(problem, kept).reason
+    content = json.loads(kept)
+    for proof, claim in zip(content["proofs"], derivation.claims(), strict=True):
+        proof["claim_sha256"] = exact.digest(claim)
+    assert "it is false that" in replay(problem, json.dumps(content)).reason

@@ -9,8 +9,6 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.suite import NAMES, verify
 from wspd_design.parameters.errors import UserError
 
-EXACT = {"derivation", "surface_hurwitz", "gain_positive", "stop_bound"}
-
 
 @pytest.fixture(scope="module", params=[("afsmc", "polach-dry"), ("smc", "polach-wet")])
 def certificates(request, make_problem, make_controller):
@@ -46,14 +44,14 @@ def test_order(certificates):
     assert tuple(certificate.name for certificate in certificates) == NAMES
 
 
-def test_only_exact_arithmetic_and_the_checker_prove(certificates):
+def test_only_a_checker_proves(certificates):
     for certificate in certificates:
-        if certificate.status is Status.PROVED and certificate.name not in EXACT:
+        if certificate.status is Status.PROVED:
             assert certificate.proofs
             assert all(h.status is not Status.UNDECIDED for h in certificate.hypotheses)
         for proof in certificate.proofs:
             assert json.loads(proof.certificate)["claim_sha256"] == proof.claim_hash
-            assert len(proof.certificate) < 20_000
+            assert len(proof.certificate) < 100_000
 
 
 def test_every_certificate_is_complete(certificates):

@@ -1,7 +1,7 @@
 """Certificates as JSON files: what is claimed, for people, and the proofs, for the checker.
 
 Nothing in a file is believed. :mod:`wspd_design.certificates.replay` rebuilds the claims from the design and reads
-nothing but the name of the check, whether it is said to be proved, and the proofs.
+nothing but the name of the check, its status, the proofs, and the witness of what is refuted.
 """
 
 import json
@@ -13,6 +13,7 @@ from wspd_design.certificates.records import Certificate, Point, Status
 SCHEMA = "wspd-certificate/1"
 MOST_BYTES = 20_000_000
 MOST_PROOFS = 100
+MOST_POINTS = 100
 
 
 class Stated(NamedTuple):
@@ -21,6 +22,7 @@ class Stated(NamedTuple):
     check: str
     status: Status
     proofs: tuple[str, ...]  # JSON, one per statement
+    witness: tuple[Point, ...]  # in the units that people read
 
 
 def file_name(certificate: Certificate) -> str:
@@ -80,9 +82,23 @@ def read_certificate(text: str) -> Stated:
         raise Refused("the file names no check")
     if not isinstance(status, str) or status not in Status.__members__:
         raise Refused("the file states no status")
-    if not isinstance(proofs, list) or not 1 <= len(proofs) <= MOST_PROOFS:
-        raise Refused("the file holds no proofs, or too many")
-    return Stated(check=check, status=Status[status], proofs=tuple(json.dumps(each) for each in proofs))
+    if not isinstance(proofs, list) or len(proofs) > MOST_PROOFS:
+        raise Refused("the file holds no list of proofs, or too many")
+    return Stated(
+        check=check,
+        status=Status[status],
+        proofs=tuple(json.dumps(each) for each in proofs),
+        witness=_points(content.get("witness")),
+    )
+
+
+def _points(stated: Any) -> tuple[Point, ...]:
+    """Read what :func:`_places` wrote."""
+    try:
+        given = [(each["name"], each["value"], each["unit"]) for each in stated[:MOST_POINTS]]
+        return tuple(Point(name=str(name), value=float(value), unit=str(unit)) for name, value, unit in given)
+    except (TypeError, KeyError, ValueError, OverflowError):
+        raise Refused("the file states no witness, not even an empty one") from None
 
 
 def _proof(text: str) -> Any:

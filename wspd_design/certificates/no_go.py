@@ -10,6 +10,7 @@ from wspd_design.certificates import domain, findings, laws, slip_pole
 from wspd_design.certificates.checking import certified
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.open_loop_pole import pole_claim, shortest_lag
+from wspd_design.certificates.part import with_part
 from wspd_design.certificates.plant import place
 from wspd_design.certificates.proof.claim import Claim, Relation
 from wspd_design.certificates.proof.engine import engine, settle
@@ -39,7 +40,8 @@ def check(problem: Problem) -> Certificate:
     claimed = f"{low:.4g} to {high:.4g} m/s ({low * KMH:.3g} to {high * KMH:.3g} km/h)"
     bound = "p >= 1/tau" if interval else "p <= 1/tau"
     poles = slip_pole.pole_map(problem)
-    status = finding.status
+    # A pole on the other side of 1/tau somewhere says that the interval was chosen badly, no more.
+    status = Status.PROVED if finding.status is Status.PROVED else Status.UNDECIDED
     if form.status is Status.REFUTED:
         status = Status.NOT_APPLICABLE
         meaning = f"{problem.controller.name} feeds back more than the slip and is not bound by this."
@@ -48,7 +50,7 @@ def check(problem: Problem) -> Certificate:
             "There every equilibrium is unstable whatever the gains: the slip swings around its reference."
         )
     else:
-        status = Status.VACUOUS if finding.status is Status.PROVED else finding.status
+        status = Status.VACUOUS if status is Status.PROVED else status
         meaning = "There is no such speed: the valve is faster than the slip pole throughout."
     return Certificate(
         name=NAME,
@@ -73,7 +75,9 @@ def check(problem: Problem) -> Certificate:
         reference="eqs. (14), (19); docs/theory.md#no-go",
         undecided=finding.undecided,
         engine=engine(),
-        proofs=findings.proofs(finding),
+        proofs=tuple(
+            with_part(proof, "speed", interval) if interval else proof for proof in findings.proofs(finding)
+        ),
         series=slip_pole.plots(poles, "1/tau", limit),
     )
 

@@ -1,71 +1,17 @@
-"""Decides about a certificate file: rebuilds what its check has to show from the design, and asks the checkers.
+"""Decides about a certificate file: asks the checkers, searches nothing, and says in words what was shown.
 
-Only where a check chooses a part of the domain by a search is the prover needed, to search it again. What a check has
-to show stands in ``OBLIGATIONS``.
+What a check has to show is made from the design by ``obligations.py``.
 """
 
 import json
 import time
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from typing import Any, Protocol, TypeAlias
+from dataclasses import dataclass
 
-from wspd_design.certificates import (
-    afsmc_energy,
-    laws,
-    no_go,
-    open_loop_pole,
-    quadratic,
-    reaching,
-    routh_lag,
-    sliding_exists,
-    well_posed,
-)
-from wspd_design.certificates.certificate_file import read_certificate
-from wspd_design.certificates.invariance import checker as invariance
-from wspd_design.certificates.invariance.runs import FORMAT
-from wspd_design.certificates.linear_loop import LinearLaw
-from wspd_design.certificates.proof import checker
+from wspd_design.certificates.certificate_file import Stated, read_certificate
+from wspd_design.certificates.denial import denials
+from wspd_design.certificates.obligations import OBLIGATIONS, Answer, Obligation, obligations
 from wspd_design.certificates.proof.balls import Refused
-from wspd_design.certificates.proof.claim import Claim, number
 from wspd_design.certificates.records import Problem, Status
-from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
-from wspd_design.controllers.sliding_mode import SlidingMode
-
-Content: TypeAlias = Mapping[str, Any]
-
-
-class Answer(Protocol):
-    """What a checker says about a proof."""
-
-    @property
-    def accepted(self) -> bool:
-        """Whether it is one."""
-
-    @property
-    def reason(self) -> str:
-        """Why."""
-
-    @property
-    def leaves(self) -> int:
-        """How many boxes it decided."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Obligation:
-    """Something that a check shows, rebuilt from the design.
-
-    A proof of an inequality may show a looser bound than the check needs: it then says something true, but does not
-    meet the obligation.
-    """
-
-    text: str
-    needed: bool  # for the check to be proved; what is not needed encloses a number
-    concerns: Callable[[Content], bool]  # whether a proof is about this
-    check: Callable[[str], Answer]
-    meets: Callable[[Content], bool]  # whether an accepted proof shows enough
-    shows: Callable[[Content], str]  # what an accepted proof shows, in words
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,16 +19,25 @@ class Replayed:
     """What the checker says about a file."""
 
     check: str  # name, empty if the file tells none
-    accepted: bool  # every proof in it, and all that its status needs
+    status: Status | None  # that the file states
+    accepted: (
+        bool  # every proof in it, all that its status needs, and its witness as far as it can be checked
+    )
     reason: str
     shown: tuple[str, ...]  # statements that were proved
+    denied: tuple[str, ...]  # statements that the witness denies
     missing: tuple[str, ...]  # statements that the check needs and the file does not show
     leaves: int
     seconds: float
 
+    @property
+    def empty(self) -> bool:
+        """Whether the file holds nothing that can be checked."""
+        return self.accepted and not self.shown and not self.denied
+
 
 def replay(problem: Problem, text: str) -> Replayed:
-    """Decide whether the proofs of a certificate file hold for a closed loop.
+    """Decide whether a certificate file holds for a closed loop.
 
     Parameters
     ----------
@@ -92,36 +47,47 @@ def replay(problem: Problem, text: str) -> Replayed:
         The file; it may be anything.
     """
     started = time.perf_counter()
-    name, leaves = "", 0
-    shown: list[str] = []
-    missing: list[str] = []
+    stated: Stated | None = None
+    answers: list[Answer] = []
+    denied: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    accepted, reason = True, "every proof holds for this design"
     try:
         stated = read_certificate(text)
-        name = stated.check
-        wanted = obligations(name, problem)
-        done: set[str] = set()
+        # What kept no proof may be a check whose claims cannot be made again; nothing is shown then.
+        known = stated.check in OBLIGATIONS or stated.status is Status.PROVED or stated.proofs
+        wanted = obligations(stated.check, problem) if known else ()
+        done = set()
         for proof in stated.proofs:
-            met, answer = _decide(name, wanted, proof)
-            content = json.loads(proof)
-            if met.meets(content):
+            met, answer = _decide(stated.check, wanted, proof)
+            answers.append(answer)
+            if answer.enough:
                 done.add(met.text)
-            shown.append(met.shows(content))
-            leaves += answer.leaves
-        missing = [each.text for each in wanted if each.needed and each.text not in done]
-        if missing and stated.status is Status.PROVED:
+        missing = tuple(
+            each.text for each in wanted if _rests(stated.status) in each.needed and each.text not in done
+        )
+        if missing and _rests(stated.status) is stated.status:
             raise Refused(f"no proof of {'; '.join(missing)}")
-        accepted, reason = True, "every proof holds for this design"
+        if stated.status is Status.REFUTED:
+            denied = denials(wanted, stated.witness)
     except Refused as refusal:
         accepted, reason = False, str(refusal)
     return Replayed(
-        check=name,
+        check=stated.check if stated else "",
+        status=stated.status if stated else None,
         accepted=accepted,
         reason=reason,
-        shown=tuple(shown),
-        missing=tuple(missing),
-        leaves=leaves,
+        shown=tuple(answer.shown for answer in answers),
+        denied=denied,
+        missing=missing,
+        leaves=sum(answer.leaves for answer in answers),
         seconds=time.perf_counter() - started,
     )
+
+
+def _rests(status: Status) -> Status:
+    """Return the status whose needs are compared: its own if it rests on proofs, else what a proof would need."""
+    return status if status in (Status.PROVED, Status.VACUOUS) else Status.PROVED
 
 
 def _decide(name: str, wanted: tuple[Obligation, ...], proof: str) -> tuple[Obligation, Answer]:
@@ -135,153 +101,3 @@ def _decide(name: str, wanted: tuple[Obligation, ...], proof: str) -> tuple[Obli
             return each, answer
         reason = f"{each.text}: {answer.reason}"
     raise Refused(reason)
-
-
-def obligations(name: str, problem: Problem) -> tuple[Obligation, ...]:
-    """Return what a check has to show about a closed loop.
-
-    Raises
-    ------
-    Refused
-        If no such check keeps proofs, or it does not speak about this controller.
-    """
-    if name not in OBLIGATIONS:
-        raise Refused(f'the claims of "{name}" cannot be rebuilt; known are {", ".join(OBLIGATIONS)}')
-    return OBLIGATIONS[name](problem)
-
-
-def _inequality(
-    claim: Claim, *, needed: bool = True, where: str = "", box: Callable[[], Claim] | None = None
-) -> Obligation:
-    """A claim of which every bound may be shown; one at least as tight as the claim's meets it.
-
-    ``where`` says on which part of the domain it stands; ``box`` searches that part, if that takes long.
-    """
-    return Obligation(
-        text=_statement(claim) + where,
-        needed=needed,
-        concerns=lambda content: (
-            (content.get("claim"), content.get("relation")) == (claim.name, claim.relation)
-        ),
-        check=lambda text: checker.check(_as_stated(box() if box else claim, json.loads(text)), text),
-        meets=lambda content: _as_tight(claim, number(content["bound"])),
-        shows=lambda content: _statement(_as_stated(claim, content)) + where,
-    )
-
-
-def _as_stated(claim: Claim, content: Content) -> Claim:
-    try:
-        return replace(claim, bound=number(content["bound"]))
-    except (KeyError, TypeError, ValueError, OverflowError, ZeroDivisionError):
-        raise Refused("the proof states no bound") from None
-
-
-def _as_tight(claim: Claim, bound: Fraction) -> bool:
-    return bound <= claim.bound if claim.relation == "<=" else bound >= claim.bound
-
-
-def _statement(claim: Claim) -> str:
-    return f"{claim.name} {claim.relation} {float(claim.bound):.6g} {claim.unit}".removesuffix(" -")
-
-
-def _all(claims: Iterable[Claim]) -> tuple[Obligation, ...]:
-    return tuple(_inequality(claim) for claim in claims)
-
-
-def _whole(text: str, form: str, check: Callable[[str], Answer]) -> tuple[Obligation, ...]:
-    """A theorem with a checker of its own, whose proof names its form."""
-    return (
-        Obligation(
-            text=text,
-            needed=True,
-            concerns=lambda content: content.get("format") == form,
-            check=check,
-            meets=lambda _content: True,
-            shows=lambda _content: text,
-        ),
-    )
-
-
-def _strange(problem: Problem, name: str) -> Refused:
-    return Refused(f"{name} does not speak about the law of {problem.controller.name}")
-
-
-def _reaching(problem: Problem) -> tuple[Obligation, ...]:
-    if not isinstance(problem.controller, SlidingMode):
-        raise _strange(problem, "reaching")
-    return _all(reaching.claims(problem, problem.controller))
-
-
-def _open_loop_pole(problem: Problem) -> tuple[Obligation, ...]:
-    limit = 1.0 / open_loop_pole.shortest_lag(problem)
-    return (
-        _inequality(open_loop_pole.pole_claim(problem, "<=", limit)),
-        _inequality(open_loop_pole.pole_claim(problem, ">=", limit), needed=False),
-    )
-
-
-def _no_go(problem: Problem) -> tuple[Obligation, ...]:
-    """The interval of speeds is searched again; whatever it is, the checker decides about it."""
-    limit = 1.0 / open_loop_pole.shortest_lag(problem)
-    interval = no_go.widest_interval(problem, limit)
-    low, high = interval or problem.speeds
-    claim = no_go.interval_claim(problem, limit, (low, high), ">=" if interval else "<=")
-    return (_inequality(claim, where=f" from {low:.4g} to {high:.4g} m/s"),)
-
-
-def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
-    law = problem.controller
-    if not isinstance(law, laws.SlipLaw):
-        raise _strange(problem, "sliding_exists")
-    limit = problem.vehicle.brake.max_torque
-    enough = sliding_exists.torque_claim(problem, law, "<=", limit)
-
-    def slippery() -> Claim:
-        """Search the friction below which the brake suffices again, which needs the prover."""
-        friction = sliding_exists.largest_friction(problem, law)
-        if friction is None:
-            raise Refused("the brake suffices at no friction")
-        span = min(friction[0], problem.mu0_bounds[0]), friction[0]
-        return sliding_exists.torque_claim(problem, law, "<=", limit, mu0=span)
-
-    return (
-        _inequality(sliding_exists.torque_claim(problem, law, ">=", 0.0)),
-        _inequality(enough, needed=False),
-        _inequality(enough, needed=False, where=" up to the largest mu0 for which it holds", box=slippery),
-    )
-
-
-def _afsmc_energy(problem: Problem) -> tuple[Obligation, ...]:
-    if not isinstance(problem.controller, AdaptiveFuzzy):
-        raise _strange(problem, "afsmc_energy")
-    return _all(afsmc_energy.claims(problem, problem.controller))
-
-
-def _routh_lag(problem: Problem) -> tuple[Obligation, ...]:
-    if not isinstance(problem.controller, LinearLaw):
-        raise _strange(problem, "routh_lag")
-    return _all(routh_lag.claims(problem, problem.controller))
-
-
-def _lpv_lyapunov(problem: Problem) -> tuple[Obligation, ...]:
-    text = "one quadratic function falls along the continuous and the sampled loop"
-    return _whole(text, quadratic.FORMAT, lambda proof: quadratic.check_quadratic(proof, problem))
-
-
-def _sampled_invariance(problem: Problem) -> tuple[Obligation, ...]:
-    text = "one sample maps the sets of slip and torque into themselves at all speeds"
-    return _whole(text, FORMAT, lambda proof: invariance.check(problem, proof))
-
-
-OBLIGATIONS: Mapping[str, Callable[[Problem], tuple[Obligation, ...]]] = {
-    "well_posed": lambda problem: _all(well_posed.claims(problem)),
-    "sliding_exists": _sliding_exists,
-    "reaching": _reaching,
-    "boundary_layer": _reaching,  # it rests on the same inequalities
-    "afsmc_energy": _afsmc_energy,
-    "open_loop_pole": _open_loop_pole,
-    "no_go": _no_go,
-    "routh_lag": _routh_lag,
-    "lpv_lyapunov": _lpv_lyapunov,
-    "sampled_invariance": _sampled_invariance,
-}

@@ -7,12 +7,13 @@ from math import inf
 from wspd_design.certificates import domain, findings, laws
 from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.part import with_part
 from wspd_design.certificates.plant import Values, place, plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim, Relation
 from wspd_design.certificates.proof.engine import Finding, enclose, engine, settle
 from wspd_design.certificates.proof.prover import prove
 from wspd_design.certificates.reaching import reserve
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Series, Status
+from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Proof, Series, Status
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
@@ -23,7 +24,6 @@ NAME, TITLE = "sliding_exists", "Authority of the brake"
 TOLERANCE = 10.0  # N m, of the enclosed torques
 PLOT_SPEEDS = 60
 HALVINGS = 9  # of the friction at which the brake begins to limit
-LEAST_FRICTION = 0.01
 
 
 def torque_claim(
@@ -86,7 +86,8 @@ def check(problem: Problem) -> Certificate:
     release = settle(torque_claim(problem, law, ">=", 0.0), tolerance=TOLERANCE)
     force = enclose(torque_claim(problem, law, "<=", limit), tolerance=TOLERANCE)
     until = None if (force.extreme.high or inf) <= limit else _unlimited(problem, law, limit)
-    never_enough = settle(_least_demand(problem, law, limit), tolerance=TOLERANCE).status is Status.PROVED
+    lacking = settle(least_demand(problem, law), tolerance=TOLERANCE)
+    never_enough = lacking.status is Status.PROVED
     status = release.status
     if status is Status.PROVED and never_enough:
         status = Status.VACUOUS
@@ -129,7 +130,10 @@ def check(problem: Problem) -> Certificate:
         reference="eqs. (23), (27); docs/theory.md#existence",
         undecided=findings.undecided(release, force),
         engine=engine(),
-        proofs=findings.proofs(release, force, *(() if until is None else (until,))),
+        proofs=(
+            *findings.proofs(release, force, *((lacking,) if never_enough else ())),
+            *(() if until is None else _until(until)),
+        ),
         series=_plots(problem, laws.surface_rate(law)),
     )
 
@@ -140,15 +144,15 @@ def largest_friction(problem: Problem, law: laws.SlipLaw) -> tuple[float, float]
     Returns
     -------
     tuple of float or None
-        T_max suffices at the first and does not at the second [-]; None if it suffices at no friction that was
-        tried. If it suffices throughout the domain, both are its largest mu0.
+        T_max suffices at the first and does not at the second [-]; None if it does not even at the smallest mu0
+        of the domain. If it suffices throughout the domain, both are its largest mu0.
     """
     limit = problem.vehicle.brake.max_torque
 
     def suffices(mu0: float) -> bool:
         return bool(prove(torque_claim(problem, law, "<=", limit, mu0=mu0)).tree)
 
-    low, high = LEAST_FRICTION, problem.mu0_bounds[1]
+    low, high = problem.mu0_bounds
     if suffices(high):
         return high, high
     if not suffices(low):
@@ -159,9 +163,9 @@ def largest_friction(problem: Problem, law: laws.SlipLaw) -> tuple[float, float]
     return low, high
 
 
-def _least_demand(problem: Problem, law: laws.SlipLaw, limit: float) -> Claim:
+def least_demand(problem: Problem, law: laws.SlipLaw) -> Claim:
     """Claim that the brake never suffices: u* + eta/g >= T_max everywhere."""
-    return replace(torque_claim(problem, law, "<=", limit), relation=">=")
+    return replace(torque_claim(problem, law, "<=", problem.vehicle.brake.max_torque), relation=">=")
 
 
 def _unlimited(problem: Problem, law: laws.SlipLaw, limit: float) -> Finding | None:
@@ -169,12 +173,15 @@ def _unlimited(problem: Problem, law: laws.SlipLaw, limit: float) -> Finding | N
     friction = largest_friction(problem, law)
     if friction is None:
         return None
-    span = min(friction[0], problem.mu0_bounds[0]), friction[0]
+    span = problem.mu0_bounds[0], friction[0]
     return settle(torque_claim(problem, law, "<=", limit, mu0=span), tolerance=TOLERANCE)
 
 
-def _hypothesis(until: Finding, limit: float) -> Hypothesis:
-    return findings.hypothesis(f"u* + eta/g <= {limit / 1e3:g} kN m for {_span(until)}", until)
+def _until(finding: Finding) -> tuple[Proof, ...]:
+    """Return the proof on the part of the domain that was searched."""
+    (mu0,) = (v for v in finding.claim.variables if v.name == "mu0")
+    ends = float(mu0.low), float(mu0.high)
+    return tuple(with_part(proof, "mu0", ends) for proof in findings.proofs(finding))
 
 
 def _span(finding: Finding) -> str:
@@ -192,7 +199,7 @@ def _upper_side(force: Finding, until: Finding | None, limit: float, *, never_en
         )
     if most * 1e3 <= limit:
         return f"The brake is never the limit: at most {most:.4g} kN m are needed, at {_spot(force)}."
-    least = "so it is at any friction" if until is None else f"it never is for {_span(until)}"
+    least = "so it is at any friction of the domain" if until is None else f"it never is for {_span(until)}"
     return (
         f"Brake-limited at points such as {_spot(force)}, where {most:.4g} kN m would be needed; {least}. That is "
         "benign: the slip stays below its reference, and the brake is fully applied."

@@ -1,13 +1,21 @@
 """No controller stops shorter than this, and how near to it the simulated stop comes."""
 
-import math
-
-from wspd_design.certificates import domain
-from wspd_design.certificates.adhesion_limit import INSTANTS, SPEEDS, Limit, NoBound, stop_limit
-from wspd_design.certificates.checking import OutsideModel, certified, level, series
+from wspd_design.certificates import adhesion_peaks, domain, peak_search
+from wspd_design.certificates.adhesion_limit import INSTANTS, Limit, NoBound, require
+from wspd_design.certificates.adhesion_peaks import CLAIM, rounded_down
+from wspd_design.certificates.checking import OutsideModel, certified, level, model_hash, series
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.proof.engine import versions
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Series, Status
+from wspd_design.certificates.records import (
+    Certificate,
+    Hypothesis,
+    Point,
+    Problem,
+    Proof,
+    Range,
+    Series,
+    Status,
+)
 from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario
 from wspd_design.simulation.stop import simulate
@@ -22,9 +30,14 @@ def check(problem: Problem) -> Certificate:
     domain.box(problem)
     start = problem.speeds[1]
     try:
-        limit = stop_limit(problem.vehicle, problem.rail, start)
+        require(problem.vehicle, problem.rail, start)
     except NoBound as reason:
         raise OutsideModel(str(reason)) from None
+    text = peak_search.search(problem)
+    verdict = adhesion_peaks.check(problem, text)
+    if verdict.limit is None:
+        raise OutsideModel(f"the checker refuses what the search found: {verdict.reason}")
+    limit = verdict.limit
     scenario = Scenario(rail=problem.rail, initial_speed=start)
     run = simulate(problem.vehicle, problem.controller, scenario, plant="quarter")
     ideal = ideal_stop(problem.vehicle, scenario, plant="quarter")
@@ -46,7 +59,7 @@ def check(problem: Problem) -> Certificate:
         name=NAME,
         title=TITLE,
         claim=f"No controller of this vehicle stops from {start * KMH:.3g} km/h on {problem.rail.name} within less "
-        f"than {_down(limit.distance)} m or {_down(limit.time)} s.",
+        f"than {rounded_down(limit.distance)} m or {rounded_down(limit.time)} s.",
         status=Status.PROVED if holds else Status.REFUTED,
         explanation=(
             f"Adhesion alone asks for {limit.adhesion_distance:.4g} m; until {limit.handover:.3g} s the filling "
@@ -68,18 +81,24 @@ def check(problem: Problem) -> Certificate:
             "quarter locomotive with static wheel load, nominal parameters, level track",
             "rolling wheels and empty cylinders at the start; no other brake",
         ),
-        method="adhesion peak enclosed by Arb over all slips; momentum that the filling brake can take; both bound "
-        "the speed from below",
-        resolution=f"{SPEEDS} intervals of speed, {INSTANTS} instants of the change from filling to adhesion",
-        reference="eqs. (1), (2), (5)-(9); findings, section 2, any controller",
+        method="peaks and cuts of the slip that are searched, then shown in balls by an independent checker; "
+        "momentum that the filling brake can take; both bound the speed from below",
+        resolution=f"{len(limit.peaks)} intervals of speed, {verdict.leaves} parts of the slip, {INSTANTS} instants of "
+        "the change from filling to adhesion",
+        reference="eqs. (1), (2), (5)-(9); docs/theory.md#bound",
         engine=f"python-flint {versions()['python-flint']}",
+        proofs=(
+            Proof(
+                claim=CLAIM,
+                statement=verdict.statement,
+                claim_hash=model_hash(problem),
+                certificate=text,
+                leaves=verdict.leaves,
+                seconds=verdict.seconds,
+            ),
+        ),
         series=_plots(problem, limit, run),
     )
-
-
-def _down(bound: float) -> str:
-    """Write a lower bound so that what stands there is still one."""
-    return f"{math.floor(100.0 * bound) / 100.0:.2f}"
 
 
 def _seen(holds: bool) -> Status:
@@ -90,12 +109,14 @@ def _plots(problem: Problem, limit: Limit, run: Run) -> tuple[Series, ...]:
     """Enclosed peak over speed beside the sampled one, and the stop against the bound."""
     import numpy as np
 
-    speeds = np.array(limit.speeds)
+    speeds = np.array([float(speed) for speed in limit.speeds])
     sampled = peak_adhesion(problem.vehicle, problem.rail, speeds[1:])[1]
     axes = ("speed [km/h]", "adhesion [-]")
     path = ("distance [m]", "speed [km/h]")
     return (
-        series("bound of the peak", *axes, speeds[:-1] * KMH, np.array(limit.peaks)),
+        series(
+            "bound of the peak", *axes, speeds[:-1] * KMH, np.array([float(peak) for peak in limit.peaks])
+        ),
         series("peak", *axes, speeds[1:] * KMH, sampled),
         series("this stop", *path, run.distance, run.speed * KMH),
         level("standstill", *path, [0.0, limit.distance], 0.0),

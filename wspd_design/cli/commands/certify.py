@@ -1,4 +1,4 @@
-"""``wspd certify``: the checks of a design, with every proof kept as a file that can be checked again."""
+"""``wspd certify``: the checks of a design, with proofs and witnesses kept as files that can be checked again."""
 
 import shlex
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ import typer
 from rich.text import Text
 
 from wspd_design.certificates.certificate_file import certificate_text, file_name
-from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.records import Certificate, Status
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, resolve
 from wspd_design.cli.console import console, spaced, table
@@ -49,7 +49,7 @@ def certify(
             "-o",
             "--output",
             metavar="FOLDER",
-            help=f"Where the proofs go. Default: DESIGN{FOLDER} beside the design.",
+            help=f"Where the files go. Default: DESIGN{FOLDER} beside the design.",
             show_default=False,
         ),
     ] = None,
@@ -58,6 +58,7 @@ def certify(
     """Prove what can be proved about a design and keep the proofs.
 
     Each check with proofs becomes one JSON file, which wspd check decides about without the program that found it.
+    So does each check that is refuted, with its witness: wspd simulate DESIGN --from-witness FILE starts there.
     Exit code 1 when a claim is refuted, else 3 when one is undecided, else 0.
     """
     case = resolve(design, Wishes(vehicle=vehicle, rail=rail))
@@ -71,18 +72,20 @@ def certify(
     show_counts(certificates)
     if sizes:
         console().print(
-            Text(f"\nWritten: {folder}/NAME.json for each of the {len(sizes)} checks with proofs")
+            Text(
+                f"\nWritten: {folder}/NAME.json for each of the {len(sizes)} checks with a proof or a witness"
+            )
         )
         console().print(
             Text(f"Check them: wspd check {folder}/*.json{_as_given(design, folder, vehicle, rail)}")
         )
     else:
-        console().print("\nNo check has a proof to keep.")
+        console().print("\nNo check has a proof or a witness to keep.")
     raise typer.Exit(exit_code(certificates))
 
 
 def _beside(design: str) -> Path:
-    """Return the folder for the proofs about a design, beside its file if it has one."""
+    """Return the folder for what is kept about a design, beside its file if it has one."""
     return Path(design.rpartition(":")[0] if is_own_controller(design) else design).with_suffix(FOLDER)
 
 
@@ -94,9 +97,9 @@ def _as_given(design: str, folder: Path, vehicle: str | None, rail: str | None) 
 
 
 def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) -> dict[str, int]:
-    """Write those that have proofs; return the size of each file [byte] by the name of the check."""
-    proved = [certificate for certificate in certificates if certificate.proofs]
-    if proved:
+    """Write what can be checked or simulated again; return the size of each file [byte] by the name of the check."""
+    kept = [each for each in certificates if each.proofs or each.status is Status.REFUTED]
+    if kept:
         try:
             folder.mkdir(exist_ok=True)
         except OSError as error:
@@ -104,7 +107,7 @@ def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) ->
                 f"folder {folder} cannot be made ({error.strerror}); choose another one with -o"
             ) from None
     sizes = {}
-    for certificate in proved:
+    for certificate in kept:
         text = certificate_text(certificate)
         write_text(folder / file_name(certificate), text, force=force)
         sizes[certificate.name] = len(text.encode())
@@ -112,7 +115,7 @@ def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) ->
 
 
 def _show(certificates: Sequence[Certificate], sizes: Mapping[str, int]) -> None:
-    shown = table("Status", "Check", "Margin", "Proof", "Seconds", numeric=("Proof", "Seconds"))
+    shown = table("Status", "Check", "Margin", "File", "Seconds", numeric=("File", "Seconds"))
     for certificate in certificates:
         size = sizes.get(certificate.name)
         shown.add_row(

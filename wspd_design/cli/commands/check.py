@@ -7,12 +7,13 @@ import typer
 from rich.padding import Padding
 from rich.text import Text
 
+from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import Replayed, replay
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, resolve
 from wspd_design.cli.commands.certify import FOLDER
 from wspd_design.cli.console import console, progress
-from wspd_design.cli.exit_codes import GOOD, REFUTED
+from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.verification import problem_of
 from wspd_design.parameters.errors import UserError
 
@@ -33,21 +34,22 @@ def check(
     vehicle: options.VehicleOption = None,
     rail: options.RailOption = None,
 ) -> None:
-    """Check proofs again, without the program that found them.
+    """Check proofs again, without the program that found them; the witness of what is refuted as well.
 
-    Exit code 0 when every proof is accepted, 1 when one is refused.
+    Exit code 1 when a file is refused, else 3 when one holds nothing that can be checked, else 0.
     """
     cases = [(path, _text(path), design or _design_of(path)) for path in certificates]
-    refused = False
+    found = []
     wishes = Wishes(vehicle=vehicle, rail=rail)
     problems = {made: problem_of(resolve(made, wishes)) for _, _, made in cases}
     for path, text, made in cases:
         with progress() as tell:
             tell(f"Checking {path.name}")
-            found = replay(problems[made], text)
-        _show(path, made, found)
-        refused = refused or not found.accepted
-    raise typer.Exit(REFUTED if refused else GOOD)
+            found.append(replay(problems[made], text))
+        _show(path, made, found[-1])
+    if not all(each.accepted for each in found):
+        raise typer.Exit(REFUTED)
+    raise typer.Exit(UNDECIDED if any(each.empty for each in found) else GOOD)
 
 
 def _text(path: Path) -> str:
@@ -74,15 +76,39 @@ def _design_of(path: Path) -> str:
 
 def _show(path: Path, design: str, found: Replayed) -> None:
     out = console()
-    sign, style = ("✓ accepted", "green") if found.accepted else ("✗ refused", "bold red")
-    took = f"{found.leaves} boxes, {found.seconds:.2f} s"
+    sign, style = _sign(found)
+    stated = "" if found.status in (None, Status.PROVED) else f"{_word(found.status)}, "
+    took = f"{stated}{found.leaves} boxes, {found.seconds:.2f} s"
     out.print(Text(sign, style=style) + Text(f"  {path.name} for {Path(design).name} ({took})", style="bold"))
-    lines = list(found.shown)
-    if not found.accepted:
-        lines = [found.reason]
-    elif found.missing:
-        lines.append(f"That does not prove {found.check}, which needs {'; '.join(found.missing)}.")
-    else:
-        lines.append(f"These proofs are all that {found.check} needs.")
-    for line in lines:
+    for line in _lines(found):
         out.print(Padding(Text(line), (0, 0, 0, 2)))
+
+
+def _sign(found: Replayed) -> tuple[str, str]:
+    """Return the verdict on a file and its color; only what is proved is green."""
+    if not found.accepted:
+        return "✗ refused", "bold red"
+    if found.empty:
+        return "? unchecked", "bold yellow"
+    return ("✓ accepted", "green") if found.status is Status.PROVED else ("~ accepted", "yellow")
+
+
+def _lines(found: Replayed) -> list[str]:
+    """Say what was shown, and what that means for the check."""
+    if not found.accepted:
+        return [found.reason]
+    if found.empty:
+        return [f"The file has no proof to check; {found.check} was decided by wspd certify alone."]
+    lines = list(found.shown) + [f"The witness denies {each}." for each in found.denied]
+    if found.status is Status.PROVED:
+        return [*lines, f"These proofs are all that {found.check} needs."]
+    if found.status is Status.VACUOUS and not found.missing:
+        return [*lines, f"These proofs show that {found.check} is vacuous: it says nothing about a stop."]
+    if found.status is Status.REFUTED and not found.denied:
+        lines.append("The witness does not have all quantities of a claim and is not checked.")
+    needs = f", which needs {'; '.join(found.missing)}" if found.missing else ""
+    return [*lines, f"That does not prove {found.check}{needs}."]
+
+
+def _word(status: Status | None) -> str:
+    return "" if status is None else status.name.replace("_", " ")

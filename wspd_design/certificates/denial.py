@@ -1,0 +1,68 @@
+"""The point at which a claim is said to fail: evaluated again, in exact arithmetic."""
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from math import isfinite
+
+from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.obligations import Obligation
+from wspd_design.certificates.proof import checker
+from wspd_design.certificates.proof.balls import Refused
+from wspd_design.certificates.proof.claim import Claim, Variable
+from wspd_design.certificates.records import Point, Status
+
+ROUNDING = Fraction(1, 10**9)  # relative; a speed in km/h is not exactly that in m/s
+
+
+def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str, ...]:
+    """Say which claims a witness denies.
+
+    Parameters
+    ----------
+    wanted : iterable of Obligation
+        Of a check; the inequalities on the whole domain are tried that a proof needs.
+    witness : iterable of Point
+        In the units that people read, from a file.
+
+    Returns
+    -------
+    tuple of str
+        Empty if there is no claim that the witness has all quantities for.
+
+    Raises
+    ------
+    Refused
+        If there are such claims, and none of them is denied; or the witness leaves the domain.
+    """
+    given = {point.name: point for point in witness}
+    claims = [each.claim for each in wanted if each.claim is not None and Status.PROVED in each.needed]
+    tried = [claim for claim in claims if all(v.name in given for v in claim.free)]
+    denied = []
+    for claim in tried:
+        low, high = checker.value(claim, {v.name: _inside(v, given[v.name]) for v in claim.free})
+        if (low > claim.bound) if claim.relation == "<=" else (high < claim.bound):
+            denied.append(_sentence(claim, float((low + high) / 2), given))
+    if tried and not denied:
+        raise Refused(f"the witness denies nothing: there {' and '.join(map(_text, tried))} may hold")
+    return tuple(denied)
+
+
+def _inside(variable: Variable, point: Point) -> Fraction:
+    """Return an exact value in the range of a variable, next to what the witness states."""
+    if not isfinite(point.value):
+        raise Refused(f"the witness states no {point.name}")
+    value = Fraction(point.value / KMH if point.unit == "km/h" else point.value)
+    within = min(max(value, variable.low), variable.high)
+    if abs(within - value) > ROUNDING * abs(within):
+        raise Refused(f"the witness leaves the domain: {point.name} = {point.value:g} {point.unit}")
+    return within
+
+
+def _sentence(claim: Claim, value: float, given: Mapping[str, Point]) -> str:
+    shown = (given[v.name] for v in claim.free)
+    place = ", ".join(f"{point.name} {point.value:.6g} {point.unit}".removesuffix(" -") for point in shown)
+    return f"{_text(claim)}: it is {value:.6g} {claim.unit}".removesuffix(" -") + f" at {place}"
+
+
+def _text(claim: Claim) -> str:
+    return f"{claim.name} {claim.relation} {float(claim.bound):.6g} {claim.unit}".removesuffix(" -")
