@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from wspd_design.simulation.campaign import simulate_many
     from wspd_design.simulation.comparison import compare, trial
     from wspd_design.simulation.ideal import ideal_stop
-    from wspd_design.simulation.records import Scenario
+    from wspd_design.simulation.records import Scenario, Start
     from wspd_design.simulation.stop import simulate
 
 _HOME = {
@@ -36,6 +36,7 @@ _HOME = {
     "Problem": "certificates.records",
     "Scenario": "simulation.records",
     "Specification": "design.records",
+    "Start": "simulation.records",
     "Status": "certificates.records",
     "UserError": "parameters.errors",
     "compare": "simulation.comparison",
@@ -66,6 +67,7 @@ __all__ = [
     "Problem",
     "Scenario",
     "Specification",
+    "Start",
     "Status",
     "UserError",
     "compare",
