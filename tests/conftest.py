@@ -11,6 +11,8 @@ from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
 from wspd_design.controllers.baselines.trenitalia import Trenitalia
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.design.catalog import controller as designed
+from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import (
     load_knorr_bremse,
     load_mitsubishi,
@@ -69,6 +71,8 @@ def _controller(name, rail="polach-dry", sample_time=0.1, preset="calibrated"):
                 slip_reference=SLIP_REFERENCE, surface_rate=0.4, switching_gain=15.0, boundary_layer=0.025
             )
             return SlidingMode(**common, vehicle=vehicle, rail=load_rail(rail), gains=gains)
+        case "torque-feedback":
+            return designed(name, vehicle, load_rail(rail), Specification(sample_time=sample_time))
         case "trenitalia":
             return Trenitalia(**common, wheel_radius=radius, table=load_trenitalia(preset))
         case "knorr-bremse":

@@ -7,7 +7,6 @@ import pytest
 
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
-from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 PUBLISHED_RAILS = ("polach-dry", "polach-wet")
@@ -32,15 +31,11 @@ def _problem(controller, *, rail="polach-dry", vehicle=None, **changes):
 
 @pytest.fixture(scope="session")
 def make_controller(make_controller):
-    """Make a controller by name, also the example with torque feedback, sampled every 20 ms."""
+    """Make a controller by name; the one with torque feedback is sampled every 20 ms unless said otherwise."""
 
     def make(name, rail="polach-dry", **changes):
-        if name != "torque-feedback":
-            return make_controller(name, rail, **changes)
-        gains = TorqueFeedbackGains(slip_reference=0.14, sliding_gain=20.0, torque_gain=30.0)
-        vehicle = load_vehicle("er24pc")
-        sampling = {"sample_time": 0.02, **changes}
-        return TorqueFeedback(name=name, vehicle=vehicle, rail=load_rail(rail), gains=gains, **sampling)
+        sampling = {"sample_time": 0.02} if name == "torque-feedback" else {}
+        return make_controller(name, rail, **sampling | changes)
 
     return make
 

@@ -83,7 +83,7 @@ def changed(content, **changes):
 def test_false_matrices_are_refused(problem, content, name):
     p11, p12, p22 = content[name]
     for false in (
-        [p22, p12, p11],  # falls for another loop
+        [p11, str(-Fraction(p12)), p22],  # falls for a loop with the other sign of the feedback
         [p11, "0", p22],
         [f"-{p11}", p12, p22],  # not positive definite
         [p11, str(10 * Fraction(p12)), p22],
@@ -158,12 +158,13 @@ def test_numbers_that_are_none_are_refused(problem, content):
 
 
 def test_matrix_exponential_encloses_scipys(problem):
+    gains = problem.controller.gains
     loop = loop_of(problem, problem.controller)
     for q, gamma in ((0.5, 40.0), (14.0, 51.0), (-5.0, 38.0)):
         step = held(loop, ball(q - 1e-9, q + 1e-9), point(gamma))
         generator = np.array([[q, -gamma, 0.0], [0.0, -1.0 / 0.6, 1.0 / 0.6], [0.0, 0.0, 0.0]])
         exact = expm(generator * 0.02)
-        expected = exact[:2, :2] + np.outer(exact[:2, 2], [20.0, -30.0])
+        expected = exact[:2, :2] + np.outer(exact[:2, 2], [gains.sliding_gain, -gains.torque_gain])
         for i in range(2):
             for k in range(2):
                 assert float(step[i][k]) == pytest.approx(expected[i, k], rel=1e-7)

@@ -10,7 +10,7 @@ from wspd_design.controllers.protocol import Controller
 from wspd_design.design.catalog import controller as build_controller
 from wspd_design.design.catalog import is_design_file
 from wspd_design.design.file import read_design
-from wspd_design.design.laws import GAINS_OF
+from wspd_design.design.laws import GAINS_OF, law_of
 from wspd_design.design.records import Design, Law, Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
@@ -114,9 +114,9 @@ def check_quarter(name: str, command: str) -> None:
 
 def check_law(name: str) -> Law:
     """Return the law of a name that can be designed."""
-    for law in GAINS_OF:
-        if law == name:
-            return law
+    law = law_of(name)
+    if law is not None:
+        return law
     near = get_close_matches(name, GAINS_OF, n=1)
     offer = f' (did you mean "{near[0]}"?)' if near else ""
     raise UserError(f'--law "{name}" cannot be designed{offer}; choose {" or ".join(GAINS_OF)}')

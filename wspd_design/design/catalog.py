@@ -10,8 +10,8 @@ from wspd_design.controllers.baselines.trenitalia import Trenitalia
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.file import read_design
-from wspd_design.design.laws import GAINS_OF
-from wspd_design.design.records import Design, Gain, Specification, vehicle_hash
+from wspd_design.design.laws import GAINS_OF, law_of
+from wspd_design.design.records import Design, Gain, Law, Specification, vehicle_hash
 from wspd_design.design.selection import design_controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import (
@@ -25,7 +25,7 @@ from wspd_design.parameters.loading import (
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS, Preset
 
-CONTROLLERS = ("afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
+CONTROLLERS = ("afsmc", "smc", "torque-feedback", "trenitalia", "knorr-bremse", "mitsubishi", "none")
 """Names that stand for a controller; the path of a design file stands for its own."""
 
 BASELINES = ("trenitalia", "knorr-bremse", "mitsubishi")
@@ -43,7 +43,7 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     vehicle : Vehicle
         The vehicle it shall brake.
     rail : Rail
-        Design rail of ``smc``. A design file brings its own.
+        Design rail of ``smc`` and ``torque-feedback``. A design file brings its own.
     specification : Specification
         Slip reference, ranges and sample time. A design file brings its own.
 
@@ -55,8 +55,9 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     if is_design_file(name_or_path):
         made = read_design(name_or_path)
         return made.build(vehicle, load_rail(made.rail))
-    if name_or_path in ("afsmc", "smc"):
-        return named_design(name_or_path, vehicle, rail, specification).build(vehicle, rail)
+    law = law_of(name_or_path)
+    if law is not None:
+        return named_design(law, vehicle, rail, specification).build(vehicle, rail)
     sampling, radius = specification.sample_time, vehicle.wheel_radius
     if name_or_path == "none":
         return Unprotected(name=name_or_path, sample_time=sampling)
@@ -93,11 +94,11 @@ def is_design_file(name_or_path: str) -> bool:
     return Path(name_or_path).suffix == ".toml"
 
 
-def named_design(name: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:
-    """Return the design behind ``afsmc`` (printed gains) or ``smc`` (chosen by the rules), under that name."""
-    if name == "afsmc":
+def named_design(law: Law, vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:
+    """Return the design behind the name of a law: ``afsmc`` with the printed gains, others by the rules."""
+    if law == "afsmc":
         return paper_design(vehicle, rail, specification)
-    return replace(design_controller(vehicle, rail, specification, law="smc"), name=name)
+    return replace(design_controller(vehicle, rail, specification, law=law), name=law)
 
 
 def paper_design(vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:

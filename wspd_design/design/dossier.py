@@ -11,8 +11,10 @@ from wspd_design.certificates import laws
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.design.catalog import controller, is_design_file, named_design
 from wspd_design.design.file import design_text, read_design
+from wspd_design.design.laws import law_of
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.parameters.files import available, load_entries
@@ -61,7 +63,7 @@ class Dossier:
     certificates: tuple[Certificate, ...]
     trials: tuple[Trial, ...]  # the design's own stop first
     lag_distances: tuple[float, ...]  # m, of each trial: the part of the distance that the build-up costs
-    phase_plane: PhasePlane
+    phase_plane: PhasePlane | None  # of laws with a sliding surface
     initial_speed: float  # m/s
     provenance: Provenance
 
@@ -136,7 +138,9 @@ def dossier(
         certificates=certificates,
         trials=trials,
         lag_distances=tuple(initial_speed * each.metrics.lag for each in trials),
-        phase_plane=phase_plane(trials[0].run, own, slip_reference=specification.slip),
+        phase_plane=None
+        if isinstance(own, TorqueFeedback)
+        else phase_plane(trials[0].run, own, slip_reference=specification.slip),
         initial_speed=initial_speed,
         provenance=Provenance(
             command=command,
@@ -173,10 +177,11 @@ def _baseline(
     name: str, vehicle: Vehicle, rail: Rail, specification: Specification
 ) -> tuple[Controller, Design | None]:
     """Build a controller to compare with, and return the design behind it if it has one."""
+    law = law_of(name)
     if is_design_file(name):
         found = read_design(name)
-    elif name in ("afsmc", "smc"):
-        found = named_design(name, vehicle, rail, specification)
+    elif law is not None:
+        found = named_design(law, vehicle, rail, specification)
     else:
         return controller(name, vehicle, rail, specification), None
     return found.build(vehicle, _design_rail(found, rail)), found

@@ -5,17 +5,22 @@ from typing import Any
 
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzyGains
 from wspd_design.controllers.sliding_mode import SlidingModeGains
+from wspd_design.controllers.torque_feedback import TorqueFeedbackGains
 from wspd_design.design.records import Law
 
+_RECORDS: dict[Law, type] = {
+    "afsmc": AdaptiveFuzzyGains,
+    "smc": SlidingModeGains,
+    "torque-feedback": TorqueFeedbackGains,
+}
+
 GAINS_OF: dict[Law, tuple[str, ...]] = {
-    "afsmc": tuple(field.name for field in fields(AdaptiveFuzzyGains) if field.name != "slip_reference"),
-    "smc": tuple(field.name for field in fields(SlidingModeGains) if field.name != "slip_reference"),
+    law: tuple(field.name for field in fields(record) if field.name != "slip_reference")
+    for law, record in _RECORDS.items()
 }
 """Names of the gains of each law; the slip reference belongs to the specification."""
 
-FORM_OF: dict[str, Any] = {
-    field.name: field.type for record in (AdaptiveFuzzyGains, SlidingModeGains) for field in fields(record)
-}
+FORM_OF: dict[str, Any] = {field.name: field.type for record in _RECORDS.values() for field in fields(record)}
 """Type of each gain: ``float``, ``bool`` or ``tuple[float, ...]``."""
 
 DIVISORS = ("proportional_gain", "boundary_layer", "widths", "torque_unit")
@@ -23,3 +28,8 @@ DIVISORS = ("proportional_gain", "boundary_layer", "widths", "torque_unit")
 
 PER_RULE = ("initial_weights", "centres", "widths")
 """Gains with one number for each fuzzy rule."""
+
+
+def law_of(name: str) -> Law | None:
+    """Return the law of a name, or None for what has no gains to design."""
+    return next((law for law in GAINS_OF if law == name), None)

@@ -6,10 +6,11 @@ from typing import Literal, TypeAlias
 
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
-Law: TypeAlias = Literal["afsmc", "smc"]
+Law: TypeAlias = Literal["afsmc", "smc", "torque-feedback"]
 GainValue: TypeAlias = float | bool | tuple[float, ...]
 
 
@@ -72,7 +73,7 @@ class Design:
         """Return the value of a gain by its name."""
         return next(gain.value for gain in self.gains if gain.name == name)
 
-    def build(self, vehicle: Vehicle, rail: Rail) -> AdaptiveFuzzy | SlidingMode:
+    def build(self, vehicle: Vehicle, rail: Rail) -> AdaptiveFuzzy | SlidingMode | TorqueFeedback:
         """Build the controller of one wheelset.
 
         Parameters
@@ -80,7 +81,7 @@ class Design:
         vehicle : Vehicle
             The vehicle that the design was made for.
         rail : Rail
-            The design rail, which the sliding-mode law uses as its friction model.
+            The design rail; sliding mode and torque feedback use it as their friction model.
 
         Raises
         ------
@@ -107,6 +108,14 @@ class Design:
                 vehicle=vehicle,
                 rail=rail,
                 gains=SlidingModeGains(slip_reference=self.specification.slip, **values),  # type: ignore[arg-type]
+            )
+        if self.law == "torque-feedback":
+            return TorqueFeedback(
+                name=self.name,
+                sample_time=self.specification.sample_time,
+                vehicle=vehicle,
+                rail=rail,
+                gains=TorqueFeedbackGains(slip_reference=self.specification.slip, **values),  # type: ignore[arg-type]
             )
         return AdaptiveFuzzy(
             name=self.name,

@@ -10,6 +10,7 @@ from wspd_design.certificates.reaching import required_gain, reserve
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Gain, Law, Specification, vehicle_hash
+from wspd_design.design.torque_feedback_gains import torque_feedback_gains
 from wspd_design.model.slip import resistance, slip_dynamics, static_wheel_load
 from wspd_design.parameters.loading import load_paper_gains
 from wspd_design.parameters.records import Rail, Vehicle
@@ -33,19 +34,23 @@ def design_controller(
         Design rail, nominal friction; its bounds and those of the vehicle span the uncertainty.
     specification : Specification
         Reference, ranges, tolerance and sample time.
-    law : {"afsmc", "smc"}
-        Adaptive fuzzy sliding mode in its repaired form, or sliding mode with a friction model.
+    law : {"afsmc", "smc", "torque-feedback"}
+        Adaptive fuzzy sliding mode in its repaired form, sliding mode with a friction model, or static feedback of
+        sliding speed and torque.
 
     Returns
     -------
     Design
         Gains with units and reasons.
     """
-    rate = _surface_rate(vehicle, rail, specification)
-    layer = _boundary_layer(specification)
-    switching = _switching_gain(vehicle, rail, specification, rate)
-    shared = (rate, switching, layer)
-    gains = shared if law == "smc" else _adaptive_gains(vehicle, rail, specification, *shared)
+    if law == "torque-feedback":
+        gains = torque_feedback_gains(vehicle, rail, specification)
+    else:
+        rate = _surface_rate(vehicle, rail, specification)
+        layer = _boundary_layer(specification)
+        switching = _switching_gain(vehicle, rail, specification, rate)
+        shared = (rate, switching, layer)
+        gains = shared if law == "smc" else _adaptive_gains(vehicle, rail, specification, *shared)
     return Design(
         name=f"{law}-{vehicle.name}-{rail.name}",
         law=law,
@@ -186,7 +191,8 @@ def _adaptive_gains(
             name="scheduled_rates",
             value=False,
             unit="-",
-            why="constant rates, as printed; rates alpha/v, which Barbalat's lemma needs, would grow as the train slows",
+            why="constant rates, as printed; rates alpha/v, which Barbalat's lemma needs, would grow as the "
+            "train slows",
         ),
     )
 

@@ -15,13 +15,25 @@ from wspd_design.simulation.metrics import energy_residual, momentum_residual
 from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.stop import simulate
 
+DESIGNED = ("smc", "torque-feedback")
+"""Laws whose gains the rules choose."""
 
-@pytest.mark.parametrize("name", [name for name in CONTROLLERS if name != "smc"])
+
+@pytest.mark.parametrize("name", [name for name in CONTROLLERS if name not in DESIGNED])
 @pytest.mark.parametrize("period", [0.1, 0.02])
 def test_names(er24pc, make_controller, name, period):
     made = controller(name, er24pc, load_rail("polach-wet"), Specification(sample_time=period))
     assert made == make_controller(name, sample_time=period)
     assert (made.name, made.sample_time) == (name, period)
+
+
+@pytest.mark.parametrize("name", DESIGNED)
+def test_names_of_designed_laws(er24pc, name):
+    rail, specification = load_rail("polach-wet"), Specification(sample_time=0.02)
+    made = controller(name, er24pc, rail, specification)
+    assert (made.name, made.sample_time, made.rail) == (name, 0.02, rail)
+    law = design_controller(er24pc, rail, specification, law=name).build(er24pc, rail)
+    assert replace(law, name=name) == made
 
 
 @pytest.mark.parametrize("rail", ["table10-dry", "table10-wet", "polach-dry", "polach-wet"])
@@ -38,7 +50,7 @@ def test_smc_stops_the_train_and_keeps_the_balances(er24pc, rail):
 
 def test_slip_reference_of_the_specification_reaches_the_law(er24pc):
     rail = load_rail("polach-dry")
-    for name in ("afsmc", "smc"):
+    for name in ("afsmc", *DESIGNED):
         assert controller(name, er24pc, rail, Specification(slip=0.08)).gains.slip_reference == 0.08
 
 
@@ -56,7 +68,7 @@ def test_unknown_names(er24pc, name, words):
         controller(name, er24pc, load_rail("polach-dry"), Specification())
 
 
-@pytest.mark.parametrize("law", ["afsmc", "smc"])
+@pytest.mark.parametrize("law", ["afsmc", *DESIGNED])
 def test_a_design_file_stands_for_its_own_controller(er24pc, tmp_path, law):
     # The file brings its rail and specification; those of the call do not matter.
     rail = load_rail("polach-wet")
@@ -117,5 +129,5 @@ def test_vehicle_hash_is_the_same_in_every_process(er24pc):
 
 def test_named_designs_carry_the_name_of_the_controller(er24pc):
     rail = load_rail("polach-dry")
-    for name in ("afsmc", "smc"):
+    for name in ("afsmc", *DESIGNED):
         assert named_design(name, er24pc, rail, Specification()).name == name

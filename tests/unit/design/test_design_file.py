@@ -21,11 +21,12 @@ def designs(er24pc):
     return {
         "afsmc": design_controller(er24pc, rail, Specification(), law="afsmc"),
         "smc": design_controller(er24pc, rail, Specification(), law="smc"),
+        "torque-feedback": design_controller(er24pc, rail, Specification(), law="torque-feedback"),
         "printed": paper_design(er24pc, rail, Specification()),
     }
 
 
-@pytest.mark.parametrize("which", ["afsmc", "smc", "printed"])
+@pytest.mark.parametrize("which", ["afsmc", "smc", "torque-feedback", "printed"])
 def test_round_trip(designs, tmp_path, which):
     path = tmp_path / "design.toml"
     write_design(designs[which], path)
@@ -57,7 +58,7 @@ specifications = st.builds(
 @given(
     specification=specifications,
     name=st.text(st.characters(codec="utf-8"), max_size=20),
-    which=st.sampled_from(["smc", "printed"]),
+    which=st.sampled_from(["smc", "torque-feedback", "printed"]),
     number=st.floats(0.0, exclude_min=True, allow_infinity=False),
 )
 def test_any_specification_name_and_number_comes_back(

@@ -29,7 +29,7 @@ def gain(name, vehicle, rail, law="smc", **specification):
     return design_controller(vehicle, rail, Specification(**specification), law=law).gain(name)
 
 
-@pytest.mark.parametrize("law", ["afsmc", "smc", "printed"])
+@pytest.mark.parametrize("law", ["afsmc", "smc", "torque-feedback", "printed"])
 def test_every_gain_has_a_reason_and_a_unit(er24pc, rail, law):
     made = (
         paper_design(er24pc, rail, Specification())

@@ -12,7 +12,7 @@ from wspd_design.cli.case import Case, Wishes, check_plant, chosen, parse_speed,
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.output import check_output
 from wspd_design.design.catalog import CONTROLLERS, named_design
-from wspd_design.design.laws import GAINS_OF
+from wspd_design.design.laws import GAINS_OF, law_of
 from wspd_design.design.records import Design
 from wspd_design.parameters.errors import UserError
 
@@ -69,9 +69,10 @@ def _design(name: str, case: Case) -> Design:
     """Return the design that the report is about."""
     if case.design is not None:
         return case.design
-    if name not in GAINS_OF:
+    law = law_of(name)
+    if law is None:
         raise UserError(
             f"{name} has no design to report on; choose {' or '.join(GAINS_OF)} or a design file, "
             "which are compared with all others"
         )
-    return named_design(name, case.vehicle, case.rail, case.specification)
+    return named_design(law, case.vehicle, case.rail, case.specification)

@@ -62,11 +62,14 @@ def steps() -> tuple[Step, ...]:
             key="law",
             title="Control law",
             explanation="The adaptive fuzzy law is the paper's, with the repaired proof; it needs no "
-            "friction model. The sliding-mode law uses the friction of the design rail.",
+            "friction model. The other two use the friction of the design rail. Torque feedback also needs the "
+            "cylinder pressure and, on dry rail, a sample time of about 20 ms; it is the only one of the three that "
+            "the lag of the valve leaves free to be stable.",
             default=options.LAW,
             options=(
                 Option(value="afsmc", text="adaptive fuzzy sliding mode"),
                 Option(value="smc", text="sliding mode with a friction model"),
+                Option(value="torque-feedback", text="static feedback of sliding speed and torque"),
             ),
         ),
         Step(
