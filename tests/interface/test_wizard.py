@@ -59,6 +59,15 @@ def test_answers_reach_the_design(answer, tmp_path):
     assert specification.speeds == pytest.approx((20.0 / 3.6, 100.0 / 3.6))
 
 
+def test_the_law_with_torque_feedback(answer, wspd, tmp_path):
+    outcome = answer(ENTER * 2 + DOWN * 2 + ENTER * 3 + f"{ERASE}20 ms{ENTER * 3}")
+    assert outcome.code == 0
+    assert "K = tau/h - 1" in " ".join(outcome.out.split())
+    made = read_design(tmp_path / "design.toml")
+    assert (made.law, made.specification.sample_time) == ("torque-feedback", 0.02)
+    assert wspd("simulate", "design.toml", "--plant", "quarter").code == 0
+
+
 def test_a_wrong_number_is_not_accepted(answer, tmp_path):
     keys = f"{ENTER * 3}{ERASE}1.4{ENTER}{ENTER}{ERASE}0.2{ENTER}{ENTER * 4}"
     assert answer(keys).code == 0

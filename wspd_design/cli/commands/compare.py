@@ -15,7 +15,7 @@ from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
 
-_ALL_COLUMNS = 72
+_ALL_COLUMNS = 78
 """Columns of a terminal from which on the table shows everything."""
 
 _COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
