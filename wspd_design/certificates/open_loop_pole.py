@@ -5,6 +5,7 @@ from fractions import Fraction
 from wspd_design.certificates import domain, findings, laws, slip_pole
 from wspd_design.certificates.checking import certified
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.margin_map import margin_map
 from wspd_design.certificates.plant import Values, place, plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim, Relation
 from wspd_design.certificates.proof.engine import Finding, enclose, engine
@@ -105,6 +106,18 @@ def check(problem: Problem) -> Certificate:
         engine=engine(),
         proofs=findings.proofs(highest, lowest),
         series=slip_pole.plots(poles, "1/tau", limit),
+        maps=(
+            margin_map(
+                "slip pole",
+                "slip pole p [1/s]",
+                lambda points: domain.dynamics(problem, points).pole,
+                domain.slip_held(problem),
+                over=domain.MU0,
+                limit=limit,
+                worst=highest.place,
+                largest=True,
+            ),
+        ),
     )
 
 

@@ -14,6 +14,7 @@ from wspd_design.certificates import domain, laws
 from wspd_design.certificates.checking import OutsideModel, certified, level, series
 from wspd_design.certificates.domain import KMH, SLIP, SPEED
 from wspd_design.certificates.findings import hypothesis, proofs, status, undecided
+from wspd_design.certificates.margin_map import margin_map
 from wspd_design.certificates.model_error import (
     Mismatch,
     inertia_ratio,
@@ -199,6 +200,18 @@ def check(problem: Problem) -> Certificate:
         engine=engine(),
         proofs=proofs(needed, slowing),
         series=_plots(problem, law, eta),
+        maps=(
+            margin_map(
+                "switching gain",
+                "W0 that is needed [m/s2]",
+                lambda points: _needed_gain(mismatch(problem, law, points), eta),
+                domain.box(problem),
+                over=SLIP,
+                limit=gain,
+                worst=at,
+                largest=True,
+            ),
+        ),
     )
 
 

@@ -7,6 +7,7 @@ from typing import TypeAlias
 from wspd_design.certificates import domain, findings
 from wspd_design.certificates.checking import certified
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.margin_map import margin_map
 from wspd_design.certificates.plant import (
     Forces,
     Values,
@@ -113,4 +114,16 @@ def check(problem: Problem) -> Certificate:
         undecided=findings.undecided(*found),
         engine=engine(),
         proofs=findings.proofs(*found),
+        maps=(
+            margin_map(
+                "deceleration",
+                "deceleration a [m/s2]",
+                lambda points: domain.dynamics(problem, points).deceleration,
+                domain.box(problem),
+                over=domain.SLIP,
+                limit=0.0,
+                worst=slowing.place,
+                largest=False,
+            ),
+        ),
     )

@@ -3,7 +3,7 @@
 from functools import partial
 
 from wspd_design.certificates.certificate_file import certificate_text, file_name
-from wspd_design.certificates.records import Certificate, Proof
+from wspd_design.certificates.records import Certificate, Map, Proof
 from wspd_design.certificates.records import Status as Finding
 from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
@@ -22,9 +22,11 @@ from wspd_design.reporting.blocks import (
     Verdict,
 )
 from wspd_design.reporting.figures.drawing import picture
+from wspd_design.reporting.figures.maps import map_alt, map_caption, margin_map
 from wspd_design.reporting.figures.series import certificate_curves, panels, series_alt
 
 PANEL_HEIGHT = 1.9  # in
+MAP_HEIGHT = 2.6  # in
 
 FINDINGS = (
     Finding.REFUTED,
@@ -113,7 +115,17 @@ def _check(certificate: Certificate) -> list[Block]:
                 anchor=f"{anchor}-curves",
             )
         )
+    found += [_map(shown, f"{anchor}-map-{number}") for number, shown in enumerate(certificate.maps, 1)]
     return found
+
+
+def _map(shown: Map, anchor: str) -> Figure:
+    return Figure(
+        svg=picture(partial(margin_map, shown=shown), height=MAP_HEIGHT),
+        caption=map_caption(shown),
+        alt=map_alt(shown),
+        anchor=anchor,
+    )
 
 
 def _proofs(certificate: Certificate) -> Table:
