@@ -1,13 +1,16 @@
 """The limits of the brake against the torque that holds the surface."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from wspd_design.certificates import domain, reaching, sliding_exists
+from wspd_design.certificates.certificate_file import certificate_text
 from wspd_design.certificates.domain import MU0, SLIP, SPEED
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.replay import replay
 
 
 def _with_torque(vehicle, torque):
@@ -60,7 +63,37 @@ def test_strong_brake_is_never_the_limit(make_problem, make_controller, er24pc):
 
 def test_weak_brake_makes_the_claim_vacuous(make_problem, make_controller, er24pc):
     problem = make_problem(make_controller("afsmc"), vehicle=_with_torque(er24pc, 2e3))
-    assert sliding_exists.check(problem).status is Status.VACUOUS
+    verdict = sliding_exists.check(problem)
+    assert verdict.status is Status.VACUOUS
+    content = json.loads(certificate_text(verdict))
+    found = replay(problem, json.dumps(content))
+    assert found.accepted
+    assert not found.missing
+    # That the brake never suffices has to be shown as well.
+    shown = [(proof["claim"], proof["relation"]) for proof in content["proofs"]]
+    del content["proofs"][shown.index(("u* + eta/g", ">="))]
+    assert "no proof of u* + eta/g >= 2000 N m" in replay(problem, json.dumps(content)).reason
+
+
+def test_the_friction_up_to_which_the_brake_suffices_is_shown(make_problem, make_controller):
+    law = make_controller("afsmc")
+    problem = make_problem(law)
+    content = json.loads(certificate_text(sliding_exists.check(problem)))
+    shown = replay(problem, json.dumps(content)).shown
+    most, _ = sliding_exists.largest_friction(problem, law)
+    assert shown[-1].split(" for ")[1].startswith("mu0 from 0.44")
+    assert 0.999 * most <= float(shown[-1].split()[-1]) <= most
+    for part in (
+        {"mu0": ["0.3", "0.45"]},
+        {"mu0": ["0.44", repr(1.2 * most)]},
+        {"speed": ["0.44", "0.45"]},
+        {},
+    ):
+        content["proofs"][-1]["part"] = part
+        assert not replay(problem, json.dumps(content)).accepted, part
+    # Without the range the proof is one about the whole domain, where it does not hold.
+    del content["proofs"][-1]["part"]
+    assert "belongs to another claim" in replay(problem, json.dumps(content)).reason
 
 
 def test_surface_faster_than_a_vented_wheel_is_refuted(make_problem, make_controller):

@@ -1,4 +1,4 @@
-"""``wspd certify``: the verdicts of ``wspd verify``, and a file for every proof."""
+"""``wspd certify``: the verdicts of ``wspd verify``, and a file for every proof and every witness."""
 
 import json
 
@@ -41,11 +41,38 @@ def test_the_same_design_gives_the_same_file(wspd, smc_file):
     assert kept.read_bytes() == first
 
 
-def test_a_check_without_proof_leaves_nothing_behind(wspd, smc_file):
-    done = wspd("certify", smc_file, "--only", "surface_hurwitz")
+def test_a_check_without_proof_or_witness_leaves_nothing_behind(wspd, smc_file):
+    done = wspd("certify", smc_file, "--only", "conservation")
     assert done.code == 0
-    assert "No check has a proof to keep" in done.out
+    assert "No check has a proof or a witness to keep" in done.out
     assert not (smc_file.parent / "smc.certificates").exists()
+
+
+def test_a_check_that_needs_no_search_is_kept_and_checked(wspd, smc_file):
+    names = ("derivation", "surface_hurwitz", "gain_positive")
+    done = wspd("certify", smc_file, *(word for name in names for word in ("--only", name)))
+    assert done.code == 0
+    files = sorted((smc_file.parent / "smc.certificates").iterdir())
+    assert [each.stem for each in files] == sorted(names)
+    checked = wspd("check", *files)
+    assert checked.code == 0
+    assert checked.out.count("✓ accepted") == len(names)
+
+
+def test_a_refuted_check_without_proofs_keeps_its_witness(wspd, smc_file):
+    done = wspd("certify", smc_file, "--only", "tracking")
+    assert done.code == 1
+    assert "1 checks with a proof or a witness" in " ".join(done.out.split())
+    kept = smc_file.parent / "smc.certificates" / "tracking.json"
+    content = json.loads(kept.read_text())
+    assert content["status"] == Status.REFUTED.name
+    assert content["proofs"] == []
+    assert content["witness"]
+    checked = wspd("check", kept)
+    assert checked.code == 3
+    assert "? unchecked" in checked.out
+    assert "no proof to check" in " ".join(checked.out.split())
+    assert "✓" not in checked.out
 
 
 def test_a_refuted_check_says_so_and_keeps_what_is_proved(wspd, smc_text, tmp_path):
@@ -62,7 +89,11 @@ def test_a_refuted_check_says_so_and_keeps_what_is_proved(wspd, smc_text, tmp_pa
     assert content["witness"]
     checked = wspd("check", folder / "reaching.json", "--design", weak)
     assert checked.code == 0
-    assert "does not prove reaching" in " ".join(checked.out.split())
+    said = " ".join(checked.out.split())
+    assert "✓" not in said
+    assert "~ accepted reaching.json for weak.toml (REFUTED" in said
+    assert "The witness denies (abs(r) + eta)/rho <= 1 m/s2: it is " in said
+    assert "does not prove reaching" in said
     # Who writes PROVED over it is refused: the proof that counts is missing.
     (folder / "reaching.json").write_text(json.dumps(content | {"status": "PROVED"}))
     checked = wspd("check", folder / "reaching.json", "--design", weak)

@@ -1,6 +1,7 @@
 """``wspd check``: accepts what the design implies and refuses everything else, without a traceback."""
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,15 +11,24 @@ import pytest
 from wspd_design.cli.app import run
 
 HEAVY = ("casadi", "scipy", "control", "matplotlib", "ival", "cvxpy", "typst", "jinja2")
+SEARCHED = ("reaching", "no_go", "sliding_exists", "stop_bound")
 
 
 @pytest.fixture(scope="session")
 def proved(tmp_path_factory, smc_text):
-    """Certify a design once."""
+    """Certify a design once; its switching gain suffices, its surface is too fast for a vented brake."""
     folder = tmp_path_factory.mktemp("proved")
     (folder / "smc.toml").write_text(smc_text)
-    assert run(["certify", str(folder / "smc.toml"), "--only", "reaching"]) == 0
+    only = [word for name in SEARCHED for word in ("--only", name)]
+    assert run(["certify", str(folder / "smc.toml"), *only]) == 1
     return folder
+
+
+@pytest.fixture
+def certificates(proved, tmp_path):
+    """Copy the design and all its certificates."""
+    shutil.copytree(proved, tmp_path / "all")
+    return [tmp_path / "all" / "smc.certificates" / f"{name}.json" for name in SEARCHED]
 
 
 @pytest.fixture
@@ -158,14 +168,65 @@ def test_a_missing_certificate_is_one_sentence(wspd, certificate):
     assert "cannot be read" in done.err
 
 
-def test_the_checker_loads_no_prover(certificate):
+def test_the_checker_loads_no_prover(certificates):
+    """Nor what could search again which part of a domain was proved."""
+    files = [str(each) for each in certificates]
     code = (
         "import sys; from wspd_design.cli.app import run; "
-        f"code = run(['check', {str(certificate)!r}]); "
+        f"code = run(['check', *{files!r}]); "
         f"print(code, [name for name in {HEAVY!r} if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "0 []"
+
+
+def test_only_what_is_proved_looks_proved(wspd, certificates):
+    heads = {}
+    for path in certificates:
+        done = wspd("check", path)
+        assert done.code == 0
+        heads[path.stem] = done.out.split()[0]
+    statuses = {path.stem: json.loads(path.read_text())["status"] for path in certificates}
+    assert statuses == {
+        "reaching": "PROVED",
+        "no_go": "VACUOUS",
+        "sliding_exists": "REFUTED",
+        "stop_bound": "PROVED",
+    }
+    assert {name: head == "✓" for name, head in heads.items()} == {
+        name: status == "PROVED" for name, status in statuses.items()
+    }
+
+
+def test_what_was_shown_is_said_with_its_numbers(wspd, certificates):
+    done = wspd("check", *certificates)
+    said = " ".join(done.out.split())
+    assert "no stop from 120 km/h is shorter than 272.2" in said
+    assert "show that no_go is vacuous" in said
+    assert "The witness denies u* - eta/g >= 0 N m: it is -" in said
+
+
+def moved_witness(content):
+    content["witness"][1]["value"] = 20.0
+
+
+def witness_outside(content):
+    content["witness"][1]["value"] = 500.0
+
+
+def no_list_of_points(content):
+    content["witness"] = "slip 0.6"
+
+
+@pytest.mark.parametrize("tamper", [moved_witness, witness_outside, no_list_of_points])
+def test_a_witness_that_denies_nothing_is_refused(wspd, certificates, tamper):
+    path = certificates[SEARCHED.index("sliding_exists")]
+    content = json.loads(path.read_text())
+    tamper(content)
+    path.write_text(json.dumps(content))
+    done = wspd("check", path)
+    assert done.code == 1
+    assert "✗ refused" in done.out
 
 
 def test_nothing_else_is_written(wspd, certificate):

@@ -1,11 +1,15 @@
 """No controller stops shorter than the bound, whatever rail, mass, seed and noise."""
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from wspd_design.certificates import adhesion_peaks, peak_search
+from wspd_design.design.problem import stability_problem
+from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail
 from wspd_design.simulation.ideal import ideal_stop
@@ -43,6 +47,23 @@ def test_no_controller_beats_the_bound(make_controller, rail, share, name, seed,
     run = simulate(vehicle, make_controller(name), scenario, plant=plant)
     bound = ideal_stop(vehicle, replace(scenario, sensing=Sensing()), plant=plant)
     assert run.totals.distance >= bound.distance * (1.0 - 1e-4)
+
+
+@settings(max_examples=10, deadline=None)
+@given(rail=rails, share=st.floats(0.8, 1.2), kmh=st.floats(15.0, 160.0))
+def test_what_is_proved_lies_below_ideal_stops(make_controller, rail, share, kmh):
+    """The search finds peaks and cuts that the checker accepts on every rail."""
+    vehicle = load_vehicle("er24pc")
+    mass = share * vehicle.mass
+    vehicle = replace(vehicle, mass=mass, body_mass=mass - 2.0 * vehicle.bogie_mass)
+    wanted = Specification(speeds=(10.0 / 3.6, kmh / 3.6))
+    problem = stability_problem(vehicle, rail, make_controller("none"), wanted)
+    with patch.object(peak_search, "SPEEDS", 40):
+        found = adhesion_peaks.check(problem, peak_search.search(problem))
+    assert found.limit is not None, found.reason
+    ideal = ideal_stop(vehicle, Scenario(rail=rail, initial_speed=kmh / 3.6), plant="quarter")
+    assert 0.5 * ideal.distance < found.limit.distance < ideal.distance
+    assert found.limit.time < ideal.stopping_time
 
 
 def test_a_brake_of_more_torque_would_beat_it(er24pc, make_controller):

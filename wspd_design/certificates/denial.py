@@ -5,7 +5,7 @@ from fractions import Fraction
 from math import isfinite
 
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.obligations import Obligation
+from wspd_design.certificates.obligation import Obligation, statement
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.proof.claim import Claim, Variable
@@ -43,7 +43,7 @@ def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str
         if (low > claim.bound) if claim.relation == "<=" else (high < claim.bound):
             denied.append(_sentence(claim, float((low + high) / 2), given))
     if tried and not denied:
-        raise Refused(f"the witness denies nothing: there {' and '.join(map(_text, tried))} may hold")
+        raise Refused(f"the witness denies nothing: there {' and '.join(map(statement, tried))} may hold")
     return tuple(denied)
 
 
@@ -61,8 +61,4 @@ def _inside(variable: Variable, point: Point) -> Fraction:
 def _sentence(claim: Claim, value: float, given: Mapping[str, Point]) -> str:
     shown = (given[v.name] for v in claim.free)
     place = ", ".join(f"{point.name} {point.value:.6g} {point.unit}".removesuffix(" -") for point in shown)
-    return f"{_text(claim)}: it is {value:.6g} {claim.unit}".removesuffix(" -") + f" at {place}"
-
-
-def _text(claim: Claim) -> str:
-    return f"{claim.name} {claim.relation} {float(claim.bound):.6g} {claim.unit}".removesuffix(" -")
+    return f"{statement(claim)}: it is {value:.6g} {claim.unit}".removesuffix(" -") + f" at {place}"

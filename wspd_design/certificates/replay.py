@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from wspd_design.certificates.certificate_file import Stated, read_certificate
 from wspd_design.certificates.denial import denials
-from wspd_design.certificates.obligations import OBLIGATIONS, Answer, Obligation, obligations
+from wspd_design.certificates.obligation import Answer, Obligation
+from wspd_design.certificates.obligations import OBLIGATIONS, obligations
 from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.records import Problem, Status
 
