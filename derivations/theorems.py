@@ -8,13 +8,21 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derivations import adaptive_fuzzy, barbalat, sliding_surface, slip_equation, torque_balance
+from derivations import (
+    adaptive_fuzzy,
+    barbalat,
+    recovery,
+    sampled_loop,
+    sliding_surface,
+    slip_equation,
+    stop_limit,
+    torque_balance,
+)
 from derivations.notation import symbols
 
 p, tau, c, k, e = symbols("pole time_constant surface_rate layer_rate error")
-F, G, v, g, T = symbols("drift gain speed gain_times_speed torque")
+F, G, v, g = symbols("drift gain speed gain_times_speed")
 W0, rho, Psi, Psi_hat, sat = sp.symbols("W_0 rho Psi Psi_hat sat", real=True)
-m, R, inertia, f, f_d = symbols("mass wheel_radius wheel_inertia creep_force resistance")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +72,6 @@ speed_left_residual = sp.simplify(_speed.subs(_sigma, _s0 / _eta) - _v0 * sp.exp
 _u_star = (-F + c * e) / G
 existence_residual = sp.simplify((F + G * (_u_star + _eta / (G * v)) - c * e) - _eta / v)
 
-# --- bound of every stop: eliminate the creep force from (1), (2) -----------------------------------------
-_v_rate = (-f_d - 8 * f) / m
-_omega_rate = (-T / 2 + R * f) / inertia
-bound_residual = sp.simplify(m * _v_rate + 8 * inertia / R * _omega_rate - (-f_d - 4 * T / R))
-
 THEOREMS = (
     Theorem(
         anchor="no-go",
@@ -85,6 +88,68 @@ THEOREMS = (
         not_said="That the motion is unbounded: it settles on a limit cycle. Nor that p < 1/tau suffices.",
         identities=(Identity("trace of the Jacobian = p - 1/tau", trace_residual),),
         certificates=("open_loop_pole", "no_go"),
+    ),
+    Theorem(
+        anchor="hard-limits",
+        title="What full venting brings back",
+        statement="Let the slip stand d above its reference while the torque is T*, which holds the reference, and let "
+        "a law see it h later. Full venting keeps the slip below the reference plus X and brings it back if "
+        "(A/X)^2 + A p (1 + p tau)/g <= 1 with A = d exp(p h), g = G T* and p > 0 the largest slope of F in between. "
+        "Where full venting does not, no law does. If no slope is positive, d < X is enough.",
+        hypotheses=(
+            "train speed frozen",
+            "T* > 0; the valve vents as in (9) with the time constant tau",
+            "the law holds T* until its next sample",
+        ),
+        sketch="No command empties the cylinder faster than T* exp(-t/tau), and less torque means less slip. While the "
+        "slip is within X, x' <= p x + g z with z = T/T* - 1. The combination w = x + g tau z/(1 + p tau) obeys "
+        "w' = p (w - delta), delta = g/(p (1 + p tau)), and begins at A: below delta it falls for good, and x stays "
+        "below -delta ln(1 - A/delta). That is below X if A <= delta (1 - exp(-X/delta)), which follows from the "
+        "condition because u coth u <= sqrt(1 + u^2). For small deviations delta itself is the limit.",
+        not_said="That more is impossible: friction that levels off allows more, so that a refutation needs a path "
+        "that passes the limit. A deviation below the reference is benign: the wheel falls back to rolling.",
+        identities=(
+            Identity("delta = int exp(-p t) g (1 - exp(-t/tau)) dt", recovery.largest_residual),
+            Identity("w' = p (w - delta)", recovery.combination_residual),
+            Identity("x <= delta (1 - (1 - A/delta) E + ln E), E = exp(p t)", recovery.path_residual),
+            Identity("its slope in E vanishes at E = delta/(delta - A)", recovery.flat_residual),
+            Identity("it is -delta ln(1 - A/delta) there", recovery.furthest_residual),
+            Identity("y/(1 - exp(-y)) = y/2 + (y/2) coth(y/2)", recovery.half_residual),
+            Identity("(1 + u^2) sinh^2 u - u^2 cosh^2 u = sinh^2 u - u^2", recovery.squares_residual),
+            Identity(
+                "1/A = 1/(2 delta) + sqrt(1/(4 delta^2) + 1/X^2) meets the condition", recovery.root_residual
+            ),
+        ),
+        certificates=("hard_limits",),
+    ),
+    Theorem(
+        anchor="sampling",
+        title="The largest slip pole that sampled feedback of the slip stabilizes",
+        statement="A gain on the slip, sampled every h and held, stabilizes the pole p > 0 through the lag tau if and "
+        "only if p tau (exp(p h) - 1) < 1 - exp(-h/tau).",
+        hypotheses=(
+            "train speed frozen",
+            "proportional feedback",
+            "command held over a sample, no computing time",
+        ),
+        sketch="With alpha = exp(p h), beta = exp(-h/tau) the loop has the polynomial z^2 - (alpha + beta) z + alpha "
+        "beta + K (b_1 z + b_0). It is positive at z = 1 only for K > p, and at K = p its roots are 1 and r. Since "
+        "b_0 > 0 their product grows with K: a gain exists exactly if r < 1. For small h the limit is p < 1/(tau + "
+        "h/2).",
+        not_said="Anything about laws with memory, or with feedback of torque or acceleration.",
+        identities=(
+            Identity("step response of 1/((s - p)(tau s + 1))", sampled_loop.step_residual),
+            Identity("static gain -1/p", sampled_loop.static_residual),
+            Identity(
+                "roots 1 and r = (beta + p tau alpha)/(1 + p tau) at K = p", sampled_loop.roots_residual
+            ),
+            Identity(
+                "b_0 p (1 + p tau)/(alpha beta) = p tau (exp(h/tau) - 1) - (1 - exp(-p h))",
+                sampled_loop.product_residual,
+            ),
+            Identity("(1 - r)(1 + p tau) = 1 - beta - p tau (alpha - 1)", sampled_loop.condition_residual),
+        ),
+        certificates=("sampling",),
     ),
     Theorem(
         anchor="reaching",
@@ -105,13 +170,13 @@ THEOREMS = (
             Identity("dv/d sigma = -a_max v for v = v_0 exp(-a_max sigma)", speed_residual),
             Identity("v at sigma = abs(sbar_0)/eta", speed_left_residual),
         ),
-        certificates=("reaching", "boundary_layer"),
+        certificates=("lyapunov_surface", "reaching", "boundary_layer"),
     ),
     Theorem(
         anchor="layer",
         title="Error inside the boundary layer",
         statement="Inside abs(s) <= Phi the slip error satisfies abs(e) <= 2 Phi/K_P after the transient of rate c.",
-        hypotheses=("the surface is reached and not left",),
+        hypotheses=("the surface is reached and not left", "c > 0"),
         sketch="e is s/K_P filtered by q/(q + c), whose impulse response has the L1 norm 2.",
         not_said="That the error tends to zero.",
         identities=(
@@ -122,7 +187,7 @@ THEOREMS = (
                 ),
             ),
         ),
-        certificates=("boundary_layer", "tracking"),
+        certificates=("surface_hurwitz", "boundary_layer", "tracking"),
     ),
     Theorem(
         anchor="existence",
@@ -133,7 +198,7 @@ THEOREMS = (
         sketch="A torque that differs from u* by eta/g moves v sbar by eta.",
         not_said="That u* > T_max is dangerous: the wheel then slips less than asked, the brake is the limit.",
         identities=(Identity("slip' at u* + eta/(G v) exceeds c e by eta/v", existence_residual),),
-        certificates=("brake_authority", "sliding_exists"),
+        certificates=("sliding_exists",),
     ),
     Theorem(
         anchor="energy",
@@ -206,19 +271,100 @@ THEOREMS = (
         certificates=("routh_lag", "margins"),
     ),
     Theorem(
+        anchor="lpv",
+        title="One quadratic function for all speeds",
+        statement="In y = v e and t = (T - T*)/T_max a static law with the duty u* + kappa y - K t gives x' = A x, x "
+        "= (y, t), A = [[q, -gamma], [kappa/tau, -(1 + K)/tau]], with q = p - a/v and gamma = R T_max/I_w. If A'P + "
+        "PA < -2 alpha P at the four vertices of an interval of q and one of gamma, x'Px falls at least as exp(-2 "
+        "alpha t) whatever the course of q and gamma within them. If A_h'P A_h < c^2 P for the matrices A_h from "
+        "sample to sample, for all q and both ends of gamma, it falls by c^2 per sample.",
+        hypotheses=(
+            "small deviations; nothing saturates",
+            "q = p - a/v and gamma stay in their intervals on the domain",
+            "P > 0; sampled: q and gamma constant within a sample",
+            "the change of T* is slow",
+        ),
+        sketch="A is affine in q and gamma, so that A'P + PA is negative between the vertices if it is at them. A_h is "
+        "affine in gamma, and x'Px is convex; in q it is not affine, so that the interval is covered by parts whose "
+        "matrix exponential is enclosed. P is positive definite if the pivots of LDL' are.",
+        not_said="What happens beyond small deviations, or when the brake is the limit.",
+        identities=(
+            Identity("y' = q y - gamma t", sampled_loop.sliding_residual),
+            Identity("t' = (kappa y - (1 + K) t)/tau", sampled_loop.loop_residual),
+            Identity("A is affine in q and gamma", sampled_loop.affine_residual),
+            Identity("-(A'P + PA) - 2 alpha P as the checker has it", sampled_loop.decrease_residual),
+            Identity("c^2 P - A_h'P A_h as the checker has it", sampled_loop.contraction_residual),
+            Identity("x'Px by the pivots P_11 and P_22 - P_12^2/P_11", sampled_loop.pivots_residual),
+            Identity("x'Px is convex", sampled_loop.convex_residual),
+        ),
+        certificates=("lpv_lyapunov",),
+    ),
+    Theorem(
+        anchor="invariance",
+        title="Sets of slip and torque that one sample maps into themselves",
+        statement="Let a set of slip and torque be given for each of some windows of speed. If every state of a set "
+        "is, one sample later, again in this set and in that of the next slower window, at all speeds of the window "
+        "and for all parameters of the box, then a wheel that is in the set once stays in the sets down to the lowest "
+        "speed.",
+        hypotheses=(
+            "a law without memory",
+            "windows that cover the range of speed, and that no sample can jump over",
+            "a valve that fills, vents and holds within a sample; full supply pressure",
+            "static wheel load; the parameters may change with time within their box",
+        ),
+        sketch="Between two samples the torque is known and the slip obeys a scalar equation that rises with the "
+        "torque. By the comparison theorem the slip stays below that of the upper edge under the largest torque, and "
+        "above that of the lower edge under the smallest; both are followed in steps on which the rate is bounded. "
+        "The creep force grows with friction and load, so that their ends bound it.",
+        not_said="That a wheel gets into the set, or anything below the lowest speed.",
+        identities=(
+            Identity(
+                "slip' = [R (T/2 - R f)/I - (1 - slip) a]/v + (1 - slip) B_W/I is (19)",
+                sampled_loop.map_residual,
+            ),
+            Identity("d slip'/dT = R/(2 I v)", sampled_loop.torque_slope_residual),
+            Identity(
+                "S - eps S' = 2 x^3/(1 + x^2)^2 + atan y - y/(1 + y^2), x = k_A eps, y = k_S eps",
+                stop_limit.friction_residual,
+            ),
+        ),
+        certificates=("sampled_invariance",),
+    ),
+    Theorem(
         anchor="bound",
         title="No controller stops shorter than the rail and the filling brake allow",
-        statement="v' >= -P(v) with P the deceleration at the adhesion peak of all wheels, and (m + 8 I/R^2)(v_0 - v) "
-        "<= int f_d dt + (4/R) int T_fill dt for the brake that fills from the start.",
+        statement="At every instant v' >= -P(v), P = (f_d + m g_0 mu)/m, with g_0 = 9.81 m/s2 and mu(v) the largest "
+        "creep force over load of any slip, and (m + n I_w/R^2)(v_0 - v) <= (f_d(v_0) + 2 n B_W v_0 (1 + s)/R^2) t + "
+        "(n/R) int T_fill dt + n I_w s v_0/R^2 for n wheelsets of inertia I_w, T_fill the torque of a brake that "
+        "only fills, and s = 0.0001. The second bounds the speed until some instant and the first from then on; the "
+        "best instant bounds time and distance of every stop.",
         hypotheses=(
-            "omega <= v/R: no wheel turns faster than it rolls",
-            "B_W = 0",
-            "equal loads: load transfer lowers the sum of the peaks",
+            "the wheels roll and the cylinders are empty at v_0",
+            "level track, equal loads: load transfer lowers the sum of the peaks",
+            "f_d and B_W >= 0 are largest at v_0",
+            "abs(f(-s)) (8/m + 2 R^2/I_w) >= (1 + s) f_d/m at v_0",
         ),
-        sketch="Eliminate the creep force from (1) and (2); a wheel that slides has given up momentum already.",
+        sketch="The momentum of train and wheels changes by resistance, brake and damping alone. At the slip -s the "
+        "creep force turns the slip back to 0 by the last hypothesis, so that R omega <= (1 + s) v for good. The "
+        "creep force grows with the friction, since S - eps S' >= 0: the peak falls with the speed, and the bound of "
+        "mu at one speed holds above it.",
         not_said="That a controller reaches it.",
         identities=(
-            Identity("m v' + (8 I/R) omega' = -f_d - (4/R) T", bound_residual),
+            Identity("R m v' + 8 I omega' = -R f_d - 4 T - 8 B_W omega", stop_limit.momentum_residual),
+            Identity(
+                "(m + J)(v_0 - v) = m (v_0 - v) + J (v_0 - R omega) + J s v for R omega = (1 + s) v, J = 8 I/R^2",
+                stop_limit.overspeed_residual,
+            ),
+            Identity(
+                "v slip' at the slip -s = abs(f)(8/m + R^2/I) - (1 + s) f_d/m + 8 s abs(f)/m + (1 + s) v B_W/I + "
+                "R T/(2 I)",
+                stop_limit.outrun_residual,
+            ),
+            Identity(
+                "S - eps S' = 2 x^3/(1 + x^2)^2 + atan y - y/(1 + y^2), x = k_A eps, y = k_S eps",
+                stop_limit.friction_residual,
+            ),
+            Identity("(atan y - y/(1 + y^2))' = 2 y^2/(1 + y^2)^2", stop_limit.surplus_rate_residual),
             Identity(
                 "the torque integral of Table 10 is a momentum balance", torque_balance.identity_residual
             ),

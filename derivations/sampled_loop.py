@@ -1,0 +1,99 @@
+"""The loop with sampling and lag: slip poles that a gain stabilizes, quadratic functions, the one-sample map.
+
+Claims: with proportional feedback of the sampled slip one root of the loop lies at z = 1 for the gain K = p, where
+the other one decides; in errors of sliding speed and torque the loop is affine in p - a/v, so that vertices decide;
+the slip obeys a scalar equation that rises with the torque.
+"""
+
+import sympy as sp
+
+from derivations import slip_equation
+from derivations.notation import symbols, time
+from wspd_design.certificates import quadratic
+
+p, tau, h, K, z = sp.symbols("p tau h K z", positive=True)
+alpha, beta = sp.symbols("alpha beta", positive=True)  # exp(p h), exp(-h/tau)
+
+# --- sampling: the plant 1/((s - p)(tau s + 1)) behind a hold, from its step response -----------------------
+_fast = (alpha - 1) / (p * (1 + p * tau))
+_slow = (beta - 1) * tau / (1 + p * tau)
+b1, b0 = _fast + _slow, -_fast * beta - _slow * alpha
+_step = (sp.exp(p * time) - 1) / (p * (1 + p * tau)) + tau * (sp.exp(-time / tau) - 1) / (1 + p * tau)
+step_residual = sp.simplify(  # (d/dt - p)(tau d/dt + 1) of the step response is the step
+    tau * sp.diff(_step, time, 2) + (1 - p * tau) * sp.diff(_step, time) - p * _step - 1
+)
+static_residual = sp.simplify((b1 + b0) / ((1 - alpha) * (1 - beta)) + 1 / p)
+polynomial = z**2 - (alpha + beta) * z + alpha * beta + K * (b1 * z + b0)
+other_root = (beta + p * tau * alpha) / (1 + p * tau)
+roots_residual = sp.simplify(sp.expand(polynomial.subs(K, p) - (z - 1) * (z - other_root)))
+product_residual = sp.simplify(
+    b0 * p * (1 + p * tau) / (alpha * beta) - (p * tau * (1 / beta - 1) - (1 - 1 / alpha))
+)
+condition_residual = sp.simplify((1 - other_root) * (1 + p * tau) - (1 - beta - p * tau * (alpha - 1)))
+
+# --- quadratic function: y = v e, t the error of the torque over T_max --------------------------------------
+q, gamma, kappa, back, decay, kept = sp.symbols("q gamma kappa K_T alpha_V c_V", real=True)
+y, t, v, a, R, I_w, T_max = sp.symbols("y t v a R I_w T_max", positive=True)
+_error_rate = p * (y / v) - R * T_max / (I_w * v) * t  # of e = y/v, from (19) near the reference
+sliding_residual = sp.simplify(
+    (v * _error_rate - a * (y / v)) - (q * y - gamma * t).subs({q: p - a / v, gamma: R * T_max / I_w})
+)
+_loop = quadratic.Loop(gamma=(gamma, gamma), lag=tau, sliding_gain=kappa, torque_gain=back, sample_time=h)
+_rates = sp.Matrix(quadratic.rates(_loop, q, gamma))
+_valve = (kappa * y - back * t - t) / tau  # tau T' + T = T_max u, eq. (14), u = kappa y - K t
+loop_residual = sp.expand((_rates * sp.Matrix([y, t]))[1] - _valve)
+_entries = sp.symbols("P_11 P_12 P_22", real=True)
+_P = sp.Matrix([_entries[:2], _entries[1:]])
+
+
+def _upper(matrix: sp.Matrix) -> tuple[sp.Expr, ...]:
+    return matrix[0, 0], matrix[0, 1], matrix[1, 1]
+
+
+def _difference(coded: tuple[sp.Expr, ...], matrix: sp.Matrix) -> sp.Expr:
+    """Sum of squares of what differs: zero only if every entry agrees."""
+    return sp.expand(
+        sum(sp.expand(one - other) ** 2 for one, other in zip(coded, _upper(matrix), strict=True))
+    )
+
+
+decrease_residual = _difference(
+    quadratic.decays(_entries, _rates.tolist(), decay), -(_rates.T * _P + _P * _rates) - 2 * decay * _P
+)
+affine_residual = sp.expand(
+    sum(entry.diff(*twice) ** 2 for entry in _rates for twice in ((q, q), (gamma, gamma), (q, gamma)))
+)
+_any = sp.Matrix(2, 2, sp.symbols("A_11 A_12 A_21 A_22", real=True))
+contraction_residual = _difference(
+    quadratic.contracts(_entries, _any.tolist(), kept), kept**2 * _P - _any.T * _P * _any
+)
+_pivot = _entries[2] - _entries[1] ** 2 / _entries[0]
+pivots_residual = sp.simplify(
+    (sp.Matrix([[y, t]]) * _P * sp.Matrix([y, t]))[0]
+    - (_entries[0] * (y + _entries[1] / _entries[0] * t) ** 2 + _pivot * t**2)
+)
+_theta = sp.Symbol("theta", positive=True)
+_one, _two = sp.Matrix(sp.symbols("a_1 a_2", real=True)), sp.Matrix(sp.symbols("b_1 b_2", real=True))
+
+
+def _square(vector: sp.Matrix) -> sp.Expr:
+    return (vector.T * _P * vector)[0]
+
+
+convex_residual = sp.expand(
+    _theta * _square(_one)
+    + (1 - _theta) * _square(_two)
+    - _square(_theta * _one + (1 - _theta) * _two)
+    - _theta * (1 - _theta) * _square(_one - _two)
+)
+
+# --- one-sample map: the rate of the slip, and that it rises with the torque ----------------------------------
+slip, speed, f, f_d, mass, inertia, radius, torque, damping = symbols(
+    "slip speed creep_force resistance mass wheel_inertia wheel_radius braking_torque wheel_damping"
+)
+_force = torque / 2 - radius * f
+_rate = (radius * _force / inertia - (1 - slip) * (f_d + 8 * f) / mass) / speed + (
+    1 - slip
+) * damping / inertia
+map_residual = sp.simplify(_rate - (slip_equation.drift + slip_equation.slip_gain * torque))
+torque_slope_residual = sp.simplify(sp.diff(_rate, torque) - radius / (2 * inertia * speed))
