@@ -107,7 +107,8 @@ THEOREMS = (
         "below -delta ln(1 - A/delta). That is below X if A <= delta (1 - exp(-X/delta)), which follows from the "
         "condition because u coth u <= sqrt(1 + u^2). For small deviations delta itself is the limit.",
         not_said="That more is impossible: friction that levels off allows more, so that a refutation needs a path "
-        "that passes the limit. A deviation below the reference is benign: the wheel falls back to rolling.",
+        "that passes the limit. Nor what a falling train speed changes within the second that recovery takes, which "
+        "counts at the lowest speeds. A deviation below the reference is benign: the wheel falls back to rolling.",
         identities=(
             Identity("delta = int exp(-p t) g (1 - exp(-t/tau)) dt", recovery.largest_residual),
             Identity("w' = p (w - delta)", recovery.combination_residual),

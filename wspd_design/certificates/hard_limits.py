@@ -83,7 +83,8 @@ def check(problem: Problem) -> Certificate:
         title=TITLE,
         claim=f"A deviation of the slip of {DEVIATION:g} above the reference {problem.slip:g}, seen one sample of "
         f"{problem.sample_time * 1e3:g} ms late, is brought back by full venting without passing {problem.slips[1]:g}, "
-        f"on {domain.described(problem)}. Where it is not, no law can: venting is all that a brake can do.",
+        f"at any frozen speed on {domain.described(problem)}. Where it is not, no law can: venting is all that a brake "
+        "can do.",
         status=status,
         explanation=_explanation(problem, samples, growth, shown, witness, known),
         margin=Range(low=known - DEVIATION, high=least - DEVIATION, unit="-"),
@@ -106,7 +107,8 @@ def check(problem: Problem) -> Certificate:
             ),
         ),
         assumptions=(
-            "frozen train speed, static wheel load",
+            "frozen train speed: a train that slows down meanwhile is left out, which counts at the lowest speeds",
+            "static wheel load",
             "the slip stood at its reference and the torque at T* before; the law holds it until its next sample",
             "exact measurement, no computing time, full supply pressure",
             "a deviation below the reference is benign: the wheel falls back to rolling and brakes less",
@@ -170,7 +172,7 @@ def lowest_speed(problem: Problem, samples: Samples) -> float | None:
     if fails.size == 0:
         return problem.speeds[0]
     first = int(fails[-1]) + 1
-    return float(samples.speeds[first]) if first < SPEEDS else None
+    return float(samples.speeds[first]) if first < SPEEDS - 1 else None
 
 
 def _part(problem: Problem, samples: Samples, lowest: float) -> Finding:
@@ -201,17 +203,17 @@ def _proofs(problem: Problem, part: Finding) -> tuple[Proof, ...]:
 
 
 def _witness(problem: Problem, samples: Samples) -> tuple[Point, ...]:
-    """Return the fastest sampled point at which the slip passes slip_max for certain."""
+    """Return the fastest sampled point at which the slip passes slip_max for certain, as the law first sees it."""
     import numpy as np
 
     for k in np.flatnonzero(samples.worst < DEVIATION)[::-1][:TRIALS]:
         point = samples.corners[k].copy()
-        torque = passes(problem, point, DEVIATION)
-        if torque is not None:
-            point[SLIP] = problem.slip + DEVIATION
+        seen = passes(problem, point, DEVIATION)
+        if seen is not None:
+            point[SLIP] = seen.slip
             return (
                 *domain.readable(point),
-                Point(name="torque", value=torque, unit="N m"),
+                Point(name="torque", value=seen.torque, unit="N m"),
                 Point(name="recoverable deviation", value=float(samples.worst[k]), unit="-"),
             )
     return ()
@@ -244,7 +246,9 @@ def _explanation(
     )
     growing = f"Until it is seen a deviation grows by a factor of at most {grown:.4g}."
     (fast,) = (each.value for each in witness if each.name == "speed") if witness else (None,)
-    refuted = "" if fast is None else f" At {fast:.3g} km/h no law keeps the slip below {problem.slips[1]:g}."
+    refuted = (
+        "" if fast is None else f" At {fast:.3g} km/h, frozen, no law keeps it below {problem.slips[1]:g}."
+    )
     if part is None:
         return f"{deviation} {growing}{refuted} The recovery is proved from no speed on."
     (speed,) = (v for v in part.claim.variables if v.name == "speed")

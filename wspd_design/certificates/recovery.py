@@ -246,7 +246,14 @@ def recoverable(problem: Problem, points: "Array") -> "Array":
     return back(seen, lambda _: start, problem.sample_time / HOLD_STEPS, HOLD_STEPS)
 
 
-def passes(problem: Problem, at: "Array", deviation: float) -> float | None:
+class Seen(NamedTuple):
+    """The state in which a law sees a deviation for the first time."""
+
+    slip: float  # -, a lower bound
+    torque: float  # N m per wheelset
+
+
+def passes(problem: Problem, at: "Array", deviation: float) -> Seen | None:
     """Decide in balls whether the slip passes slip_max for certain, although the brake vents fully.
 
     Parameters
@@ -260,8 +267,8 @@ def passes(problem: Problem, at: "Array", deviation: float) -> float | None:
 
     Returns
     -------
-    float or None
-        Torque from which the brake starts [N m], or None if it is not certain.
+    Seen or None
+        The state from which it vents, or None if it is not certain that the slip passes.
     """
     mass, inertia, mu0, brake = float(at[MASS]), float(at[INERTIA]), float(at[MU0]), problem.vehicle.brake
     pinned = replace(problem, mass_bounds=(mass,) * 2, inertia_bounds=(inertia,) * 2, mu0_bounds=(mu0,) * 2)
@@ -270,7 +277,7 @@ def passes(problem: Problem, at: "Array", deviation: float) -> float | None:
     gain = plant.radius / (2 * plant.inertia * speed)
     start = (-plant.rate(plant.reference, speed, point(0)) / gain).lower().min(plant.full)
     slip = (plant.reference + deviation).lower()
-    holding = ceil(problem.sample_time / SPAN)
+    holding, seen = ceil(problem.sample_time / SPAN), slip
     for k in range(1 - holding, MOST_SPANS):
         # The torque falls, so that its value at the end of a step bounds the whole step.
         torque = start if k <= 0 else (start * (-k * point(SPAN) / brake.vent_time).exp()).lower()
@@ -279,6 +286,7 @@ def passes(problem: Problem, at: "Array", deviation: float) -> float | None:
         if moved is None or not moved[0] > slip:
             return None  # once it falls it falls for good: the torque only gets smaller
         slip = moved[0]
+        seen = slip if k <= 0 else seen
         if slip > edge:
-            return float(start)
+            return Seen(float(seen), float(start))
     return None
