@@ -3,12 +3,14 @@
 import json
 from dataclasses import replace
 from datetime import UTC, datetime
+from typing import get_args
 
 import pytest
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
 from wspd_design.certificates.records import Status
 from wspd_design.design.published import load_table10
+from wspd_design.design.records import Law
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting.blocks import Bullets, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.numbering import number, parts
@@ -39,6 +41,21 @@ def test_every_check_links_to_a_section_of_its_own(document):
         anchor = f"check-{each.name.replace('_', '-')}"
         assert anchor in linked
         assert headings[anchor] == each.title
+
+
+@pytest.mark.parametrize("law", get_args(Law))
+@pytest.mark.parametrize("has_surface", [True, False])
+def test_every_law_has_a_report(law, has_surface):
+    dossier = sample_dossier()
+    made = replace(dossier.design, law=law)
+    plane = dossier.phase_plane if has_surface else None
+    document = report_document(replace(dossier, design=made, phase_plane=plane), DATE)
+    assert "sliding mode" in document.subtitle.lower() or law == "torque-feedback"
+    (figure,) = (
+        each for each in document.blocks if isinstance(each, Figure) and each.anchor == "phase-plane"
+    )
+    assert ("Left:" in figure.alt) == ("Left:" in plain(figure.caption)) == has_surface
+    assert ("slip error e" in figure.svg) == has_surface
 
 
 def test_a_check_is_told_in_full(document):

@@ -8,8 +8,16 @@ from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.text import Text, rich
 
-LAWS = {"afsmc": "Adaptive fuzzy sliding mode", "smc": "Sliding mode with a friction model"}
-EQUATIONS = {"afsmc": "eqs. (29) to (42)", "smc": "eqs. (22) to (26)"}
+LAWS = {
+    "afsmc": "Adaptive fuzzy sliding mode",
+    "smc": "Sliding mode with a friction model",
+    "torque-feedback": "Static feedback of slip and torque",
+}
+ORIGINS = {
+    "afsmc": "eqs. (29) to (42)",
+    "smc": "eqs. (22) to (26)",
+    "torque-feedback": "not in the paper",
+}
 
 
 def case(dossier: Dossier) -> tuple[Block, ...]:
@@ -36,7 +44,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Rail of the stops", friction),
         (
             "Controller",
-            f"{LAWS[design.law]}, {EQUATIONS[design.law]}; design {design.name}, made on rail {design.rail}",
+            f"{LAWS[design.law]}, {ORIGINS[design.law]}; design {design.name}, made on rail {design.rail}",
         ),
         ("Slip reference", f"{specification.slip:g}, tolerance {specification.slip_tolerance:g}"),
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),

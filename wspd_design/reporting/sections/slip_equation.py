@@ -9,7 +9,11 @@ from wspd_design.reporting.text import escape, rich
 PLANT = ("1", "2", "3", "5", "6", "7", "8", "9", "10", "13", "14", "15", "19", "B_W")
 SLIDING_MODE = ("20", "22", "23", "24", "25", "26", "27", "28")
 ADAPTIVE = tuple(str(number) for number in range(29, 49))
-USED_BY = {"smc": (*PLANT, *SLIDING_MODE), "afsmc": (*PLANT, *SLIDING_MODE, *ADAPTIVE)}
+USED_BY = {
+    "smc": (*PLANT, *SLIDING_MODE),
+    "afsmc": (*PLANT, *SLIDING_MODE, *ADAPTIVE),
+    "torque-feedback": PLANT,
+}
 """Numbers of the equations that each law rests on."""
 
 TONES = {"holds": Status.GOOD, "definition": Status.NEUTRAL, "misprint": Status.BAD, "gap": Status.UNDECIDED}

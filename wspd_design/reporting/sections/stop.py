@@ -12,7 +12,7 @@ from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.series import lyapunov_functions, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.sections.checks import check_anchor
-from wspd_design.reporting.text import Inline, Link, rich
+from wspd_design.reporting.text import Inline, Link
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 
 LYAPUNOV = "lyapunov"
@@ -55,11 +55,12 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
                 partial(phase_planes, run=run, plane=dossier.phase_plane, specification=specification),
                 height=3.0,
             ),
-            caption=rich(
-                f"Phase planes of the {name(run, 0)} above 10 km/h. Left: what the law steers, at its "
-                "samples; on the dashed surface the error would decay, and the band is the boundary layer. "
-                "Right: slip and torque of the wheel; closed loops are a limit cycle of slip and valve."
-            ),
+            caption=f"Phase planes of the {name(run, 0)} above {judged} km/h. Left: what the law steers, at its "
+            "samples; on the dashed surface the error would decay, and the band is the boundary layer. "
+            "Right: slip and torque of the wheel; closed loops are a limit cycle of slip and valve."
+            if dossier.phase_plane
+            else f"Slip and torque of the {name(run, 0)} above {judged} km/h; closed loops are a limit cycle of "
+            "slip and valve. Dashed: the reference.",
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",
         ),
