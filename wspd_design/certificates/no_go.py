@@ -61,6 +61,7 @@ def check(problem: Problem) -> Certificate:
         else f"At some speed from {claimed} no law without feedback of torque or wheel acceleration is "
         f"asymptotically stable at slip {problem.slip:g}, with the nominal parameters.",
         status=status,
+        limitation=True,
         explanation=f"{meaning} {finding.reason}".rstrip(),
         margin=finding.margin,
         worst_point=place(finding.place),

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Collection, Sequence
+from typing import NamedTuple
 
 from rich.console import Group
 from rich.padding import Padding
@@ -12,14 +13,30 @@ from wspd_design.cli.case import Case
 from wspd_design.cli.console import console, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 
-_SIGNS = {
-    Status.PROVED: ("✓", "green"),
-    Status.EVIDENCE: ("~", "cyan"),
-    Status.VACUOUS: ("○", "yellow"),
-    Status.NOT_APPLICABLE: ("-", "dim"),
-    Status.UNDECIDED: ("?", "bold yellow"),
-    Status.REFUTED: ("✗", "bold red"),
+
+class _Shown(NamedTuple):
+    """How a finding looks."""
+
+    sign: str
+    style: str
+    word: str
+    meaning: str
+
+
+_SHOWN = {
+    status: _Shown(sign, style, status.name.replace("_", " "), status.value)
+    for status, sign, style in (
+        (Status.PROVED, "✓", "green"),
+        (Status.EVIDENCE, "~", "cyan"),
+        (Status.VACUOUS, "○", "yellow"),
+        (Status.NOT_APPLICABLE, "-", "dim"),
+        (Status.UNDECIDED, "?", "bold yellow"),
+        (Status.REFUTED, "✗", "bold red"),
+    )
 }
+_LIMIT = _Shown(
+    "!", "bold red", "LIMIT PROVED", f"{Status.PROVED.value}, and says what the closed loop cannot do"
+)
 
 
 def problem_of(case: Case, *, seed: int = 0) -> Problem:
@@ -64,9 +81,7 @@ def show_verdicts(certificates: Sequence[Certificate]) -> None:
     """Print status and margin of each check as a table, and what the statuses mean."""
     shown = table("Status", "Check", "Margin")
     for certificate in certificates:
-        shown.add_row(
-            status_text(certificate.status), certificate.name, Text(margin_text(certificate.margin))
-        )
+        shown.add_row(status_text(certificate), certificate.name, Text(margin_text(certificate.margin)))
     console().print(spaced(shown))
     show_counts(certificates)
 
@@ -74,17 +89,22 @@ def show_verdicts(certificates: Sequence[Certificate]) -> None:
 def show_counts(certificates: Sequence[Certificate]) -> None:
     """Print how often each status was found, and what it means."""
     out = console()
-    counts = Counter(certificate.status for certificate in certificates)
-    present = [status for status in _SIGNS if counts[status]]
-    out.print(Text(", ").join(Text(f"{counts[s]} {_word(s)}", style=_SIGNS[s][1]) for s in present))
-    for status in present:
-        out.print(f"{_word(status)}: {status.value}.", style="dim")
+    counts = Counter(map(_shown, certificates))
+    present = [shown for shown in (*_SHOWN.values(), _LIMIT) if counts[shown]]
+    out.print(Text(", ").join(Text(f"{counts[each]} {each.word}", style=each.style) for each in present))
+    for each in present:
+        out.print(f"{each.word}: {each.meaning}.", style="dim")
 
 
-def status_text(status: Status) -> Text:
-    """Return sign and word of a status, in its color."""
-    sign, style = _SIGNS[status]
-    return Text(f"{sign} {_word(status)}", style=style)
+def status_text(certificate: Certificate) -> Text:
+    """Return sign and word of a finding, in its color; a limitation that is proved is no good news."""
+    shown = _shown(certificate)
+    return Text(f"{shown.sign} {shown.word}", style=shown.style)
+
+
+def _shown(certificate: Certificate) -> _Shown:
+    limit = certificate.limitation and certificate.status is Status.PROVED
+    return _LIMIT if limit else _SHOWN[certificate.status]
 
 
 def margin_text(margin: Range | None) -> str:
@@ -107,16 +127,12 @@ def margin_text(margin: Range | None) -> str:
 def _claim(certificate: Certificate) -> Group:
     """What is claimed and, unless it holds, why not; indented below the name of the check."""
     lines = [Text(certificate.claim)]
-    if certificate.status in (Status.REFUTED, Status.UNDECIDED, Status.VACUOUS):
+    if certificate.status in (Status.REFUTED, Status.UNDECIDED, Status.VACUOUS) or certificate.limitation:
         lines.append(Text(certificate.explanation, style="italic"))
     if certificate.witness:
         lines.append(Text(f"Witness: {_place(certificate.witness)}", style="red"))
-    heading = Text(f"\n{certificate.name}: ", style="bold").append(status_text(certificate.status))
+    heading = Text(f"\n{certificate.name}: ", style="bold").append(status_text(certificate))
     return Group(heading, Padding(Group(*lines), (0, 0, 0, 2)))
-
-
-def _word(status: Status) -> str:
-    return status.name.replace("_", " ")
 
 
 def _place(points: Sequence[Point]) -> str:

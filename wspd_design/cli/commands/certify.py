@@ -119,7 +119,7 @@ def _show(certificates: Sequence[Certificate], sizes: Mapping[str, int]) -> None
     for certificate in certificates:
         size = sizes.get(certificate.name)
         shown.add_row(
-            status_text(certificate.status),
+            status_text(certificate),
             certificate.name,
             Text(margin_text(certificate.margin)),
             "" if size is None else f"{size / 1e3:.1f} kB",

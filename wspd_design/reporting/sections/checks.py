@@ -28,15 +28,23 @@ from wspd_design.reporting.figures.series import certificate_curves, panels, ser
 PANEL_HEIGHT = 1.9  # in
 MAP_HEIGHT = 2.6  # in
 
-FINDINGS = (
-    Finding.REFUTED,
-    Finding.UNDECIDED,
-    Finding.EVIDENCE,
-    Finding.PROVED,
-    Finding.VACUOUS,
-    Finding.NOT_APPLICABLE,
-)
-"""From the worst finding to those that say nothing."""
+MEANINGS = {
+    Status.REFUTED: Finding.REFUTED.value,
+    Status.LIMIT: f"{Finding.PROVED.value}, and says what the closed loop cannot do",
+    Status.UNDECIDED: Finding.UNDECIDED.value,
+    Status.EVIDENCE: Finding.EVIDENCE.value,
+    Status.PROVED: Finding.PROVED.value,
+    Status.VACUOUS: Finding.VACUOUS.value,
+    Status.NOT_APPLICABLE: Finding.NOT_APPLICABLE.value,
+}
+"""What each finding means, from the worst to those that say nothing."""
+
+
+def status_of(certificate: Certificate) -> Status:
+    """Return the finding as the report shows it: a limitation that is proved is no good news."""
+    if certificate.limitation and certificate.status is Finding.PROVED:
+        return Status.LIMIT
+    return Status[certificate.status.name]
 
 
 def check_anchor(certificate: Certificate) -> str:
@@ -68,13 +76,13 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
             "findings stand first."
         ),
     ]
-    for finding in FINDINGS:
-        group = [each for each in dossier.certificates if each.status is finding]
+    for status, meaning in MEANINGS.items():
+        group = [each for each in dossier.certificates if status_of(each) is status]
         if group:
-            word = Status[finding.name].word.capitalize()
+            word = status.word.capitalize()
             found += [
                 Heading(text=word, anchor=f"finding-{word.lower().replace(' ', '-')}", level=2),
-                Paragraph(text=f"{word}: {finding.value}."),
+                Paragraph(text=f"{word}: {meaning}."),
             ]
         for certificate in group:
             found += _check(certificate)
@@ -85,7 +93,7 @@ def _check(certificate: Certificate) -> list[Block]:
     anchor = check_anchor(certificate)
     found: list[Block] = [
         Heading(text=certificate.title, anchor=anchor, level=3),
-        Verdict(status=Status[certificate.status.name], sentence=certificate.claim),
+        Verdict(status=status_of(certificate), sentence=certificate.claim),
         Paragraph(text=certificate.explanation),
     ]
     if certificate.hypotheses:

@@ -3,23 +3,23 @@
 from collections import Counter
 
 from wspd_design.certificates.records import Certificate
-from wspd_design.certificates.records import Status as Finding
 from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.sections.checks import FINDINGS, check_anchor
+from wspd_design.reporting.sections.checks import check_anchor, status_of
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Ending
 
 COUNTED = {
-    Finding.REFUTED: "refuted",
-    Finding.UNDECIDED: "undecided",
-    Finding.EVIDENCE: "sampled only",
-    Finding.PROVED: "proved",
-    Finding.VACUOUS: "vacuous",
-    Finding.NOT_APPLICABLE: "not applicable",
+    Status.REFUTED: "refuted",
+    Status.LIMIT: "proved to be a limit",
+    Status.UNDECIDED: "undecided",
+    Status.EVIDENCE: "sampled only",
+    Status.PROVED: "proved",
+    Status.VACUOUS: "vacuous",
+    Status.NOT_APPLICABLE: "not applicable",
 }
 """Each finding in words that follow a number."""
 
@@ -27,47 +27,48 @@ COUNTED = {
 def verdict(dossier: Dossier) -> Verdict:
     """Return the judgment of the whole report; the worst finding decides."""
     certificates = dossier.certificates
-    counts = Counter(certificate.status for certificate in certificates)
+    counts = Counter(map(status_of, certificates))
     total = len(certificates)
     stop, stop_is_good = _stop(dossier)
     spoken: tuple[Inline, ...]
-    if named := _of(certificates, Finding.REFUTED):
+    if named := _of(certificates, Status.REFUTED, Status.LIMIT):
         status = Status.REFUTED
+        limits = " or proved to be a limit" if counts[Status.LIMIT] else ""
         spoken = (
-            f"Not fit as it stands: {len(named)} of {total} checks refuted (",
+            f"Not fit as it stands: {len(named)} of {total} checks refuted{limits} (",
             *_links(named),
             "). ",
         )
     elif not stop_is_good:
         status = Status.BAD
         spoken = ("Not fit as it stands: no check is refuted, but the simulated stop is not as specified. ",)
-    elif named := _of(certificates, Finding.UNDECIDED):
+    elif named := _of(certificates, Status.UNDECIDED):
         status = Status.UNDECIDED
         spoken = (
             f"Not decided: {len(named)} of {total} checks neither shown nor refuted (",
             *_links(named),
             "). ",
         )
-    elif named := _of(certificates, Finding.EVIDENCE):
+    elif named := _of(certificates, Status.EVIDENCE):
         status = Status.EVIDENCE
         spoken = (
             f"Nothing speaks against it, but {len(named)} of {total} checks hold at samples "
             "only, which proves nothing between them. ",
         )
-    elif counts[Finding.PROVED]:
+    elif counts[Status.PROVED]:
         status = Status.PROVED
         spoken = ("Every check that speaks about this controller is proved under its stated assumptions. ",)
     else:
         status = Status.VACUOUS
         spoken = ("No check says anything about this controller. ",)
     assumptions = {text for each in certificates for text in each.assumptions}
-    tally = numbers.listing([f"{counts[each]} {COUNTED[each]}" for each in FINDINGS if counts[each]])
+    tally = numbers.listing([f"{counts[each]} {COUNTED[each]}" for each in COUNTED if counts[each]])
     counted = f" Checks: {tally}; {numbers.count(len(assumptions), 'assumption')}."
     return Verdict(status=status, sentence=(*spoken, stop, counted if tally else ""))
 
 
-def _of(certificates: tuple[Certificate, ...], finding: Finding) -> list[Certificate]:
-    return [each for each in certificates if each.status is finding]
+def _of(certificates: tuple[Certificate, ...], *found: Status) -> list[Certificate]:
+    return [each for each in certificates if status_of(each) in found]
 
 
 def _links(certificates: list[Certificate]) -> list[Inline]:
@@ -153,7 +154,7 @@ def _checks(certificates: tuple[Certificate, ...]) -> Table:
     rows: list[tuple[Text | Cell, ...]] = [
         (
             (Link(anchor=check_anchor(each), text=each.name),),
-            Cell(status=Status[each.status.name]),
+            Cell(status=status_of(each)),
             each.title,
             numbers.margin(each.margin),
         )
