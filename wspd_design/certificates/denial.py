@@ -9,7 +9,7 @@ from wspd_design.certificates.obligation import Obligation, statement
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.proof.claim import Claim, Variable
-from wspd_design.certificates.records import Point, Status
+from wspd_design.certificates.records import Point
 
 ROUNDING = Fraction(1, 10**9)  # relative; a speed in km/h is not exactly that in m/s
 
@@ -20,7 +20,7 @@ def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str
     Parameters
     ----------
     wanted : iterable of Obligation
-        Of a check; the inequalities on the whole domain are tried that a proof needs.
+        Of a check; the inequalities are tried that its witness is to deny.
     witness : iterable of Point
         In the units that people read, from a file.
 
@@ -35,7 +35,7 @@ def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str
         If there are such claims, and none of them is denied; or the witness leaves the domain.
     """
     given = {point.name: point for point in witness}
-    claims = [each.claim for each in wanted if each.claim is not None and Status.PROVED in each.needed]
+    claims = [each.denied for each in wanted if each.denied is not None]
     tried = [claim for claim in claims if all(v.name in given for v in claim.free)]
     denied = []
     for claim in tried:

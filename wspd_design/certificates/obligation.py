@@ -56,23 +56,26 @@ class Obligation:
     needed: tuple[Status, ...] = (Status.PROVED,)  # the statuses that rest on it
     concerns: Callable[[Content], bool]  # whether a proof is about this
     check: Callable[[str], Answer]
-    claim: Claim | None = None  # an inequality on the whole domain, which a witness may deny
+    denied: Claim | None = None  # an inequality on the whole domain, which the witness of the check denies
 
 
 DIGITS = 6  # of the ends of a range
 
 
-def inequality(claim: Claim, *, needed: tuple[Status, ...] = (Status.PROVED,), where: str = "") -> Obligation:
+def inequality(
+    claim: Claim, *, needed: tuple[Status, ...] = (Status.PROVED,), where: str = "", decisive: bool = True
+) -> Obligation:
     """A claim of which every bound may be shown; one at least as tight as the claim's is enough.
 
-    ``where`` says in words on which part of the domain it stands.
+    ``where`` says in words on which part of the domain it stands. A ``decisive`` one is what the check claims, so that
+    its witness denies it; others only suffice for it.
     """
     return Obligation(
         text=statement(claim) + where,
         needed=needed,
         concerns=lambda content: _is_about(claim, content) and KEY not in content,
         check=lambda text: _checked(claim, text, where),
-        claim=None if where else claim,
+        denied=claim if decisive and Status.PROVED in needed else None,
     )
 
 
@@ -136,9 +139,9 @@ def statement(claim: Claim) -> str:
     return f"{claim.name} {claim.relation} {float(claim.bound):.6g} {claim.unit}".removesuffix(" -")
 
 
-def inequalities(claims: Iterable[Claim]) -> tuple[Obligation, ...]:
+def inequalities(claims: Iterable[Claim], *, decisive: bool = True) -> tuple[Obligation, ...]:
     """Claims on the whole domain, all of which a proof needs."""
-    return tuple(inequality(claim) for claim in claims)
+    return tuple(inequality(claim, decisive=decisive) for claim in claims)
 
 
 def exact_claims(claims: Iterable[ExactClaim]) -> tuple[Obligation, ...]:

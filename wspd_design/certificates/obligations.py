@@ -112,20 +112,6 @@ def _no_go(problem: Problem) -> tuple[Obligation, ...]:
     )
 
 
-def _hard_limits(problem: Problem) -> tuple[Obligation, ...]:
-    def enough(speeds: Ends) -> Claim:
-        return recovery.share_claim(problem, hard_limits.DEVIATION, speed=speeds)
-
-    if not hard_limits.has_room(problem):
-        raise Refused("the range of slip leaves no room for the deviation")
-    return (
-        inequality(recovery.torque_claim(problem), where=" at the reference"),
-        inequality(recovery.growth_claim(problem), needed=()),
-        inequality(enough(problem.speeds), where=" at all slips above the reference"),
-        on_part(enough, "speed", problem.speeds, " m/s", needed=(), longer=False),
-    )
-
-
 def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
     law = problem.controller
     if not isinstance(law, laws.SlipLaw):
@@ -150,7 +136,7 @@ def _afsmc_energy(problem: Problem) -> tuple[Obligation, ...]:
     constant = conditions(
         ("rates of adaptation that do not depend on the speed", not law.gains.scheduled_rates)
     )
-    return (*inequalities(afsmc_energy.claims(problem, law)), *_adaptation(law), *constant)
+    return (*inequalities(afsmc_energy.claims(problem, law), decisive=False), *_adaptation(law), *constant)
 
 
 def _barbalat(problem: Problem) -> tuple[Obligation, ...]:
@@ -159,7 +145,7 @@ def _barbalat(problem: Problem) -> tuple[Obligation, ...]:
     if not isinstance(law, AdaptiveFuzzy):
         raise _strange(problem, "barbalat")
     scheduled = conditions(("rates of adaptation alpha/v", law.gains.scheduled_rates))
-    return (*inequalities(sigma_time.claims(problem, law)), *_adaptation(law), *scheduled)
+    return (*inequalities(sigma_time.claims(problem, law), decisive=False), *_adaptation(law), *scheduled)
 
 
 def _adaptation(law: AdaptiveFuzzy) -> tuple[Obligation, ...]:
@@ -175,6 +161,21 @@ def _routh_lag(problem: Problem) -> tuple[Obligation, ...]:
     if not isinstance(problem.controller, LinearLaw):
         raise _strange(problem, "routh_lag")
     return inequalities(routh_lag.claims(problem, problem.controller))
+
+
+def _hard_limits(problem: Problem) -> tuple[Obligation, ...]:
+    """Its witness is an integration, which the condition on the slopes does not decide."""
+
+    def share(speed: Ends) -> Claim:
+        return recovery.share_claim(problem, hard_limits.DEVIATION, speed=speed)
+
+    return (
+        inequality(recovery.torque_claim(problem), decisive=False),
+        inequality(recovery.growth_claim(problem), needed=()),
+        inequality(share(problem.speeds), decisive=False),
+        on_part(share, "speed", problem.speeds, " m/s", needed=(), longer=True),
+        *conditions(("room for the deviation in the range of slip", hard_limits.has_room(problem))),
+    )
 
 
 def _lpv_lyapunov(problem: Problem) -> tuple[Obligation, ...]:
@@ -213,8 +214,8 @@ OBLIGATIONS: Mapping[str, Callable[[Problem], tuple[Obligation, ...]]] = {
     "barbalat": _barbalat,
     "open_loop_pole": _open_loop_pole,
     "no_go": _no_go,
-    "hard_limits": _hard_limits,
     "routh_lag": _routh_lag,
+    "hard_limits": _hard_limits,
     "lpv_lyapunov": _lpv_lyapunov,
     "sampled_invariance": _sampled_invariance,
     "stop_bound": _stop_bound,

@@ -105,7 +105,7 @@ def _lines(found: Replayed) -> list[str]:
     if found.status is Status.VACUOUS and not found.missing:
         return [*lines, f"These proofs show that {found.check} is vacuous: it says nothing about a stop."]
     if found.status is Status.REFUTED and not found.denied:
-        lines.append("The witness does not have all quantities of a claim and is not checked.")
+        lines.append("The witness is not checked again.")
     needs = f", which needs {'; '.join(found.missing)}" if found.missing else ""
     return [*lines, f"That does not prove {found.check}{needs}."]
 
