@@ -22,22 +22,22 @@ from wspd_design.certificates.plant import Values, place
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.engine import Finding, engine
 from wspd_design.certificates.records import Certificate, Point, Problem, Series, Status
+from wspd_design.certificates.routh_region import region
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
 
 if TYPE_CHECKING:
-    from wspd_design.certificates.domain import Array
+    pass
 
 NAME, TITLE = "routh_lag", "Loop inside the layer with valve lag"
 TOLERANCE = 0.1  # of the enclosed margins
-PLOT_SPEEDS, PLOT_RATES = 81, 81
+PLOT_SPEEDS = 81
 LEAST_GAIN = 1e-3  # of the brake torque per slip
 DETERMINANTS = {
     SlidingMode: "(1 - p tau)(c + k) > tau k c, with p of the plant",
     AdaptiveFuzzy: "(1 - p tau)(k - p) > tau k c with k = G K_P du/ds",
 }
-HIGHEST_GAIN = 3.0  # of the plotted border, in multiples of the gains of the law
 
 
 @certified(name=NAME, title=TITLE)
@@ -187,25 +187,6 @@ def _plots(problem: Problem, law: LinearLaw, lag: float) -> tuple[tuple[Series, 
         series("nominal parameters", *axes, speeds * KMH, margin),
         level("limit", *axes, speeds * KMH, 0.0),
     ]
-    if isinstance(law, SlidingMode):
-        curves += _region(law, lag, speeds, plant.pole)
+    if isinstance(law, SlidingMode | AdaptiveFuzzy):
+        curves += region(law, lag, speeds, plant)
     return tuple(curves), int((margin <= 0.0).sum())
-
-
-def _region(law: SlidingMode, lag: float, speeds: "Array", poles: "Array") -> list[Series]:
-    """Largest k for which the loop is stable, over c, where the pole is largest and smallest; and the law."""
-    import numpy as np
-
-    layer_rates = law.gains.switching_gain / law.gains.boundary_layer / speeds
-    rates = np.linspace(0.0, HIGHEST_GAIN * max(law.gains.surface_rate, 1.0 / lag), PLOT_RATES)[1:]
-    top = HIGHEST_GAIN * float(layer_rates.max())
-    axes = ("c = K_I/K_P [1/s]", "k = W K_P/Phi [1/s]")
-    curves = [series("the law over speed", *axes, np.full(len(speeds), law.gains.surface_rate), layer_rates)]
-    for index in (int(poles.argmax()), int(poles.argmin())):
-        room = max(1.0 - poles[index] * lag, 0.0)
-        excess = lag * rates - room
-        border = np.where(excess > 0.0, room * rates / np.where(excess > 0.0, excess, 1.0), top)
-        curves.append(
-            series(f"border at {speeds[index] * KMH:.3g} km/h", *axes, rates, np.minimum(border, top))
-        )
-    return curves

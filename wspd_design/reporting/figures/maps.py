@@ -37,10 +37,9 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
     bar = figure.colorbar(filled, ax=axes, pad=0.02, aspect=14)
     bar.set_label(shown.value_label)
     bar.outline.set_visible(False)
-    halo = [withStroke(linewidth=2.6, foreground=HALO)]
     if shown.limit is not None and values.min() < shown.limit < values.max():
         line = axes.contour(shown.x, shown.y, values, levels=[shown.limit], colors=LINE, linewidths=1.3)
-        line.set_path_effects(halo)
+        line.set_path_effects([withStroke(linewidth=2.6, foreground=HALO)])
         bar.add_lines(line)
     if shown.worst is not None:
         axes.plot(

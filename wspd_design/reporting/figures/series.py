@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LOGARITHMIC_SPAN = 1e3  # a positive Lyapunov function that spans more is drawn on a logarithmic scale
+LOGARITHMIC_SPAN = {"V": 1e3, "k": 10.0}
+"""A positive Lyapunov function or gain of the layer that spans more is drawn on a logarithmic scale."""
 
 
 def panels(series: Sequence[Series]) -> dict[tuple[str, str], list[Series]]:
@@ -77,10 +78,7 @@ def _panel(axes: "Axes", group: Sequence[Series]) -> None:
     for index, each in enumerate(group):
         curve(axes, np.array(each.x), np.array(each.y), index, label=each.name)
     values = np.concatenate([each.y for each in group])
-    if (
-        group[0].y_label.startswith("V")
-        and values.min() > 0.0
-        and values.max() > LOGARITHMIC_SPAN * values.min()
-    ):
+    span = LOGARITHMIC_SPAN.get(group[0].y_label[0], np.inf)
+    if values.min() > 0.0 and values.max() > span * values.min():
         axes.set_yscale("log")
     axes.legend(loc="best")
