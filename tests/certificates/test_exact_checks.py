@@ -1,12 +1,14 @@
 """Statements that are decided in exact arithmetic: the only ones that may say PROVED."""
 
+import json
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from wspd_design.certificates import gain_positive, surface_hurwitz
+from wspd_design.certificates import exact, gain_positive, surface_hurwitz
+from wspd_design.certificates.exact import Positive
 from wspd_design.certificates.records import Status
 from wspd_design.model.generated.slip import slip_gain
 
@@ -77,3 +79,20 @@ def test_box_through_zero_is_refuted_with_its_factor(make_problem, make_controll
     verdict = gain_positive.check(make_problem(make_controller("none"), **changes))
     assert verdict.status is Status.REFUTED
     assert [point.name for point in verdict.witness] == [blamed]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", "7", "{}", '{"format": "wspd-exact/1"}', " " * 20_000, "[" * 9_000]
+)
+def test_what_is_no_certificate_proves_nothing(text):
+    assert not exact.check(Positive(quantity="c", value=Fraction(1), unit="1/s"), text).accepted
+
+
+@pytest.mark.parametrize("value", [Fraction(0), Fraction(-1, 10**400)])
+def test_what_is_not_positive_has_no_proof(value):
+    planted = Positive(quantity="c", value=value, unit="1/s")
+    right = exact.prove(Positive(quantity="c", value=Fraction(1), unit="1/s"))
+    assert exact.prove(planted) is None
+    assert "another claim" in exact.check(planted, right.certificate).reason
+    forged = json.dumps(json.loads(right.certificate) | {"claim_sha256": exact.digest(planted)})
+    assert "it is false that" in exact.check(planted, forged).reason

@@ -139,6 +139,13 @@ def test_a_file_without_proof_or_witness_shows_nothing(make_problem, make_contro
     assert not forged.accepted
 
 
+def test_what_is_proved_is_not_vacuous(make_problem, make_controller):
+    problem = make_problem(make_controller("afsmc"))
+    (certificate,) = suite.verify(problem, only=("well_posed",))
+    forged = json.dumps(json.loads(certificate_text(certificate)) | {"status": "VACUOUS"})
+    assert replay(problem, forged).reason == "no proof can show that well_posed is vacuous"
+
+
 def test_a_law_that_feeds_back_acceleration_cannot_be_bound_by_the_no_go(make_problem, make_controller):
     problem = make_problem(make_controller("torque-feedback"))
     (certificate,) = suite.verify(problem, only=("no_go",))

@@ -63,10 +63,8 @@ def require(vehicle: Vehicle, rail: Rail, initial_speed: float) -> None:
         If friction does not fall with the sliding speed, the resistance does not grow with speed, or a wheel might
         outrun the train.
     """
-    reductions = (rail.adhesion_reduction, rail.slip_reduction)
-    if not (
-        rail.mu0 > 0.0 <= rail.friction_decay and 0.0 < rail.friction_ratio <= 1.0 and min(reductions) > 0.0
-    ):
+    positive = (rail.mu0, rail.friction_ratio, rail.adhesion_reduction, rail.slip_reduction)
+    if not (min(positive) > 0.0 and rail.friction_ratio <= 1.0 and rail.friction_decay >= 0.0):
         raise NoBound("the bound of the stop needs friction that is positive and never grows with sliding")
     if min(vehicle.resistance_constant, vehicle.resistance_linear, vehicle.resistance_quadratic) < 0.0:
         raise NoBound("the bound of the stop needs a resistance without negative parts")

@@ -146,19 +146,6 @@ def part_test(vehicle: Vehicle, rail: Rail, speed: Fraction) -> PartTest:
     return holds
 
 
-def certificate_text(problem: Problem, peaks: Peaks, digits: Callable[[Fraction], str]) -> str:
-    """Write a certificate; ``digits`` writes the numbers, all of them decimals."""
-    content = {
-        "format": FORMAT,
-        "claim": CLAIM,
-        "claim_sha256": model_hash(problem),
-        "speeds": " ".join(map(digits, peaks.speeds)),
-        "peaks": " ".join(map(digits, peaks.tops)),
-        "cuts": [" ".join(map(digits, each)) for each in peaks.cuts],
-    }
-    return json.dumps(content, indent=1)
-
-
 def read(problem: Problem, text: str) -> Peaks:
     """Read a certificate.
 

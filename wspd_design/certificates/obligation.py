@@ -120,7 +120,7 @@ def _checked(claim: Claim, text: str, where: str) -> Answer:
     """Let the checker decide about the bound that a proof states."""
     try:
         stated = replace(claim, bound=number(json.loads(text)["bound"]))
-        shown = statement(stated) + where
+        shown = stated.statement().removesuffix(" -") + where
     except (KeyError, TypeError, ValueError, OverflowError, ZeroDivisionError):
         raise Refused("the proof states no bound") from None
     tight = stated.bound <= claim.bound if claim.relation == "<=" else stated.bound >= claim.bound

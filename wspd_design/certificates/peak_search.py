@@ -3,9 +3,12 @@
 Nobody has to trust this: a peak that is too low, or cuts that are too coarse, are refused.
 """
 
+import json
+from collections.abc import Iterable
 from fractions import Fraction
 
-from wspd_design.certificates.adhesion_peaks import MOST_CUTS, PartTest, Peaks, certificate_text, part_test
+from wspd_design.certificates.adhesion_peaks import CLAIM, FORMAT, MOST_CUTS, PartTest, part_test
+from wspd_design.certificates.checking import model_hash
 from wspd_design.certificates.records import Problem
 from wspd_design.model import adhesion
 from wspd_design.model.slip import static_wheel_load
@@ -27,7 +30,15 @@ def search(problem: Problem) -> str:
         _cuts(part_test(problem.vehicle, problem.rail, speed), top)
         for speed, top in zip(speeds, tops, strict=True)
     )
-    return certificate_text(problem, Peaks(speeds=speeds, tops=tops, cuts=cuts), _written)
+    content = {
+        "format": FORMAT,
+        "claim": CLAIM,
+        "claim_sha256": model_hash(problem),
+        "speeds": _written(speeds),
+        "peaks": _written(tops),
+        "cuts": [_written(each) for each in cuts],
+    }
+    return json.dumps(content, indent=1)
 
 
 def peaks(problem: Problem, speeds: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
@@ -61,6 +72,6 @@ def _decimal(number: float) -> Fraction:
     return Fraction(round(number * 10**DECIMALS), 10**DECIMALS)
 
 
-def _written(number: Fraction) -> str:
-    """Write a decimal without loss."""
-    return f"{float(number):.{DECIMALS}f}".rstrip("0").rstrip(".")
+def _written(decimals: Iterable[Fraction]) -> str:
+    """Write decimals without loss."""
+    return " ".join(f"{float(each):.{DECIMALS}f}".rstrip("0").rstrip(".") for each in decimals)

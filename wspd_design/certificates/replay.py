@@ -67,6 +67,8 @@ def replay(problem: Problem, text: str) -> Replayed:
         missing = tuple(
             each.text for each in wanted if _rests(stated.status) in each.needed and each.text not in done
         )
+        if stated.status is Status.VACUOUS and not any(Status.VACUOUS in each.needed for each in wanted):
+            raise Refused(f"no proof can show that {stated.check} is vacuous")
         if missing and _rests(stated.status) is stated.status:
             raise Refused(f"no proof of {'; '.join(missing)}")
         if stated.status is Status.REFUTED:
