@@ -5,14 +5,14 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.plant import UNITS
 from wspd_design.certificates.records import Map
 
 if TYPE_CHECKING:
     from wspd_design.certificates.domain import Array
 
-SPEEDS, ROWS = 41, 41
-LABELS = {SLIP: "slip [-]", MU0: "mu0 [-]"}
-NAMES = {SLIP: "slip", MU0: "mu0"}
+SPEEDS, ROWS = 51, 51
+LABELS = {SLIP: "slip [-]", MU0: "friction coefficient mu0 [-]"}
 
 
 def margin_map(
@@ -25,8 +25,11 @@ def margin_map(
     limit: float,
     worst: Mapping[str, float],
     largest: bool,
-) -> Map:
+) -> tuple[Map, ...]:
     """Evaluate a quantity on a grid, at each point the worst of the corners of the other coordinates.
+
+    The tightest point that the prover found lies on the grid, and its own parameters are tried beside the corners:
+    the value there is the one of the proof.
 
     Parameters
     ----------
@@ -44,28 +47,38 @@ def margin_map(
         Tightest point by names, SI units, as the prover found it.
     largest : bool
         Whether the worst is the largest or the smallest value.
+
+    Returns
+    -------
+    tuple of Map
+        One map, or none for a domain of a single speed or row.
     """
     import numpy as np
 
     low, high = box
-    speeds = np.geomspace(low[SPEED], high[SPEED], SPEEDS)
-    rows = np.linspace(low[over], high[over], ROWS)
+    tightest = np.array([worst[each] for each in UNITS])
+    speeds = np.union1d(np.geomspace(low[SPEED], high[SPEED], SPEEDS), tightest[SPEED])
+    rows = np.union1d(np.linspace(low[over], high[over], ROWS), tightest[over])
+    if low[SPEED] == high[SPEED] or low[over] == high[over]:
+        return ()
     others = [column for column in (SLIP, MASS, INERTIA, MU0) if column != over]
-    corners = list(product(*((low[column], high[column]) for column in others)))
-    points = np.empty((len(corners), ROWS, SPEEDS, len(low)))
+    corners = product(*(np.unique([low[column], high[column]]) for column in others))
+    parameters = np.array([*corners, tightest[others]])
+    points = np.empty((len(parameters), len(rows), len(speeds), len(low)))
     points[..., SPEED], points[..., over] = speeds, rows[:, np.newaxis]
-    for column, values in zip(others, np.array(corners).T, strict=True):
-        points[..., column] = values[:, np.newaxis, np.newaxis]
+    points[..., others] = parameters[:, np.newaxis, np.newaxis]
     found = quantity(points.reshape(-1, len(low))).reshape(points.shape[:-1])
     extreme = found.max(axis=0) if largest else found.min(axis=0)
-    return Map(
-        name=name,
-        x_label="speed [km/h]",
-        y_label=LABELS[over],
-        value_label=value_label,
-        x=tuple((speeds * KMH).tolist()),
-        y=tuple(rows.tolist()),
-        values=tuple(tuple(row) for row in extreme.tolist()),
-        limit=limit,
-        worst=(worst["speed"] * KMH, worst[NAMES[over]]),
+    return (
+        Map(
+            name=name,
+            x_label="speed [km/h]",
+            y_label=LABELS[over],
+            value_label=value_label,
+            x=tuple((speeds * KMH).tolist()),
+            y=tuple(rows.tolist()),
+            values=tuple(tuple(row) for row in extreme.tolist()),
+            limit=limit,
+            worst=(float(tightest[SPEED]) * KMH, float(tightest[over])),
+        ),
     )

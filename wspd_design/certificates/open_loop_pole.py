@@ -106,17 +106,15 @@ def check(problem: Problem) -> Certificate:
         engine=engine(),
         proofs=findings.proofs(highest, lowest),
         series=slip_pole.plots(poles, "1/tau", limit),
-        maps=(
-            margin_map(
-                "slip pole",
-                "slip pole p [1/s]",
-                lambda points: domain.dynamics(problem, points).pole,
-                domain.slip_held(problem),
-                over=domain.MU0,
-                limit=limit,
-                worst=highest.place,
-                largest=True,
-            ),
+        maps=margin_map(
+            "slip pole",
+            "slip pole p [1/s]",
+            lambda points: domain.dynamics(problem, points).pole,
+            domain.slip_held(problem),
+            over=domain.MU0,
+            limit=limit,
+            worst=highest.place,
+            largest=True,
         ),
     )
 

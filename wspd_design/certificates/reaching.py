@@ -200,17 +200,15 @@ def check(problem: Problem) -> Certificate:
         engine=engine(),
         proofs=proofs(needed, slowing),
         series=_plots(problem, law, eta),
-        maps=(
-            margin_map(
-                "switching gain",
-                "W0 that is needed [m/s2]",
-                lambda points: _needed_gain(mismatch(problem, law, points), eta),
-                domain.box(problem),
-                over=SLIP,
-                limit=gain,
-                worst=at,
-                largest=True,
-            ),
+        maps=margin_map(
+            "switching gain",
+            "W0 that is needed [m/s2]",
+            lambda points: _needed_gain(mismatch(problem, law, points), eta),
+            domain.box(problem),
+            over=SLIP,
+            limit=gain,
+            worst=at,
+            largest=True,
         ),
     )
 

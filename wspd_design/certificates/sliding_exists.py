@@ -3,10 +3,12 @@
 from dataclasses import replace
 from fractions import Fraction
 from math import inf
+from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, findings, laws
 from wspd_design.certificates.checking import certified, level, series
-from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.domain import KMH, SLIP, SPEED
+from wspd_design.certificates.margin_map import margin_map
 from wspd_design.certificates.part import with_part
 from wspd_design.certificates.plant import Values, place, plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim, Relation
@@ -19,6 +21,9 @@ from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import Number
 from wspd_design.model.slip import slip_dynamics
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.domain import Array
 
 NAME, TITLE = "sliding_exists", "Authority of the brake"
 TOLERANCE = 10.0  # N m, of the enclosed torques
@@ -135,6 +140,16 @@ def check(problem: Problem) -> Certificate:
             *(() if until is None else _until(until)),
         ),
         series=_plots(problem, laws.surface_rate(law)),
+        maps=margin_map(
+            "room to release",
+            "u* - eta/g [kN m]",
+            lambda points: _released(problem, law, points) / 1e3,
+            domain.box(problem),
+            over=SLIP,
+            limit=0.0,
+            worst=release.place,
+            largest=False,
+        ),
     )
 
 
@@ -208,6 +223,15 @@ def _upper_side(force: Finding, until: Finding | None, limit: float, *, never_en
 
 def _spot(finding: Finding) -> str:
     return f"slip {finding.place['slip']:.3f} and {finding.place['speed'] * KMH:.3g} km/h"
+
+
+def _released(problem: Problem, law: laws.SlipLaw, points: "Array") -> "Array":
+    """Ideal torque less the reserve, u* - eta/g, at points of the domain [N m]."""
+    plant = domain.dynamics(problem, points)
+    error = sliding_surface.slip_error(law.gains.slip_reference, points[:, SLIP])
+    ideal = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, error, laws.surface_rate(law))
+    left: Array = ideal - reserve(problem) / (plant.gain * points[:, SPEED])
+    return left
 
 
 def _plots(problem: Problem, rate: float) -> tuple[Series, ...]:

@@ -114,16 +114,14 @@ def check(problem: Problem) -> Certificate:
         undecided=findings.undecided(*found),
         engine=engine(),
         proofs=findings.proofs(*found),
-        maps=(
-            margin_map(
-                "deceleration",
-                "deceleration a [m/s2]",
-                lambda points: domain.dynamics(problem, points).deceleration,
-                domain.box(problem),
-                over=domain.SLIP,
-                limit=0.0,
-                worst=slowing.place,
-                largest=False,
-            ),
+        maps=margin_map(
+            "deceleration",
+            "deceleration a [m/s2]",
+            lambda points: domain.dynamics(problem, points).deceleration,
+            domain.box(problem),
+            over=domain.SLIP,
+            limit=0.0,
+            worst=slowing.place,
+            largest=False,
         ),
     )
