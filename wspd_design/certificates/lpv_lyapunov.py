@@ -88,8 +88,8 @@ def check(problem: Problem) -> Certificate:
     explanation = {
         Status.PROVED: "",
         Status.UNDECIDED: f"{polytope}. Nothing is shown: {why}.",
-        Status.REFUTED: f"{polytope}. At the witness the loop with these gains is unstable in exact arithmetic, so that "
-        "no such function can exist.",
+        Status.REFUTED: f"{polytope}. At the witness the loop with these gains is unstable in exact arithmetic, so "
+        "that no such function can exist.",
     }[status]
     margin = Range(low=None, high=1.0 - worst, unit="per sample")
     if found is not None and status is Status.PROVED:

@@ -112,7 +112,7 @@ def check(problem: Problem) -> Certificate:
         method="exact zero-order-hold discretization; interval branch and bound, replayed by the independent checker; "
         "a witness is evaluated in exact balls",
         resolution=f"{found.boxes} boxes; p_max between neighboring floating-point numbers",
-        reference="eqs. (13)-(15), (19); docs/theory.md#routh",
+        reference="eqs. (13)-(15), (19); docs/theory.md#sampling",
         undecided=found.undecided,
         engine=engine(),
         proofs=findings.proofs(found),
