@@ -45,7 +45,7 @@ class Sloped:
     def __truediv__(self, other: Any) -> "Sloped":
         value, slopes = self._parts(other)
         ratio = self.value / value
-        return self._linear(ratio, 1 / value, -ratio / value, slopes)
+        return Sloped(ratio, [(a - ratio * b) / value for a, b in zip(self.slopes, slopes, strict=True)])
 
     def __sub__(self, other: Any) -> "Sloped":
         value, slopes = self._parts(other)

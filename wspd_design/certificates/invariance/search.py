@@ -27,8 +27,13 @@ STEPS_PER_SWING = 15.0  # steps of a sample, for each unit of slip that T_max wo
 MOST_STEPS = 40
 SLACK = 0.1  # of a cell, that images are widened by
 TILT_RATIO = 1.3  # from one tilt to the next
-COARSE = ((1.0, 128), (0.6, 128))  # tilt over that of the law, cells per unit
-FINE = (1.0, 256)  # tried unless the next slower window failed already
+TRIALS = ((0.6, 128), (0.6, 256), (0.4, 256), (0.4, 512))
+"""Tilt over that of the law, and cells per unit.
+
+With less tilt than the law has, a cell spans less torque, so that the bounds of the slip in it are tighter; with
+much less, its images reach over more levels.
+"""
+COARSE = 1  # of the trials; finer ones are left out where the next slower window failed already
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,22 +116,24 @@ def search(problem: Problem, *, deadline: float) -> list[Found | None]:
         None for a window in which nothing was found; windows for which no time was left are missing.
     """
     results: list[Found | None] = []
-    slices = windows(problem)
+    slices, needed = windows(problem), 0
     for window in slices:
         if time.process_time() > deadline:
             break
         tell(len(results) / len(slices))
         slower = results[-1] if results else None
         best = None
-        # Without a tilt there is but one coarse trial.
-        trials = COARSE if window.tilt else COARSE[:1]
-        for tilt, per_unit in trials if results and slower is None else (*trials, FINE):
+        # The faster, the finer: what did not do for the next slower window is not tried again.
+        trials = range(COARSE) if results and slower is None else range(needed, len(TRIALS))
+        for trial in trials:
+            tilt, per_unit = TRIALS[trial]
             tilted = replace(window, tilt=tilt * window.tilt)
             best = largest(problem, start_region(problem, tilted, per_unit), slower)
             if best is None and slower is not None:
                 # Say which windows stand alone, although the stop is not covered.
                 best = largest(problem, start_region(problem, tilted, per_unit), None)
             if best is not None and (best.glued or slower is None):
+                needed = trial
                 break
         results.append(best)
     return results
