@@ -33,8 +33,11 @@ def test_a_proved_range(problem, proved):
 
 
 def test_outlines_are_closed_and_physical(problem, proved):
-    assert 1 <= len(proved.series) <= certificate.OUTLINES
-    for series in proved.series:
+    *outlines, reference, full = proved.series
+    assert set(reference.x) == {problem.slip}
+    assert set(full.y) == {problem.vehicle.brake.max_torque / 1e3}
+    assert 1 <= len(outlines) <= certificate.OUTLINES
+    for series in outlines:
         assert (series.x[0], series.y[0]) == (series.x[-1], series.y[-1])
         assert 0.0 < min(series.x) < problem.slip < max(series.x) < 1.0
         assert 0.0 <= min(series.y) <= max(series.y) <= problem.vehicle.brake.max_torque / 1e3
@@ -56,6 +59,7 @@ def test_a_wide_box_is_left_open_with_the_windows_and_the_reason():
     assert found.status is Status.UNDECIDED
     assert found.undecided == 1.0
     assert "No set is found at 86.4 to 93.6 km/h" in found.explanation
+    assert "Simulated at 2 of these speeds" in found.explanation
     assert "% of the full one over the box" in found.explanation
     assert "With nominal parameters the checker accepts" in found.explanation
     assert not found.proofs

@@ -1,5 +1,6 @@
 """A sampled law with torque feedback keeps slip and torque in a set that its one-sample map does not leave."""
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,9 +8,9 @@ from itertools import groupby, pairwise
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, laws
-from wspd_design.certificates.checking import OutsideModel, certified, model_hash
+from wspd_design.certificates.checking import OutsideModel, certified, level, model_hash, series
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.invariance import checker, document
+from wspd_design.certificates.invariance import checker, document, escape
 from wspd_design.certificates.invariance.search import Found, holding_share, search, windows
 from wspd_design.certificates.proof.engine import engine
 from wspd_design.certificates.records import Certificate, Point, Problem, Proof, Range, Series, Status
@@ -22,6 +23,7 @@ NAME, TITLE = "sampled_invariance", "Invariant set of the sampled loop"
 CLAIM = "In one sample the closed loop maps a set of slip and torque at every speed into itself."
 SEARCH_SECONDS = 12.0  # of computing time for each search, the check comes on top
 OUTLINES = 5  # windows that the plot shows
+AXES = ("slip [-]", "braking torque [kN m]")
 ASSUMPTIONS = (
     "full supply pressure behind the valves",
     "speeds and torque measured exactly, without dead time",
@@ -112,6 +114,7 @@ def _undecided(problem: Problem, found: Sequence[Found | None]) -> Certificate:
     parts = []
     if missing:
         parts.append(f"No set is found at {_ranges(missing, spans)}")
+        parts.append(_simulated(problem, missing))
     if apart:
         parts.append(f"The sets at {_ranges(apart, spans)} do not map into that of the next slower window")
     if unreached:
@@ -125,6 +128,11 @@ def _undecided(problem: Problem, found: Sequence[Found | None]) -> Certificate:
         explanation=". ".join((*parts, _authority(problem), _nominal(problem))),
         undecided=min(1.0, open_width / (problem.speeds[1] - problem.speeds[0])),
     )
+
+
+def _simulated(problem: Problem, missing: Sequence["Window"]) -> str:
+    """Ask simulation whether sets can exist in windows where none was found."""
+    return escape.described(problem, [math.sqrt(span.low * span.high) for span in missing])
 
 
 def _ranges(some: Sequence["Window"], every: Sequence["Window"]) -> str:
@@ -166,8 +174,11 @@ def _nominal(problem: Problem) -> str:
     found = search(nominal, deadline=time.process_time() + SEARCH_SECONDS)
     covered = _covered(nominal, found)
     if covered is None:
-        held = sum(each is not None for each in found)
-        return f"With nominal parameters {held} of {len(windows(nominal))} windows have a set."
+        spans = windows(nominal)
+        missing = [span for span, each in zip(spans, found, strict=False) if each is None]
+        return f"With nominal parameters {len(found) - len(missing)} of {len(spans)} windows have a set" + (
+            f". {_simulated(nominal, missing)}." if missing else "."
+        )
     verdict = checker.check(nominal, document.write(nominal, covered))
     if not verdict.accepted:
         return "With nominal parameters every window has a set, which the checker does not accept."
@@ -224,9 +235,20 @@ def _extent(found: Sequence[Found]) -> tuple[float, float]:
 
 
 def _outlines(problem: Problem, found: Sequence[Found]) -> tuple[Series, ...]:
-    """Outlines of a few of the sets in slip and torque [kN m], the fastest last."""
-    step = max(1, -(-len(found) // OUTLINES))
-    return tuple(_outline(problem, each) for each in found[::-step][::-1])
+    """Outlines of a few of the sets in slip and torque [kN m], the fastest last, beside reference and full torque."""
+    import numpy as np
+
+    if not found:
+        return ()
+    step = -(-len(found) // OUTLINES)
+    sets = tuple(_outline(problem, each) for each in found[::-step][::-1])
+    full = problem.vehicle.brake.max_torque / 1e3
+    slips = [slip for each in sets for slip in each.x]
+    return (
+        *sets,
+        series("reference", *AXES, np.array([problem.slip] * 2), np.array([0.0, full])),
+        level("full torque", *AXES, (min(slips), max(slips)), full),
+    )
 
 
 def _outline(problem: Problem, found: Found) -> Series:
@@ -243,10 +265,4 @@ def _outline(problem: Problem, found: Found) -> Series:
     lower, upper = (full * np.clip(edge - held, 0.0, 1.0) for edge in (lowest, highest))
     x = np.concatenate([middle, middle[::-1], middle[:1]])
     y = np.concatenate([lower, upper[::-1], lower[:1]])
-    return Series(
-        name=f"set at {cells.window.high * KMH:.0f} km/h",
-        x_label="slip [-]",
-        y_label="braking torque [kN m]",
-        x=tuple(x.tolist()),
-        y=tuple(y.tolist()),
-    )
+    return series(f"set at {cells.window.high * KMH:.0f} km/h", *AXES, x, y)
