@@ -44,7 +44,8 @@ def test_files_are_refused_for_another_loop(settled):
     other = replace(
         problem, vehicle=replace(problem.vehicle, wheel_radius=RADIUS * problem.vehicle.wheel_radius)
     )
-    for certificate in certificates:
+    # A witness alone may deny a claim about another loop as well.
+    for certificate in (each for each in certificates if each.proofs):
         found = replay(other, certificate_text(certificate))
         assert found.empty or found.accepted is (certificate.name in ANY_LOOP), certificate.name
 

@@ -136,6 +136,8 @@ def test_problem_about_another_loop_is_refused(make_problem, make_controller):
         verify(replace(problem, sample_time=0.02))
     with pytest.raises(UserError, match="slip reference"):
         verify(replace(problem, slip=0.2))
+    with pytest.raises(UserError, match="wheel radius"):
+        verify(replace(problem, vehicle=replace(problem.vehicle, wheel_radius=0.5)))
 
 
 @pytest.mark.parametrize("name", ["afsmc", "smc"])

@@ -41,6 +41,22 @@ def test_the_same_design_gives_the_same_file(wspd, smc_file):
     assert kept.read_bytes() == first
 
 
+def test_search_that_runs_out_of_time_leaves_the_claim_undecided(wspd, smc_file):
+    done = wspd("certify", smc_file, *ONLY, "--search-time", "1 ms")
+    assert done.code == 3
+    said = " ".join(done.out.split())
+    assert "of the box is undecided after" in said
+    assert "more time may decide it" in said
+    assert wspd("certify", smc_file, *ONLY, "--search-time", "1 min", "--force").code == 0
+
+
+@pytest.mark.parametrize("written", ["0 s", "-1 s", "5 km/h", "soon"])
+def test_search_time_must_be_a_time(wspd, smc_file, written):
+    done = wspd("certify", smc_file, *ONLY, f"--search-time={written}")
+    assert done.code == 2
+    assert "search time" in done.err
+
+
 def test_a_check_without_proof_or_witness_leaves_nothing_behind(wspd, smc_file):
     done = wspd("certify", smc_file, "--only", "conservation")
     assert done.code == 0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates import domain, findings, laws, slip_pole
 from wspd_design.certificates.checking import certified
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.open_loop_pole import pole_claim, shortest_lag
+from wspd_design.certificates.open_loop_pole import pole_claim, valve_rate
 from wspd_design.certificates.part import with_part
 from wspd_design.certificates.plant import place
 from wspd_design.certificates.proof.claim import Claim, Relation
@@ -30,12 +30,15 @@ INSET = 1e-3  # relative; the claimed interval ends this far inside the crossing
 def check(problem: Problem) -> Certificate:
     """Find the widest interval of speeds with p >= 1/tau at the nominal parameters, and prove it."""
     domain.box(problem)
-    limit = 1.0 / shortest_lag(problem)
+    below, limit = valve_rate(problem)
     interval = widest_interval(problem, limit)
     form = laws.slip_feedback_only(problem)
     low, high = interval or problem.speeds
     finding = settle(
-        interval_claim(problem, limit, (low, high), ">=" if interval else "<="), tolerance=TOLERANCE
+        interval_claim(problem, limit, (low, high), ">=")
+        if interval
+        else interval_claim(problem, below, (low, high), "<="),
+        tolerance=TOLERANCE,
     )
     claimed = f"{low:.4g} to {high:.4g} m/s ({low * KMH:.3g} to {high * KMH:.3g} km/h)"
     bound = "p >= 1/tau" if interval else "p <= 1/tau"

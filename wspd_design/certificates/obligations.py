@@ -16,6 +16,7 @@ from wspd_design.certificates import (
     reaching,
     recovery,
     routh_lag,
+    sampling,
     sigma_time,
     sliding_exists,
     surface_hurwitz,
@@ -87,20 +88,20 @@ def _feedback(problem: Problem) -> tuple[Obligation, ...]:
 
 
 def _open_loop_pole(problem: Problem) -> tuple[Obligation, ...]:
-    limit = 1.0 / open_loop_pole.shortest_lag(problem)
+    low, high = open_loop_pole.valve_rate(problem)
     return (
-        inequality(open_loop_pole.pole_claim(problem, "<=", limit)),
-        inequality(open_loop_pole.pole_claim(problem, ">=", limit), needed=()),
+        inequality(open_loop_pole.pole_claim(problem, "<=", low)),
+        inequality(open_loop_pole.pole_claim(problem, ">=", high), needed=()),
         *_feedback(problem),
     )
 
 
 def _no_go(problem: Problem) -> tuple[Obligation, ...]:
-    limit = 1.0 / open_loop_pole.shortest_lag(problem)
-    nowhere = no_go.interval_claim(problem, limit, problem.speeds, "<=")
+    low, high = open_loop_pole.valve_rate(problem)
+    nowhere = no_go.interval_claim(problem, low, problem.speeds, "<=")
     return (
         on_part(
-            lambda speeds: no_go.interval_claim(problem, limit, speeds, ">="),
+            lambda speeds: no_go.interval_claim(problem, high, speeds, ">="),
             "speed",
             problem.speeds,
             " m/s",
@@ -155,6 +156,10 @@ def _adaptation(law: AdaptiveFuzzy) -> tuple[Obligation, ...]:
         ("positive K_P, K_I, Phi and rates of adaptation", afsmc_energy.smallest_gain(law.gains) > 0.0),
         ("an adaptation that is held beyond the limits of the brake", law.gains.hold_when_saturated),
     )
+
+
+def _sampling(problem: Problem) -> tuple[Obligation, ...]:
+    return (inequality(sampling.claim(problem)), *_feedback(problem))
 
 
 def _routh_lag(problem: Problem) -> tuple[Obligation, ...]:
@@ -214,6 +219,7 @@ OBLIGATIONS: Mapping[str, Callable[[Problem], tuple[Obligation, ...]]] = {
     "barbalat": _barbalat,
     "open_loop_pole": _open_loop_pole,
     "no_go": _no_go,
+    "sampling": _sampling,
     "routh_lag": _routh_lag,
     "hard_limits": _hard_limits,
     "lpv_lyapunov": _lpv_lyapunov,

@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 from wspd_design.certificates import domain, findings, laws, slip_pole
+from wspd_design.certificates.balls import above, below, point
 from wspd_design.certificates.checking import certified
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.margin_map import margin_map
@@ -54,16 +55,15 @@ def check(problem: Problem) -> Certificate:
     At an equilibrium the sum of all closed-loop poles is p - 1/tau for every law whose memory holds integrals
     alone, whatever its gains. If it is positive, one pole is unstable.
     """
-    lag = shortest_lag(problem)
-    limit = 1.0 / lag
+    limit, reached = valve_rate(problem)
     highest = enclose(pole_claim(problem, "<=", limit), tolerance=TOLERANCE)
-    lowest = enclose(pole_claim(problem, ">=", limit), tolerance=TOLERANCE)
+    lowest = enclose(pole_claim(problem, ">=", reached), tolerance=TOLERANCE)
     least, most = _ends(highest)
     poles = slip_pole.pole_map(problem)
     form = laws.slip_feedback_only(problem)
     where = place(highest.place)
     spot = f"between {_ends(lowest)[0]:.4g} and {most:.4g} 1/s, highest at {highest.place['speed'] * KMH:.3g} km/h"
-    exceeded = least >= limit
+    exceeded = least >= reached
     if form.status is Status.REFUTED:
         status = Status.NOT_APPLICABLE
         meaning = "The law uses more than the slip, so that this limit does not bind it"
@@ -117,6 +117,12 @@ def check(problem: Problem) -> Certificate:
             largest=True,
         ),
     )
+
+
+def valve_rate(problem: Problem) -> tuple[float, float]:
+    """Return 1/tau rounded down, to stay below, and rounded up, to exceed [1/s]."""
+    rate = 1 / point(shortest_lag(problem))
+    return below(rate), above(rate)
 
 
 def shortest_lag(problem: Problem) -> float:

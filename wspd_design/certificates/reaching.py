@@ -164,8 +164,9 @@ def check(problem: Problem) -> Certificate:
     where = place(at)
     left = problem.speeds[1] * math.exp(-_upper(slowing.extreme) * problem.slip / eta)
     meaning = {
-        Status.PROVED: "From everywhere on the domain the slip error is driven into the boundary layer. A wheel that "
-        f"rolls at {problem.speeds[1] * KMH:.3g} km/h reaches the surface above {left * KMH:.3g} km/h.",
+        Status.PROVED: "From everywhere on the domain the slip error is driven into the boundary layer. From slip "
+        f"{problem.slips[0]:g} at {problem.speeds[1] * KMH:.3g} km/h the surface is reached above "
+        f"{left * KMH:.3g} km/h.",
         Status.REFUTED: "There the torque can drive the slip away from its surface: a larger W0 or a better "
         "friction model is needed.",
         Status.UNDECIDED: f"Open: {needed.reason or slowing.reason}.",

@@ -16,6 +16,7 @@ from wspd_design.certificates.linear_loop import (
     lag_of,
     loop_at,
     nominal,
+    on_brake,
     variables,
 )
 from wspd_design.certificates.plant import Values, place
@@ -175,7 +176,7 @@ def _plots(problem: Problem, law: LinearLaw, lag: float) -> tuple[tuple[Series, 
 
     speeds = np.geomspace(*problem.speeds, PLOT_SPEEDS)
     plant = nominal(problem.vehicle, problem.rail, problem.slip, speeds)
-    gains = feedback(law, speeds)
+    gains = on_brake(law, feedback(law, speeds), problem.vehicle.brake.max_torque)
     found = cubic(plant, lag, gains)
     opened = 1.0 + gains.torque
     margin = np.minimum(

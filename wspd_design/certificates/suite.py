@@ -32,6 +32,7 @@ from wspd_design.certificates.linear_loop import LinearLaw
 from wspd_design.certificates.progress import Listener, listening
 from wspd_design.certificates.proof.prover import DEFAULT_BUDGET, Budget, within
 from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.parameters.errors import UserError
 
 MODULES = (
@@ -90,7 +91,7 @@ def verify(
     Raises
     ------
     UserError
-        If a name is unknown, or the problem and its controller state different references or sample times.
+        If a name is unknown, or problem and controller state different references, sample times or wheel radii.
     """
     for name in only or ():
         if name not in NAMES:
@@ -100,6 +101,7 @@ def verify(
     _agree("sample time", problem.sample_time, problem.controller.sample_time)
     if isinstance(problem.controller, LinearLaw):
         _agree("slip reference", problem.slip, problem.controller.gains.slip_reference)
+        _agree("wheel radius", problem.vehicle.wheel_radius, _wheel_radius(problem.controller))
     certificates = []
     for module in MODULES:
         if only is None or module.NAME in only:
@@ -107,6 +109,11 @@ def verify(
             with listening(_at(module.TITLE, progress)), within(budget):
                 certificates.append(module.check(problem))
     return tuple(certificates)
+
+
+def _wheel_radius(law: LinearLaw) -> float:
+    """Return the radius from which a law works out its slip [m]."""
+    return law.wheel_radius if isinstance(law, AdaptiveFuzzy) else law.vehicle.wheel_radius
 
 
 def _at(title: str, progress: Callable[[str], None]) -> Listener:

@@ -171,6 +171,15 @@ DeadTimeOption: TypeAlias = Annotated[
 OnlyOption: TypeAlias = Annotated[
     list[str] | None, typer.Option("--only", metavar="CHECK", help="One check; repeat it for several.")
 ]
+SearchTimeOption: TypeAlias = Annotated[
+    str | None,
+    typer.Option(
+        "--search-time",
+        metavar="TIME",
+        help='How long to split the boxes of one claim before it stays undecided: "2 min". Default: 20 s.',
+        show_default=False,
+    ),
+]
 JsonOption: TypeAlias = Annotated[
     bool, typer.Option("--json", help="Print one JSON object and nothing else (docs/json.md).")
 ]

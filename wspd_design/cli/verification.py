@@ -12,6 +12,8 @@ from wspd_design.certificates.records import Certificate, Point, Problem, Range,
 from wspd_design.cli.case import Case
 from wspd_design.cli.console import console, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.units import parse_quantity
 
 
 class _Shown(NamedTuple):
@@ -46,12 +48,21 @@ def problem_of(case: Case, *, seed: int = 0) -> Problem:
     return stability_problem(case.vehicle, case.rail, case.controller, case.specification, seed=seed)
 
 
-def run_checks(problem: Problem, only: Collection[str] | None) -> tuple[Certificate, ...]:
-    """Run the checks with their progress on standard error."""
+def run_checks(
+    problem: Problem, only: Collection[str] | None, search_time: str | None
+) -> tuple[Certificate, ...]:
+    """Run the checks with their progress on standard error; ``search_time`` is what the user wrote."""
     from wspd_design.certificates import suite
+    from wspd_design.certificates.proof.prover import DEFAULT_BUDGET, Budget
 
+    budget = DEFAULT_BUDGET
+    if search_time is not None:
+        seconds = parse_quantity(search_time, "time", what="search time")
+        if seconds <= 0.0:
+            raise UserError(f'search time "{search_time}" must be above 0; write for example "2 min"')
+        budget = Budget(seconds=seconds)
     with progress() as tell:
-        return suite.verify(problem, only=only or None, progress=tell)
+        return suite.verify(problem, only=only or None, progress=tell, budget=budget)
 
 
 def exit_code(certificates: Sequence[Certificate]) -> int:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from math import floor, inf, log10, nextafter
+from math import floor, inf, isfinite, log10, nextafter
 
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.claim import Claim, text
@@ -38,13 +38,20 @@ class Finding:
 
     @property
     def margin(self) -> Range:
-        """Distance of the extreme from the bound that was asked for, positive where the claim holds."""
+        """Distance of the extreme from the bound that was asked for, positive where the claim holds.
+
+        Its lower end is open if the search had to stop before it enclosed the extreme.
+        """
         assert self.extreme.low is not None
         assert self.extreme.high is not None
-        low, high = self.asked - Fraction(self.extreme.high), self.asked - Fraction(self.extreme.low)
+        sign, attained, far = 1, self.extreme.low, self.extreme.high
         if self.claim.relation == ">=":
-            low, high = -high, -low
-        return Range(low=_below(low), high=_above(high), unit=self.claim.unit)
+            sign, attained, far = -1, far, attained
+        return Range(
+            low=_below(sign * (self.asked - Fraction(far))) if isfinite(far) else None,
+            high=_above(sign * (self.asked - Fraction(attained))),
+            unit=self.claim.unit,
+        )
 
 
 def settle(
@@ -151,6 +158,8 @@ def _checked(
 
 def tightest(claim: Claim, found: Outcome, tolerance: float) -> Claim:
     """Return the claim with the bound that the prover reached, rounded outwards to a short decimal."""
+    if not isfinite(_far(claim, found)):
+        return claim  # nothing is known yet
     digits = 1 - floor(log10(tolerance))
     step = Fraction(1, 10) ** digits
     if claim.relation == "<=":

@@ -36,7 +36,7 @@ class Budget:
     """When a run of the prover gives up."""
 
     seconds: float = 20.0
-    boxes: int = 2_000_000
+    boxes: int = 2_000_000  # a tree of more is longer than the checker takes
 
 
 DEFAULT_BUDGET = Budget()

@@ -53,6 +53,7 @@ def certify(
             show_default=False,
         ),
     ] = None,
+    search_time: options.SearchTimeOption = None,
     force: options.ForceOption = False,
 ) -> None:
     """Prove what can be proved about a design and keep the proofs.
@@ -65,7 +66,7 @@ def certify(
     folder = output if output is not None else _beside(design)
     check_folder(folder, force=force)
     problem = problem_of(case)
-    certificates = run_checks(problem, only)
+    certificates = run_checks(problem, only, search_time)
     sizes = _write(certificates, folder, force=force)
     show_claims(problem, certificates)
     _show(certificates, sizes)

@@ -23,6 +23,7 @@ def verify(
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
     only: options.OnlyOption = None,
+    search_time: options.SearchTimeOption = None,
     as_json: options.JsonOption = False,
 ) -> None:
     """Check the stability of a closed loop, claim by claim.
@@ -35,7 +36,7 @@ def verify(
         Wishes(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),
     )
     problem = problem_of(case, seed=seed)
-    certificates = run_checks(problem, only)
+    certificates = run_checks(problem, only, search_time)
     code = exit_code(certificates)
     if as_json:
         print_json(verification_object(problem, certificates, plant=plant, verdict=_VERDICTS[code]))
