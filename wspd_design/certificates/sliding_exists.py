@@ -142,7 +142,7 @@ def check(problem: Problem) -> Certificate:
         series=_plots(problem, laws.surface_rate(law)),
         maps=margin_map(
             "room to release",
-            "u* - eta/g [kN m]",
+            "room to release u* - eta/g [kN m]",
             lambda points: _released(problem, law, points) / 1e3,
             domain.box(problem),
             over=SLIP,

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from wspd_design.certificates.domain import Array
 
 GRID_SPEEDS = 81
-FRICTIONS = 9  # values of mu0 between its bounds: the pole is not monotone in it
+FRICTIONS = 33  # values of mu0 between its bounds: the pole is not monotone in it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

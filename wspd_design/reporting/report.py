@@ -13,7 +13,7 @@ from wspd_design.reporting.blocks import Attachment, Document
 from wspd_design.reporting.output import write_document
 from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.case import LAWS, case
-from wspd_design.reporting.sections.checks import checks, proof_files
+from wspd_design.reporting.sections.checks import certificate_files, checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
 from wspd_design.reporting.sections.limits import limits, provenance
@@ -77,7 +77,7 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
                 content=f"{record}\n",
                 description="all numbers of this report",
             ),
-            *proof_files(dossier),
+            *certificate_files(dossier),
         ),
         timestamp=timestamp,
     )

@@ -1,6 +1,7 @@
 """Figures: labeled with units, reproducible, and thinned without losing what matters."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,15 +9,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
+from tests.unit.reporting.test_maps import SHOWN
 from wspd_design.certificates.records import Series, Status
 from wspd_design.design.published import load_table10
-from wspd_design.reporting.figure_style import figure_style, new_figure
+from wspd_design.reporting.blocks import Figure
+from wspd_design.reporting.figure_style import INK, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
 from wspd_design.reporting.figures.phase import phase_planes
 from wspd_design.reporting.figures.poles import pole_map
-from wspd_design.reporting.figures.series import certificate_curves, lyapunov_functions
+from wspd_design.reporting.figures.series import (
+    axis_label,
+    certificate_curves,
+    lyapunov_functions,
+    series_alt,
+    series_caption,
+)
 from wspd_design.reporting.figures.stop import LOCK_BAR, stop_traces
+from wspd_design.reporting.sections.checks import checks
 
 DOSSIER = sample_dossier(rail="table10-dry")
 SPECIFICATION = DOSSIER.design.specification
@@ -121,6 +131,77 @@ def test_a_lyapunov_function_over_decades_is_drawn_on_a_logarithmic_scale():
             new_figure(height=4.0), certificate("one", Status.PROVED, series=(steep, flat))
         )
     assert [axes.get_yscale() for axes in figure.axes] == ["log", "linear"]
+
+
+def test_below_its_limit_a_lyapunov_function_may_vanish():
+    values = (1.0, 0.1, 1e-9, 0.0)
+    falling = Series(name="V", x_label="time [s]", y_label="V [-]", x=(0.0, 1.0, 2.0, 3.0), y=values)
+    edge = Series(name="edge of the layer", x_label="time [s]", y_label="V [-]", x=(0.0, 3.0), y=(1e-3,) * 2)
+    axes = _curves(falling, edge).axes[0]
+    assert axes.get_yscale() == "log"
+    assert axes.get_ylim() == pytest.approx((1e-4, 2.0))
+
+
+def _curves(*series, title="Check one"):
+    with figure_style():
+        figure = certificate_curves(
+            new_figure(height=4.0), certificate("one", Status.PROVED, series=series, title=title)
+        )
+        figure.draw_without_rendering()
+    return figure
+
+
+def _series(name, y_label, x_label="time [s]", x=(0.0, 1.0, 2.0), y=(1.0, 2.0, 3.0)):
+    return Series(name=name, x_label=x_label, y_label=y_label, x=x, y=y)
+
+
+def test_limits_are_drawn_in_ink_and_named():
+    limit = _series("1/tau", "pole [1/s]", x=(0.0, 2.0), y=(1.67, 1.67))
+    axes = _curves(_series("nominal", "pole [1/s]"), limit).axes[0]
+    drawn, line = axes.get_lines()
+    assert (drawn.get_color() == INK, line.get_color()) == (False, INK)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["nominal", "1/τ"]
+    assert "1/tau: a line at pole [1/s] 1.67" in series_alt((limit,))
+
+
+def test_panels_over_the_same_quantity_share_its_axis():
+    same = _curves(_series("slip", "slip [-]"), _series("V", "V of the law [-]"))
+    assert [axes.get_xlabel() for axes in same.axes] == ["", "time [s]"]
+    assert same.axes[0].get_legend() is None  # the axis says it
+    assert same.axes[1].get_legend() is not None
+    other = _curves(_series("slip", "slip [-]"), _series("slip", "slip [-]", x_label="speed [km/h]"))
+    assert [axes.get_xlabel() for axes in other.axes] == ["time [s]", "speed [km/h]"]
+    curves = (_series("a", "slip [-]"), _series("b", "torque [kN m]"), _series("c", "k [1/s]", "c [1/s]"))
+    caption = series_caption(certificate("one", Status.PROVED, series=curves))
+    assert caption == "Check one: slip and torque over time and k over c."
+
+
+def test_an_outline_becomes_a_region():
+    square = _series("set", "torque [kN m]", "slip [-]", (0.1, 0.2, 0.2, 0.1, 0.1), (1.0, 1.0, 2.0, 2.0, 1.0))
+    axes = _curves(square, _series("reference", "torque [kN m]", "slip [-]", (0.14, 0.14), (0.0, 60.0))).axes[
+        0
+    ]
+    (patch,) = axes.patches
+    assert patch.get_extents().width > 0.0
+    assert axes.get_lines()[1].get_color() == INK
+    assert "closed region with slip from 0.1 to 0.2" in series_alt((square,))
+
+
+def test_long_labels_stay_inside_and_units_are_set():
+    assert axis_label("W0 [m/s2]") == "W0 [m/s²]"
+    assert axis_label("slip [-]") == "slip [-]"
+    figure = _curves(_series("a", "recoverable deviation of the slip from its reference [-]"))
+    label = figure.axes[0].yaxis.label.get_window_extent()
+    assert 0.0 <= label.y0 <= label.y1 <= figure.bbox.height
+
+
+def test_maps_stand_before_curves_unless_the_check_does_not_apply():
+    checked = certificate("one", Status.PROVED, maps=(SHOWN,))
+    found = sample_dossier(())
+    shown = [each for each in checks(replace(found, certificates=(checked,))) if isinstance(each, Figure)]
+    assert [each.anchor for each in shown] == ["check-one-map-1", "check-one-curves"]
+    silent = replace(checked, status=Status.NOT_APPLICABLE)
+    assert not any(isinstance(each, Figure) for each in checks(replace(found, certificates=(silent,))))
 
 
 @given(

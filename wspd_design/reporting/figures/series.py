@@ -1,11 +1,15 @@
 """Curves that come with a certificate."""
 
+import re
+import textwrap
 from collections.abc import Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Certificate, Series
+from wspd_design.reporting.figure_style import INK, LINE_STYLES, SERIES
 from wspd_design.reporting.figures.drawing import curve
-from wspd_design.reporting.numbers import significant
+from wspd_design.reporting.numbers import listing, significant, unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -13,6 +17,10 @@ if TYPE_CHECKING:
 
 LOGARITHMIC_SPAN = {"V": 1e3, "k": 10.0}
 """A positive Lyapunov function or gain of the layer that spans more is drawn on a logarithmic scale."""
+
+FRAME_HEIGHT, PANEL_HEIGHT, STACKED_HEIGHT, REGION_HEIGHT = 0.5, 2.0, 1.55, 3.0  # in
+LABEL_WIDTH = 22  # characters of a label beside an axis
+LEGEND_WIDTH, HANDLE_WIDTH = 105, 10  # characters of a line of the legend, and of what stands before a name
 
 
 def panels(series: Sequence[Series]) -> dict[tuple[str, str], list[Series]]:
@@ -23,8 +31,16 @@ def panels(series: Sequence[Series]) -> dict[tuple[str, str], list[Series]]:
     return groups
 
 
+def curves_height(series: Sequence[Series]) -> float:
+    """Return the height of the figure of :func:`certificate_curves` [in]."""
+    groups = panels(series)
+    if any(map(_is_loop, series)):
+        return FRAME_HEIGHT + REGION_HEIGHT * len(groups)
+    return FRAME_HEIGHT + (STACKED_HEIGHT if _stacked(groups) else PANEL_HEIGHT) * len(groups)
+
+
 def certificate_curves(figure: "Figure", certificate: Certificate) -> "Figure":
-    """Draw the curves of a certificate, one panel for each pair of axes.
+    """Draw the curves of a certificate, one panel for each pair of axes; panels over the same quantity share it.
 
     Parameters
     ----------
@@ -34,10 +50,17 @@ def certificate_curves(figure: "Figure", certificate: Certificate) -> "Figure":
         With at least one series.
     """
     groups = panels(certificate.series)
-    rows = figure.subplots(len(groups), 1, squeeze=False)[:, 0]
+    stacked = _stacked(groups)
+    rows = figure.subplots(len(groups), 1, squeeze=False, sharex=stacked)[:, 0]
     for axes, ((x_label, y_label), group) in zip(rows, groups.items(), strict=True):
         _panel(axes, group)
-        axes.set(xlabel=x_label, ylabel=y_label)
+        axes.set_ylabel(textwrap.fill(axis_label(y_label), LABEL_WIDTH))
+        if axes is rows[-1] or not stacked:
+            axes.set_xlabel(axis_label(x_label))
+        names = [each.name for each in group]
+        if len(names) > 1 or not y_label.startswith(f"{names[0]} ["):
+            axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.98), ncols=_columns(names), borderpad=0.2)
+    figure.align_ylabels()
     return figure
 
 
@@ -56,29 +79,102 @@ def lyapunov_functions(figure: "Figure", certificates: Sequence[Certificate]) ->
         (x_label, y_label), group = next(iter(panels(certificate.series).items()))
         _panel(axes, group)
         axes.set(
-            xlabel=x_label, ylabel=y_label, title=f"{certificate.title}: {certificate.status.name.lower()}"
+            xlabel=axis_label(x_label),
+            ylabel=axis_label(y_label),
+            title=f"{certificate.title}: {certificate.status.name.lower()}",
         )
+        axes.legend(loc="best")
     return figure
 
 
 def series_alt(series: Sequence[Series]) -> str:
     """Say in words what the curves show: where each begins, ends, and its extremes."""
-    said = (
-        f"{each.name}: {each.y_label} from {significant(each.y[0], 3)} to {significant(each.y[-1], 3)} over "
-        f"{each.x_label} from {significant(each.x[0], 3)} to {significant(each.x[-1], 3)}, lowest "
-        f"{significant(min(each.y), 3)}, highest {significant(max(each.y), 3)}"
-        for each in series
+    return "; ".join(map(_words, series)) + "."
+
+
+def series_caption(certificate: Certificate) -> str:
+    """Name what the curves of a certificate show."""
+    axes = [tuple(label.rpartition(" [")[0] for label in pair) for pair in panels(certificate.series)]
+    shown = [
+        f"{listing([y for _, y in group])} over {x}" for x, group in groupby(axes, key=lambda pair: pair[0])
+    ]
+    return f"{certificate.title}: {listing(shown)}."
+
+
+def axis_label(label: str) -> str:
+    """Write the unit of a label as people read it, ``[m/s2]`` as ``[m/s²]``."""
+    return re.sub(r"\[(.*)\]$", lambda found: f"[{unit(found[1]) or '-'}]", _symbols(label))
+
+
+def _symbols(text: str) -> str:
+    """Write a time constant as in the text around the figure."""
+    return re.sub(r"\btau\b", "τ", text)
+
+
+def _words(each: Series) -> str:
+    y, x = (re.sub(r" \[-\]$", "", label) for label in (each.y_label, each.x_label))
+    if _is_line(each):
+        place = (
+            f"{y} {significant(each.y[0], 4)}"
+            if each.y[0] == each.y[1]
+            else f"{x} {significant(each.x[0], 4)}"
+        )
+        return f"{each.name}: a line at {place}"
+    extremes = f"lowest {significant(min(each.y), 3)}, highest {significant(max(each.y), 3)}"
+    if _is_loop(each):
+        return (
+            f"{each.name}: a closed region with {x} from {significant(min(each.x), 3)} to "
+            f"{significant(max(each.x), 3)}, {y} {extremes}"
+        )
+    return (
+        f"{each.name}: {y} from {significant(each.y[0], 3)} to {significant(each.y[-1], 3)} over "
+        f"{x} from {significant(each.x[0], 3)} to {significant(each.x[-1], 3)}, {extremes}"
     )
-    return "; ".join(said) + "."
+
+
+def _columns(names: Sequence[str]) -> int:
+    """Return how many names fit side by side."""
+    widths = [len(name) + HANDLE_WIDTH for name in names]
+    return len(names) if sum(widths) <= LEGEND_WIDTH else max(1, LEGEND_WIDTH // max(widths))
+
+
+def _stacked(groups: dict[tuple[str, str], list[Series]]) -> bool:
+    return len({x_label for x_label, _ in groups}) == 1
+
+
+def _is_line(each: Series) -> bool:
+    """Whether a curve is the line of a limit, as :func:`wspd_design.certificates.checking.level` makes it."""
+    return len(each.x) == 2 and (each.y[0] == each.y[1] or each.x[0] == each.x[1])
+
+
+def _is_loop(each: Series) -> bool:
+    """Whether a curve closes and so is the outline of a region."""
+    return len(each.x) > 3 and (each.x[0], each.y[0]) == (each.x[-1], each.y[-1])
 
 
 def _panel(axes: "Axes", group: Sequence[Series]) -> None:
     import numpy as np
 
     for index, each in enumerate(group):
-        curve(axes, np.array(each.x), np.array(each.y), index, label=each.name)
+        x, y = np.array(each.x), np.array(each.y)
+        name = _symbols(each.name)
+        if _is_line(each):
+            axes.plot(x, y, color=INK, linestyle=LINE_STYLES[index], linewidth=1.0, label=name)
+            continue
+        curve(axes, x, y, index, label=name)
+        if _is_loop(each):
+            axes.fill(x, y, color=SERIES[index], alpha=0.12, linewidth=0)
+    _scale(axes, group)
+
+
+def _scale(axes: "Axes", group: Sequence[Series]) -> None:
+    """Choose a logarithmic scale where a positive quantity spans decades; below its limit it may do as it likes."""
+    import numpy as np
+
     values = np.concatenate([each.y for each in group])
-    span = LOGARITHMIC_SPAN.get(group[0].y_label[0], np.inf)
-    if values.min() > 0.0 and values.max() > span * values.min():
+    limits = [each.y[0] for each in group if _is_line(each)]
+    lowest = max(float(values.min()), min(limits, default=0.0) / 10.0)
+    if lowest > 0.0 and values.max() > LOGARITHMIC_SPAN.get(group[0].y_label[0], np.inf) * lowest:
         axes.set_yscale("log")
-    axes.legend(loc="best")
+        if values.min() < lowest:
+            axes.set_ylim(lowest, 2.0 * values.max())

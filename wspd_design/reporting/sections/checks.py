@@ -1,5 +1,6 @@
 """Every check in full: claim, finding, margin, worst point, hypotheses, assumptions, method and curves."""
 
+import shlex
 from functools import partial
 
 from wspd_design.certificates.certificate_file import certificate_text, file_name
@@ -23,9 +24,14 @@ from wspd_design.reporting.blocks import (
 )
 from wspd_design.reporting.figures.drawing import picture
 from wspd_design.reporting.figures.maps import map_alt, map_caption, margin_map
-from wspd_design.reporting.figures.series import certificate_curves, panels, series_alt
+from wspd_design.reporting.figures.series import (
+    certificate_curves,
+    curves_height,
+    series_alt,
+    series_caption,
+)
+from wspd_design.reporting.text import CodeSpan
 
-PANEL_HEIGHT = 1.9  # in
 MAP_HEIGHT = 2.6  # in
 
 MEANINGS = {
@@ -52,18 +58,22 @@ def check_anchor(certificate: Certificate) -> str:
     return f"check-{certificate.name.replace('_', '-')}"
 
 
-def proof_files(dossier: Dossier) -> tuple[Attachment, ...]:
-    """Return the certificates that carry proofs, each as the file that ``wspd check`` decides about."""
+def certificate_files(dossier: Dossier) -> tuple[Attachment, ...]:
+    """Return what ``wspd check`` can decide about, proofs and witnesses, each as the file that it reads."""
     return tuple(
         Attachment(
             name=file_name(certificate),
             media_type="application/json",
             content=certificate_text(certificate),
-            description=f"proofs of the check {certificate.name}, for wspd check with --design design.toml",
+            description=f"{'proofs' if certificate.proofs else 'witness'} of the check {certificate.name}",
         )
-        for certificate in dossier.certificates
-        if certificate.proofs
+        for certificate in _kept(dossier)
     )
+
+
+def _kept(dossier: Dossier) -> tuple[Certificate, ...]:
+    """Return the certificates that have a file, as ``wspd certify`` writes them."""
+    return tuple(each for each in dossier.certificates if each.proofs or each.status is Finding.REFUTED)
 
 
 def checks(dossier: Dossier) -> tuple[Block, ...]:
@@ -75,6 +85,7 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
             "the bounds of mass, inertia and friction, with the assumptions that it names. The worst "
             "findings stand first."
         ),
+        *_replay(dossier),
     ]
     for status, meaning in MEANINGS.items():
         group = [each for each in dossier.certificates if status_of(each) is status]
@@ -87,6 +98,25 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
         for certificate in group:
             found += _check(certificate)
     return tuple(found)
+
+
+def _replay(dossier: Dossier) -> tuple[Paragraph, ...]:
+    """Say how to have a proof decided again; the checker needs the vehicle and the rail that were certified."""
+    kept = _kept(dossier)
+    if not kept:
+        return ()
+    example = next((each for each in kept if each.status is Finding.PROVED), kept[0])
+    case = ("--vehicle", dossier.vehicle.name, "--rail", dossier.rail.name)
+    command = shlex.join(("wspd", "check", file_name(example), "--design", "design.toml", *case))
+    text = (
+        "Nobody has to trust the prover. Save the attached ",
+        CodeSpan(text="design.toml"),
+        " and the attached file of a check into one folder; ",
+        CodeSpan(text=command),
+        " decides again about its proofs, or about the witness of what is refuted, without the program that found "
+        "them.",
+    )
+    return (Paragraph(text=text),)
 
 
 def _check(certificate: Certificate) -> list[Block]:
@@ -111,19 +141,27 @@ def _check(certificate: Certificate) -> list[Block]:
         found.append(Definitions(rows=_details(certificate)))
     if certificate.proofs:
         found.append(_proofs(certificate))
+    if certificate.status is not Finding.NOT_APPLICABLE:
+        found += _figures(certificate, anchor)
+    return found
+
+
+def _figures(certificate: Certificate, anchor: str) -> list[Block]:
+    found: list[Block] = [
+        _map(shown, f"{anchor}-map-{number}") for number, shown in enumerate(certificate.maps, 1)
+    ]
     if certificate.series:
         found.append(
             Figure(
                 svg=picture(
                     partial(certificate_curves, certificate=certificate),
-                    height=0.5 + PANEL_HEIGHT * len(panels(certificate.series)),
+                    height=curves_height(certificate.series),
                 ),
-                caption=f"{certificate.title}: {_axes(certificate)}.",
+                caption=series_caption(certificate),
                 alt=series_alt(certificate.series),
                 anchor=f"{anchor}-curves",
             )
         )
-    found += [_map(shown, f"{anchor}-map-{number}") for number, shown in enumerate(certificate.maps, 1)]
     return found
 
 
@@ -147,17 +185,13 @@ def _proofs(certificate: Certificate) -> Table:
         ),
         rows=tuple(_proof(each) for each in certificate.proofs),
         caption="What the independent checker accepted; boxes that it decided, size of the proof and SHA-256 of "
-        f"the claim. The proofs are attached as {file_name(certificate)}.",
+        f"the claim. Attached as {file_name(certificate)}.",
         anchor=f"{check_anchor(certificate)}-proofs",
     )
 
 
 def _proof(proof: Proof) -> tuple[str, ...]:
     return proof.statement, str(proof.leaves), str(len(proof.certificate.encode())), proof.claim_hash[:16]
-
-
-def _axes(certificate: Certificate) -> str:
-    return numbers.listing([f"{y_label} over {x_label}" for x_label, y_label in panels(certificate.series)])
 
 
 def _details(certificate: Certificate) -> tuple[Definition, ...]:
