@@ -10,7 +10,10 @@ from wspd_design.certificates.invariance import certificate
 from wspd_design.certificates.invariance.checker import Verdict, check
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.protocol import Command
+from wspd_design.design.records import Specification
+from wspd_design.design.selection import design_controller
 from wspd_design.model.number import where
+from wspd_design.parameters.loading import load_rail
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +33,20 @@ def test_a_proved_range(problem, proved):
     assert proved.margin.low == 1.0 - again.slips[1]
     assert f"{again.slips[1]:.3f}" in proved.claim
     assert any("full supply pressure" in each for each in proved.assumptions)
+
+
+def test_the_designed_law_with_nominal_parameters(er24pc):
+    """Fast windows, which need the finest cells; the designed gains are higher than those of the other tests."""
+    rail, specification = load_rail("polach-wet"), Specification(sample_time=0.02)
+    law = design_controller(er24pc, rail, specification, law="torque-feedback").build(er24pc, rail)
+    found = certificate.check(feedback_problem(spread=0.0, speeds=(29.0, 33.0), controller=law))
+    assert found.status is Status.PROVED
+    assert "1/512" in found.resolution
+    high = replace(law, gains=replace(law.gains, sliding_gain=8.0 * law.gains.sliding_gain))
+    assert (
+        certificate.check(feedback_problem(spread=0.0, speeds=(31.5, 33.0), controller=high)).status
+        is Status.UNDECIDED
+    )
 
 
 def test_outlines_are_closed_and_physical(problem, proved):

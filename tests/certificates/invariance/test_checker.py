@@ -14,6 +14,9 @@ from wspd_design.certificates.invariance import document, one_sample, search
 from wspd_design.certificates.invariance.ball_plant import BallPlant
 from wspd_design.certificates.invariance.ball_slopes import law_slopes
 from wspd_design.certificates.invariance.checker import check
+from wspd_design.certificates.invariance.search import search as search_sets
+from wspd_design.controllers.protocol import Command
+from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.model.number import atan, clip, exp
 from wspd_design.model.slip import slip_dynamics
 
@@ -267,3 +270,37 @@ def test_slopes_of_balls_enclose_differences():
             assert (value + flint.arb(0, 1e-13)).contains(flint.arb(a))
             moved = sum((s * (p - q) for s, p, q in zip(slopes, *points, strict=True)), flint.arb(0, 1e-13))
             assert moved.contains(flint.arb(a - b))
+
+
+def test_a_train_that_is_pushed_is_refused():
+    """Where the speed can rise, a state comes into a faster window, about whose set nothing is said."""
+    plain = feedback_problem(spread=0.0)
+    vehicle = replace(plain.vehicle, resistance_constant=-170e3)
+    pushed = replace(plain, vehicle=vehicle, controller=replace(plain.controller, vehicle=vehicle))
+    found = search_sets(pushed, deadline=math.inf)
+    assert None not in found
+    assert not check(pushed, document.write(pushed, found)).accepted
+
+
+@pytest.mark.parametrize("law", [lambda x: (1.0 if x == 0 else 0.0,), lambda x: (1.0 if x else 0.0,)])
+def test_a_law_that_asks_for_a_single_value_cannot_be_enclosed(law):
+    with pytest.raises(TypeError):
+        law_slopes(law, (flint.arb(0, 1),))
+
+
+class FillsAtOneSpeed(TorqueFeedback):
+    """A fault at a single speed, which slopes on balls do not see."""
+
+    __slots__ = ()
+
+    def step(self, state, measurement):
+        if measurement.speed == 25.0:
+            return state, Command(fill=1.0, vent=0.0)
+        return TorqueFeedback.step(self, state, measurement)
+
+
+def test_a_fault_at_a_single_speed_is_refused(problem, found):
+    law = problem.controller
+    names = ("name", "sample_time", "vehicle", "rail", "gains")
+    faulty = replace(problem, controller=FillsAtOneSpeed(**{name: getattr(law, name) for name in names}))
+    assert not check(faulty, document.write(faulty, found)).accepted

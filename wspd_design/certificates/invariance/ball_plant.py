@@ -35,9 +35,10 @@ class BallPlant:
     def loss(self, speed: float) -> Ball:
         """Speed that a sample takes off at most: creep force below (1 + 1/pi) mu0 Q."""
         grip = self.pull * self.point(self.problem.mu0_bounds[1]) * (1 + 1 / self.point.pi())
-        return self.sample * (self._resistance(self.point(speed)) / self.mass + grip).upper()
+        return self.sample * (self.resistance(self.point(speed)) / self.mass + grip).upper()
 
-    def _resistance(self, speed: Ball) -> Ball:
+    def resistance(self, speed: Ball) -> Ball:
+        """Resistance of the train [N]."""
         vehicle = self.problem.vehicle
         linear, square = vehicle.resistance_linear * speed, vehicle.resistance_quadratic * speed * speed
         return self.point(vehicle.resistance_constant) + linear + square
@@ -56,7 +57,7 @@ class BallPlant:
             shape = _hump(rail.adhesion_reduction * strain) + (rail.slip_reduction * strain).atan()
             bounds.append(shape * 2 * grip / self.point.pi())
         force = hull(bounds[0], bounds[-1])
-        deceleration = self._resistance(speed) / self.mass + self.pull * force / self.load
+        deceleration = self.resistance(speed) / self.mass + self.pull * force / self.load
         drive = self.radius * (torque / 2 - self.radius * force) / self.inertia
         return (drive - (1 - slip) * deceleration) / speed + (1 - slip) * self.damping / self.inertia
 

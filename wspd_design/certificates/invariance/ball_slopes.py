@@ -89,6 +89,12 @@ class Sloped:
     def __abs__(self) -> "Sloped":
         return self.max(-self)
 
+    def __bool__(self) -> bool:
+        raise TypeError("the law asks whether a range is a single number, which slopes cannot answer")
+
+    def __eq__(self, other: object) -> bool:
+        return bool(self)
+
 
 def law_slopes(
     function: Callable[..., tuple[Any, ...]], boxes: tuple[Ball, ...]

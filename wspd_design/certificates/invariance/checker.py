@@ -99,6 +99,8 @@ class _Walk:
         self.here, self.slower = here, slower
         self.slopes: dict[tuple[int, int, int, int], list[tuple[Ball, list[Ball]]]] = {}
         self.speed = hull(sample_end, plant.point(here.high))
+        if not plant.resistance(self.speed) >= 0:
+            raise Refused("the train may gain speed, into a window that is not looked at")
         if not sample_end > 0 or not any(
             self.shares((reference, reference + 1, j, j + 1))
             for a, b in here.columns.get(reference, ())

@@ -11,7 +11,7 @@ from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.records import Problem
 
 FORMAT = "wspd-invariant-sets/1"
-MOST_WINDOWS, MOST_CELLS, MOST_COLUMNS, MOST_STEPS = 500, 400_000, 4096, 64
+MOST_WINDOWS, MOST_CELLS, MOST_COLUMNS, MOST_STEPS = 500, 1_000_000, 4096, 64
 
 
 @dataclass(frozen=True, slots=True)
