@@ -5,22 +5,15 @@ import numpy as np
 import pytest
 
 from wspd_design.controllers.protocol import Measurement
-from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains, holding_torque
+from wspd_design.controllers.torque_feedback import holding_torque
 from wspd_design.model.slip import slip_dynamics
-from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.stop import simulate
 
 
 @pytest.fixture(scope="module")
-def law(er24pc):
-    return TorqueFeedback(
-        name="torque feedback",
-        sample_time=0.02,
-        vehicle=er24pc,
-        rail=load_rail("polach-wet"),
-        gains=TorqueFeedbackGains(slip_reference=0.14, sliding_gain=20.0, torque_gain=30.0),
-    )
+def law(make_controller):
+    return make_controller("torque-feedback", "polach-wet", sample_time=0.02)
 
 
 def measured(law, *, speed=20.0, slip=0.14, torque=None):
@@ -49,10 +42,10 @@ def test_slopes_are_the_gains(law):
     by_slip = (duty(law, measured(law, slip=0.14 - step)) - duty(law, measured(law, slip=0.14 + step))) / (
         2.0 * step
     )
-    assert by_slip == pytest.approx(20.0 * 20.0, rel=1e-6)  # gain times train speed
+    assert by_slip == pytest.approx(law.gains.sliding_gain * 20.0, rel=1e-6)  # gain times train speed
     torque = holding_torque(law, 20.0)
     low, high = (duty(law, measured(law, torque=torque + sign * step * limit)) for sign in (-1.0, 1.0))
-    assert (low - high) / (2.0 * step) == pytest.approx(30.0, rel=1e-6)
+    assert (low - high) / (2.0 * step) == pytest.approx(law.gains.torque_gain, rel=1e-6)
 
 
 def test_limits(law):
