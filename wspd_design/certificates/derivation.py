@@ -136,7 +136,7 @@ def check(problem: Problem) -> Certificate:  # noqa: ARG001 - the identities hol
         ),
         method="the installed functions on SymPy symbols; both sides compared in a prime field",
         resolution="exact; two different functions would agree with a probability below 1e-60",
-        reference="eqs. (1)-(3), (8)-(10), (14), (19), (39), (43), (44)",
+        reference="eqs. (1)-(3), (8)-(10), (14), (19), (39), (43), (44); docs/theory.md#slip-equation",
         engine=f"sympy {versions()['sympy']}",
         proofs=tuple(proof for _, proof in settled if proof is not None),
     )

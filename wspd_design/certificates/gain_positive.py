@@ -58,7 +58,7 @@ def check(problem: Problem) -> Certificate:
         assumptions=("wheel radius without bounds",),
         method="exact rational arithmetic at the end points of the monotone quotient",
         resolution="exact",
-        reference="eq. (19)",
+        reference="eq. (19); docs/theory.md#slip-equation",
         proofs=tuple(proof for _, proof in settled if proof is not None),
     )
 

@@ -61,7 +61,7 @@ def check(problem: Problem) -> Certificate:
         assumptions=("the state is on the surface",),
         method="exact rational arithmetic on the stored gains",
         resolution="exact",
-        reference="eqs. (21), (22), (28) with the error in place of the slip",
+        reference="eqs. (21), (22), (28) with the error in place of the slip; docs/theory.md#layer",
         proofs=() if proof is None else (proof,),
     )
 

@@ -110,7 +110,7 @@ def check(problem: Problem) -> Certificate:
         assumptions=("level track", "static wheel load"),
         method="interval branch and bound, replayed by the independent checker",
         resolution=f"{sum(each.boxes for each in found)} boxes, {problem.speeds[0] * KMH:.3g} km/h and above",
-        reference="eqs. (1), (4)-(7), (19)",
+        reference="eqs. (1), (4)-(7), (19); docs/theory.md#slip-equation",
         undecided=findings.undecided(*found),
         engine=engine(),
         proofs=findings.proofs(*found),

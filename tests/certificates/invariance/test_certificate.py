@@ -99,7 +99,7 @@ def test_some_windows_of_a_range():
 
 
 def test_time_that_runs_out_is_said(problem, monkeypatch):
-    monkeypatch.setattr(certificate, "SEARCH_SECONDS", 0.0)
+    monkeypatch.setattr(certificate, "SEARCH_SHARE", 0.0)
     found = certificate.check(problem)
     assert found.status is Status.UNDECIDED
     assert found.undecided == pytest.approx(1.0)

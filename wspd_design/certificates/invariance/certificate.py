@@ -13,6 +13,7 @@ from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.invariance import checker, document, escape
 from wspd_design.certificates.invariance.search import Found, holding_share, search, windows
 from wspd_design.certificates.proof.engine import engine
+from wspd_design.certificates.proof.prover import budget
 from wspd_design.certificates.records import Certificate, Point, Problem, Proof, Range, Series, Status
 from wspd_design.controllers.protocol import Measurement
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 NAME, TITLE = "sampled_invariance", "Invariant set of the sampled loop"
 CLAIM = "In one sample the closed loop maps a set of slip and torque at every speed into itself."
-SEARCH_SECONDS = 12.0  # of computing time for each search, the check comes on top
+SEARCH_SHARE = 0.6  # of the time for a claim, for each of two searches; the check comes on top
 OUTLINES = 5  # windows that the plot shows
 AXES = ("slip [-]", "braking torque [kN m]")
 ASSUMPTIONS = (
@@ -45,7 +46,7 @@ def check(problem: Problem) -> Certificate:
         return laws.not_applicable(problem, NAME, CLAIM, reason)
     domain.box(problem)  # refuses what is not positive
     try:
-        found = search(problem, deadline=time.process_time() + SEARCH_SECONDS)
+        found = search(problem, deadline=_deadline())
     except TypeError as error:
         raise OutsideModel(
             f"the law {problem.controller.name} cannot be evaluated on intervals: {error}"
@@ -84,6 +85,11 @@ def check(problem: Problem) -> Certificate:
         ),
         proofs=(proof,) if verdict.accepted else (),
     )
+
+
+def _deadline() -> float:
+    """Return the reading of the processor's clock at which a search that begins now gives up [s]."""
+    return time.process_time() + SEARCH_SHARE * budget().seconds
 
 
 def _claim(problem: Problem) -> str:
@@ -171,7 +177,7 @@ def _nominal(problem: Problem) -> str:
     )
     if nominal == problem:
         return "These are nominal parameters already."
-    found = search(nominal, deadline=time.process_time() + SEARCH_SECONDS)
+    found = search(nominal, deadline=_deadline())
     covered = _covered(nominal, found)
     if covered is None:
         spans = windows(nominal)
@@ -216,7 +222,7 @@ def _certificate(
         method="interval enclosure of the one-sample map on cells of slip and torque; cells with images that leave are "
         "removed until none is left",
         resolution=f"{len(found)} windows of speed, edges of the cells {fineness}",
-        reference="eqs. (9), (14), (19)",
+        reference="eqs. (9), (14), (19); docs/theory.md#invariance",
         engine=engine(),
         undecided=undecided,
         proofs=proofs,

@@ -43,10 +43,15 @@ DEFAULT_BUDGET = Budget()
 _budget: ContextVar[Budget] = ContextVar("budget", default=DEFAULT_BUDGET)
 
 
+def budget() -> Budget:
+    """Return what a search may use."""
+    return _budget.get()
+
+
 @contextmanager
-def within(budget: Budget) -> Iterator[None]:
-    """Give every run of the prover inside the block this budget."""
-    token = _budget.set(budget)
+def within(allowed: Budget) -> Iterator[None]:
+    """Give every search inside the block this budget."""
+    token = _budget.set(allowed)
     try:
         yield
     finally:
@@ -136,7 +141,7 @@ class _Search:
         """Decide boxes against the bound, or against the best point plus the tolerance."""
         import numpy as np
 
-        started, budget = time.perf_counter(), _budget.get()
+        started, allowed = time.perf_counter(), budget()
         size = len(self.claim.free)
         self._look_around(size)
         waiting = Boxes(
@@ -145,7 +150,7 @@ class _Search:
         while waiting.upper.size:
             threshold = self.best + tolerance if bound is None else bound
             self.seconds = time.perf_counter() - started
-            if self.best > threshold or self.seconds > budget.seconds or self.count > budget.boxes:
+            if self.best > threshold or self.seconds > allowed.seconds or self.count > allowed.boxes:
                 break
             order = np.argsort(-waiting.upper)
             batch, rest = waiting.take(order[:BATCH]), waiting.take(order[BATCH:])
