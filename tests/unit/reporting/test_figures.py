@@ -4,6 +4,8 @@ import re
 from xml.etree import ElementTree
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from tests.unit.reporting.sample_report import slip_figure
 from wspd_design.reporting.figure_style import INK, LINE_STYLES, SERIES, figure_style, new_figure
@@ -79,6 +81,47 @@ def test_a_style_sheet_does_not_survive() -> None:
         "font-family": "DejaVu Sans",
         "fill": "#123456",
     }
+
+
+def _path(data: str) -> str:
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1"><path d="{data}"/></svg>'
+    return next(iter(ElementTree.fromstring(canonical(svg, "A")))).attrib["d"]
+
+
+def _vertices(data: str) -> list[tuple[float, float]]:
+    """Points of a path of M, l and z, as a renderer adds them up."""
+    here = start = (0.0, 0.0)
+    found = []
+    for command, numbers in re.findall(r"([Mlz])([^Mlz]*)", data):
+        values = [float(each) for each in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)]
+        if command == "z":
+            here = start
+            continue
+        x, y = values
+        here = (x, y) if command == "M" else (here[0] + x, here[1] + y)
+        start = here if command == "M" else start
+        found.append(here)
+    return found
+
+
+POINTS = st.lists(st.tuples(st.floats(-2000.0, 2000.0), st.floats(-2000.0, 2000.0)), min_size=1, max_size=50)
+
+
+@given(st.lists(POINTS, min_size=1, max_size=3))
+def test_a_line_of_steps_is_the_same_line(lines: list[list[tuple[float, float]]]) -> None:
+    parts = []
+    for line in lines:
+        (x, y), *rest = line
+        parts += [f"M {x:.6f} {y:.6f}", *(f"L {a:.6f} {b:.6f}" for a, b in rest), "z"]
+    shown = _vertices(_path(" \n".join(parts)))
+    wanted = [point for line in lines for point in line]
+    assert len(shown) == len(wanted)
+    for point, place in zip(shown, wanted, strict=True):
+        assert point == pytest.approx(place, abs=0.0051)
+
+
+def test_curves_keep_their_commands() -> None:
+    assert _path("M 0 0.123456 C 1.5 2 3 4.005 5 6 z") == "M 0 .12 C 1.5 2 3 4 5 6 z"
 
 
 def test_every_series_has_a_color_and_a_line_style() -> None:
