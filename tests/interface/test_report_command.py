@@ -5,6 +5,8 @@ import pytest
 from wspd_design.design import dossier as dossier_module
 from wspd_design.reporting import report as report_module
 
+INDUSTRY = ("trenitalia", "knorr-bremse", "mitsubishi", "none")
+
 
 @pytest.fixture
 def calls(monkeypatch):
@@ -36,7 +38,7 @@ def test_report_of_a_design_file(wspd, smc_file, calls):
     options = calls["options"]
     assert (options["vehicle_name"], options["rail_name"], options["seed"]) == ("er24pc", "polach-wet", 4)
     assert options["initial_speed"] == pytest.approx(100.0 / 3.6)
-    assert options["baselines"] == ["afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none"]
+    assert options["baselines"] == ["afsmc", "smc", "torque-feedback", *INDUSTRY]
 
 
 def test_report_of_a_named_controller_compares_it_with_the_others(wspd, calls):
@@ -44,7 +46,7 @@ def test_report_of_a_named_controller_compares_it_with_the_others(wspd, calls):
     assert calls["paths"] == ["a.pdf"]
     assert (calls["design"].name, calls["design"].rail) == ("smc", "polach-dry")
     assert calls["design"].specification.slip == 0.1
-    assert calls["options"]["baselines"] == ["afsmc", "trenitalia", "knorr-bremse", "mitsubishi", "none"]
+    assert calls["options"]["baselines"] == ["afsmc", "torque-feedback", *INDUSTRY]
 
 
 @pytest.mark.usefixtures("calls")

@@ -8,7 +8,16 @@ import pytest
 
 from wspd_design.controllers.protocol import Measurement
 
-CONTROLLERS = ("afsmc", "afsmc-repaired", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
+CONTROLLERS = (
+    "afsmc",
+    "afsmc-repaired",
+    "smc",
+    "torque-feedback",
+    "trenitalia",
+    "knorr-bremse",
+    "mitsubishi",
+    "none",
+)
 
 
 def traced(controller):
