@@ -72,6 +72,11 @@ def torque_feedback_gains(vehicle: Vehicle, rail: Rail, specification: Specifica
     kappa, back = _rules(problem, poles, period)
     heaviest = problem.inertia_bounds[1]
     gamma = _acceleration(problem)
+    largest = (
+        f"q = p - a/v = {poles.high:.3g} 1/s, the largest that sampling finds ({poles.where})"
+        if poles.high > 0.0
+        else "q = 0, since sampling finds no positive p - a/v"
+    )
     return (
         Gain(
             name="sliding_gain",
@@ -79,15 +84,14 @@ def torque_feedback_gains(vehicle: Vehicle, rail: Rail, specification: Specifica
             unit="s/m",
             why=f"kappa = (1 + K)(omega + q)/gamma: the slow pole is at least omega = 1/({VENTED_SHARE:g} tau) = "
             f"{_slow_pole(lag):.3g} 1/s, so that venting from full brake lets out {VENTED_SHARE:.0%} of T_max along "
-            f"the line; q = p - a/v = {max(poles.high, 0.0):.3g} 1/s, the largest that sampling finds ({poles.where}), "
-            f"gamma = R T_max/inertia = {gamma:.3g} m/s^2 with the heaviest wheelset of {heaviest:g} kg m^2",
+            f"the line; {largest}; gamma = R T_max/inertia = {gamma:.3g} m/s^2 with the heaviest wheelset of {heaviest:g} kg m^2",
         ),
         Gain(
             name="torque_gain",
             value=back,
             unit="-",
-            why=f"K = tau/h - 1: the torque settles within a sample, (1 + K)/tau = 1/h with tau = {lag:g} s and "
-            f"h = {period:g} s; {_sampled(problem, poles)}",
+            why=f"K = tau/h - 1, at least 0: the torque settles within a sample, (1 + K)/tau = 1/h, with "
+            f"tau = {lag:g} s and h = {period:g} s; {_sampled(problem, poles)}",
         ),
     )
 
