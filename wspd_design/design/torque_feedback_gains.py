@@ -84,7 +84,8 @@ def torque_feedback_gains(vehicle: Vehicle, rail: Rail, specification: Specifica
             unit="s/m",
             why=f"kappa = (1 + K)(omega + q)/gamma: the slow pole is at least omega = 1/({VENTED_SHARE:g} tau) = "
             f"{_slow_pole(lag):.3g} 1/s, so that venting from full brake lets out {VENTED_SHARE:.0%} of T_max along "
-            f"the line; {largest}; gamma = R T_max/inertia = {gamma:.3g} m/s^2 with the heaviest wheelset of {heaviest:g} kg m^2",
+            f"the line; {largest}; gamma = R T_max/inertia = {gamma:.3g} m/s^2 with the "
+            f"heaviest wheelset of {heaviest:g} kg m^2",
         ),
         Gain(
             name="torque_gain",
