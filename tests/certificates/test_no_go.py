@@ -37,6 +37,9 @@ def test_no_go_of_the_reference_problem(make_reference_problem):
     assert low <= 0.6 < 27.0 <= high < 29.0
     wider = no_go.interval_claim(problem, 1.0 / 0.6, (low, 1.01 * high), ">=")
     assert settle(wider, tolerance=1e-3).status is Status.REFUTED
+    _, proved, limit = verdict.series
+    assert (proved.x[0], proved.x[-1]) == pytest.approx((3.6 * low, 3.6 * high))
+    assert min(proved.y) >= limit.y[0]
 
 
 def test_no_go_is_vacuous_with_a_fast_valve_and_not_about_laws_with_acceleration(

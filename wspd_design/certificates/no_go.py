@@ -82,7 +82,9 @@ def check(problem: Problem) -> Certificate:
         proofs=tuple(
             with_part(proof, "speed", interval) if interval else proof for proof in findings.proofs(finding)
         ),
-        series=slip_pole.plots(poles, "1/tau", limit),
+        series=slip_pole.nominal_plots(
+            poles, "1/tau", limit, interval if finding.status is Status.PROVED else None
+        ),
     )
 
 

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 GRID_SPEEDS = 81
 FRICTIONS = 33  # values of mu0 between its bounds: the pole is not monotone in it
+AXES = ("speed [km/h]", "slip pole [1/s]")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,12 +53,26 @@ def pole_map(problem: Problem) -> PoleMap:
 def plots(poles: PoleMap, limit_name: str, limit: float) -> tuple[Series, ...]:
     """Pole over speed beside the limit that it must respect."""
     speeds = poles.speeds * KMH
-    axes = ("speed [km/h]", "slip pole [1/s]")
     return (
-        series("nominal", *axes, speeds, poles.nominal),
-        series("worst of the bounds", *axes, speeds, poles.worst),
-        level(limit_name, *axes, speeds, limit),
+        series("nominal", *AXES, speeds, poles.nominal),
+        series("worst of the bounds", *AXES, speeds, poles.worst),
+        level(limit_name, *AXES, speeds, limit),
     )
+
+
+def nominal_plots(
+    poles: PoleMap, limit_name: str, limit: float, proved: tuple[float, float] | None
+) -> tuple[Series, ...]:
+    """Nominal pole over speed beside its limit, and the speeds [m/s] where it is proved to lie beyond."""
+    import numpy as np
+
+    found = [series("nominal", *AXES, poles.speeds * KMH, poles.nominal)]
+    if proved:
+        inside = poles.speeds[(poles.speeds > proved[0]) & (poles.speeds < proved[1])]
+        speeds = np.array([proved[0], *inside, proved[1]])
+        beyond = np.interp(speeds, poles.speeds, poles.nominal)
+        found.append(series("nominal, proved to be beyond the limit", *AXES, speeds * KMH, beyond))
+    return (*found, level(limit_name, *AXES, poles.speeds * KMH, limit))
 
 
 def unstable_speeds(poles: PoleMap, limit: float) -> str:

@@ -3,7 +3,7 @@
 from wspd_design.certificates import adhesion_peaks, domain, peak_search
 from wspd_design.certificates.adhesion_limit import INSTANTS, Limit, NoBound, require
 from wspd_design.certificates.adhesion_peaks import CLAIM, rounded_down
-from wspd_design.certificates.checking import OutsideModel, certified, level, model_hash, series
+from wspd_design.certificates.checking import OutsideModel, certified, model_hash, series
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.proof.engine import versions
 from wspd_design.certificates.records import (
@@ -119,5 +119,10 @@ def _plots(problem: Problem, limit: Limit, run: Run) -> tuple[Series, ...]:
         ),
         series("peak", *axes, speeds[1:] * KMH, sampled),
         series("this stop", *path, run.distance, run.speed * KMH),
-        level("standstill", *path, [0.0, limit.distance], 0.0),
+        series(
+            "no stop ends before this",
+            *path,
+            np.array([limit.distance] * 2),
+            np.array([0.0, run.speed[0] * KMH]),
+        ),
     )

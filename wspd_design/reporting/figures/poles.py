@@ -58,7 +58,7 @@ def pole_map(figure: "Figure", points: Sequence[Linearization], speeds: tuple[fl
     axes.set(xlabel="train speed [km/h]", ylabel="pole [1/s]")
     inside = "shaded, p > 1/τ: no stable equilibrium without torque feedback"
     note(axes, inside, speed[0], limit, xytext=(4, 3))
-    axes.legend(loc="lower right")
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.98), ncols=2)
     return figure
 
 
