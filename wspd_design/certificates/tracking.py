@@ -23,7 +23,7 @@ def check(problem: Problem) -> Certificate:
     law = problem.controller
     if not isinstance(law, (AdaptiveFuzzy, SlidingMode)):
         return laws.not_applicable(
-            problem, NAME, "The slip settles at its reference.", "has no slip reference"
+            problem, NAME, "The slip error stays below 2 Phi/K_P.", "has no boundary layer"
         )
     if min(problem.speeds) <= 0.0:
         raise OutsideModel(f"the speeds {problem.speeds[0]:g} to {problem.speeds[1]:g} m/s must be positive")
@@ -44,6 +44,7 @@ def check(problem: Problem) -> Certificate:
         Point(name="time", value=float(run.time[worst]), unit="s"),
         Point(name="speed", value=float(run.speed[worst]) * KMH, unit="km/h"),
         Point(name="slip", value=float(run.slip[worst, 0]), unit="-"),
+        Point(name="torque", value=float(run.torque[worst, 0]), unit="N m"),
         Point(name="slip rms about the reference", value=figures.slip_rms, unit="-"),
     )
     return Certificate(
