@@ -6,10 +6,9 @@ from datetime import UTC, datetime
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
 from wspd_design.certificates.records import Proof, Status
-from wspd_design.reporting.blocks import Definitions, Paragraph, Table
+from wspd_design.reporting.blocks import Code, Definitions, Table
 from wspd_design.reporting.report import report_document
 from wspd_design.reporting.sections.checks import checks
-from wspd_design.reporting.text import plain
 
 DATE = datetime(2026, 1, 2, tzinfo=UTC)
 TEXT = json.dumps(
@@ -54,9 +53,8 @@ def test_the_proof_is_attached_and_running_times_change_nothing():
 
 
 def test_how_to_check_again_is_said_once():
-    said = [plain(each.text) for each in checks(dossier()) if isinstance(each, Paragraph)]
-    (how,) = (text for text in said if "wspd check" in text)
-    assert "wspd check pole.json --design design.toml --vehicle er24pc --rail polach-wet decides again" in how
+    (command,) = (each.text for each in checks(dossier()) if isinstance(each, Code))
+    assert command == "wspd check pole.json --design design.toml --vehicle er24pc --rail polach-wet"
 
 
 def test_a_witness_is_attached_without_proofs():
@@ -71,6 +69,4 @@ def test_without_proofs_nothing_is_attached():
     without = dossier(proofs=())
     document = report_document(without, DATE)
     assert [each.name for each in document.attachments] == ["design.toml", "report.json"]
-    assert not any(
-        "wspd check" in plain(each.text) for each in checks(without) if isinstance(each, Paragraph)
-    )
+    assert not any(isinstance(each, Code) for each in checks(without))

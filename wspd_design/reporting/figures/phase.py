@@ -92,4 +92,5 @@ def _judged(run: Run) -> tuple["Trace", "Trace"]:
 def _start_and_end(axes: "Axes", x: "Trace", y: "Trace") -> None:
     axes.plot(x[0], y[0], "o", color=INK, markersize=4, label="start")
     axes.plot(x[-1], y[-1], "s", color=INK, markersize=4, label="10 km/h")
-    axes.legend(loc="best")
+    # Beside the title: the path may go anywhere.
+    axes.legend(loc="lower right", bbox_to_anchor=(1.02, 0.98), ncols=2, handlelength=1.0, columnspacing=1.2)

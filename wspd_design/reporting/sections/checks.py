@@ -12,6 +12,7 @@ from wspd_design.reporting.blocks import (
     Attachment,
     Block,
     Cell,
+    Code,
     Column,
     Definition,
     Definitions,
@@ -30,7 +31,7 @@ from wspd_design.reporting.figures.series import (
     series_alt,
     series_caption,
 )
-from wspd_design.reporting.text import CodeSpan
+from wspd_design.reporting.text import rich
 
 MAP_HEIGHT = 2.6  # in
 
@@ -100,23 +101,23 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
     return tuple(found)
 
 
-def _replay(dossier: Dossier) -> tuple[Paragraph, ...]:
+def _replay(dossier: Dossier) -> tuple[Block, ...]:
     """Say how to have a proof decided again; the checker needs the vehicle and the rail that were certified."""
     kept = _kept(dossier)
     if not kept:
         return ()
     example = next((each for each in kept if each.status is Finding.PROVED), kept[0])
     case = ("--vehicle", dossier.vehicle.name, "--rail", dossier.rail.name)
-    command = shlex.join(("wspd", "check", file_name(example), "--design", "design.toml", *case))
-    text = (
-        "Nobody has to trust the prover. Save the attached ",
-        CodeSpan(text="design.toml"),
-        " and the attached file of a check into one folder; ",
-        CodeSpan(text=command),
-        " decides again about its proofs, or about the witness of what is refuted, without the program that found "
-        "them.",
+    return (
+        Paragraph(
+            text=rich(
+                "Nobody has to trust the prover. Save the attached `design.toml` and the attached file of a check "
+                "into one folder. The command below decides again about its proofs, or about the witness of what is "
+                "refuted, without the program that found them."
+            )
+        ),
+        Code(text=shlex.join(("wspd", "check", file_name(example), "--design", "design.toml", *case))),
     )
-    return (Paragraph(text=text),)
 
 
 def _check(certificate: Certificate) -> list[Block]:
