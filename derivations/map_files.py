@@ -4,7 +4,8 @@ import json
 from dataclasses import asdict
 
 from derivations.notation import NOMENCLATURE
-from derivations.theorems import THEOREMS, Theorem
+from derivations.theorem import Theorem
+from derivations.theorems import THEOREMS
 from wspd_design.model.equations import Equation
 
 _README = """# Derivations

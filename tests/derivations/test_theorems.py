@@ -10,7 +10,8 @@ import sympy as sp
 from scipy.linalg import expm
 
 from derivations import map_files, recovery
-from derivations.theorems import THEOREMS, Identity
+from derivations.theorem import Identity
+from derivations.theorems import THEOREMS
 from wspd_design.certificates import suite
 from wspd_design.certificates.suite import NAMES
 
