@@ -110,6 +110,30 @@ def test_a_witness_is_evaluated_again(settled):
         assert "denies nothing" in replay(problem, json.dumps(content | {"witness": moved})).reason
 
 
+@pytest.mark.parametrize("name", ["margins", "afsmc_energy"])
+def test_a_witness_of_the_loop_is_computed_again(make_problem, make_controller, name):
+    law = make_controller("afsmc")
+    problem = make_problem(law)
+    (certificate,) = suite.verify(problem, only=(name,))
+    assert certificate.status is Status.REFUTED
+    text = certificate_text(certificate)
+    found = replay(problem, text)
+    assert found.accepted
+    assert len(found.denied) == 1
+    assert found.leaves == 0
+    stated = {point.name: point for point in certificate.witness}
+    kmh = f"{stated['speed'].value:.6g} km/h"
+    assert found.denied[0].endswith(kmh)
+    # On a rail that does not fall with sliding, with a law that knows its torque, there is nothing to deny.
+    generous = replace(
+        law, gains=replace(law.gains, initial_bound=100.0, boundary_layer=1e6, integral_gain=1e-6)
+    )
+    calm = replace(problem, rail=load_rail("table10-dry"), controller=generous)
+    assert "denies nothing" in replay(calm, text).reason
+    forged = json.dumps(json.loads(text) | {"status": "PROVED"})
+    assert not replay(problem, forged).accepted
+
+
 BAD_WITNESSES = (
     None, 7, {}, ["slip"], [{"name": "speed"}], [{"name": "speed", "value": "fast", "unit": "m/s"}],
     [{"name": "speed", "value": [], "unit": "m/s"}],

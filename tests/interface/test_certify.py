@@ -109,7 +109,7 @@ def test_a_refuted_check_says_so_and_keeps_what_is_proved(wspd, smc_text, tmp_pa
     assert "✓" not in said
     assert "~ accepted reaching.json for weak.toml (REFUTED" in said
     assert "The witness denies (abs(r) + eta)/rho <= 1 m/s2: it is " in said
-    assert "does not prove reaching" in said
+    assert "So reaching is refuted." in said
     # Who writes PROVED over it is refused: the proof that counts is missing.
     (folder / "reaching.json").write_text(json.dumps(content | {"status": "PROVED"}))
     checked = wspd("check", folder / "reaching.json", "--design", weak)

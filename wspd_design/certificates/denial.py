@@ -8,13 +8,15 @@ from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.obligation import Obligation, statement
 from wspd_design.certificates.proof import checker
 from wspd_design.certificates.proof.balls import Refused
-from wspd_design.certificates.proof.claim import Claim, Variable
+from wspd_design.certificates.proof.claim import Claim, Variable, variable
 from wspd_design.certificates.records import Point
 
 ROUNDING = Fraction(1, 10**9)  # relative; a speed in km/h is not exactly that in m/s
 
 
-def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str, ...]:
+def denials(
+    wanted: Iterable[Obligation], witness: Iterable[Point], speeds: tuple[float, float]
+) -> tuple[str, ...]:
     """Say which claims a witness denies.
 
     Parameters
@@ -23,6 +25,8 @@ def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str
         Of a check; the inequalities are tried that its witness is to deny.
     witness : iterable of Point
         In the units that people read, from a file.
+    speeds : tuple of float
+        Of the domain [m/s].
 
     Returns
     -------
@@ -34,6 +38,7 @@ def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str
     Refused
         If there are such claims, and none of them is denied; or the witness leaves the domain.
     """
+    wanted = tuple(wanted)
     given = {point.name: point for point in witness}
     claims = [each.denied for each in wanted if each.denied is not None]
     tried = [claim for claim in claims if all(v.name in given for v in claim.free)]
@@ -44,6 +49,10 @@ def denials(wanted: Iterable[Obligation], witness: Iterable[Point]) -> tuple[str
             denied.append(_sentence(claim, float((low + high) / 2), given))
     if tried and not denied:
         raise Refused(f"the witness denies nothing: there {' and '.join(map(statement, tried))} may hold")
+    refutations = [each.refutation for each in wanted if each.refutation is not None]
+    if refutations and "speed" in given:
+        speed = float(_inside(variable("speed", speeds, "m/s"), given["speed"]))
+        denied += [refutation(speed) for refutation in refutations]
     return tuple(denied)
 
 

@@ -57,6 +57,7 @@ class Obligation:
     concerns: Callable[[Content], bool]  # whether a proof is about this
     check: Callable[[str], Answer]
     denied: Claim | None = None  # an inequality on the whole domain, which the witness of the check denies
+    refutation: Callable[[float], str] | None = None  # what a witness shows at its speed [m/s]; or refuses it
 
 
 DIGITS = 6  # of the ends of a range
@@ -164,11 +165,16 @@ def whole(text: str, form: str, check: Callable[[str], Answer]) -> tuple[Obligat
     return (Obligation(text=text, concerns=lambda content: content.get("format") == form, check=check),)
 
 
+def refutable(text: str, refutation: Callable[[float], str]) -> Obligation:
+    """Something that no proof shows, but that a witness denies by its speed alone."""
+    return replace(_decided(text), refutation=refutation)
+
+
 def conditions(*stated: tuple[str, bool]) -> tuple[Obligation, ...]:
     """Conditions that the design alone decides; one that does not hold can be shown by no proof."""
-    refusal = Answer(accepted=False, reason="the design decides this", leaves=0)
-    return tuple(
-        Obligation(text=text, concerns=lambda _content: False, check=lambda _text: refusal)
-        for text, holds in stated
-        if not holds
-    )
+    return tuple(_decided(text) for text, holds in stated if not holds)
+
+
+def _decided(text: str) -> Obligation:
+    refusal = Answer(accepted=False, reason="no proof can show this", leaves=0)
+    return Obligation(text=text, concerns=lambda _content: False, check=lambda _text: refusal)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 
 from wspd_design.certificates import (
     adhesion_peaks,
@@ -22,9 +23,11 @@ from wspd_design.certificates import (
     surface_hurwitz,
     well_posed,
 )
+from wspd_design.certificates.balls import below
+from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.invariance import checker as invariance
 from wspd_design.certificates.invariance.runs import FORMAT as SETS_FORMAT
-from wspd_design.certificates.linear_loop import LinearLaw
+from wspd_design.certificates.linear_loop import LinearLaw, outermost
 from wspd_design.certificates.obligation import (
     Answer,
     Obligation,
@@ -34,6 +37,7 @@ from wspd_design.certificates.obligation import (
     inequalities,
     inequality,
     on_part,
+    refutable,
     whole,
 )
 from wspd_design.certificates.part import Ends
@@ -137,7 +141,22 @@ def _afsmc_energy(problem: Problem) -> tuple[Obligation, ...]:
     constant = conditions(
         ("rates of adaptation that do not depend on the speed", not law.gains.scheduled_rates)
     )
-    return (*inequalities(afsmc_energy.claims(problem, law), decisive=False), *_adaptation(law), *constant)
+    printed = (
+        () if law.gains.dead_zone else (refutable("(44) at s = 0", partial(_printed_rate, problem, law)),)
+    )
+    return (
+        *inequalities(afsmc_energy.claims(problem, law), decisive=False),
+        *_adaptation(law),
+        *constant,
+        *printed,
+    )
+
+
+def _printed_rate(problem: Problem, law: AdaptiveFuzzy, speed: float) -> str:
+    rate = below(afsmc_energy.printed_rate(problem, law, speed))
+    if not rate > 0.0:
+        raise Refused("the witness denies nothing: at s = 0 there (44) may hold")
+    return f"(44) at s = 0: dV2/dt is at least {rate:.6g} 1/s at {speed * KMH:.6g} km/h"
 
 
 def _barbalat(problem: Problem) -> tuple[Obligation, ...]:
@@ -166,6 +185,22 @@ def _routh_lag(problem: Problem) -> tuple[Obligation, ...]:
     if not isinstance(problem.controller, LinearLaw):
         raise _strange(problem, "routh_lag")
     return inequalities(routh_lag.claims(problem, problem.controller))
+
+
+def _margins(problem: Problem) -> tuple[Obligation, ...]:
+    law = problem.controller
+    if not isinstance(law, LinearLaw):
+        raise _strange(problem, "margins")
+
+    def unstable(speed: float) -> str:
+        place = f"with the nominal parameters at {speed * KMH:.6g} km/h"
+        if (real := outermost(problem, law, speed, sampled=False)) > 0.0:
+            return f"a stable loop: a pole has a real part of at least {real:.6g} 1/s {place}"
+        if (size := outermost(problem, law, speed, sampled=True)) > 1.0:
+            return f"a stable sampled loop: a pole has a magnitude of at least {size:.6g} {place}"
+        raise Refused(f"the witness denies nothing: {place} the loop may be stable")
+
+    return (refutable("a stable loop at every speed", unstable),)
 
 
 def _hard_limits(problem: Problem) -> tuple[Obligation, ...]:
@@ -222,6 +257,7 @@ OBLIGATIONS: Mapping[str, Callable[[Problem], tuple[Obligation, ...]]] = {
     "sampling": _sampling,
     "routh_lag": _routh_lag,
     "hard_limits": _hard_limits,
+    "margins": _margins,
     "lpv_lyapunov": _lpv_lyapunov,
     "sampled_invariance": _sampled_invariance,
     "stop_bound": _stop_bound,

@@ -72,7 +72,7 @@ def replay(problem: Problem, text: str) -> Replayed:
         if missing and _rests(stated.status) is stated.status:
             raise Refused(f"no proof of {'; '.join(missing)}")
         if stated.status is Status.REFUTED:
-            denied = denials(wanted, stated.witness)
+            denied = denials(wanted, stated.witness, problem.speeds)
     except Refused as refusal:
         accepted, reason = False, str(refusal)
     return Replayed(

@@ -104,8 +104,11 @@ def _lines(found: Replayed) -> list[str]:
         return [*lines, f"These proofs are all that {found.check} needs."]
     if found.status is Status.VACUOUS and not found.missing:
         return [*lines, f"These proofs show that {found.check} is vacuous: it says nothing about a stop."]
-    if found.status is Status.REFUTED and not found.denied:
-        lines.append("The witness is not checked again.")
+    if found.status is Status.REFUTED:
+        return [
+            *lines,
+            f"So {found.check} is refuted." if found.denied else "The witness is not checked again.",
+        ]
     needs = f", which needs {'; '.join(found.missing)}" if found.missing else ""
     return [*lines, f"That does not prove {found.check}{needs}."]
 
