@@ -5,6 +5,7 @@ nothing but the name of the check, its status, the proofs, and the witness of wh
 """
 
 import json
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from wspd_design.certificates.proof.balls import Refused
@@ -69,6 +70,20 @@ def read_certificate(text: str) -> Stated:
     Refused
         If the text is no certificate.
     """
+    content = certificate_content(text)
+    proofs = content.get("proofs")
+    if not isinstance(proofs, list) or len(proofs) > MOST_PROOFS:
+        raise Refused("the file holds no list of proofs, or too many")
+    return Stated(
+        check=content["check"],
+        status=Status[content["status"]],
+        proofs=tuple(json.dumps(each) for each in proofs),
+        witness=_points(content.get("witness")),
+    )
+
+
+def certificate_content(text: str) -> Mapping[str, Any]:
+    """Read what stands in a file of which at least ``check`` and ``status`` are names, or refuse it."""
     if len(text) > MOST_BYTES:
         raise Refused("the file is too long for a certificate")
     try:
@@ -77,19 +92,12 @@ def read_certificate(text: str) -> Stated:
         raise Refused("the file is no complete JSON") from None
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         raise Refused(f"the file is no certificate of this version, {SCHEMA}")
-    check, status, proofs = (content.get(key) for key in ("check", "status", "proofs"))
-    if not isinstance(check, str):
+    check, status = content.get("check"), content.get("status")
+    if not (isinstance(check, str) and check.isascii() and check.isidentifier()):
         raise Refused("the file names no check")
     if not isinstance(status, str) or status not in Status.__members__:
         raise Refused("the file states no status")
-    if not isinstance(proofs, list) or len(proofs) > MOST_PROOFS:
-        raise Refused("the file holds no list of proofs, or too many")
-    return Stated(
-        check=check,
-        status=Status[status],
-        proofs=tuple(json.dumps(each) for each in proofs),
-        witness=_points(content.get("witness")),
-    )
+    return content
 
 
 def _points(stated: Any) -> tuple[Point, ...]:

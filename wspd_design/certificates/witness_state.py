@@ -3,16 +3,15 @@
 Nothing in a file is believed: whatever is no finite number within what a railway vehicle can have is refused.
 """
 
-import json
 import math
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from wspd_design.certificates import domain
-from wspd_design.certificates.certificate_file import MOST_BYTES, SCHEMA
+from wspd_design.certificates.certificate_file import certificate_content
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.records import Problem, Status
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
@@ -70,12 +69,13 @@ def read_witness(text: str, source: str) -> Witness:
     UserError
         If the text is no certificate, or its witness is no state that a stop can start from.
     """
-    content = _content(text, source)
-    check, status, points = (content.get(key) for key in ("check", "status", "witness"))
-    if not (isinstance(check, str) and check.isascii() and check.isidentifier()):
-        raise UserError(f"{source} names no check; {_ANEW}")
-    if not isinstance(status, str) or status not in Status.__members__:
-        raise UserError(f"{source} states no status; {_ANEW}")
+    try:
+        content = certificate_content(text)
+    except Refused as reason:
+        raise UserError(
+            f"{source} has no witness to start from: {reason}; name a file that this version of wspd certify wrote"
+        ) from None
+    check, status, points = content["check"], content["status"], content.get("witness")
     if not isinstance(points, list) or not points:
         refuted = status == Status.REFUTED.name
         reason = "but it states no point" if refuted else "and only REFUTED ones carry one"
@@ -158,18 +158,6 @@ def start_at(witness: Witness, vehicle: Vehicle, rail: Rail, *, grade: float = 0
         )
     torque = min(max(holding, 0.0), most) if witness.torque is None else witness.torque
     return Start(slip=witness.slip, torque=torque, braking_time=time), holding
-
-
-def _content(text: str, source: str) -> Mapping[str, Any]:
-    if len(text) > MOST_BYTES:
-        raise UserError(f"{source} is too long for a certificate; name a file that wspd certify wrote")
-    try:
-        content = json.loads(text)
-    except (ValueError, RecursionError):
-        raise UserError(f"{source} is no complete JSON; name a file that wspd certify wrote") from None
-    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
-        raise UserError(f"{source} is no certificate of this version, {SCHEMA}; {_ANEW}")
-    return content
 
 
 def _values(points: list[Any], source: str) -> dict[str, float]:
