@@ -26,6 +26,7 @@ from typing import Any
 from wspd_design.certificates.adhesion_limit import Limit, NoBound, require, stop_limit
 from wspd_design.certificates.balls import Ball, ball, point
 from wspd_design.certificates.checking import model_hash
+from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.proof.balls import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.model import adhesion
@@ -81,7 +82,7 @@ def check(problem: Problem, text: str) -> Verdict:
     try:
         limit, leaves = _decide(problem, text)
         statement = (
-            f"no stop from {problem.speeds[1] * 3.6:.4g} km/h is shorter than {rounded_down(limit.distance)} m or "
+            f"no stop from {problem.speeds[1] * KMH:.4g} km/h is shorter than {rounded_down(limit.distance)} m or "
             f"{rounded_down(limit.time)} s"
         )
     except (Refused, NoBound) as refusal:

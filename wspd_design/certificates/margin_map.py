@@ -56,11 +56,11 @@ def margin_map(
     import numpy as np
 
     low, high = box
+    if low[SPEED] == high[SPEED] or low[over] == high[over]:
+        return ()
     tightest = np.array([worst[each] for each in UNITS])
     speeds = np.union1d(np.geomspace(low[SPEED], high[SPEED], SPEEDS), tightest[SPEED])
     rows = np.union1d(np.linspace(low[over], high[over], ROWS), tightest[over])
-    if low[SPEED] == high[SPEED] or low[over] == high[over]:
-        return ()
     others = [column for column in (SLIP, MASS, INERTIA, MU0) if column != over]
     corners = product(*(np.unique([low[column], high[column]]) for column in others))
     parameters = np.array([*corners, tightest[others]])

@@ -16,6 +16,8 @@ from wspd_design.certificates.records import Status
 
 Content: TypeAlias = Mapping[str, Any]
 
+DIGITS = 6  # of the ends of a range
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
@@ -58,9 +60,6 @@ class Obligation:
     check: Callable[[str], Answer]
     denied: Claim | None = None  # an inequality on the whole domain, which the witness of the check denies
     refutation: Callable[[float], str] | None = None  # what a witness shows at its speed [m/s]; or refuses it
-
-
-DIGITS = 6  # of the ends of a range
 
 
 def inequality(

@@ -21,9 +21,7 @@ class Replayed:
 
     check: str  # name, empty if the file tells none
     status: Status | None  # that the file states
-    accepted: (
-        bool  # every proof in it, all that its status needs, and its witness as far as it can be checked
-    )
+    accepted: bool  # every proof, all that the status needs, and the witness as far as it can be checked
     reason: str
     shown: tuple[str, ...]  # statements that were proved
     denied: tuple[str, ...]  # statements that the witness denies

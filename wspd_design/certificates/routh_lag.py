@@ -2,7 +2,6 @@
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, findings, laws
 from wspd_design.certificates.checking import certified, level, series
@@ -27,9 +26,6 @@ from wspd_design.certificates.routh_region import region
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
-
-if TYPE_CHECKING:
-    pass
 
 NAME, TITLE = "routh_lag", "Loop inside the layer with valve lag"
 TOLERANCE = 0.1  # of the enclosed margins

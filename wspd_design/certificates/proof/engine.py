@@ -54,11 +54,7 @@ class Finding:
         )
 
 
-def settle(
-    claim: Claim,
-    *,
-    tolerance: float,
-) -> Finding:
+def settle(claim: Claim, *, tolerance: float) -> Finding:
     """Prove a claim with nearly the tightest bound that holds, or refute it, or say how far one got.
 
     Parameters
@@ -104,11 +100,7 @@ def _far(claim: Claim, found: Outcome) -> float:
     return found.high if claim.relation == "<=" else found.low
 
 
-def enclose(
-    claim: Claim,
-    *,
-    tolerance: float,
-) -> Finding:
+def enclose(claim: Claim, *, tolerance: float) -> Finding:
     """Prove nearly the tightest bound of a claim's expression; the bound of the claim itself does not matter.
 
     Parameters

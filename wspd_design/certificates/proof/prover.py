@@ -71,12 +71,7 @@ class Outcome:
     tree: str  # split tree in preorder, empty if some box is undecided
 
 
-def extreme(
-    claim: Claim,
-    *,
-    tolerance: float,
-    backend: Backend | None = None,
-) -> Outcome:
+def extreme(claim: Claim, *, tolerance: float, backend: Backend | None = None) -> Outcome:
     """Enclose the supremum of a claim's expression, or the infimum for ``>=``; the bound does not matter.
 
     Parameters
@@ -86,7 +81,7 @@ def extreme(
     tolerance : float
         Width of the enclosure, in the unit of the claim.
     backend : Backend, optional
-        Intervals arithmetic.
+        Interval arithmetic.
 
     Returns
     -------
@@ -98,11 +93,7 @@ def extreme(
     return search.outcome()
 
 
-def prove(
-    claim: Claim,
-    *,
-    backend: Backend | None = None,
-) -> Outcome:
+def prove(claim: Claim, *, backend: Backend | None = None) -> Outcome:
     """Split the box until the claim is shown everywhere, or a point denies it, or the budget is used up."""
     search = _Search(claim, backend or default_backend())
     low, high = enclosing(claim.bound)

@@ -77,8 +77,9 @@ def _design_of(path: Path) -> str:
 def _show(path: Path, design: str, found: Replayed) -> None:
     out = console()
     sign, style = _sign(found)
-    stated = "" if found.status in (None, Status.PROVED) else f"{_word(found.status)}, "
-    took = f"{stated}{found.leaves} boxes, {found.seconds:.2f} s"
+    took = f"{found.leaves} boxes, {found.seconds:.2f} s"
+    if found.status is not None and found.status is not Status.PROVED:
+        took = f"{found.status.name.replace('_', ' ')}, {took}"
     out.print(Text(sign, style=style) + Text(f"  {path.name} for {Path(design).name} ({took})", style="bold"))
     for line in _lines(found):
         out.print(Padding(Text(line), (0, 0, 0, 2)))
@@ -111,7 +112,3 @@ def _lines(found: Replayed) -> list[str]:
         ]
     needs = f", which needs {'; '.join(found.missing)}" if found.missing else ""
     return [*lines, f"That does not prove {found.check}{needs}."]
-
-
-def _word(status: Status | None) -> str:
-    return "" if status is None else status.name.replace("_", " ")
