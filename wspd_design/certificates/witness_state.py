@@ -71,9 +71,9 @@ def read_witness(text: str, source: str) -> Witness:
     """
     try:
         content = certificate_content(text)
-    except Refused as reason:
+    except Refused as refusal:
         raise UserError(
-            f"{source} has no witness to start from: {reason}; name a file that this version of wspd certify wrote"
+            f"{source} has no witness to start from: {refusal}; name a file that this version of wspd certify wrote"
         ) from None
     check, status, points = content["check"], content["status"], content.get("witness")
     if not isinstance(points, list) or not points:
