@@ -7,6 +7,7 @@ from wspd_design.certificates import domain, laws, reaching
 from wspd_design.certificates.balls import above, below, point
 from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.findings import condition
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Series, Status
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
@@ -43,9 +44,9 @@ def check(problem: Problem) -> Certificate:
     ultimate, transient = 2 * width, width + largest
     reached = reaching.check(problem)
     hypotheses = (
-        _exact("the layer has a width, Phi/K_P > 0", width > 0),
-        _exact("the surface is stable, c = K_I/K_P > 0", rate > 0),
-        _exact(
+        condition("the layer has a width, Phi/K_P > 0", width > 0),
+        condition("the surface is stable, c = K_I/K_P > 0", rate > 0),
+        condition(
             f"the band of 2 Phi/K_P = {float(ultimate):g} around the reference lies inside the domain",
             ultimate < room,
         ),
@@ -99,10 +100,6 @@ def check(problem: Problem) -> Certificate:
         proofs=reached.proofs,
         series=_plots(float(ultimate), float(transient), float(rate)),
     )
-
-
-def _exact(text: str, holds: bool) -> Hypothesis:
-    return Hypothesis(text=text, status=Status.PROVED if holds else Status.REFUTED)
 
 
 def _plots(ultimate: float, transient: float, rate: float) -> tuple[Series, ...]:

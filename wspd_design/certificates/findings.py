@@ -1,7 +1,7 @@
 """What the findings about several claims say together."""
 
 from wspd_design.certificates.proof.engine import Finding
-from wspd_design.certificates.records import Hypothesis, Proof, Status
+from wspd_design.certificates.records import Hypothesis, Proof, Range, Status
 
 ORDER = (Status.REFUTED, Status.UNDECIDED, Status.PROVED)
 
@@ -14,6 +14,19 @@ def status(*findings: Finding) -> Status:
 def hypothesis(text: str, finding: Finding) -> Hypothesis:
     """State a claim in words with its verdict."""
     return Hypothesis(text=text, status=finding.status)
+
+
+def condition(text: str, holds: bool) -> Hypothesis:
+    """State a condition that comparing numbers decides."""
+    return Hypothesis(text=text, status=Status.PROVED if holds else Status.REFUTED)
+
+
+def margin(*findings: Finding) -> Range:
+    """Smallest margin of claims in one unit; open below where a search had to stop."""
+    margins = [finding.margin for finding in findings]
+    lows = [each.low for each in margins if each.low is not None]
+    highs = [each.high for each in margins if each.high is not None]
+    return Range(low=min(lows) if len(lows) == len(margins) else None, high=min(highs), unit=margins[0].unit)
 
 
 def proofs(*findings: Finding) -> tuple[Proof, ...]:

@@ -5,6 +5,7 @@ from fractions import Fraction
 from functools import partial
 
 from wspd_design.certificates import (
+    adaptive_energy,
     adhesion_peaks,
     afsmc_energy,
     derivation,
@@ -13,6 +14,7 @@ from wspd_design.certificates import (
     laws,
     no_go,
     open_loop_pole,
+    printed_energy,
     quadratic,
     reaching,
     recovery,
@@ -153,7 +155,7 @@ def _afsmc_energy(problem: Problem) -> tuple[Obligation, ...]:
 
 
 def _printed_rate(problem: Problem, law: AdaptiveFuzzy, speed: float) -> str:
-    rate = below(afsmc_energy.printed_rate(problem, law, speed))
+    rate = below(printed_energy.printed_rate(problem, law, speed))
     if not rate > 0.0:
         raise Refused("the witness denies nothing: at s = 0 there (44) may hold")
     return f"(44) at s = 0: dV2/dt is at least {rate:.6g} 1/s at {speed * KMH:.6g} km/h"
@@ -172,7 +174,7 @@ def _adaptation(law: AdaptiveFuzzy) -> tuple[Obligation, ...]:
     """Return what the repaired Lyapunov function asks of the law."""
     return conditions(
         ("an adaptation with s_D alone", law.gains.dead_zone),
-        ("positive K_P, K_I, Phi and rates of adaptation", afsmc_energy.smallest_gain(law.gains) > 0.0),
+        ("positive K_P, K_I, Phi and rates of adaptation", adaptive_energy.smallest_gain(law.gains) > 0.0),
         ("an adaptation that is held beyond the limits of the brake", law.gains.hold_when_saturated),
     )
 

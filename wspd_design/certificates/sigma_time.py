@@ -7,23 +7,26 @@ the integral of abs(s_D) d sigma is at most V(0) g/eta. As abs(ds_D/d sigma) = g
 uniformly continuous, and Barbalat's lemma says that it tends to zero.
 """
 
-import math
 from fractions import Fraction
 
 from wspd_design.certificates import findings, laws
-from wspd_design.certificates.afsmc_energy import energy, exact, inside, smallest_gain
+from wspd_design.certificates.adaptive_energy import (
+    DECELERATION_TOLERANCE,
+    TORQUE_TOLERANCE,
+    energy,
+    inside,
+    smallest_gain,
+)
 from wspd_design.certificates.balls import above, point
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.plant import plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.engine import enclose, engine, settle
 from wspd_design.certificates.reaching import largest_deceleration, reserve
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
+from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Status
 from wspd_design.certificates.sliding_exists import torque_claim
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.parameters.loading import constants
-
-TORQUE_TOLERANCE, DECELERATION_TOLERANCE = 50.0, 0.05  # N m, m/s2
 
 
 def claims(problem: Problem, law: AdaptiveFuzzy) -> tuple[Claim, Claim, Claim]:
@@ -62,8 +65,10 @@ def convergence(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
     bounded = findings.status(low, high)
     positive = smallest_gain(gains) > 0.0
     hypotheses = (
-        exact("K_P, K_I, Phi and both adaptation rates are positive", positive),
-        exact("the law adapts with s_D alone, at rates alpha/v", gains.dead_zone and gains.scheduled_rates),
+        findings.condition("K_P, K_I, Phi and both adaptation rates are positive", positive),
+        findings.condition(
+            "the law adapts with s_D alone, at rates alpha/v", gains.dead_zone and gains.scheduled_rates
+        ),
         Hypothesis(text="sigma has no end: a <= a_max at all speeds above 0", status=slowing.status),
         Hypothesis(text="psi >= abs(u* - beta) + eta/g at all speeds above 0", status=bounded),
         Hypothesis(
@@ -71,7 +76,9 @@ def convergence(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
             "s_D uniformly continuous in sigma",
             status=inside(low, high, limit),
         ),
-        exact("the adaptation is held while the command pushes beyond the brake", gains.hold_when_saturated),
+        findings.condition(
+            "the adaptation is held while the command pushes beyond the brake", gains.hold_when_saturated
+        ),
     )
     status = laws.of_theorem(hypotheses)
     open_ones = [each.text for each in hypotheses if each.status is not Status.PROVED]
@@ -101,11 +108,7 @@ def convergence(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
         explanation=f"{said}. "
         + (f"Not shown: {'; '.join(open_ones)}." if open_ones else "All that the lemma needs is proved.")
         + " It says that the error enters the boundary layer at standstill at the latest, not how soon.",
-        margin=Range(
-            low=min(float(low.claim.bound), limit - float(high.claim.bound)),
-            high=min(low.extreme.high or math.inf, limit - (high.extreme.low or -math.inf)),
-            unit="N m",
-        ),
+        margin=findings.margin(low, high),
         worst_point=where,
         hypotheses=hypotheses,
         assumptions=(
