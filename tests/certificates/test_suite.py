@@ -1,10 +1,12 @@
 """The whole set: order, completeness, honesty and what it refuses."""
 
 import json
+import math
 from dataclasses import replace
 
 import pytest
 
+from wspd_design.certificates.proof.prover import Budget
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.suite import NAMES, verify
 from wspd_design.parameters.errors import UserError
@@ -123,6 +125,24 @@ def test_progress_while_boxes_are_split(make_problem, make_controller):
     shares = [line.removeprefix(f"{found.title}: ") for line in told[1:]]
     assert shares[-1] == "100% of the box decided"
     assert len(set(shares)) > 2
+
+
+SEARCHED = ("well_posed", "sliding_exists", "reaching", "open_loop_pole", "sampling", "routh_lag")
+
+
+@pytest.mark.parametrize("name", ["afsmc-repaired", "smc"])
+def test_a_search_without_time_says_nothing_infinite_and_nothing_false(make_problem, make_controller, name):
+    """One look at the whole box is all there is; what was not shown is open."""
+    problem = make_problem(make_controller(name, "polach-wet"), rail="polach-wet")
+    found = verify(problem, only={*SEARCHED, "afsmc_energy"}, budget=Budget(seconds=0.0))
+    for certificate in found:
+        assert certificate.status is not Status.PROVED, certificate.name
+        ends = (certificate.margin.low, certificate.margin.high) if certificate.margin else ()
+        assert all(end is None or math.isfinite(end) for end in ends), certificate.name
+        words = " ".join([certificate.explanation, *(each.text for each in certificate.hypotheses)])
+        assert "inf" not in words.replace("-", " ").split(), certificate.name
+    (brake,) = (each for each in found if each.name == "sliding_exists")
+    assert "Whether the brake is ever the limit is open" in brake.explanation
 
 
 def test_unknown_check_is_refused_with_the_nearest_name(make_problem, make_controller):

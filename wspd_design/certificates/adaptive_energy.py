@@ -108,7 +108,4 @@ def inside(low: Finding, high: Finding, limit: float) -> Status:
     """Whether u* stays inside the range of the brake by eta/g."""
     if findings.status(low, high) is Status.PROVED and low.claim.bound >= 0 and high.claim.bound <= limit:
         return Status.PROVED
-    least, most = low.extreme.high, high.extreme.low
-    assert least is not None
-    assert most is not None
-    return Status.REFUTED if least < 0.0 or most > limit else Status.UNDECIDED
+    return Status.REFUTED if low.ends[1] < 0.0 or high.ends[0] > limit else Status.UNDECIDED

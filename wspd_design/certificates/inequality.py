@@ -51,8 +51,6 @@ def decide(claim: Claim, *, tolerance: float) -> Finding:
         Of the enclosure of the infimum, in the unit of the claim.
     """
     found = settle(claim, tolerance=tolerance)
-    highest = found.extreme.high
-    assert highest is not None
-    if found.status is Status.REFUTED and highest > 0.0:
+    if found.status is Status.REFUTED and found.ends[1] > 0.0:
         return replace(found, status=Status.UNDECIDED, reason="the infimum is hardly above zero")
     return found

@@ -9,8 +9,8 @@ from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.margin_map import margin_map
 from wspd_design.certificates.plant import Values, place, plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim, Relation
-from wspd_design.certificates.proof.engine import Finding, enclose, engine
-from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.certificates.proof.engine import enclose, engine
+from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.model.number import Number
 
 NAME, TITLE = "open_loop_pole", "Slip pole against the valve"
@@ -58,11 +58,13 @@ def check(problem: Problem) -> Certificate:
     limit, reached = valve_rate(problem)
     highest = enclose(pole_claim(problem, "<=", limit), tolerance=TOLERANCE)
     lowest = enclose(pole_claim(problem, ">=", reached), tolerance=TOLERANCE)
-    least, most = _ends(highest)
+    least, most = highest.ends
     poles = slip_pole.pole_map(problem)
     form = laws.slip_feedback_only(problem)
     where = place(highest.place)
-    spot = f"between {_ends(lowest)[0]:.4g} and {most:.4g} 1/s, highest at {highest.place['speed'] * KMH:.3g} km/h"
+    spot = (
+        f"between {lowest.ends[0]:.4g} and {most:.4g} 1/s, highest at {highest.place['speed'] * KMH:.3g} km/h"
+    )
     exceeded = least >= reached
     if form.status is Status.REFUTED:
         status = Status.NOT_APPLICABLE
@@ -85,13 +87,13 @@ def check(problem: Problem) -> Certificate:
         f"as any law without feedback of torque or acceleration needs; on {domain.described(problem)}.",
         status=status,
         explanation=f"{meaning}: p lies {spot}. {slip_pole.unstable_speeds(poles, limit)}.",
-        margin=Range(low=limit - most, high=limit - least, unit="1/s"),
+        margin=highest.margin,
         worst_point=where,
         witness=(*where, Point(name="slip pole", value=least, unit="1/s")) if exceeded else (),
         hypotheses=(
             form,
             findings.hypothesis(f"p <= {most:.4g} 1/s on the domain", highest),
-            findings.hypothesis(f"p >= {_ends(lowest)[0]:.4g} 1/s on the domain", lowest),
+            findings.hypothesis(f"p >= {lowest.ends[0]:.4g} 1/s on the domain", lowest),
         ),
         assumptions=(
             "frozen train speed",
@@ -128,10 +130,3 @@ def valve_rate(problem: Problem) -> tuple[float, float]:
 def shortest_lag(problem: Problem) -> float:
     """Return the smaller time constant of the valve, with which the limit is mildest [s]."""
     return min(problem.vehicle.brake.fill_time, problem.vehicle.brake.vent_time)
-
-
-def _ends(finding: Finding) -> tuple[float, float]:
-    low, high = finding.extreme.low, finding.extreme.high
-    assert low is not None
-    assert high is not None
-    return low, high

@@ -27,7 +27,7 @@ from wspd_design.certificates.plant import Values, place, plant_dynamics, plant_
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.engine import engine, settle
 from wspd_design.certificates.proof.prover import extreme
-from wspd_design.certificates.records import Certificate, Point, Problem, Range, Series, Status
+from wspd_design.certificates.records import Certificate, Point, Problem, Series, Status
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
 from wspd_design.model.slip import resistance
@@ -155,14 +155,14 @@ def check(problem: Problem) -> Certificate:
         )
     eta, gain = reserve(problem), law.gains.switching_gain
     needed, slowing = (settle(claim, tolerance=TOLERANCE) for claim in claims(problem, law))
-    found = needed.extreme
+    least, most = needed.ends
     at = needed.place
     spot = (
         f"slip {at['slip']:.3f}, {at['speed'] * KMH:.3g} km/h, mu0 {at['mu0']:.3g}, mass {at['mass']:.0f} kg"
     )
     verdict = status(needed, slowing)
     where = place(at)
-    left = problem.speeds[1] * math.exp(-_upper(slowing.extreme) * problem.slip / eta)
+    left = problem.speeds[1] * math.exp(-slowing.ends[1] * problem.slip / eta)
     meaning = {
         Status.PROVED: "From everywhere on the domain the slip error is driven into the boundary layer. From slip "
         f"{problem.slips[0]:g} at {problem.speeds[1] * KMH:.3g} km/h the surface is reached above "
@@ -178,13 +178,11 @@ def check(problem: Problem) -> Certificate:
         claim=f"W0 = {gain:.4g} m/s2 outweighs the model error: abs(r) + eta <= rho W0, "
         f"eta = {eta:.3g} m/s2, on {domain.described(problem)}.",
         status=verdict,
-        explanation=f"The smallest W0 that does lies between {found.low:.7g} and {found.high:.7g} m/s2; the "
+        explanation=f"The smallest W0 that does lies between {least:.7g} and {most:.7g} m/s2; the "
         f"tightest point is at {spot}. {meaning}",
         margin=needed.margin,
         worst_point=where,
-        witness=(*where, Point(name="(abs(r) + eta)/rho", value=_lower(found), unit="m/s2"))
-        if refuted
-        else (),
+        witness=(*where, Point(name="(abs(r) + eta)/rho", value=least, unit="m/s2")) if refuted else (),
         hypotheses=(
             hypothesis(f"(abs(r) + eta)/rho <= W0 = {gain:.4g} m/s2", needed),
             hypothesis(f"deceleration <= a_max = {largest_deceleration(problem):.4g} m/s2", slowing),
@@ -212,16 +210,6 @@ def check(problem: Problem) -> Certificate:
             largest=True,
         ),
     )
-
-
-def _lower(found: Range) -> float:
-    assert found.low is not None
-    return found.low
-
-
-def _upper(found: Range) -> float:
-    assert found.high is not None
-    return found.high
 
 
 def _supremum(claim: Claim) -> Supremum:

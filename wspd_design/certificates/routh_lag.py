@@ -1,6 +1,8 @@
 """Inside the boundary layer the valve lag must leave the loop stable: Routh's conditions at every speed."""
 
 import math
+from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 
 from wspd_design.certificates import domain, findings, laws
@@ -85,7 +87,7 @@ def check(problem: Problem) -> Certificate:
             "cannot settle inside the layer and swings through it.",
             Status.UNDECIDED: f"Open {spot}: {worst.claim.name}; {worst.reason}.",
         }[status],
-        margin=worst.extreme,
+        margin=replace(worst, asked=Fraction(0)).margin,
         worst_point=where,
         witness=where if status is Status.REFUTED else (),
         hypotheses=tuple(findings.hypothesis(each.claim.name, each) for each in found),
@@ -153,9 +155,7 @@ def _frozen(law: LinearLaw) -> tuple[str, ...]:
 def _rank(finding: Finding) -> tuple[int, bool, float]:
     """Order from the worst condition to the best; that on the sign of a gain has no margin of interest."""
     order = (Status.REFUTED, Status.UNDECIDED, Status.PROVED)
-    margin = finding.extreme.high
-    assert margin is not None
-    return order.index(finding.status), finding.claim.name.endswith("> 0"), margin
+    return order.index(finding.status), finding.claim.name.endswith("> 0"), finding.ends[1]
 
 
 def _tolerable_lag(pole: float, found: Cubic, torque_gain: float) -> float:

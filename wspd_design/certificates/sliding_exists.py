@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from math import inf
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, findings, laws
@@ -90,7 +89,7 @@ def check(problem: Problem) -> Certificate:
     limit = problem.vehicle.brake.max_torque
     release = settle(torque_claim(problem, law, ">=", 0.0), tolerance=TOLERANCE)
     force = enclose(torque_claim(problem, law, "<=", limit), tolerance=TOLERANCE)
-    until = None if (force.extreme.high or inf) <= limit else _unlimited(problem, law, limit)
+    until = None if force.ends[1] <= limit else _unlimited(problem, law, limit)
     lacking = settle(least_demand(problem, law), tolerance=TOLERANCE)
     never_enough = lacking.status is Status.PROVED
     status = release.status
@@ -114,13 +113,11 @@ def check(problem: Problem) -> Certificate:
         explanation=f"{lower} {_upper_side(force, until, limit, never_enough=never_enough)}",
         margin=release.margin,
         worst_point=where,
-        witness=(*where, Point(name="u* - eta/g", value=release.extreme.high or 0.0, unit="N m"))
-        if refuted
-        else (),
+        witness=(*where, Point(name="u* - eta/g", value=release.ends[1], unit="N m")) if refuted else (),
         hypotheses=(
             findings.hypothesis("u* >= eta/g on the domain", release),
             Hypothesis(
-                text=f"u* + eta/g <= {(force.extreme.high or inf) / 1e3:.4g} kN m on the domain",
+                text=f"u* + eta/g <= {force.ends[1] / 1e3:.4g} kN m on the domain",
                 status=force.status,
             ),
             *(
@@ -206,18 +203,24 @@ def _span(finding: Finding) -> str:
 
 def _upper_side(force: Finding, until: Finding | None, limit: float, *, never_enough: bool) -> str:
     """Say where the brake is the limit, and up to which friction it is not."""
-    most = (force.extreme.high or inf) / 1e3
     if never_enough:
         return (
             "The operation is brake-limited everywhere: the brake never reaches the adhesion of this rail, so "
             "nothing has to slide."
         )
-    if most * 1e3 <= limit:
-        return f"The brake is never the limit: at most {most:.4g} kN m are needed, at {_spot(force)}."
-    least = "so it is at any friction of the domain" if until is None else f"it never is for {_span(until)}"
+    needed, most = force.ends
+    if most <= limit and force.status is Status.PROVED:
+        return f"The brake is never the limit: at most {most / 1e3:.4g} kN m are needed, at {_spot(force)}."
+    if needed <= limit:
+        return (
+            f"Whether the brake is ever the limit is open: {force.reason or 'it comes within the tolerance'}."
+        )
+    least = "that it never is, is shown for no friction of the domain"
+    if until is not None and until.status is Status.PROVED:
+        least = f"it never is for {_span(until)}"
     return (
-        f"Brake-limited at points such as {_spot(force)}, where {most:.4g} kN m would be needed; {least}. That is "
-        "benign: the slip stays below its reference, and the brake is fully applied."
+        f"Brake-limited at points such as {_spot(force)}, where {needed / 1e3:.4g} kN m would be needed; {least}. "
+        "That is benign: the slip stays below its reference, and the brake is fully applied."
     )
 
 

@@ -81,7 +81,7 @@ def check(problem: Problem) -> Certificate:
     status = findings.status(*found)
     denied = next((each for each in found if each.status is Status.REFUTED), None)
     where = place((denied or slowing).place)
-    values = "; ".join(f"{each.claim.name} >= {each.extreme.low:.4g} {each.claim.unit}" for each in found)
+    values = "; ".join(f"{each.claim.name} >= {each.ends[0]:.4g} {each.claim.unit}" for each in found)
     meaning = {
         Status.PROVED: "The train slows down at every point, adhesion brakes it, more torque always means more slip, "
         "and the input gain grows during a stop",
@@ -99,7 +99,7 @@ def check(problem: Problem) -> Certificate:
         worst_point=place(slowing.place),
         witness=(
             *where,
-            Point(name=denied.claim.name, value=denied.extreme.high or 0.0, unit=denied.claim.unit),
+            Point(name=denied.claim.name, value=denied.ends[1], unit=denied.claim.unit),
         )
         if denied
         else (),

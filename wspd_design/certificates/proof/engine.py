@@ -37,14 +37,19 @@ class Finding:
     reason: str  # why it is undecided, else empty
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """Both ends of the extreme; one is infinite if the expression is not bounded on the boxes seen so far."""
+        assert self.extreme.low is not None
+        assert self.extreme.high is not None
+        return self.extreme.low, self.extreme.high
+
+    @property
     def margin(self) -> Range:
         """Distance of the extreme from the bound that was asked for, positive where the claim holds.
 
         Its lower end is open if the search had to stop before it enclosed the extreme.
         """
-        assert self.extreme.low is not None
-        assert self.extreme.high is not None
-        sign, attained, far = 1, self.extreme.low, self.extreme.high
+        sign, (attained, far) = 1, self.ends
         if self.claim.relation == ">=":
             sign, attained, far = -1, far, attained
         return Range(

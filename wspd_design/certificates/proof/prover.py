@@ -141,7 +141,9 @@ class _Search:
         while waiting.upper.size:
             threshold = self.best + tolerance if bound is None else bound
             self.seconds = time.perf_counter() - started
-            if self.best > threshold or self.seconds > allowed.seconds or self.count > allowed.boxes:
+            # The box as a whole is looked at whatever the budget, so that some enclosure is known.
+            spent = self.count > 0 and (self.seconds > allowed.seconds or self.count > allowed.boxes)
+            if self.best > threshold or spent:
                 break
             order = np.argsort(-waiting.upper)
             batch, rest = waiting.take(order[:BATCH]), waiting.take(order[BATCH:])
