@@ -15,6 +15,12 @@ _jacobian = sp.Matrix(  # slip, torque, one memory state that is driven by the s
 )
 trace_residual = sp.simplify(_jacobian.trace() - (p - 1 / tau))
 
+# --- Routh: e' = p e - G (T - T_0), tau T' + T = u for a law that is linear near its reference ---------------
+_P, _I, _K, _q = sp.symbols("P I K q", real=True)
+_linear = sp.Matrix([[p, -G, 0], [_P / tau, -(1 + _K) / tau, _I / tau], [1, 0, 0]])  # e, T - T_0, int e
+_characteristic = tau * _q**3 + (1 + _K - p * tau) * _q**2 + (G * _P - (1 + _K) * p) * _q + G * _I
+linear_residual = sp.expand(tau * (_q * sp.eye(3) - _linear).det() - _characteristic)
+
 THEOREMS = (
     Theorem(
         anchor="no-go",
@@ -97,19 +103,28 @@ THEOREMS = (
     ),
     Theorem(
         anchor="routh",
-        title="The loop inside the layer with the lag of the valve",
-        statement="With k = W K_P/Phi the loop has the characteristic polynomial tau q^3 + (1 - p tau) q^2 + (c + k) q "
-        "+ k c. It is stable if and only if p tau < 1 and (1 - p tau)(c + k) > tau k c.",
-        hypotheses=("inside the layer", "train speed frozen", "no sampling"),
-        sketch="Routh's criterion for a cubic with c, k > 0.",
+        title="The loop near its reference with the lag of the valve",
+        statement="A law that near its reference is u = u_0 + P e + I int e - K (T - T_0) gives the characteristic "
+        "polynomial a_3 q^3 + a_2 q^2 + a_1 q + a_0 = tau q^3 + (1 + K - p tau) q^2 + (G P - (1 + K) p) q + G I. The "
+        "loop is stable if and only if a_2 > 0, a_0 > 0 and a_2 a_1 > tau a_0, or, with I = 0, if and only if p tau < "
+        "1 + K and G P > (1 + K) p. The sliding mode with k = W K_P/Phi on its own design model has a_1 = c + k, the "
+        "adaptive law with k = G K_P du/ds has a_1 = k - p; both have K = 0 and a_0 = k c.",
+        hypotheses=(
+            "small deviations: nothing saturates, and abs(s) stays inside the layer of a law that has one",
+            "train speed frozen",
+            "no sampling",
+        ),
+        sketch="Routh's criterion for a cubic with tau > 0. With I = 0 the integral decides nothing, and the "
+        "quadratic that remains needs positive coefficients.",
         not_said="Anything about sampling at h: see the sampled checks.",
         identities=(
+            Identity("tau det(q - A) = a_3 q^3 + a_2 q^2 + a_1 q + a_0", linear_residual),
             *(
-                Identity(f"coefficient of q^{3 - n}", residual)
+                Identity(f"coefficient of q^{3 - n} of the sliding mode", residual)
                 for n, residual in enumerate(sliding_surface.characteristic_residual)
             ),
             Identity(
-                "Routh determinant",
+                "a_2 a_1 - a_3 a_0 of the sliding mode",
                 sp.expand(sliding_surface.routh - ((1 - p * tau) * (c + k) - tau * k * c)),
             ),
         ),
