@@ -9,13 +9,9 @@ from scipy.integrate import solve_ivp
 
 from wspd_design.certificates import lyapunov_printed, lyapunov_repaired, lyapunov_surface
 from wspd_design.certificates.adaptive_error import ideal, signals
-from wspd_design.certificates.proof_run import (
-    adaptive_flow,
-    adaptive_run,
-    exact_law,
-    exact_plant,
-    sliding_flow,
-)
+from wspd_design.certificates.certain_rise import exact_law
+from wspd_design.certificates.plant import exact_plant
+from wspd_design.certificates.proof_run import adaptive_flow, adaptive_run, sliding_flow
 from wspd_design.certificates.reaching import reserve
 from wspd_design.certificates.records import Status
 from wspd_design.controllers import adaptive_fuzzy as law_module
@@ -78,7 +74,7 @@ def test_a_rise_that_only_floats_see_is_undecided(make_problem, make_controller,
     if module is lyapunov_repaired:
         monkeypatch.setattr(generated, "lyapunov_repaired", _without_speed)
     assert module.check(problem).status is Status.REFUTED
-    monkeypatch.setattr("wspd_design.certificates.proof_run.exact_rate", lambda *_: flint.arb(0, 1e-9))
+    monkeypatch.setattr("wspd_design.certificates.certain_rise.exact_rate", lambda *_: flint.arb(0, 1e-9))
     verdict = module.check(problem)
     assert verdict.status is Status.UNDECIDED
     assert not verdict.witness
@@ -216,12 +212,12 @@ def test_each_v_speaks_about_its_own_law(make_problem, make_controller):
 
 def test_exact_flows_enclose_those_of_the_runs(er24pc, make_controller, make_problem):
     problem = make_problem(make_controller("smc"))
-    law, nominal = problem.controller, (er24pc.mass, er24pc.wheelset_inertia, problem.rail.mu0)
+    law = problem.controller
     rng = np.random.default_rng(7)
     for _ in range(20):
         state = [rng.uniform(3.0, 33.0), rng.uniform(0.03, 0.5), rng.uniform(-0.1, 0.1)]
         floats = sliding_flow(er24pc, problem.rail, law)(state)
-        exact = sliding_flow(*exact_plant(problem, *nominal), exact_law(law))([flint.arb(x) for x in state])
+        exact = sliding_flow(*exact_plant(problem), exact_law(law))([flint.arb(x) for x in state])
         for ball, number in zip(exact, floats, strict=True):
             assert abs(float(ball.mid()) - number) <= 1e-11 * (1.0 + abs(number))
             assert float(ball.rad()) <= 1e-11 * (1.0 + abs(number))

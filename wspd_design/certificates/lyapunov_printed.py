@@ -6,18 +6,17 @@ from typing import TypeAlias
 from wspd_design.certificates import domain, laws
 from wspd_design.certificates.adaptive_error import CHOICE, Ideal, ideal, signals
 from wspd_design.certificates.balls import point
+from wspd_design.certificates.certain_rise import certain_rise, certainty, exact_rate, rising_state
 from wspd_design.certificates.checking import certified, series
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.plant import exact_plant
 from wspd_design.certificates.proof_run import (
     ASSUMPTIONS,
     RELATIVE_TOLERANCE,
     State,
     adaptive_flow,
     adaptive_run,
-    certain_rise,
     cut_short,
-    exact_plant,
-    exact_rate,
     largest_rise,
     numeric_rate,
     verdict,
@@ -65,8 +64,7 @@ def check(problem: Problem) -> Certificate:
     claimed, true = claimed_rate(run.states), true_rate(run.states)
     measured = numeric_rate(candidate, run)
     scale = float(np.abs(measured[outside]).max(initial=0.0))
-    nominal = (problem.vehicle.mass, problem.vehicle.wheelset_inertia, problem.rail.mu0)
-    exact = (*exact_plant(problem, *nominal), gains)
+    exact = (*exact_plant(problem), gains)
     functions = _functions(exact, target.exact())
     flow = adaptive_flow(*exact)
     deviations, verdicts = [], []
@@ -97,7 +95,7 @@ def check(problem: Problem) -> Certificate:
         Point(name="time after", value=float(run.time[end]), unit="s"),
     )
     if shown is not None:
-        where = (*run.state(*shown, "dV2/dt", "1/s"), *where)
+        where = (*rising_state(run, shown, "dV2/dt", "1/s"), *where)
     axes = ("time [s]", "V2 [-]")
     return Certificate(
         name=NAME,
@@ -108,7 +106,7 @@ def check(problem: Problem) -> Certificate:
         explanation=(
             f"V2 starts at {values[0]:.3g}, is {values[start]:.3g} at {run.time[start]:.3g} s and then "
             f"rises to {values[end]:.3g} at {run.time[end]:.3g} s. The slip ends at {run.slip[-1]:.4f}, its "
-            f"reference is {gains.slip_reference:g}. {run.certainty(shown, 'dV2/dt', '1/s')} {reason}"
+            f"reference is {gains.slip_reference:g}. {certainty(run, shown, 'dV2/dt', '1/s')} {reason}"
             if rises
             else f"V2 falls from {values[0]:.3g} to {values[-1]:.3g} without rising in this run."
         )

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 from wspd_design.certificates import domain, laws
 from wspd_design.certificates.adaptive_error import CHOICE, Ideal, Signals, ideal, signals
+from wspd_design.certificates.certain_rise import Rise, certain_rise, certainty, rising_state
 from wspd_design.certificates.checking import certified, series
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.plant import exact_plant
 from wspd_design.certificates.proof_run import (
     ASSUMPTIONS,
     RELATIVE_TOLERANCE,
@@ -15,9 +17,7 @@ from wspd_design.certificates.proof_run import (
     State,
     adaptive_flow,
     adaptive_run,
-    certain_rise,
     cut_short,
-    exact_plant,
     largest_rise,
     numeric_rate,
     verdict,
@@ -119,7 +119,7 @@ def check(problem: Problem) -> Certificate:
         Point(name="time after", value=float(run.time[end]), unit="s"),
     )
     if shown is not None:
-        where = (*run.state(*shown, "dV/dt", "N m"), *where)
+        where = (*rising_state(run, shown, "dV/dt", "N m"), *where)
     same = (
         "the adaptation of the law itself"
         if law.gains.dead_zone and not law.gains.scheduled_rates
@@ -134,7 +134,7 @@ def check(problem: Problem) -> Certificate:
         status=verdict(rises, shown is not None, [run]),
         explanation=(
             f"V rises from {values[start]:.4g} to {values[end]:.4g} N m s between {run.time[start]:.3g} s "
-            f"and {run.time[end]:.3g} s. {run.certainty(shown, 'dV/dt', 'N m')}"
+            f"and {run.time[end]:.3g} s. {certainty(run, shown, 'dV/dt', 'N m')}"
             if rises
             else f"V falls from {values[0]:.4g} to {values[-1]:.4g} N m s and never rises, so that "
             "weights and bound stay bounded. Divided by G, the falling speed helps V to fall instead of "
@@ -165,12 +165,11 @@ def check(problem: Problem) -> Certificate:
     )
 
 
-def _certain_rise(problem: Problem, found: RepairedRun) -> tuple[int, float] | None:
+def _certain_rise(problem: Problem, found: RepairedRun) -> Rise | None:
     """Look for a state of the run at which V rises for certain."""
     import numpy as np
 
-    nominal = (problem.vehicle.mass, problem.vehicle.wheelset_inertia, problem.rail.mu0)
-    exact = (*exact_plant(problem, *nominal), found.gains)
+    exact = (*exact_plant(problem), found.gains)
     order = np.argsort(-found.measured_rate).tolist()
     return certain_rise(_function(exact, found.target.exact()), adaptive_flow(*exact), found.run, order)
 

@@ -4,17 +4,16 @@ from itertools import product
 from typing import TypeAlias
 
 from wspd_design.certificates import domain, laws
+from wspd_design.certificates.certain_rise import Rise, certain_rise, certainty, exact_law, rising_state
 from wspd_design.certificates.checking import certified, level, series
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.plant import Parameters, exact_plant
 from wspd_design.certificates.proof_run import (
     ASSUMPTIONS,
     RELATIVE_TOLERANCE,
     ProofRun,
     State,
-    certain_rise,
     cut_short,
-    exact_law,
-    exact_plant,
     largest_rise,
     numeric_rate,
     sliding_flow,
@@ -26,8 +25,8 @@ from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import Number
 
-Rise: TypeAlias = tuple[ProofRun, tuple[float, float, float], int, int]
-"""A run, its mass, inertia and mu0, and the instants between which V rises."""
+RisingRun: TypeAlias = tuple[ProofRun, Parameters, int, int]
+"""A run, its parameters, and the instants between which V rises."""
 
 NAME, TITLE = "lyapunov_surface", "V of the sliding mode"
 TOLERANCE = 100.0 * RELATIVE_TOLERANCE  # of the largest V
@@ -50,7 +49,7 @@ def check(problem: Problem) -> Certificate:
     parameters = list(dict.fromkeys([nominal, *corners]))
     edge = float(sliding_surface.lyapunov_surface(law.gains.boundary_layer))
     curves, runs = [], []
-    worst: tuple[float, *Rise] | None = None
+    worst: tuple[float, *RisingRun] | None = None
     for chosen, slip in product(parameters, problem.slips):
         vehicle, rail = domain.varied(problem, *chosen)
         run = sliding_run(vehicle, rail, law, speeds=problem.speeds, slip=slip)
@@ -75,7 +74,7 @@ def check(problem: Problem) -> Certificate:
         Point(name="rising until", value=float(run.time[end]), unit="s"),
     )
     if shown is not None:
-        where = (*run.state(*shown, "dV/dt", "1/s"), *where)
+        where = (*rising_state(run, shown, "dV/dt", "1/s"), *where)
     return Certificate(
         name=NAME,
         title=TITLE,
@@ -86,7 +85,7 @@ def check(problem: Problem) -> Certificate:
         explanation=(
             f"V rises by {rise:.3g} of its maximum between {run.time[start]:.3g} s and "
             f"{run.time[end]:.3g} s: the switching gain does not outweigh the model error there. "
-            f"{run.certainty(shown, 'dV/dt', '1/s')}"
+            f"{certainty(run, shown, 'dV/dt', '1/s')}"
             if rises
             else f"In all {len(runs)} runs the distance to the surface only shrinks until the layer is "
             "reached, and the state stays inside."
@@ -112,7 +111,7 @@ def _surface(law: SlidingMode, states: State) -> Number:
     return sliding_surface.sliding_variable(error, integral, 1.0, law.gains.surface_rate)
 
 
-def _certain_rise(problem: Problem, law: SlidingMode, worst: Rise) -> tuple[int, float] | None:
+def _certain_rise(problem: Problem, law: SlidingMode, worst: RisingRun) -> Rise | None:
     """Look for a state outside the layer at which V rises for certain, in the span of a run in which it rises."""
     import numpy as np
 
@@ -124,6 +123,6 @@ def _certain_rise(problem: Problem, law: SlidingMode, worst: Rise) -> tuple[int,
     def outside(state: State) -> bool:
         return bool(abs(_surface(law, state)) > law.gains.boundary_layer)
 
-    flow = sliding_flow(*exact_plant(problem, *parameters), exact_law(law))
+    flow = sliding_flow(*exact_plant(problem, parameters), exact_law(law))
     order = start + np.argsort(-numeric_rate(candidate, run)[start : end + 1])
     return certain_rise(candidate, flow, run, order.tolist(), speaks=outside)

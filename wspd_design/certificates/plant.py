@@ -10,6 +10,7 @@ from math import pi
 from typing import NamedTuple
 
 from wspd_design.certificates import domain
+from wspd_design.certificates.balls import point
 from wspd_design.certificates.proof.claim import Variable, variable
 from wspd_design.certificates.records import Point, Problem
 from wspd_design.model.generated import adhesion as generated
@@ -19,6 +20,8 @@ from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
 Values = Mapping[str, Number]
+Parameters = tuple[float, float, float]
+"""Mass [kg], inertia of a wheelset [kg m2] and mu0 [-]."""
 
 VEHICLE = (
     ("wheel_radius", "m"),
@@ -192,3 +195,19 @@ def place(values: Mapping[str, float]) -> tuple[Point, ...]:
     import numpy as np
 
     return domain.readable(np.array([values[name] for name in UNITS]))
+
+
+def exact_plant(problem: Problem, parameters: Parameters | None = None) -> tuple[Vehicle, Rail]:
+    """Return vehicle and rail with their numbers as balls, so that nothing is rounded.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop.
+    parameters : tuple of float, optional
+        Mass [kg], inertia of a wheelset [kg m2] and mu0 [-]; the nominal ones by default.
+    """
+    nominal = (problem.vehicle.mass, problem.vehicle.wheelset_inertia, problem.rail.mu0)
+    mass, inertia, mu0 = parameters or nominal
+    known = plant_variables(problem, mass=mass, inertia=inertia, mu0=mu0)
+    return plant_records(problem, {v.name: point(v.low) for v in known})

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from wspd_design.certificates.balls import Ball, ball, below, point
 from wspd_design.certificates.checking import level, series
 from wspd_design.certificates.domain import KMH
+from wspd_design.certificates.plant import exact_plant
 from wspd_design.certificates.proof.engine import versions
-from wspd_design.certificates.proof_run import exact_plant
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Series, Status
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, firing_strengths
 from wspd_design.model.generated import sliding_surface
@@ -76,9 +76,8 @@ def printed_rate(problem: Problem, law: AdaptiveFuzzy, speed: float) -> Ball:
     psi >= abs(u* - b*'w). With the law's own w, b_hat and psi_hat the errors have to make up for
     d = abs(u* - b_hat'w) - psi_hat; the cheapest way costs d^2/(alpha1 abs(w)^2 + alpha2).
     """
-    gains, vehicle = law.gains, problem.vehicle
-    exact_numbers = exact_plant(problem, vehicle.mass, vehicle.wheelset_inertia, problem.rail.mu0)
-    plant = slip_dynamics(*exact_numbers, point(problem.slip), point(speed))
+    gains = law.gains
+    plant = slip_dynamics(*exact_plant(problem), point(problem.slip), point(speed))
     ideal = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, 0.0, 0.0) / gains.torque_unit
     strengths = firing_strengths(gains, point(0.0))
     fuzzy = sum((w * b for w, b in zip(strengths, gains.initial_weights, strict=True)), point(0.0))

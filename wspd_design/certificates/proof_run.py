@@ -3,16 +3,11 @@
 Speed, slip, the integral of the error and what the law adapts are integrated as one smooth system.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-from itertools import islice
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from wspd_design.certificates.balls import Ball, below, point
-from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.invariance.ball_slopes import law_slopes
-from wspd_design.certificates.plant import model_variables, plant_records, plant_variables, records_of
-from wspd_design.certificates.records import Point, Problem, Status
+from wspd_design.certificates.records import Status
 from wspd_design.controllers.adaptive_fuzzy import (
     AdaptiveFuzzyGains,
     adaptation,
@@ -33,7 +28,6 @@ if TYPE_CHECKING:
 
 RELATIVE_TOLERANCE = 1e-8
 ABSOLUTE_TOLERANCE = 1e-10
-MOST_TRIED = 50  # states of a run whose derivative is evaluated exactly
 ASSUMPTIONS = (
     "T = u: torque equals command, without valve lag, sampling or limits of the brake",
     "quarter locomotive with static wheel load and nominal parameters",
@@ -74,29 +68,6 @@ class ProofRun:
         """Integral of the slip error [s]."""
         row: Array = self.states[2]
         return row
-
-    def state(self, index: int, rate: float, name: str, unit: str) -> tuple[Point, ...]:
-        """Return the state at an instant, at which a function falls no faster than a rate, in readable units."""
-        _, _, integral, *adapted = self.states[:, index].tolist()
-        names = [*(f"weight {k}" for k in range(1, len(adapted))), "bound"] if adapted else []
-        return (
-            Point(name="slip", value=float(self.slip[index]), unit="-"),
-            Point(name="speed", value=float(self.speed[index]) * KMH, unit="km/h"),
-            Point(name="integral of the slip error", value=integral, unit="s"),
-            *(Point(name=each, value=x, unit="of u") for each, x in zip(names, adapted, strict=True)),
-            Point(name=f"least {name}", value=rate, unit=unit),
-            Point(name="time", value=float(self.time[index]), unit="s"),
-        )
-
-    def certainty(self, shown: tuple[int, float] | None, name: str, unit: str) -> str:
-        """Say what :func:`certain_rise` found."""
-        if shown is None:
-            return "But at no state of the run that was tried its derivative is positive for certain."
-        index, rate = shown
-        return (
-            f"At {self.time[index]:.3g} s, with {self.speed[index] * KMH:.3g} km/h and slip {self.slip[index]:.4f}, "
-            f"{name} is at least {rate:.3g} {unit} in exact arithmetic."
-        )
 
 
 def adaptive_flow(vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains) -> Flow:
@@ -195,38 +166,6 @@ def _run(rates: Flow, start: list[float], lowest_speed: float) -> ProofRun:
     return ProofRun(time=np.asarray(solution.t), states=states, rates=derivatives, cut=cut)
 
 
-def exact_plant(problem: Problem, mass: float, inertia: float, mu0: float) -> tuple[Vehicle, Rail]:
-    """Return vehicle and rail with their numbers as balls [kg, kg m2 per wheelset, -], so that nothing is rounded."""
-    known = plant_variables(problem, mass=mass, inertia=inertia, mu0=mu0)
-    return plant_records(problem, {v.name: point(v.low) for v in known})
-
-
-def exact_law(law: SlidingMode) -> SlidingMode:
-    """Return a law with the numbers of its design model as balls."""
-    known = {v.name: point(v.low) for v in model_variables(law.vehicle, law.rail)}
-    vehicle, rail = records_of(known, law.vehicle, law.rail, "model ")
-    return replace(law, vehicle=vehicle, rail=rail)
-
-
-def exact_rate(candidate: Callable[[State], Any], flow: Flow, state: Sequence[float]) -> Ball:
-    """Enclose the derivative of a function of the states along the flow, at one state without rounding.
-
-    A rise between two instants of a run is what its floats say; a derivative that is positive here is positive.
-
-    Parameters
-    ----------
-    candidate : callable
-        The function; it has to run on balls with slopes.
-    flow : Flow
-        Of the loop, with its numbers as balls.
-    state : sequence of float
-        Taken as exact.
-    """
-    balls = tuple(point(float(each)) for each in state)
-    ((_, slopes),) = law_slopes(lambda *x: (candidate(x),), balls)
-    return sum((slope * rate for slope, rate in zip(slopes, flow(balls), strict=True)), point(0.0))
-
-
 def numeric_rate(candidate: Callable[["Array"], "Array"], run: ProofRun) -> "Array":
     """Derivative of a function of the states along the run, by central differences along the flow.
 
@@ -238,40 +177,6 @@ def numeric_rate(candidate: Callable[["Array"], "Array"], run: ProofRun) -> "Arr
     forward, backward = candidate(run.states + scale * run.rates), candidate(run.states - scale * run.rates)
     rate: Array = (forward - backward) / (2.0 * scale)
     return rate
-
-
-def certain_rise(
-    candidate: Callable[[State], Any],
-    flow: Flow,
-    run: ProofRun,
-    order: Iterable[int],
-    *,
-    speaks: Callable[[State], bool] = lambda _: True,
-) -> tuple[int, float] | None:
-    """Look for an instant of a run at whose state a function rises for certain.
-
-    Parameters
-    ----------
-    candidate, flow : callable, Flow
-        As in :func:`exact_rate`.
-    run : ProofRun
-        Its states are taken as exact.
-    order : iterable of int
-        Instants, the most promising first.
-    speaks : callable, optional
-        Whether the claim speaks about a state of balls.
-
-    Returns
-    -------
-    tuple or None
-        The instant and a number that the derivative exceeds there.
-    """
-    for index in islice(order, MOST_TRIED):
-        state = run.states[:, index].tolist()
-        rate = exact_rate(candidate, flow, state)
-        if rate > 0 and speaks(tuple(map(point, state))):
-            return index, below(rate)
-    return None
 
 
 def largest_rise(values: "Array") -> tuple[float, int, int]:

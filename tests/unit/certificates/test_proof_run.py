@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from wspd_design.certificates.adaptive_error import ideal, signals
+from wspd_design.certificates.certain_rise import exact_rate
 from wspd_design.certificates.proof_run import (
     ProofRun,
     adaptive_run,
     cut_short,
-    exact_rate,
     largest_rise,
     numeric_rate,
     sliding_run,
