@@ -27,11 +27,9 @@ from wspd_design.parameters.records import Rail, Vehicle
 if TYPE_CHECKING:
     from wspd_design.certificates.domain import Array
 
-VENTED_SHARE = (
-    0.5  # of T_max: the largest torque error that venting from full brake can let out along the line
-)
+VENTED_SHARE = 0.5  # of T_max: the largest torque error that venting from full brake lets out along the line
 POLES = 9  # values of q between the ends of its range
-SHORTEST, LONGEST = 1e-3, 1.0  # s, of the sample times that are tried
+SHORTEST = 1e-3  # s, of the sample times that are tried
 HALVINGS = 12  # of their range
 
 
@@ -135,22 +133,22 @@ def _poles(problem: Problem) -> Poles:
 
 def _sampled(problem: Problem, poles: Poles) -> str:
     """Say how fast the sampled loop is, or from which sample time on it would be stable."""
-    kept = kept_per_sample(problem, poles, problem.sample_time)
+    kept = _kept_per_sample(problem, poles, problem.sample_time)
     if kept < 1.0:
         return f"near the reference a deviation keeps at most {kept:.2g} of itself per sample"
     low, high = SHORTEST, problem.sample_time
-    if kept_per_sample(problem, poles, low) >= 1.0:
+    if _kept_per_sample(problem, poles, low) >= 1.0:
         return "not stable near the reference, whatever the sample time"
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if kept_per_sample(problem, poles, middle) < 1.0 else (low, middle)
+        low, high = (middle, high) if _kept_per_sample(problem, poles, middle) < 1.0 else (low, middle)
     return (
         f"with this sample time the loop is not stable near the reference on all of the domain: it takes less than "
         f"{low * 1e3:.2g} ms"
     )
 
 
-def kept_per_sample(problem: Problem, poles: Poles, sample_time: float) -> float:
+def _kept_per_sample(problem: Problem, poles: Poles, sample_time: float) -> float:
     """Largest eigenvalue of the sampled loop with the gains for a sample time [s], over q and the inertias."""
     import numpy as np
 

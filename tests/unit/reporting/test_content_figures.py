@@ -2,11 +2,13 @@
 
 import re
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.text import Text
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
 from tests.unit.reporting.test_maps import SHOWN
@@ -91,6 +93,20 @@ def test_distances_show_both_parts_and_the_paper():
     mark, bound = axes.get_lines()
     assert set(mark.get_xdata()) == {184.63}
     assert set(bound.get_xdata()) == {174.25}
+
+
+@pytest.mark.parametrize("count", [2, 8])
+def test_long_names_stay_above_their_panels(count):
+    one = DOSSIER.trials[0]
+    long = replace(one, run=replace(one.run, controller="torque-feedback-er24pc-service-eurosprinter127"))
+    with figure_style():
+        figure = slip_of_all(new_figure(height=6.0), [long] * count, SPECIFICATION)
+        figure.draw_without_rendering()
+    titles = [text for text in figure.findobj(Text) if text.get_text().startswith("torque-feedback")]
+    assert len(titles) == count
+    extents = [title.get_window_extent() for title in titles]
+    assert all(extent.x1 < figure.bbox.width for extent in extents)
+    assert not any(one.overlaps(other) for one, other in combinations(extents, 2))
 
 
 def test_the_region_without_stable_equilibrium_is_marked():

@@ -1,6 +1,7 @@
 """The same stop with several controllers."""
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,9 @@ from wspd_design.simulation.records import Ending
 
 MOST = 320
 """Points of a curve: the panels are small and many."""
+
+TITLE_WIDTH = {2: 44, 3: 28}
+"""Characters that fit above a panel, by the number of columns."""
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -92,7 +96,7 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, trial in zip(grid.flat, trials, strict=False):
         slip_panel(axes, trial.run, specification, top=1.1, most=MOST)
-        axes.set_title(trial.run.controller)
+        axes.set_title(textwrap.fill(trial.run.controller, TITLE_WIDTH[columns]))
         axes.label_outer()
     for axes in grid.flat[len(trials) :]:
         axes.remove()
