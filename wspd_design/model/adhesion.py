@@ -86,11 +86,3 @@ def creep_force_slip_derivative(
         rail.slip_reduction,
         stiffness,
     )
-
-
-def adhesion_coefficient(
-    slip: Number, speed: Number, wheel_load: Number, rail: Rail, contact: Contact
-) -> Number:
-    """Used adhesion f/Q at a slip ratio and a train speed [-]."""
-    stiffness = contact_stiffness(contact, wheel_load)
-    return creep_force(slip, speed * slip, wheel_load, rail, stiffness) / wheel_load

@@ -65,13 +65,6 @@ class Quarter:
             wheel_damping=damping,
         )
 
-    def adhesion_torque(self, speed: Number) -> Number:
-        """Torque per wheelset that the rail can give to a locked wheel [N m].
-
-        A locked wheel stays locked while the braking torque exceeds it.
-        """
-        return 2.0 * self.vehicle.wheel_radius * self.motion(0.0, speed, 0.0, 0.0).creep_force
-
     def creep_rate(self, speed: Number) -> Number:
         """Fastest rate of the slip on the adhering side, which limits an explicit step [1/s]."""
         vehicle = self.vehicle

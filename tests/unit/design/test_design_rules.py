@@ -86,8 +86,9 @@ def test_without_uncertainty_only_the_reserve_is_left(er24pc, rail):
     known = replace(
         er24pc, mass_bounds=(er24pc.mass,) * 2, wheelset_inertia_bounds=(er24pc.wheelset_inertia,) * 2
     )
-    certain = gain("switching_gain", known, replace(rail, mu0_bounds=(rail.mu0,) * 2))
-    assert 0.0 < certain < 0.1 * gain("switching_gain", er24pc, rail)
+    slips = (0.1, 0.2)  # the model error is 0 wherever it is looked for, and intervals show it slowly
+    certain = gain("switching_gain", known, replace(rail, mu0_bounds=(rail.mu0,) * 2), slips=slips)
+    assert 0.0 < certain < 0.1 * gain("switching_gain", er24pc, rail, slips=slips)
 
 
 @pytest.mark.parametrize("name", RAILS)

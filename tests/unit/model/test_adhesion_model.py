@@ -65,13 +65,6 @@ def test_force_is_odd_in_the_slip(er24pc):
     assert adhesion.creep_force(-0.03, 0.2, LOAD, rail, stiffness) == -braking
 
 
-def test_adhesion_coefficient_is_force_over_load(er24pc):
-    rail = load_rail("polach-dry")
-    stiffness = adhesion.contact_stiffness(er24pc.contact, LOAD)
-    force = adhesion.creep_force(0.02, 0.02 * 12.0, LOAD, rail, stiffness)
-    assert adhesion.adhesion_coefficient(0.02, 12.0, LOAD, rail, er24pc.contact) == force / LOAD
-
-
 def polach_mp(slip, speed, rail, stiffness):
     """Eqs. (5)-(7) in many digits."""
     mu = mpmath.mpf(rail.mu0) * (

@@ -26,7 +26,6 @@ def kernels(vehicle, rail, gains):
     weights = tuple(float(k) for k in range(len(gains.centres)))
     return {
         "creep force": lambda s, v: adhesion.creep_force(s, s * v, plant.wheel_load, rail, plant.stiffness),
-        "adhesion": lambda s, v: adhesion.adhesion_coefficient(s, v, plant.wheel_load, rail, vehicle.contact),
         "stiffness": lambda _s, v: adhesion.contact_stiffness(vehicle.contact, 1e4 * v),
         "resistance": lambda _s, v: slip.resistance(vehicle, v),
         "drift": lambda s, v: slip.slip_dynamics(vehicle, rail, s, v).drift,
@@ -42,7 +41,7 @@ def kernels(vehicle, rail, gains):
 
 
 NAMES = (
-    *("creep force", "adhesion", "stiffness", "resistance", "drift", "gain", "pole", "slip ratio", "motion"),
+    *("creep force", "stiffness", "resistance", "drift", "gain", "pole", "slip ratio", "motion"),
     *("filling", "venting", "firing", "demand"),
 )
 

@@ -41,11 +41,11 @@ def test_motion(er24pc, name, v, omega, torque):
 
 @pytest.mark.parametrize("name", available("rail"))
 @pytest.mark.parametrize("v", [0.01, 1.0, 30.0])
-def test_adhesion_torque_balances_a_locked_wheel(er24pc, name, v):
+def test_the_creep_force_balances_a_locked_wheel(er24pc, name, v):
     # With exactly this torque a wheel at rest has no acceleration.
     rail = load_rail(name)
     plant = quarter(er24pc, rail)
-    torque = plant.adhesion_torque(v)
+    torque = 2 * 0.55 * plant.motion(0.0, v, 0.0, 0.0).creep_force
     assert torque == pytest.approx(2 * 0.55 * written_out(er24pc, rail, 0.0, v, 0.0, 0.0)[3], rel=1e-12)
     assert plant.motion(0.0, v, 0.0, torque).wheel_acceleration == pytest.approx(0.0, abs=1e-9)
 
