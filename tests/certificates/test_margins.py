@@ -26,13 +26,52 @@ def test_known_loop():
     assert found.delay == pytest.approx(phase / crossing, rel=1e-4)
 
 
-def test_disk_margin_is_the_peak_of_the_balanced_sensitivity():
-    opened = control.ss(control.tf([10.0], [1.0, 3.0, 3.0, 1.0])) * 0.5
-    frequencies = np.geomspace(1e-2, 1e2, 4000)
-    loop = np.array([complex(opened(1j * w)) for w in frequencies])
-    sensitivity = 1.0 / (1.0 + loop)
-    expected = 1.0 / np.abs(sensitivity - 0.5).max()
-    assert margins.margins(opened).disk == pytest.approx(expected, rel=5e-3)
+def balanced_peak(opened, low, high):
+    """Largest abs(S - 1/2) of a loop on a grid of frequencies [rad/s] that is made finer around its peak."""
+    for _ in range(4):
+        frequencies = np.geomspace(low, high, 2001)
+        at = np.exp(1j * frequencies * opened.dt) if opened.dt else 1j * frequencies
+        peaks = np.abs(1.0 / (1.0 + opened(at)) - 0.5)
+        middle = int(peaks.argmax())
+        low, high = frequencies[max(middle - 2, 0)], frequencies[min(middle + 2, 2000)]
+    return peaks.max()
+
+
+@pytest.mark.parametrize("factor", [0.1, 0.5, 0.79, 0.7999])
+def test_disk_margin_is_the_peak_of_the_balanced_sensitivity(factor):
+    """Also where the loop is hardly damped: it is unstable from the factor 0.8 on."""
+    opened = control.ss(control.tf([10.0], [1.0, 3.0, 3.0, 1.0])) * factor
+    expected = 1.0 / balanced_peak(opened, 1e-2, 1e2)
+    assert margins.margins(opened).disk == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "sample_time"), [("afsmc", None), ("smc", 0.005), ("torque-feedback", 0.02)]
+)
+def test_disk_margin_over_speed(make_problem, make_controller, name, sample_time):
+    """Margins below 0.01 belong to peaks that are narrower than a grid of some hundred frequencies."""
+    problem = make_problem(make_controller(name, "polach-wet"), rail="polach-wet")
+    loops = [
+        margins.loop(problem, problem.controller, float(speed), sample_time=sample_time)
+        for speed in np.geomspace(*problem.speeds, 13)
+    ]
+    found = [(opened, margins.margins(opened)) for opened in loops]
+    stable = [(opened, each.disk) for opened, each in found if each.stable]
+    for opened, disk in stable:
+        highest = math.pi / sample_time if sample_time else 1e3
+        assert disk == pytest.approx(1.0 / balanced_peak(opened, 1.0, highest), rel=1e-6)
+    assert min(disk for _, disk in stable) < (0.01 if name != "torque-feedback" else 1.0)
+
+
+def test_gain_and_phase_at_the_edge_of_the_disk(problem):
+    """A factor on the rim of the disk makes the loop unstable, a little inside none does."""
+    opened = margins.loop(problem, problem.controller, 12.0, sample_time=0.02)
+    disk = margins.margins(opened).disk
+    for size, unstable in ((1.001 * disk, True), (0.999 * disk, False)):
+        turns = size * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 721))
+        factors = (1.0 + turns / 2.0) / (1.0 - turns / 2.0)
+        closed = [opened.A - factor * opened.B @ opened.C for factor in factors]
+        assert (np.abs(np.linalg.eigvals(closed)).max() > 1.0) is np.bool_(unstable)
 
 
 @pytest.fixture(scope="module")
