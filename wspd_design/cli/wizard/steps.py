@@ -63,8 +63,8 @@ def steps() -> tuple[Step, ...]:
             title="Control law",
             explanation="The adaptive fuzzy law is the paper's, with the repaired proof; it needs no "
             "friction model. The other two use the friction of the design rail. Torque feedback also needs the "
-            "cylinder pressure and, on dry rail, a sample time of about 20 ms; it is the only one of the three that "
-            "the lag of the valve leaves free to be stable.",
+            "cylinder pressure. Where adhesion falls steeply with sliding, as on dry rail, it is the only one of the "
+            "three that the lag of the valve leaves free to be stable, with a sample time of about 20 ms.",
             default=options.LAW,
             options=(
                 Option(value="afsmc", text="adaptive fuzzy sliding mode"),
