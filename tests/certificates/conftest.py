@@ -7,6 +7,8 @@ import pytest
 
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.design.records import Specification
+from wspd_design.design.selection import design_controller
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 PUBLISHED_RAILS = ("polach-dry", "polach-wet")
@@ -107,3 +109,16 @@ def make_reference_problem():
 def fast_vehicle(er24pc):
     """Return the locomotive with a valve that is thirty times faster than the paper's."""
     return replace(er24pc, brake=replace(er24pc.brake, fill_time=0.02, vent_time=0.02, supply_rate=5.0))
+
+
+@pytest.fixture(scope="session")
+def make_adaptive_problem(er24pc, make_problem):
+    """Make a problem of the designed adaptive law, with other gains, on a domain in which the brake suffices."""
+    rail = load_rail("polach-wet")
+    designed = design_controller(er24pc, rail, Specification()).build(er24pc, rail)
+
+    def make(**changes):
+        law = replace(designed, gains=replace(designed.gains, **changes))
+        return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), mu0_bounds=(0.28, 0.3))
+
+    return make

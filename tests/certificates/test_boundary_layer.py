@@ -18,16 +18,19 @@ def strong(make_problem, make_controller):
     return make_problem(replace(law, gains=replace(law.gains, switching_gain=40.0)))
 
 
-def test_proved_where_the_reaching_condition_is(strong):
-    verdict = boundary_layer.check(strong)
-    assert verdict.status is Status.PROVED
-    assert all(each.status is Status.PROVED for each in verdict.hypotheses)
-    assert verdict.proofs
+@pytest.fixture(scope="module")
+def proved(strong):
+    return boundary_layer.check(strong)
 
 
-def test_runs_keep_the_bound(strong):
-    verdict = boundary_layer.check(strong)
-    at = {point.name: point.value for point in verdict.worst_point}
+def test_proved_where_the_reaching_condition_is(proved):
+    assert proved.status is Status.PROVED
+    assert all(each.status is Status.PROVED for each in proved.hypotheses)
+    assert proved.proofs
+
+
+def test_runs_keep_the_bound(strong, proved):
+    at = {point.name: point.value for point in proved.worst_point}
     gains = strong.controller.gains
     for mass, mu0, slip in ((61473.0, 0.66, 0.6), (92209.0, 0.44, 0.02), (76841.0, 0.55, 0.4)):
         vehicle, rail = varied(strong, mass, 752.0, mu0)

@@ -147,10 +147,3 @@ def test_pole_too_close_to_the_limit_is_neither(make_problem, make_controller, m
     monkeypatch.setattr(sampling, "largest_pole", lambda *_: limit)
     monkeypatch.setattr(sampling, "lacking", lambda *_: flint.arb(0, 1))
     assert sampling.check(problem).status is Status.UNDECIDED
-
-
-def test_slow_sampling_is_refuted_where_fast_sampling_passes(make_problem, make_controller, fast_vehicle):
-    law = make_controller("smc")
-    problem = make_problem(law, vehicle=fast_vehicle)
-    assert sampling.check(replace(problem, sample_time=0.02)).status is Status.PROVED
-    assert sampling.check(replace(problem, sample_time=0.5)).status is Status.REFUTED

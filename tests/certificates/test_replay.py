@@ -12,8 +12,6 @@ from wspd_design.certificates.exact import FORMAT
 from wspd_design.certificates.obligations import OBLIGATIONS, obligations
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
-from wspd_design.design.records import Specification
-from wspd_design.design.selection import design_controller
 from wspd_design.parameters.loading import load_rail
 
 SLOW = {"sampled_invariance", "hard_limits", "barbalat"}  # their files are checked in tests of their own
@@ -189,23 +187,10 @@ def test_a_layer_outside_the_domain_cannot_be_proved(make_problem, make_controll
     assert not any(each.concerns({"format": FORMAT, "claim": each.text}) for each in needed[2:])
 
 
-@pytest.fixture(scope="module")
-def adaptive(er24pc, make_problem):
-    """Problem of the designed adaptive law where the brake suffices, by its rates of adaptation."""
-
-    def make(**changes):
-        rail = load_rail("polach-wet")
-        law = design_controller(er24pc, rail, Specification()).build(er24pc, rail)
-        law = replace(law, gains=replace(law.gains, **changes))
-        return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), mu0_bounds=(0.28, 0.3))
-
-    return make
-
-
 @pytest.mark.parametrize(("name", "scheduled"), [("afsmc_energy", False), ("barbalat", True)])
-def test_the_law_must_adapt_as_the_theorem_says(adaptive, name, scheduled):
+def test_the_law_must_adapt_as_the_theorem_says(make_adaptive_problem, name, scheduled):
     """The inequalities are the same for a law that does not, and their proofs do not suffice for it."""
-    problem = adaptive(scheduled_rates=scheduled)
+    problem = make_adaptive_problem(scheduled_rates=scheduled)
     (certificate,) = suite.verify(problem, only=(name,))
     assert certificate.status is Status.PROVED
     text = certificate_text(certificate)
@@ -213,6 +198,6 @@ def test_the_law_must_adapt_as_the_theorem_says(adaptive, name, scheduled):
     for planted in (
         {"scheduled_rates": not scheduled}, {"dead_zone": False}, {"hold_when_saturated": False}, {"weight_rate": -1.0},
     ):  # fmt: skip
-        found = replay(adaptive(**{"scheduled_rates": scheduled} | planted), text)
+        found = replay(make_adaptive_problem(**{"scheduled_rates": scheduled} | planted), text)
         assert not found.accepted, planted
         assert found.reason.startswith("no proof of"), planted

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,24 +13,14 @@ from wspd_design.certificates.domain import varied
 from wspd_design.certificates.proof.checker import check, value
 from wspd_design.certificates.proof_run import adaptive_run
 from wspd_design.certificates.records import Status
-from wspd_design.design.records import Specification
-from wspd_design.design.selection import design_controller
 from wspd_design.model.number import saturation
 from wspd_design.model.slip import slip_dynamics
-from wspd_design.parameters.loading import load_rail
 
 
 @pytest.fixture(scope="module")
-def make_scheduled(er24pc, make_problem):
+def make_scheduled(make_adaptive_problem):
     """Problem of the designed adaptive law with scheduled rates, on a domain in which the brake suffices."""
-
-    def make(**changes):
-        rail = load_rail("polach-wet")
-        law = design_controller(er24pc, rail, Specification()).build(er24pc, rail)
-        law = replace(law, gains=replace(law.gains, scheduled_rates=True, **changes))
-        return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), mu0_bounds=(0.28, 0.3))
-
-    return make
+    return partial(make_adaptive_problem, scheduled_rates=True)
 
 
 @pytest.fixture(scope="module")
