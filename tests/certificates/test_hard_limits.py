@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from wspd_design.certificates import domain, hard_limits, recovery
+from wspd_design.certificates import domain, hard_limits, recovery, recovery_samples
 from wspd_design.certificates.certificate_file import certificate_text
 from wspd_design.certificates.domain import INERTIA, MASS, MU0, SLIP, SPEED
 from wspd_design.certificates.records import Status
@@ -110,6 +110,41 @@ def test_balls_are_certain_just_beyond_the_recoverable_deviation(dry):
         assert seen.slip <= slip_when_seen(dry, point, 1.05 * found) <= 1.02 * seen.slip
 
 
+def drawn_within(problem, speed, *, count=1000):
+    """Points of the domain at a speed, at random."""
+    low, high = domain.slip_held(problem)
+    low[SPEED] = high[SPEED] = speed
+    return np.random.default_rng(9).uniform(low, high, (count, 5))
+
+
+def overlooked(problem, samples):
+    """Speeds at which a point at random is worse than the worst of the samples."""
+    return [
+        speed
+        for speed, worst in zip(samples.speeds[::8], samples.worst[::8], strict=True)
+        if recovery.recoverable(problem, drawn_within(problem, speed)).min() < 0.999 * worst
+    ]
+
+
+def test_the_worst_lies_where_the_brake_just_holds_the_reference(dry):
+    """A wheel that is too heavily loaded for T_max, one sample late, comes back the easier."""
+    samples = recovery_samples.sample(dry)
+    assert not overlooked(dry, samples)
+    assert np.all(np.diff(np.diff(samples.worst[samples.speeds < 10.0])) > -1e-3)  # no bump
+    slow = int(np.searchsorted(samples.speeds, 24.0 / domain.KMH))
+    point, worst = samples.tightest[slow], samples.worst[slow]
+    assert dry.mass_bounds[0] < point[MASS] < dry.mass_bounds[1]
+    plant = domain.dynamics(dry, point[None])
+    assert -plant.drift / plant.gain == pytest.approx(dry.vehicle.brake.max_torque, rel=1e-9)
+    assert not leaves(dry, point, 0.99 * worst)
+    assert leaves(dry, point, 1.01 * worst)
+
+
+def test_corners_alone_are_too_hopeful(dry, monkeypatch):
+    monkeypatch.setattr(recovery_samples, "just_held", lambda _problem, points, _column: points)
+    assert len(overlooked(dry, recovery_samples.sample(dry))) > 3
+
+
 @pytest.mark.parametrize("rail", ["polach-dry", "polach-wet", "table10-dry"])
 def test_no_guarantee_exceeds_what_integration_finds(make_problem, make_controller, rail):
     problem = make_problem(make_controller("afsmc"), rail=rail)
@@ -183,7 +218,7 @@ def test_wet_rail_is_proved(wet, proved):
 
 def test_lowest_speed_agrees_with_the_root_at_nominal_parameters(dry):
     problem = pinned(dry)
-    samples = hard_limits.sample(problem)
+    samples = recovery_samples.sample(problem)
 
     def excess(speed):
         fall = -slip_dynamics(dry.vehicle, dry.rail, dry.slip, speed).drift
@@ -196,7 +231,7 @@ def test_lowest_speed_agrees_with_the_root_at_nominal_parameters(dry):
     # TIGHT is a share of the deviation; the condition is between linear and quadratic in it.
     root = brentq(excess, 10.0, 30.0)
     found = hard_limits.lowest_speed(problem, samples)
-    step = (problem.speeds[1] / problem.speeds[0]) ** (1.0 / (hard_limits.SPEEDS - 1))
+    step = (problem.speeds[1] / problem.speeds[0]) ** (1.0 / (recovery_samples.SPEEDS - 1))
     assert root / step <= found <= root * step
 
 

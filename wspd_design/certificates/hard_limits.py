@@ -3,13 +3,9 @@
 The controller does not matter but for its sample time: a deviation is seen up to one sample late. See ``recovery.py``.
 """
 
-from dataclasses import dataclass
-from itertools import product
-from typing import TYPE_CHECKING
-
 from wspd_design.certificates import domain, findings
 from wspd_design.certificates.checking import OutsideModel, certified, level, series
-from wspd_design.certificates.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.domain import KMH, SLIP
 from wspd_design.certificates.part import with_part
 from wspd_design.certificates.proof.engine import Finding, enclose, engine, settle
 from wspd_design.certificates.records import (
@@ -25,35 +21,18 @@ from wspd_design.certificates.records import (
 from wspd_design.certificates.recovery import (
     growth_claim,
     passes,
-    per_deviation,
     reach,
-    recoverable,
     share_claim,
     torque_claim,
 )
-
-if TYPE_CHECKING:
-    from wspd_design.certificates.domain import Array
+from wspd_design.certificates.recovery_samples import SPEEDS, Samples, sample
 
 NAME, TITLE = "hard_limits", "Limits of recovery"
 DEVIATION = 0.05  # of the slip, to be brought back: as wide as the usual band around a reference
 TIGHT = 0.95  # share up to which a proof is tried: it costs the more the closer it comes to 1
 SPARED, LEAST_TOLERANCE = 0.75, 0.04  # of the enclosed share: part of its distance from 1, and least
 GROWTH_TOLERANCE, TORQUE_TOLERANCE = 0.05, 100.0  # -, N m
-SPEEDS, SLIPS = 121, 33  # of the samples
 TRIALS = 12  # of a witness
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Samples:
-    """What is recoverable at sampled speeds, found by integration, and what the condition guarantees [-]."""
-
-    speeds: "Array"  # m/s
-    nominal: "Array"
-    worst: "Array"  # smallest over the corners of the parameters
-    corners: "Array"  # points where it is smallest
-    guaranteed: "Array"  # by the condition, smallest over corners and slips
-    growth: "Array"  # largest within a sample, over corners and slips
 
 
 @certified(name=NAME, title=TITLE)
@@ -89,7 +68,7 @@ def check(problem: Problem) -> Certificate:
         explanation=_explanation(problem, samples, growth, shown, witness, known),
         margin=Range(low=known - DEVIATION, high=least - DEVIATION, unit="-"),
         worst_point=(
-            *domain.readable(samples.corners[worst])[1:],
+            *domain.readable(samples.tightest[worst])[1:],
             Point(name="recoverable deviation", value=least, unit="-"),
         ),
         witness=witness,
@@ -115,7 +94,8 @@ def check(problem: Problem) -> Certificate:
         ),
         method="interval branch and bound of a sufficient condition, replayed by the independent checker; "
         "counterexamples by integration, confirmed in exact balls",
-        resolution=f"{sum(each.boxes for each in found)} boxes; {SPEEDS} speeds with all corners of the parameters",
+        resolution=f"{sum(each.boxes for each in found)} boxes; {SPEEDS} speeds with all corners of the parameters "
+        "and the points between them where T* = T_max",
         reference="eqs. (9), (19); docs/theory.md#hard-limits",
         undecided=0.0 if status is not Status.UNDECIDED else _open(problem, lowest if shown else None),
         engine=engine(),
@@ -127,41 +107,6 @@ def check(problem: Problem) -> Certificate:
 def has_room(problem: Problem) -> bool:
     """Whether the deviation lies within the range of slip."""
     return problem.slips[0] <= problem.slip < problem.slip + DEVIATION < problem.slips[1]
-
-
-def sample(problem: Problem) -> Samples:
-    """Integrate and evaluate the condition at many speeds and all corners of the parameters."""
-    import numpy as np
-
-    speeds = np.geomspace(*problem.speeds, SPEEDS)
-    vehicle = problem.vehicle
-    nominal = (vehicle.mass, vehicle.wheelset_inertia, problem.rail.mu0)
-    slips = np.linspace(problem.slip, problem.slips[1], SLIPS)
-
-    def at(corner: tuple[float, ...], slip: float) -> "Array":
-        points = np.empty((SPEEDS, 5))
-        points[:, SPEED], points[:, SLIP] = speeds, slip
-        points[:, MASS], points[:, INERTIA], points[:, MU0] = corner
-        return points
-
-    corners = list(product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds))
-    exact = np.array([recoverable(problem, at(corner, problem.slip)) for corner in corners])
-    shares, poles = [], []
-    for corner in corners:
-        fall = -domain.dynamics(problem, at(corner, problem.slip)).drift
-        for slip in slips:
-            pole = domain.dynamics(problem, at(corner, float(slip))).pole
-            shares.append(per_deviation(problem, pole, pole / fall))
-            poles.append(pole)
-    smallest = exact.argmin(axis=0)
-    return Samples(
-        speeds=speeds,
-        nominal=recoverable(problem, at(nominal, problem.slip)),
-        worst=exact.min(axis=0),
-        corners=np.array([at(corners[c], problem.slip)[k] for k, c in enumerate(smallest)]),
-        guaranteed=1.0 / np.max(shares, axis=0),
-        growth=np.exp(problem.sample_time * np.max(poles, axis=0)),
-    )
 
 
 def lowest_speed(problem: Problem, samples: Samples) -> float | None:
@@ -207,7 +152,7 @@ def _witness(problem: Problem, samples: Samples) -> tuple[Point, ...]:
     import numpy as np
 
     for k in np.flatnonzero(samples.worst < DEVIATION)[::-1][:TRIALS]:
-        point = samples.corners[k].copy()
+        point = samples.tightest[k].copy()
         seen = passes(problem, point, DEVIATION)
         if seen is not None:
             point[SLIP] = seen.slip
@@ -270,7 +215,7 @@ def _plots(problem: Problem, samples: Samples) -> tuple[Series, ...]:
     axes = ("speed [km/h]", "recoverable deviation of the slip [-]")
     return (
         series("nominal", *axes, speeds, samples.nominal),
-        series("worst of the bounds", *axes, speeds, samples.worst),
+        series("worst within the bounds", *axes, speeds, samples.worst),
         series("guaranteed", *axes, speeds, np.minimum(samples.guaranteed, reach(problem))),
         level("asked for", *axes, speeds, DEVIATION),
         series(
