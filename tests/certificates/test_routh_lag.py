@@ -1,4 +1,4 @@
-"""The loop inside the layer with valve lag: decided for all speeds and parameters, against eigenvalues."""
+"""The loop near its reference with valve lag: decided for all speeds and parameters, against eigenvalues."""
 
 import json
 from dataclasses import replace

@@ -125,8 +125,9 @@ def check(problem: Problem) -> Certificate:
         ),
         method="python-control on the linear loop opened at the valve command; zero-order hold at the sample time; "
         "disk margin at the extremes of abs(S - 1/2) over all frequencies; a witness by poles that Arb encloses",
-        resolution=f"{SPEEDS} speeds",
-        reference="eqs. (14), (19), (22); docs/theory.md#routh; Seiler, Packard and Gahinet (2020), An introduction to "
+        resolution=f"{SPEEDS} speeds; gain margins beyond {_decibel(MOST_GAIN):.0f} dB and delay margins beyond "
+        f"{MOST_DELAY:.0f} s are given as these",
+        reference="eqs. (14), (19); docs/theory.md#routh; Seiler, Packard and Gahinet (2020), An introduction to "
         "disk margins",
         series=(
             *(series(name, x, "disk margin [-]", speeds * KMH, _of(found, "disk")) for name, found in kinds),

@@ -1,4 +1,4 @@
-"""Inside the boundary layer the valve lag must leave the loop stable: Routh's conditions at every speed."""
+"""Near its reference the valve lag must leave the loop stable: Routh's conditions at every speed."""
 
 import math
 from dataclasses import replace
@@ -29,7 +29,7 @@ from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
 
-NAME, TITLE = "routh_lag", "Loop inside the layer with valve lag"
+NAME, TITLE = "routh_lag", "Loop near its reference with valve lag"
 TOLERANCE = 0.1  # of the enclosed margins
 PLOT_SPEEDS = 81
 LEAST_GAIN = 1e-3  # of the brake torque per slip
@@ -84,7 +84,7 @@ def check(problem: Problem) -> Certificate:
                 else "No lag, however short, would do there. "
             )
             + f"With the nominal parameters the loop is unstable at {unstable} of {PLOT_SPEEDS} speeds. The slip "
-            "cannot settle inside the layer and swings through it.",
+            "cannot settle at its reference and swings about it.",
             Status.UNDECIDED: f"Open {spot}: {worst.claim.name}; {worst.reason}.",
         }[status],
         margin=replace(worst, asked=Fraction(0)).margin,
@@ -100,7 +100,7 @@ def check(problem: Problem) -> Certificate:
         method="Routh's conditions of the linearized loop by interval branch and bound; proofs are replayed by "
         "the independent checker, a witness is evaluated in exact balls",
         resolution="; ".join(f"{each.claim.name}: {each.boxes} boxes" for each in found),
-        reference="eqs. (14), (23); docs/theory.md#routh",
+        reference="eqs. (14), (19); docs/theory.md#routh",
         undecided=worst.undecided,
         engine=engine(),
         proofs=findings.proofs(*found),
