@@ -1,13 +1,18 @@
 """The verdict: what is proved, what is left open and why, and what it does not speak about."""
 
 import json
+import time
 from dataclasses import replace
+from itertools import count
 
 import pytest
 
 from tests.certificates.invariance.loops import feedback_problem
+from wspd_design.certificates.certificate_file import certificate_text
 from wspd_design.certificates.invariance import certificate
 from wspd_design.certificates.invariance.checker import Verdict, check
+from wspd_design.certificates.invariance.outlines import OUTLINES
+from wspd_design.certificates.proof.prover import Budget, within
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.protocol import Command
 from wspd_design.design.records import Specification
@@ -53,8 +58,9 @@ def test_outlines_are_closed_and_physical(problem, proved):
     *outlines, reference, full = proved.series
     assert set(reference.x) == {problem.slip}
     assert set(full.y) == {problem.vehicle.brake.max_torque / 1e3}
-    assert 1 <= len(outlines) <= certificate.OUTLINES
+    assert 1 <= len(outlines) <= OUTLINES
     for series in outlines:
+        assert series.name.startswith("set at ")
         assert (series.x[0], series.y[0]) == (series.x[-1], series.y[-1])
         assert 0.0 < min(series.x) < problem.slip < max(series.x) < 1.0
         assert 0.0 <= min(series.y) <= max(series.y) <= problem.vehicle.brake.max_torque / 1e3
@@ -69,10 +75,21 @@ def test_without_the_checker_it_is_evidence(problem, monkeypatch):
     assert found.status is Status.EVIDENCE
     assert not found.proofs
     assert "does not accept" in found.explanation
+    assert found.series[0].name.startswith("unproved set at ")
 
 
-def test_a_wide_box_is_left_open_with_the_windows_and_the_reason():
-    found = certificate.check(feedback_problem(spread=0.2, speeds=(24.0, 26.0)))
+@pytest.fixture(scope="module")
+def wide():
+    return feedback_problem(spread=0.2, speeds=(24.0, 26.0))
+
+
+@pytest.fixture(scope="module")
+def left_open(wide):
+    return certificate.check(wide)
+
+
+def test_a_wide_box_is_left_open_with_the_windows_and_the_reason(left_open):
+    found = left_open
     assert found.status is Status.UNDECIDED
     assert found.undecided == 1.0
     assert "No set is found at 86.4 to 93.6 km/h" in found.explanation
@@ -80,7 +97,14 @@ def test_a_wide_box_is_left_open_with_the_windows_and_the_reason():
     assert "% of the full one over the box" in found.explanation
     assert "With nominal parameters the checker accepts" in found.explanation
     assert not found.proofs
-    assert not found.series
+
+
+def test_sets_without_uncertainty_are_drawn_if_there_are_no_others(left_open):
+    alone = certificate.check(feedback_problem(spread=0.0, speeds=(24.0, 26.0)))
+    assert alone.status is Status.PROVED
+    assert [(each.x, each.y) for each in left_open.series] == [(each.x, each.y) for each in alone.series]
+    names = [each.name for each in left_open.series]
+    assert names == ["nominal set at 90.7 km/h", "nominal set at 93.6 km/h", "reference", "full torque"]
 
 
 def test_some_windows_of_a_range():
@@ -95,15 +119,49 @@ def test_some_windows_of_a_range():
     assert 0.1 < found.undecided < 0.9
     assert "No set is found at 10.8 to" in found.explanation
     assert "nominal parameters already" in found.explanation
-    assert found.series
+    speeds = [
+        float(each.name.removeprefix("unproved set at ").removesuffix(" km/h")) for each in found.series[:-2]
+    ]
+    assert 10.8 < min(speeds) < max(speeds) == 23.4
 
 
-def test_time_that_runs_out_is_said(problem, monkeypatch):
-    monkeypatch.setattr(certificate, "SEARCH_SHARE", 0.0)
-    found = certificate.check(problem)
+def test_some_windows_of_a_range_without_uncertainty(wide):
+    with within(Budget(seconds=1e-3)):
+        found = certificate.check(wide)
+    assert "With nominal parameters 1 of 2 windows have a set; the search time did not suffice for 1" in (
+        found.explanation
+    )
+    names = [each.name for each in found.series]
+    assert names == ["unproved nominal set at 90.7 km/h", "reference", "full torque"]
+
+
+def test_search_time_that_runs_out_is_said(problem):
+    with within(Budget(seconds=0.0)):
+        found = certificate.check(problem)
     assert found.status is Status.UNDECIDED
     assert found.undecided == pytest.approx(1.0)
-    assert "The time ran out before 82.8 to 93.6 km/h" in found.explanation
+    assert "The search time, counted in steps of cells, ran out before 82.8 to 93.6 km/h" in found.explanation
+    assert "the search time did not suffice for" in found.explanation
+    assert not found.series
+
+
+def test_search_time_decides_how_many_windows_are_searched(problem):
+    """More time, more windows, and at last all of them."""
+    left = []
+    for seconds in (0.001, 0.5, 20.0):
+        with within(Budget(seconds=seconds)):
+            left.append(certificate.check(problem).undecided)
+    assert 1.0 > left[0] > left[1] >= left[2] == 0.0
+
+
+def test_the_same_problem_has_the_same_text_on_a_slow_machine(wide, left_open, monkeypatch):
+    clock = count(step=1000.0)
+    for name in ("time", "monotonic", "perf_counter", "process_time"):
+        monkeypatch.setattr(time, name, lambda: next(clock))
+    again = certificate.check(wide)
+    assert again.seconds >= 1000.0
+    assert certificate_text(again) == certificate_text(left_open)
+    assert again.series == left_open.series
 
 
 def test_wheels_that_lock_have_no_set(problem, make_controller):

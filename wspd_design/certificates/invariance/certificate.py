@@ -1,16 +1,16 @@
 """A sampled law with torque feedback keeps slip and torque in a set that its one-sample map does not leave."""
 
 import math
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates import domain, laws
-from wspd_design.certificates.checking import OutsideModel, certified, level, model_hash, series
+from wspd_design.certificates.checking import OutsideModel, certified, model_hash
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.invariance import checker, document, escape
+from wspd_design.certificates.invariance.outlines import outlines
 from wspd_design.certificates.invariance.search import Found, holding_share, search, windows
 from wspd_design.certificates.proof.engine import engine
 from wspd_design.certificates.proof.prover import budget
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 NAME, TITLE = "sampled_invariance", "Invariant set of the sampled loop"
 CLAIM = "In one sample the closed loop maps a set of slip and torque at every speed into itself."
 SEARCH_SHARE = 0.6  # of the time for a claim, for each of two searches; the check comes on top
-OUTLINES = 5  # windows that the plot shows
-AXES = ("slip [-]", "braking torque [kN m]")
+STEPS_PER_SECOND = 250_000  # steps of cells, in which the time is counted; a processor takes about as many
 ASSUMPTIONS = (
     "full supply pressure behind the valves",
     "speeds and torque measured exactly, without dead time",
@@ -46,7 +45,7 @@ def check(problem: Problem) -> Certificate:
         return laws.not_applicable(problem, NAME, CLAIM, reason)
     domain.box(problem)  # refuses what is not positive
     try:
-        found = search(problem, deadline=_deadline())
+        found = search(problem, most_steps=_most_steps())
     except TypeError as error:
         raise OutsideModel(
             f"the law {problem.controller.name} cannot be evaluated on intervals: {error}"
@@ -67,7 +66,6 @@ def check(problem: Problem) -> Certificate:
     )
     widest = max(covered, key=lambda each: _extent([each])[1])
     return _certificate(
-        problem,
         found,
         claim=f"{_claim(problem)} The slip then stays within {slips[0]:.3f} and {slips[1]:.3f}, also between samples.",
         status=Status.PROVED if verdict.accepted else Status.EVIDENCE,
@@ -84,12 +82,13 @@ def check(problem: Problem) -> Certificate:
             Point(name="speed", value=widest.cells.window.high * KMH, unit="km/h"),
         ),
         proofs=(proof,) if verdict.accepted else (),
+        outlined=outlines(problem, covered, "set" if verdict.accepted else "unproved set"),
     )
 
 
-def _deadline() -> float:
-    """Return the reading of the processor's clock at which a search that begins now gives up [s]."""
-    return time.process_time() + SEARCH_SHARE * budget().seconds
+def _most_steps() -> float:
+    """Return the steps of cells after which a search gives up."""
+    return SEARCH_SHARE * budget().seconds * STEPS_PER_SECOND
 
 
 def _claim(problem: Problem) -> str:
@@ -124,15 +123,24 @@ def _undecided(problem: Problem, found: Sequence[Found | None]) -> Certificate:
     if apart:
         parts.append(f"The sets at {_ranges(apart, spans)} do not map into that of the next slower window")
     if unreached:
-        parts.append(f"The time ran out before {_ranges(unreached, spans)}")
+        parts.append(
+            f"The search time, counted in steps of cells, ran out before {_ranges(unreached, spans)}"
+        )
     open_width = sum(span.high - span.low for span in (*missing, *apart, *unreached))
+    nominal, alone = _nominal(problem), [each for each in found if each is not None]
+    if nominal.accepted:
+        shown = outlines(problem, nominal.sets, "nominal set")
+    elif alone:
+        shown = outlines(problem, alone, "unproved set")
+    else:
+        shown = outlines(problem, nominal.sets, "unproved nominal set")
     return _certificate(
-        problem,
         found,
         claim=_claim(problem),
         status=Status.UNDECIDED,
-        explanation=". ".join((*parts, _authority(problem), _nominal(problem))),
+        explanation=". ".join((*parts, _authority(problem), nominal.words)),
         undecided=min(1.0, open_width / (problem.speeds[1] - problem.speeds[0])),
+        outlined=shown,
     )
 
 
@@ -166,7 +174,15 @@ def _authority(problem: Problem) -> str:
     )
 
 
-def _nominal(problem: Problem) -> str:
+class _Nominal(NamedTuple):
+    """What is found without uncertainty."""
+
+    words: str
+    sets: Sequence[Found] = ()
+    accepted: bool = False  # by the checker, for the whole range of speed
+
+
+def _nominal(problem: Problem) -> _Nominal:
     """Try the same with nominal parameters."""
     vehicle, rail = problem.vehicle, problem.rail
     nominal = replace(
@@ -176,27 +192,31 @@ def _nominal(problem: Problem) -> str:
         mu0_bounds=(rail.mu0, rail.mu0),
     )
     if nominal == problem:
-        return "These are nominal parameters already."
-    found = search(nominal, deadline=_deadline())
+        return _Nominal("These are nominal parameters already.")
+    found = search(nominal, most_steps=_most_steps())
     covered = _covered(nominal, found)
     if covered is None:
-        spans = windows(nominal)
+        spans, sets = windows(nominal), [each for each in found if each is not None]
         missing = [span for span, each in zip(spans, found, strict=False) if each is None]
-        return f"With nominal parameters {len(found) - len(missing)} of {len(spans)} windows have a set" + (
-            f". {_simulated(nominal, missing)}." if missing else "."
-        )
+        words = f"With nominal parameters {len(sets)} of {len(spans)} windows have a set"
+        if len(found) < len(spans):
+            words += f"; the search time did not suffice for {len(spans) - len(found)}"
+        return _Nominal(words + (f". {_simulated(nominal, missing)}." if missing else "."), sets)
     verdict = checker.check(nominal, document.write(nominal, covered))
     if not verdict.accepted:
-        return "With nominal parameters every window has a set, which the checker does not accept."
+        return _Nominal(
+            "With nominal parameters every window has a set, which the checker does not accept.", covered
+        )
     low, high = verdict.slips
-    return (
+    return _Nominal(
         "With nominal parameters the checker accepts sets for the whole range of speed, with slip "
-        f"{low:.3f} to {high:.3f}."
+        f"{low:.3f} to {high:.3f}.",
+        covered,
+        accepted=True,
     )
 
 
 def _certificate(
-    problem: Problem,
     found: Sequence[Found | None],
     *,
     claim: str,
@@ -206,6 +226,7 @@ def _certificate(
     worst_point: tuple[Point, ...] = (),
     undecided: float = 0.0,
     proofs: tuple[Proof, ...] = (),
+    outlined: tuple[Series, ...],
 ) -> Certificate:
     """Fill in what does not depend on the verdict."""
     sizes = sorted({each.cells.per_unit for each in found if each is not None})
@@ -226,7 +247,7 @@ def _certificate(
         engine=engine(),
         undecided=undecided,
         proofs=proofs,
-        series=_outlines(problem, [each for each in found if each is not None]),
+        series=outlined,
     )
 
 
@@ -238,37 +259,3 @@ def _extent(found: Sequence[Found]) -> tuple[float, float]:
         low = min(low, float(each.image.between_low[states].min()))
         high = max(high, float(each.image.between_high[states].max()))
     return low, high
-
-
-def _outlines(problem: Problem, found: Sequence[Found]) -> tuple[Series, ...]:
-    """Outlines of a few of the sets in slip and torque [kN m], the fastest last, beside reference and full torque."""
-    import numpy as np
-
-    if not found:
-        return ()
-    step = -(-len(found) // OUTLINES)
-    sets = tuple(_outline(problem, each) for each in found[::-step][::-1])
-    full = problem.vehicle.brake.max_torque / 1e3
-    slips = [slip for each in sets for slip in each.x]
-    return (
-        *sets,
-        series("reference", *AXES, np.array([problem.slip] * 2), np.array([0.0, full])),
-        level("full torque", *AXES, (min(slips), max(slips)), full),
-    )
-
-
-def _outline(problem: Problem, found: Found) -> Series:
-    """Lower edge of a set from small to large slip, and its upper edge back."""
-    import numpy as np
-
-    cells, full = found.cells, problem.vehicle.brake.max_torque / 1e3
-    rows = np.flatnonzero(found.states.any(axis=1))
-    columns = [np.flatnonzero(found.states[row]) for row in rows]
-    middle = (rows + cells.first[0] + 0.5) / cells.per_unit
-    held = cells.window.tilt * (middle - problem.slip)
-    lowest = (np.array([each[0] for each in columns]) + cells.first[1]) / cells.per_unit
-    highest = (np.array([each[-1] + 1 for each in columns]) + cells.first[1]) / cells.per_unit
-    lower, upper = (full * np.clip(edge - held, 0.0, 1.0) for edge in (lowest, highest))
-    x = np.concatenate([middle, middle[::-1], middle[:1]])
-    y = np.concatenate([lower, upper[::-1], lower[:1]])
-    return series(f"set at {cells.window.high * KMH:.0f} km/h", *AXES, x, y)

@@ -5,7 +5,6 @@ set is therefore kept only with images inside itself *and* inside the set of the
 """
 
 import math
-import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -100,25 +99,26 @@ def _fill(problem: Problem, speed: float, slip: float, share: float) -> float:
     return float(command.fill)
 
 
-def search(problem: Problem, *, deadline: float) -> list[Found | None]:
+def search(problem: Problem, *, most_steps: float) -> list[Found | None]:
     """Find the sets of all windows, the slowest first.
 
     Parameters
     ----------
     problem : Problem
         Closed loop with a law without memory.
-    deadline : float
-        Reading of ``time.process_time`` after which windows are left out [s].
+    most_steps : float
+        Cells that are mapped, times the steps of their sample, after which windows are left out. Steps are counted
+        instead of seconds so that the same problem has the same sets however fast or busy the machine is.
 
     Returns
     -------
     list of Found or None
-        None for a window in which nothing was found; windows for which no time was left are missing.
+        None for a window in which nothing was found; windows that were left out are missing.
     """
     results: list[Found | None] = []
-    slices, needed = windows(problem), 0
+    slices, needed, taken = windows(problem), 0, 0
     for window in slices:
-        if time.process_time() > deadline:
+        if taken >= most_steps:
             break
         tell(len(results) / len(slices))
         slower = results[-1] if results else None
@@ -128,10 +128,12 @@ def search(problem: Problem, *, deadline: float) -> list[Found | None]:
         for trial in trials:
             tilt, per_unit = TRIALS[trial]
             tilted = replace(window, tilt=tilt * window.tilt)
-            best = largest(problem, start_region(problem, tilted, per_unit), slower)
+            start = start_region(problem, tilted, per_unit)
+            steps = start.members.size * steps_of(problem, tilted)
+            best, taken = largest(problem, start, slower), taken + steps
             if best is None and slower is not None:
                 # Say which windows stand alone, although the stop is not covered.
-                best = largest(problem, start_region(problem, tilted, per_unit), None)
+                best, taken = largest(problem, start, None), taken + steps
             if best is not None and (best.glued or slower is None):
                 needed = trial
                 break
