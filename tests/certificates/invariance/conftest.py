@@ -16,7 +16,7 @@ def problem():
 
 @pytest.fixture(scope="session")
 def found(problem):
-    return search(problem, most_steps=math.inf)
+    return search(problem, most_work=math.inf)
 
 
 @pytest.fixture(scope="session")

@@ -182,7 +182,7 @@ def test_wrong_searches_are_refused(problem, monkeypatch):
     """Mutated searches find sets that are too large, and the checker sees each of them."""
 
     def found_by(other):
-        sets = search.search(other, most_steps=math.inf)
+        sets = search.search(other, most_work=math.inf)
         assert None not in sets
         return document.write(problem, sets)
 
@@ -277,7 +277,7 @@ def test_a_train_that_is_pushed_is_refused():
     plain = feedback_problem(spread=0.0)
     vehicle = replace(plain.vehicle, resistance_constant=-170e3)
     pushed = replace(plain, vehicle=vehicle, controller=replace(plain.controller, vehicle=vehicle))
-    found = search_sets(pushed, most_steps=math.inf)
+    found = search_sets(pushed, most_work=math.inf)
     assert None not in found
     assert not check(pushed, document.write(pushed, found)).accepted
 

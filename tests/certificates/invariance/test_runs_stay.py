@@ -78,7 +78,7 @@ def test_runs_leave_sets_that_are_too_large(problem, found):
 def test_the_simulated_stop_stays(seed):
     """The program's own simulation begins at rolling; from its first sample in a set on it stays."""
     problem = feedback_problem(spread=0.02, speeds=(9.0, 12.0))
-    found = search(problem, most_steps=math.inf)
+    found = search(problem, most_work=math.inf)
     verdict = check(problem, document.write(problem, found))
     assert verdict.accepted, verdict.reason
     vehicle, rail = drawn(problem, np.random.default_rng(seed))

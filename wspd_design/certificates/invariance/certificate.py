@@ -45,7 +45,7 @@ def check(problem: Problem) -> Certificate:
         return laws.not_applicable(problem, NAME, CLAIM, reason)
     domain.box(problem)  # refuses what is not positive
     try:
-        found = search(problem, most_steps=_most_steps())
+        found = search(problem, most_work=_most_work())
     except TypeError as error:
         raise OutsideModel(
             f"the law {problem.controller.name} cannot be evaluated on intervals: {error}"
@@ -86,8 +86,8 @@ def check(problem: Problem) -> Certificate:
     )
 
 
-def _most_steps() -> float:
-    """Return the steps of cells after which a search gives up."""
+def _most_work() -> float:
+    """Return the work after which a search gives up [steps of cells]."""
     return SEARCH_SHARE * budget().seconds * STEPS_PER_SECOND
 
 
@@ -193,7 +193,7 @@ def _nominal(problem: Problem) -> _Nominal:
     )
     if nominal == problem:
         return _Nominal("These are nominal parameters already.")
-    found = search(nominal, most_steps=_most_steps())
+    found = search(nominal, most_work=_most_work())
     covered = _covered(nominal, found)
     if covered is None:
         spans, sets = windows(nominal), [each for each in found if each is not None]

@@ -99,15 +99,15 @@ def _fill(problem: Problem, speed: float, slip: float, share: float) -> float:
     return float(command.fill)
 
 
-def search(problem: Problem, *, most_steps: float) -> list[Found | None]:
+def search(problem: Problem, *, most_work: float) -> list[Found | None]:
     """Find the sets of all windows, the slowest first.
 
     Parameters
     ----------
     problem : Problem
         Closed loop with a law without memory.
-    most_steps : float
-        Cells that are mapped, times the steps of their sample, after which windows are left out. Steps are counted
+    most_work : float
+        Cells that are mapped, times the steps of their sample, after which windows are left out. Work is counted
         instead of seconds so that the same problem has the same sets however fast or busy the machine is.
 
     Returns
@@ -118,7 +118,7 @@ def search(problem: Problem, *, most_steps: float) -> list[Found | None]:
     results: list[Found | None] = []
     slices, needed, taken = windows(problem), 0, 0
     for window in slices:
-        if taken >= most_steps:
+        if taken >= most_work:
             break
         tell(len(results) / len(slices))
         slower = results[-1] if results else None
