@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
-from wspd_design.certificates.balls import Ball, below, point
+from wspd_design.certificates.balls import Ball, below, in_balls, point
 from wspd_design.model import adhesion, brake
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.errors import UserError
@@ -68,11 +68,12 @@ def require(vehicle: Vehicle, rail: Rail, initial_speed: float) -> None:
         raise NoBound("the bound of the stop needs friction that is positive and never grows with sliding")
     if min(vehicle.resistance_constant, vehicle.resistance_linear, vehicle.resistance_quadratic) < 0.0:
         raise NoBound("the bound of the stop needs a resistance without negative parts")
-    load = point(vehicle.mass) * constants().gravity / (2 * vehicle.wheelsets)
+    vehicle, rail = in_balls(vehicle), in_balls(rail)
+    load = vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
     stiffness = adhesion.contact_stiffness(vehicle.contact, load)
-    slip, speed, radius = point(OVERSPEED), point(initial_speed), point(vehicle.wheel_radius)
+    slip, speed, radius = point(OVERSPEED), point(initial_speed), vehicle.wheel_radius
     force = adhesion.creep_force(slip, slip * speed, load, rail, stiffness)
-    per_force = 2 * vehicle.wheelsets / point(vehicle.mass) + 2 * radius**2 / vehicle.wheelset_inertia
+    per_force = 2 * vehicle.wheelsets / vehicle.mass + 2 * radius**2 / vehicle.wheelset_inertia
     if not force * per_force >= (1 + slip) * resistance(vehicle, speed) / vehicle.mass:
         raise NoBound(
             "the resistance could make a wheel outrun the train; the bound of the stop does not hold then"
@@ -91,6 +92,7 @@ def stop_limit(vehicle: Vehicle, speeds: Sequence[Fraction], peaks: Sequence[Fra
     peaks : sequence of Fraction
         Upper bounds of f/Q on the interval above each speed but the last [-]. They have to be shown elsewhere.
     """
+    vehicle = in_balls(vehicle)
     times, distances = _remaining(vehicle, speeds, peaks)
     time, distance, handover = _filling(vehicle, speeds, times, distances)
     return Limit(
@@ -106,8 +108,8 @@ def stop_limit(vehicle: Vehicle, speeds: Sequence[Fraction], peaks: Sequence[Fra
 
 def slowest(vehicle: Vehicle, initial_speed: Fraction, time: float) -> Ball:
     """Lower bound of the speed by momentum [m/s], ``time`` [s] after the start."""
-    count, radius = vehicle.wheelsets, point(vehicle.wheel_radius)
-    inertia, start = point(vehicle.wheelset_inertia), point(initial_speed)
+    count, radius = vehicle.wheelsets, vehicle.wheel_radius
+    inertia, start = vehicle.wheelset_inertia, point(initial_speed)
     overspeed = point(OVERSPEED)
     drag = (
         resistance(vehicle, start) + 2 * count * vehicle.wheel_damping * start * (1 + overspeed) / radius**2

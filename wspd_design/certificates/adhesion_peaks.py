@@ -24,7 +24,7 @@ from itertools import pairwise
 from typing import Any
 
 from wspd_design.certificates.adhesion_limit import Limit, NoBound, require, stop_limit
-from wspd_design.certificates.balls import Ball, ball, point
+from wspd_design.certificates.balls import Ball, ball, in_balls, point
 from wspd_design.certificates.checking import model_hash
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.proof.balls import Refused
@@ -112,7 +112,8 @@ def part_test(vehicle: Vehicle, rail: Rail, speed: Fraction) -> PartTest:
     speed : Fraction
         Of the train [m/s].
     """
-    load = point(vehicle.mass) * constants().gravity / (2 * vehicle.wheelsets)
+    vehicle, rail = in_balls(vehicle), in_balls(rail)
+    load = vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
     stiffness = adhesion.contact_stiffness(vehicle.contact, load)
     # Below the regularization speed the slip is referred to that speed, and sliding is no faster than there.
     referred = point(max(speed, Fraction(constants().slip_regularization_speed)))

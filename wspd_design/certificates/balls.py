@@ -5,6 +5,7 @@ holds.
 """
 
 import math
+from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -22,6 +23,16 @@ def point(value: float | Fraction) -> Ball:
     from flint import arb, fmpq
 
     return arb(fmpq(value.numerator, value.denominator)) if isinstance(value, Fraction) else arb(value)
+
+
+def in_balls(record: Any) -> Any:
+    """Return a record of parameters with every number as a ball, so that nothing is rounded on the way."""
+    values = {field.name: getattr(record, field.name) for field in fields(record)}
+    return replace(
+        record,
+        **{name: point(value) for name, value in values.items() if isinstance(value, float)},
+        **{name: in_balls(value) for name, value in values.items() if is_dataclass(value)},
+    )
 
 
 def above(value: Ball) -> float:

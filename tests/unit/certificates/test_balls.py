@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from flint import arb
 
-from wspd_design.certificates.balls import above, ball, below, point
+from wspd_design.certificates.balls import above, ball, below, in_balls, point
 
 THIRD = Fraction(1, 3)
 
@@ -35,3 +35,20 @@ def test_doubles_enclose(number):
 def test_unbounded_ball():
     assert above(arb.nan()) == math.inf
     assert below(1 / ball(-1.0, 1.0)) == -math.inf
+
+
+def test_records_in_balls_lose_no_digit(er24pc):
+    """A product of doubles is rounded; that of their balls encloses the exact one."""
+    exact = in_balls(er24pc)
+    contact = er24pc.contact
+    true = (
+        Fraction(contact.shear_modulus)
+        * Fraction(contact.semi_axis_rolling)
+        * Fraction(contact.semi_axis_lateral)
+    )
+    product = exact.contact.shear_modulus * exact.contact.semi_axis_rolling * exact.contact.semi_axis_lateral
+    rounded = contact.shear_modulus * contact.semi_axis_rolling * contact.semi_axis_lateral
+    assert product.contains(point(true))
+    assert Fraction(rounded) != true
+    assert exact.wheelsets == er24pc.wheelsets
+    assert exact.brake.max_torque == point(er24pc.brake.max_torque)
