@@ -176,7 +176,7 @@ SearchTimeOption: TypeAlias = Annotated[
     typer.Option(
         "--search-time",
         metavar="TIME",
-        help='How long to split the boxes of one claim before it stays undecided: "2 min". Default: 20 s.',
+        help='How long to search for the proof of one claim before it stays undecided: "2 min". Default: 20 s.',
         show_default=False,
     ),
 ]
