@@ -38,6 +38,8 @@ reports: export SOURCE_DATE_EPOCH := 1790000000
 reports: $(VENV)/.installed
 	$(BIN)/wspd design --rail polach-wet --output reports/er24pc-polach-wet/design.toml --force
 	$(BIN)/wspd report reports/er24pc-polach-wet/design.toml --output reports/er24pc-polach-wet/report.html --force
+	$(BIN)/wspd design --law torque-feedback --rail polach-wet --sample-time "20 ms" --output reports/torque-feedback-polach-wet/design.toml --force
+	$(BIN)/wspd report reports/torque-feedback-polach-wet/design.toml --output reports/torque-feedback-polach-wet/report.html --force
 	$(BIN)/wspd reproduce --output reports/paper --force
 
 bench: $(VENV)/.installed-dev

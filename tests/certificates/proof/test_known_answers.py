@@ -98,3 +98,8 @@ def test_checker_needs_no_prover():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_the_same_claim_gives_the_same_text(reference_claim):
+    first, second = (engine.settle(reference_claim, tolerance=1e-3).proof for _ in range(2))
+    assert first.certificate == second.certificate
