@@ -136,7 +136,7 @@ def answered(verdict: Verdict, shown: str, *, enough: bool = True) -> Answer:
 
 def statement(claim: Claim) -> str:
     """Write an inequality in words."""
-    return f"{claim.name} {claim.relation} {float(claim.bound):.6g} {claim.unit}".removesuffix(" -")
+    return claim.with_bound(f"{float(claim.bound):.6g}").removesuffix(" -")
 
 
 def inequalities(claims: Iterable[Claim], *, decisive: bool = True) -> tuple[Obligation, ...]:

@@ -81,7 +81,13 @@ class Claim:
 
     def statement(self) -> str:
         """Return the inequality in words."""
-        return f"{self.name} {self.relation} {text(self.bound)} {self.unit}"
+        return self.with_bound(text(self.bound))
+
+    def with_bound(self, bound: str) -> str:
+        """Return the inequality with a bound as it is written; a name that is an inequality has a margin instead."""
+        if "<" in self.name or ">" in self.name:
+            return f"{self.name}, with a margin of at least {bound} {self.unit}"
+        return f"{self.name} {self.relation} {bound} {self.unit}"
 
     @property
     def free(self) -> tuple[Variable, ...]:
