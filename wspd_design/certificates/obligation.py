@@ -120,7 +120,7 @@ def _checked(claim: Claim, text: str, where: str) -> Answer:
     """Let the checker decide about the bound that a proof states."""
     try:
         stated = replace(claim, bound=number(json.loads(text)["bound"]))
-        shown = stated.statement().removesuffix(" -") + where
+        shown = stated.statement() + where
     except (KeyError, TypeError, ValueError, OverflowError, ZeroDivisionError):
         raise Refused("the proof states no bound") from None
     tight = stated.bound <= claim.bound if claim.relation == "<=" else stated.bound >= claim.bound
@@ -136,7 +136,7 @@ def answered(verdict: Verdict, shown: str, *, enough: bool = True) -> Answer:
 
 def statement(claim: Claim) -> str:
     """Write an inequality in words."""
-    return claim.with_bound(f"{float(claim.bound):.6g}").removesuffix(" -")
+    return claim.with_bound(f"{float(claim.bound):.6g}")
 
 
 def inequalities(claims: Iterable[Claim], *, decisive: bool = True) -> tuple[Obligation, ...]:

@@ -85,9 +85,9 @@ class Claim:
 
     def with_bound(self, bound: str) -> str:
         """Return the inequality with a bound as it is written; a name that is an inequality has a margin instead."""
-        if "<" in self.name or ">" in self.name:
-            return f"{self.name}, with a margin of at least {bound} {self.unit}"
-        return f"{self.name} {self.relation} {bound} {self.unit}"
+        margin = "<" in self.name or ">" in self.name
+        said = f"{self.name}, with a margin of at least" if margin else f"{self.name} {self.relation}"
+        return f"{said} {bound} {self.unit}".removesuffix(" -")
 
     @property
     def free(self) -> tuple[Variable, ...]:
