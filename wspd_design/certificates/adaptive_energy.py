@@ -109,3 +109,8 @@ def inside(low: Finding, high: Finding, limit: float) -> Status:
     if findings.status(low, high) is Status.PROVED and low.claim.bound >= 0 and high.claim.bound <= limit:
         return Status.PROVED
     return Status.REFUTED if low.ends[1] < 0.0 or high.ends[0] > limit else Status.UNDECIDED
+
+
+def rounded_up(bound: float) -> str:
+    """Write an upper bound so that what stands there is still one."""
+    return f"{math.ceil(100.0 * bound) / 100.0:.2f}"

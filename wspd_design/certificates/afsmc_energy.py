@@ -1,24 +1,21 @@
 """The energy of the adaptive fuzzy law: bounds from the repaired V, or that of the paper refuted."""
 
-import math
-from fractions import Fraction
-
 from wspd_design.certificates import domain, findings, laws
 from wspd_design.certificates.adaptive_energy import (
     DECELERATION_TOLERANCE,
     TORQUE_TOLERANCE,
     energy,
     inside,
+    rounded_up,
     smallest_gain,
 )
 from wspd_design.certificates.balls import above
 from wspd_design.certificates.checking import certified
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.plant import plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.printed_energy import refutation
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.engine import enclose, engine, settle
-from wspd_design.certificates.reaching import reserve
+from wspd_design.certificates.reaching import deceleration_claim, reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Status
 from wspd_design.certificates.sliding_exists import torque_claim
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
@@ -69,8 +66,9 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
             problem, gains, float(low.claim.bound), float(high.claim.bound), eta, problem.speeds[1]
         )
         integral, error, top = (above(x) for x in (found.integral, found.weight_error, found.highest_bound))
-        numbers = f"the integral of abs(s_D) is at most {_up(integral)} s, the weights stay within "
-        numbers += f"{_up(error / 1e3)} kN m of {found.weight / 1e3:.3g} kN m, and psi_hat below {_up(top / 1e3)} kN m"
+        numbers = f"the integral of abs(s_D) is at most {rounded_up(integral)} s, the weights stay within "
+        numbers += f"{rounded_up(error / 1e3)} kN m of {found.weight / 1e3:.3g} kN m, and psi_hat below "
+        numbers += f"{rounded_up(top / 1e3)} kN m"
         where = (
             Point(name="V(0)", value=above(found.start), unit="N m s"),
             Point(name="bound of the integral of abs(s_D)", value=integral, unit="s"),
@@ -80,7 +78,10 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
         )
         layer = gains.boundary_layer / gains.proportional_gain
         seconds = integral / layer
-        meaning = f"The surface is more than one further layer, {layer:.3g}, away for at most {_up(seconds)} s in all."
+        meaning = (
+            f"The surface is more than one further layer, {layer:.3g}, away for at most "
+            f"{rounded_up(seconds)} s in all."
+        )
     else:
         numbers, meaning = "V bounds error and weights", "There is no bound to state."
     open_ones = [each.text for each in hypotheses if each.status is not Status.PROVED]
@@ -114,19 +115,9 @@ def _bounds(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
 
 def claims(problem: Problem, law: AdaptiveFuzzy) -> tuple[Claim, Claim, Claim]:
     """Claims about u* - eta/g, u* + eta/g and the deceleration on the domain."""
-    deceleration = Claim(
-        name="deceleration",
-        variables=plant_variables(problem),
-        expression=lambda x: plant_dynamics(problem, x).deceleration,
-        form=lambda x: plant_forces(problem, x).deceleration,
-        relation=">=",
-        bound=Fraction(0),
-        unit="m/s2",
-    )
     limit = problem.vehicle.brake.max_torque
-    return torque_claim(problem, law, ">=", 0.0), torque_claim(problem, law, "<=", limit), deceleration
-
-
-def _up(bound: float) -> str:
-    """Write an upper bound so that what stands there is still one."""
-    return f"{math.ceil(100.0 * bound) / 100.0:.2f}"
+    return (
+        torque_claim(problem, law, ">=", 0.0),
+        torque_claim(problem, law, "<=", limit),
+        deceleration_claim(problem, ">=", 0.0),
+    )

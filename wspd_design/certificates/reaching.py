@@ -24,7 +24,7 @@ from wspd_design.certificates.model_error import (
     variables,
 )
 from wspd_design.certificates.plant import Values, place, plant_dynamics, plant_forces, plant_variables
-from wspd_design.certificates.proof.claim import Claim
+from wspd_design.certificates.proof.claim import Claim, Relation
 from wspd_design.certificates.proof.engine import engine, settle
 from wspd_design.certificates.proof.prover import extreme
 from wspd_design.certificates.records import Certificate, Point, Problem, Series, Status
@@ -109,6 +109,33 @@ def largest_deceleration(problem: Problem) -> float:
     return problem.mu0_bounds[1] * constants().gravity + rolling
 
 
+def deceleration_claim(
+    problem: Problem, relation: Relation, bound: float, **ranges: float | tuple[float, float]
+) -> Claim:
+    """Return a claim about the deceleration of the train, by default on the whole domain.
+
+    Parameters
+    ----------
+    problem : Problem
+        Plant and domain.
+    relation : {"<=", ">="}
+        Of deceleration and bound.
+    bound : float
+        In m/s2.
+    **ranges : float or tuple of float
+        Other ranges of the quantities, as in :func:`plant_variables`.
+    """
+    return Claim(
+        name="deceleration",
+        variables=plant_variables(problem, **ranges),
+        expression=lambda x: plant_dynamics(problem, x).deceleration,
+        form=lambda x: plant_forces(problem, x).deceleration,
+        relation=relation,
+        bound=Fraction(bound),
+        unit="m/s2",
+    )
+
+
 def claims(problem: Problem, law: SlidingMode) -> tuple[Claim, Claim]:
     """Return what the theorem needs: the gain outweighs the model error; the train slows no faster than a_max."""
     eta = reserve(problem)
@@ -130,16 +157,7 @@ def claims(problem: Problem, law: SlidingMode) -> tuple[Claim, Claim]:
         bound=Fraction(law.gains.switching_gain),
         unit="m/s2",
     )
-    deceleration = Claim(
-        name="deceleration",
-        variables=plant_variables(problem),
-        expression=lambda x: plant_dynamics(problem, x).deceleration,
-        form=lambda x: plant_forces(problem, x).deceleration,
-        relation="<=",
-        bound=Fraction(largest_deceleration(problem)),
-        unit="m/s2",
-    )
-    return gain, deceleration
+    return gain, deceleration_claim(problem, "<=", largest_deceleration(problem))
 
 
 @certified(name=NAME, title=TITLE)

@@ -15,14 +15,14 @@ from wspd_design.certificates.adaptive_energy import (
     TORQUE_TOLERANCE,
     energy,
     inside,
+    rounded_up,
     smallest_gain,
 )
 from wspd_design.certificates.balls import above, point
 from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.plant import plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.proof.claim import Claim
 from wspd_design.certificates.proof.engine import enclose, engine, settle
-from wspd_design.certificates.reaching import largest_deceleration, reserve
+from wspd_design.certificates.reaching import deceleration_claim, largest_deceleration, reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Status
 from wspd_design.certificates.sliding_exists import torque_claim
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
@@ -32,19 +32,10 @@ from wspd_design.parameters.loading import constants
 def claims(problem: Problem, law: AdaptiveFuzzy) -> tuple[Claim, Claim, Claim]:
     """Claims about u* - eta/g, u* + eta/g and the deceleration, down to standstill."""
     limit, speeds = problem.vehicle.brake.max_torque, (0.0, problem.speeds[1])
-    deceleration = Claim(
-        name="deceleration",
-        variables=plant_variables(problem, speed=speeds),
-        expression=lambda x: plant_dynamics(problem, x).deceleration,
-        form=lambda x: plant_forces(problem, x).deceleration,
-        relation="<=",
-        bound=Fraction(largest_deceleration(problem)),
-        unit="m/s2",
-    )
     return (
         torque_claim(problem, law, ">=", 0.0, speed=speeds),
         torque_claim(problem, law, "<=", limit, speed=speeds),
-        deceleration,
+        deceleration_claim(problem, "<=", largest_deceleration(problem), speed=speeds),
     )
 
 
@@ -87,15 +78,15 @@ def convergence(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
     if positive and bounded is Status.PROVED:
         found = energy(problem, gains, float(low.claim.bound), float(high.claim.bound), eta, 1.0)
         lightest, radius = point(problem.inertia_bounds[0]), point(problem.vehicle.wheel_radius)
-        steepest = radius / lightest * max(float(high.claim.bound), limit - float(low.claim.bound))
+        steepest = radius / lightest * point(max(high.claim.bound, Fraction(limit) - low.claim.bound))
         where = (
             Point(name="V(0) in sigma", value=above(found.start), unit="N s2"),
             Point(name="bound of the integral of abs(s_D) d sigma", value=above(found.integral), unit="s2/m"),
             Point(name="Lipschitz constant of s_D in sigma", value=above(steepest), unit="m/s2"),
         )
         said = (
-            f"The integral of abs(s_D) d sigma is at most {above(found.integral):.4g} s2/m and s_D changes by at most "
-            f"{above(steepest):.4g} m/s2 per unit of sigma"
+            f"The integral of abs(s_D) d sigma is at most {rounded_up(above(found.integral))} s2/m and s_D changes by "
+            f"at most {rounded_up(above(steepest))} m/s2 per unit of sigma"
         )
     return Certificate(
         name="barbalat",
