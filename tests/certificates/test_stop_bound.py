@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from wspd_design.certificates.checks.frame import model_hash
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.checks.stop import stop_bound
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search import adhesion_peaks as peak_search

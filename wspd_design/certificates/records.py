@@ -1,21 +1,27 @@
 """The form of a statement about stability: what is claimed, what supports it, and what it assumes."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.kernel.finding import Finding
 
 
 class Status(Enum):
     """Verdict on a claim; the value says what it means."""
 
     PROVED = "holds for every point of the domain, by an exact argument"
+    LIMITATION = "proved, and says what the closed loop cannot do"
     REFUTED = "false: the witness is a point where it fails"
-    UNDECIDED = "neither shown nor refuted"
-    EVIDENCE = "holds at every point that was tried, which proves nothing between them"
+    UNDECIDED = "neither proved nor refuted"
+    EVIDENCE = "supported by samples or a simulation, which prove nothing beyond them"
     VACUOUS = "true but says nothing about a stop"
     NOT_APPLICABLE = "the claim does not speak about this controller"
 
@@ -44,18 +50,6 @@ class Hypothesis:
 
     text: str
     status: Status
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Proof:
-    """An inequality that the checker accepted, with the text from which it can be checked again."""
-
-    claim: str  # name
-    statement: str  # in words
-    claim_hash: str  # SHA-256 of ranges, model text, relation and bound
-    certificate: str  # JSON
-    leaves: int  # boxes that the checker decided
-    seconds: float  # that the check took
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,8 +82,8 @@ class Map:
 class Certificate:
     """A claim about a closed loop and its verdict.
 
-    ``margin`` is positive when the claim holds: how far the tightest point is from the limit. A ``limitation`` says
-    what the loop cannot do, so that its proof is no good news.
+    ``margin`` is positive when the claim holds: how far the tightest point is from the limit. ``remark`` is what samples
+    say beside the verdict; no file keeps it.
     """
 
     name: str
@@ -97,22 +91,31 @@ class Certificate:
     claim: str
     status: Status
     explanation: str
-    limitation: bool = False
+    method: str
     margin: Range | None = None
     worst_point: tuple[Point, ...] = ()
     witness: tuple[Point, ...] = ()
     hypotheses: tuple[Hypothesis, ...] = ()
     assumptions: tuple[str, ...] = ()
-    method: str
-    resolution: str = ""
+    varied: tuple[str, ...] = ()  # numbers with bounds that the claim speaks about on all of their range
+    held: tuple[str, ...] = ()  # numbers with bounds that it depends on, but takes as known
     reference: str = ""
     model_hash: str = ""
+    remark: str = ""
     seconds: float = 0.0
-    undecided: float = 0.0  # share of the box that was left open
-    engine: str = ""  # versions of what searched and what checked
-    proofs: tuple[Proof, ...] = field(default=(), repr=False)
+    findings: Mapping[str, "Finding"] = field(default_factory=dict, repr=False)
     series: tuple[Series, ...] = field(default=(), repr=False)
     maps: tuple[Map, ...] = field(default=(), repr=False)
+
+    @property
+    def boxes(self) -> int:
+        """Number of boxes that the searches looked at."""
+        return sum(each.effort.boxes for each in self.findings.values())
+
+    @property
+    def cut(self) -> bool:
+        """Whether a search was ended by its budget."""
+        return any(each.effort.cut for each in self.findings.values())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

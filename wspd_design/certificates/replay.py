@@ -1,38 +1,42 @@
-"""Decides about a certificate file: asks the checkers, searches nothing, and says in words what was shown.
+"""Decide about a certificate file: make the whole certificate again from the design, and compare.
 
-What a check has to show is made from the design by ``obligations.py``.
+Nothing is searched. The file gives proofs, places and the effort of the search; every sentence comes from the design.
 """
 
 import json
-import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from wspd_design.certificates.kernel.counterexample import denials
-from wspd_design.certificates.kernel.enclosures import Refused
-from wspd_design.certificates.kernel.file import Stated, read_certificate
-from wspd_design.certificates.kernel.obligation import Answer, Obligation
-from wspd_design.certificates.records import Problem, Status
-from wspd_design.certificates.theorems.obligations import OBLIGATIONS, obligations
+from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.kernel.file import HEARSAY, read_certificate, sentences, stated_findings
+from wspd_design.certificates.kernel.finding import Finding, Stated
+from wspd_design.certificates.kernel.obligation import Obligation, Sampled
+from wspd_design.certificates.records import Certificate, Problem, Status
+from wspd_design.certificates.theorems.table import THEOREMS
+from wspd_design.certificates.theorems.theorem import silent, told
+
+DECIDED = (Status.PROVED, Status.LIMITATION, Status.REFUTED, Status.VACUOUS)
+"""Statuses that rest on what the checkers decide."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replayed:
-    """What the checker says about a file."""
+    """What the checkers say about a file."""
 
     check: str  # name, empty if the file tells none
-    status: Status | None  # that the file states
-    accepted: bool  # every proof, all that the status needs, and the witness as far as it can be checked
-    reason: str
-    shown: tuple[str, ...]  # statements that were proved
-    denied: tuple[str, ...]  # statements that the witness denies
-    missing: tuple[str, ...]  # statements that the check needs and the file does not show
-    leaves: int
-    seconds: float
+    accepted: bool  # every word of the file is what its proofs show about this design
+    reason: str  # why not
+    certificate: Certificate | None  # as it was made again; none if it is refused
 
     @property
-    def empty(self) -> bool:
-        """Whether the file holds nothing that can be checked."""
-        return self.accepted and not self.shown and not self.denied
+    def unchecked(self) -> bool:
+        """Whether the file is what the design gives, but nothing in it decides a claim."""
+        return self.certificate is not None and self.certificate.status not in DECIDED
+
+    @property
+    def leaves(self) -> int:
+        """Number of boxes that the checkers decided."""
+        return sum(each.leaves for each in self.certificate.findings.values()) if self.certificate else 0
 
 
 def replay(problem: Problem, text: str) -> Replayed:
@@ -41,64 +45,42 @@ def replay(problem: Problem, text: str) -> Replayed:
     Parameters
     ----------
     problem : Problem
-        The closed loop and domain that the claims are taken from.
+        The closed loop and domain that every sentence is made from.
     text : str
         The file; it may be anything.
     """
-    started = time.perf_counter()
-    stated: Stated | None = None
-    answers: list[Answer] = []
-    denied: tuple[str, ...] = ()
-    missing: tuple[str, ...] = ()
-    accepted, reason = True, "every proof holds for this design"
+    check = ""
     try:
-        stated = read_certificate(text)
-        # What kept no proof may be a check whose claims cannot be made again; nothing is shown then.
-        known = stated.check in OBLIGATIONS or stated.status is Status.PROVED or stated.proofs
-        wanted = obligations(stated.check, problem) if known else ()
-        done = set()
-        for proof in stated.proofs:
-            met, answer = _decide(stated.check, wanted, proof)
-            answers.append(answer)
-            if answer.enough:
-                done.add(met.text)
-        missing = tuple(
-            each.text for each in wanted if _rests(stated.status) in each.needed and each.text not in done
-        )
-        if stated.status is Status.VACUOUS and not any(Status.VACUOUS in each.needed for each in wanted):
-            raise Refused(f"no proof can show that {stated.check} is vacuous")
-        if missing and _rests(stated.status) is stated.status:
-            raise Refused(f"no proof of {'; '.join(missing)}")
-        if stated.status is Status.REFUTED:
-            denied = denials(wanted, stated.witness, problem.speeds)
+        check, content = read_certificate(text)
+        if check not in THEOREMS:
+            raise Refused(f'there is no check "{check}"')
+        theorem, stated = THEOREMS[check], stated_findings(content)
+        made = silent(theorem, problem)
+        if made is None:
+            made = told(theorem, problem, _findings(theorem.obligations(problem), stated))
+        elif stated:
+            raise Refused(f"{check} is {made.status.name} here, but the file states findings")
+        expected = sentences(made)
+        if content.keys() != expected.keys() | set(HEARSAY):
+            raise Refused("the file has other entries than a certificate")
+        for name, entry in expected.items():
+            if _canonical(content[name]) != _canonical(entry):
+                raise Refused(f"its {name} is not what the proofs show about this design")
     except Refused as refusal:
-        accepted, reason = False, str(refusal)
-    return Replayed(
-        check=stated.check if stated else "",
-        status=stated.status if stated else None,
-        accepted=accepted,
-        reason=reason,
-        shown=tuple(answer.shown for answer in answers),
-        denied=denied,
-        missing=missing,
-        leaves=sum(answer.leaves for answer in answers),
-        seconds=time.perf_counter() - started,
-    )
+        return Replayed(check=check, accepted=False, reason=str(refusal), certificate=None)
+    return Replayed(check=check, accepted=True, reason="", certificate=made)
 
 
-def _rests(status: Status) -> Status:
-    """Return the status whose needs are compared: its own if it rests on proofs, else what a proof would need."""
-    return status if status in (Status.PROVED, Status.VACUOUS) else Status.PROVED
+def _findings(wanted: tuple[Obligation, ...], stated: Mapping[str, Stated]) -> dict[str, Finding]:
+    """Decide about all that a file states."""
+    known, work = {each.key: each for each in wanted}, Work()
+    for key, each in stated.items():
+        if key not in known:
+            raise Refused(f"the check asks for nothing of the name {key!a}")
+        if each.numbers and not isinstance(known[key], Sampled):
+            raise Refused(f"{key} rests on no samples, but the file states some")
+    return {key: each.decide(stated.get(key, Stated()), work) for key, each in known.items()}
 
 
-def _decide(name: str, wanted: tuple[Obligation, ...], proof: str) -> tuple[Obligation, Answer]:
-    """Find what a proof shows, or refuse it."""
-    content = json.loads(proof)
-    concerned = [each for each in wanted if isinstance(content, dict) and each.concerns(content)]
-    reason = f"a proof shows nothing that {name} needs"
-    for each in concerned:
-        answer = each.check(proof)
-        if answer.accepted:
-            return each, answer
-        reason = f"{each.text}: {answer.reason}"
-    raise Refused(reason)
+def _canonical(entry: object) -> str:
+    return json.dumps(entry, sort_keys=True)

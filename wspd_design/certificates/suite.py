@@ -1,59 +1,29 @@
-"""All checks of a closed loop, in the order in which an argument would use them."""
+"""All checks of a closed loop: run them, or take what was proved before and is accepted again."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
+from pathlib import Path
 
-from wspd_design.certificates.checks.adaptive import (
-    afsmc_energy,
-    barbalat,
-    lyapunov_printed,
-    lyapunov_repaired,
-)
-from wspd_design.certificates.checks.foundations import (
-    conservation,
-    derivation,
-    gain_positive,
-    surface_hurwitz,
-    well_posed,
-)
-from wspd_design.certificates.checks.linear import margins, routh_lag
-from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance
-from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
-from wspd_design.certificates.checks.stop import stop_bound, tracking
-from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
+from wspd_design.certificates.checks.foundations import gain_positive
+from wspd_design.certificates.checks.frame import Check, illustrated
+from wspd_design.certificates.checks.sliding import reaching
+from wspd_design.certificates.checks.valve import no_go
 from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.replay import replay
+from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
 from wspd_design.certificates.search.progress import Listener, listening
-from wspd_design.certificates.search.prover import DEFAULT_BUDGET, Budget, within
-from wspd_design.certificates.setting.linear_loop import LinearLaw
-from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.parameters.errors import UserError
 
-MODULES = (
-    derivation,
-    surface_hurwitz,
-    gain_positive,
-    well_posed,
-    sliding_exists,
-    reaching,
-    boundary_layer,
-    lyapunov_surface,
-    lyapunov_printed,
-    lyapunov_repaired,
-    afsmc_energy,
-    barbalat,
-    open_loop_pole,
-    no_go,
-    hard_limits,
-    sampling,
-    routh_lag,
-    margins,
-    lpv_lyapunov,
-    sampled_invariance,
-    tracking,
-    conservation,
-    stop_bound,
-)
-NAMES = tuple(module.NAME for module in MODULES)
+CHECKS: Mapping[str, Check] = {
+    each.name: each
+    for each in (
+        gain_positive.CHECK,
+        reaching.CHECK,
+        no_go.CHECK,
+    )
+}
+NAMES = tuple(THEOREMS)
 
 
 def verify(
@@ -62,6 +32,7 @@ def verify(
     only: Collection[str] | None = None,
     progress: Callable[[str], None] = lambda _: None,
     budget: Budget = DEFAULT_BUDGET,
+    stored: Path | None = None,
 ) -> tuple[Certificate, ...]:
     """Run the checks.
 
@@ -74,7 +45,10 @@ def verify(
     progress : callable, optional
         Told the title of each check before it starts, and while it searches how far it has come.
     budget : Budget, optional
-        Of each search on boxes; a claim on which it is used up stays undecided.
+        Of each search; a claim on which it is used up stays undecided.
+    stored : Path, optional
+        Folder of certificate files. One that is accepted for this problem, and decides its claim, is not searched
+        again.
 
     Returns
     -------
@@ -84,7 +58,7 @@ def verify(
     Raises
     ------
     UserError
-        If a name is unknown, or problem and controller state different references, sample times or wheel radii.
+        If a name is unknown, or problem and controller state different references or sample times.
     """
     for name in only or ():
         if name not in NAMES:
@@ -92,21 +66,32 @@ def verify(
             offer = f', did you mean "{near[0]}"?' if near else ""
             raise UserError(f'unknown check "{name}"{offer}; available: {", ".join(NAMES)}')
     _agree("sample time", problem.sample_time, problem.controller.sample_time)
-    if isinstance(problem.controller, LinearLaw):
-        _agree("slip reference", problem.slip, problem.controller.gains.slip_reference)
-        _agree("wheel radius", problem.vehicle.wheel_radius, _wheel_radius(problem.controller))
     certificates = []
-    for module in MODULES:
-        if only is None or module.NAME in only:
-            progress(module.TITLE)
-            with listening(_at(module.TITLE, progress)), within(budget):
-                certificates.append(module.check(problem))
+    for name in NAMES:
+        if only is None or name in only:
+            certificates.append(_run(CHECKS[name], problem, progress, budget, stored))
     return tuple(certificates)
 
 
-def _wheel_radius(law: LinearLaw) -> float:
-    """Return the radius from which a law works out its slip [m]."""
-    return law.wheel_radius if isinstance(law, AdaptiveFuzzy) else law.vehicle.wheel_radius
+def _run(
+    check: Check, problem: Problem, progress: Callable[[str], None], budget: Budget, stored: Path | None
+) -> Certificate:
+    progress(check.theorem.title)
+    found = _accepted(check.name, problem, stored)
+    if found is not None:
+        return illustrated(check, problem, found)
+    with listening(_at(check.theorem.title, progress)), within(budget):
+        return check.run(problem)
+
+
+def _accepted(name: str, problem: Problem, folder: Path | None) -> Certificate | None:
+    """Return what a file beside the design decides, if every word of it is accepted."""
+    try:
+        text = (folder / f"{name}.json").read_text(encoding="utf-8", errors="replace") if folder else ""
+    except OSError:
+        return None
+    found = replay(problem, text)
+    return None if found.unchecked or found.check != name else found.certificate
 
 
 def _at(title: str, progress: Callable[[str], None]) -> Listener:

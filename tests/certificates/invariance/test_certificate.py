@@ -12,7 +12,7 @@ from wspd_design.certificates.checks.region import sampled_invariance as certifi
 from wspd_design.certificates.checks.region.outlines import OUTLINES
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.search.prover import Budget, within
+from wspd_design.certificates.search.budget import Budget, within
 from wspd_design.certificates.theorems.invariant_sets.checker import Verdict, check
 from wspd_design.controllers.protocol import Command
 from wspd_design.design.records import Specification

@@ -15,7 +15,8 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.search import outward
 from wspd_design.certificates.search import settle as engine
 from wspd_design.certificates.search.progress import listening
-from wspd_design.certificates.search.prover import Budget, extreme, prove, within
+from wspd_design.certificates.search.prover import extreme, prove
+from wspd_design.certificates.search.budget import Budget, within
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.model_error import mismatch
 

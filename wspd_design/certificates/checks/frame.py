@@ -1,93 +1,79 @@
-"""What all checks share: fingerprint of the model, time, plots, and what to do outside the model."""
+"""What all checks share: a search for what a theorem needs, and the plots beside the verdict."""
 
-import hashlib
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import fields, is_dataclass, replace
-from enum import Enum
-from fractions import Fraction
-from functools import wraps
-from math import inf, nextafter
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
 
-from wspd_design.certificates.records import Certificate, Problem, Range, Series, Status
-from wspd_design.parameters.errors import UserError
+from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.kernel.finding import Finding, Stated
+from wspd_design.certificates.kernel.obligation import Obligation
+from wspd_design.certificates.records import Certificate, Map, Problem, Series
+from wspd_design.certificates.theorems.theorem import Theorem, silent, told
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-Check: TypeAlias = Callable[[Problem], Certificate]
-
 MOST_PLOT_POINTS = 500
 
 
-class OutsideModel(UserError):
-    """The claim cannot be examined, because the model does not hold there."""
+class Figures(NamedTuple):
+    """What samples show beside a verdict; none of it is proved."""
+
+    series: tuple[Series, ...] = ()
+    maps: tuple[Map, ...] = ()
+    remark: str = ""
 
 
-def certified(*, name: str, title: str) -> Callable[[Check], Check]:
-    """Complete what a check returns by the fingerprint of its model and the time that it took.
+def no_figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG001 - a check without plots
+    """Show nothing."""
+    return Figures()
 
-    A check that finds no ground to stand on raises :class:`OutsideModel`; the claim is then undecided.
-    """
 
-    def decorate(check: Check) -> Check:
-        @wraps(check)
-        def timed(problem: Problem) -> Certificate:
-            started = time.perf_counter()
-            try:
-                certificate = check(problem)
-            except OutsideModel as reason:
-                certificate = Certificate(
-                    name=name,
-                    title=title,
-                    claim=f"The check found no ground to stand on: {reason}.",
-                    status=Status.UNDECIDED,
-                    explanation="Nothing was examined, so nothing is known.",
-                    method="none",
-                )
-            seconds = time.perf_counter() - started
-            return replace(
-                certificate, name=name, title=title, model_hash=model_hash(problem), seconds=seconds
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Check:
+    """A theorem with the search that finds what it needs, and the plots of its verdict."""
+
+    theorem: Theorem
+    search: Callable[[Problem], Mapping[str, Stated]]
+    figures: Callable[[Problem, Certificate], Figures] = no_figures
+
+    @property
+    def name(self) -> str:
+        """Name of the theorem."""
+        return self.theorem.name
+
+    def run(self, problem: Problem) -> Certificate:
+        """Search, let the checkers decide about what was found, and tell."""
+        started = time.perf_counter()
+        made = silent(self.theorem, problem)
+        if made is None:
+            made = told(
+                self.theorem, problem, accepted(self.theorem.obligations(problem), self.search(problem))
             )
-
-        return timed
-
-    return decorate
+            made = illustrated(self, problem, made)
+        return replace(made, seconds=time.perf_counter() - started)
 
 
-def model_hash(problem: Problem) -> str:
-    """Return the SHA-256 of all numbers that a verdict rests on."""
-    return hashlib.sha256(_canonical(problem).encode()).hexdigest()
+def accepted(wanted: Sequence[Obligation], stated: Mapping[str, Stated]) -> dict[str, Finding]:
+    """Let the checkers decide about what a search states; a proof that they refuse is left out."""
+    work = Work()
+
+    def decide(obligation: Obligation) -> Finding:
+        given = stated.get(obligation.key, Stated())
+        try:
+            return obligation.decide(given, work)
+        except Refused:
+            return obligation.decide(replace(given, proof=None), work)
+
+    return {each.key: decide(each) for each in wanted}
 
 
-def _canonical(value: Any) -> str:
-    """Text that is the same for the same numbers, whatever the run."""
-    if is_dataclass(value) and not isinstance(value, type):
-        inside = ",".join(f"{field.name}={_canonical(getattr(value, field.name))}" for field in fields(value))
-        return f"{type(value).__qualname__}({inside})"
-    if isinstance(value, Enum):
-        return f"{type(value).__qualname__}.{value.name}"
-    if isinstance(value, tuple):
-        return "(" + ",".join(_canonical(item) for item in value) + ")"
-    if isinstance(value, float):
-        return float(value).hex()
-    if value is None or isinstance(value, (bool, int, str)):
-        return repr(value)
-    # A user's own controller may hold anything; its class and public numbers identify it.
-    public = sorted((key, item) for key, item in vars(value).items() if isinstance(item, (int, float, str)))
-    return f"{type(value).__module__}.{type(value).__qualname__}({public!r})"
-
-
-def enclosure(low: Fraction, high: Fraction, unit: str) -> Range:
-    """Enclose exact numbers by floats, rounded outwards."""
-    below, above = float(low), float(high)
-    return Range(
-        low=below if Fraction(below) <= low else nextafter(below, -inf),
-        high=above if Fraction(above) >= high else nextafter(above, inf),
-        unit=unit,
-    )
+def illustrated(check: Check, problem: Problem, certificate: Certificate) -> Certificate:
+    """Add the plots and the remark of a check."""
+    figures = check.figures(problem, certificate)
+    return replace(certificate, series=figures.series, maps=figures.maps, remark=figures.remark)
 
 
 def series(

@@ -3,14 +3,13 @@
 A number means the double that the program computes with, exactly: 0.55 is the double beside 55/100. A claim thus
 speaks about the model as it stands in memory, evaluated without rounding. The expression is a function that runs
 the model's kernels on whatever numbers it is given: on CasADi symbols for the prover, on SymPy symbols for the
-checker.
+statement that the checker reads.
 """
 
-import hashlib
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, Literal, TypeAlias
 
 from wspd_design.model.number import Number
@@ -20,16 +19,17 @@ Expression: TypeAlias = Callable[[Mapping[str, Number]], Number]
 
 Relation: TypeAlias = Literal["<=", ">="]
 
+Step: TypeAlias = tuple[Any, ...]
+"""One step of a formula, as the checker reads it."""
+
+OPERATIONS = ("add", "mul", "abs", "exp", "atan")
+"""Of a formula, beside powers; in the words of the checker."""
+
 
 def text(rational: Fraction) -> str:
     """Write a rational without loss: a decimal stands for the double that Python reads from it, else p/q."""
     near = float(rational)
     return repr(near) if Fraction(near) == rational else f"{rational.numerator}/{rational.denominator}"
-
-
-def number(written: str) -> Fraction:
-    """Read what :func:`text` wrote."""
-    return Fraction(written) if "/" in written else Fraction(float(written))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +42,7 @@ class Variable:
     unit: str
 
     def __post_init__(self) -> None:
-        """Refuse a range that is none."""
+        """Refuse a range that is reversed."""
         if self.low > self.high:
             raise ValueError(f"{self.name}: {self.low} lies above {self.high}")
 
@@ -79,34 +79,31 @@ class Claim:
         if len({v.name for v in self.variables}) < len(self.variables):
             raise ValueError(f"{self.name}: two variables have the same name")
 
-    def statement(self) -> str:
-        """Return the inequality in words."""
-        return self.with_bound(text(self.bound))
-
-    def with_bound(self, bound: str) -> str:
-        """Return the inequality with a bound as it is written; a name that is an inequality has a margin instead."""
-        margin = "<" in self.name or ">" in self.name
-        said = f"{self.name}, with a margin of at least" if margin else f"{self.name} {self.relation}"
-        return f"{said} {bound} {self.unit}".removesuffix(" -")
-
     @property
     def free(self) -> tuple[Variable, ...]:
         """Variables that span the box, in the order of the letters of a split tree."""
         return tuple(v for v in self.variables if v.free)
 
-    def definition(self) -> Any:
-        """Run the expression on SymPy symbols; nothing is simplified, so that the model stays as it is written.
+    def in_words(self) -> str:
+        """Return the inequality in words; a name that is an inequality has a margin in place of a bound."""
+        margin = "<" in self.name or ">" in self.name
+        said = f"{self.name}, with a margin of at least" if margin else f"{self.name} {self.relation}"
+        return f"{said} {float(self.bound):.6g} {self.unit}".removesuffix(" -")
 
-        Returns
-        -------
-        sympy.Expr
-            In the symbols of all variables.
-        """
-        return self._symbolic(self.expression)
-
-    def formula(self) -> Any:
-        """Run the arranged form, or the expression if there is none, on SymPy symbols."""
-        return self._symbolic(self.form or self.expression)
+    def statement(self) -> dict[str, Any]:
+        """Return everything that is claimed as the JSON object that the stand-alone checker decides about."""
+        model = formula(self.expression, self.variables)
+        arranged = model if self.form is None else formula(self.form, self.variables)
+        stated = {
+            "kind": "inequality",
+            "name": self.name,
+            "relation": self.relation,
+            "bound": text(self.bound),
+            "unit": self.unit,
+            "variables": [[v.name, text(v.low), text(v.high), v.unit] for v in self.variables],
+            "model": [list(step) for step in model],
+        }
+        return stated if arranged == model else stated | {"form": [list(step) for step in arranged]}
 
     def function(self) -> Any:
         """Run the arranged form, or the expression if there is none, on CasADi symbols.
@@ -122,24 +119,50 @@ class Claim:
         values = {v.name: symbols[i] for i, v in enumerate(self.variables)}
         return ca.Function("claim", [symbols], [ca.SX((self.form or self.expression)(values))])
 
-    def _symbolic(self, expression: Expression) -> Any:
-        import sympy
 
-        with sympy.evaluate(False):
-            return sympy.sympify(expression({v.name: sympy.Symbol(v.name) for v in self.variables}))
+@lru_cache(maxsize=64)
+def formula(expression: Expression, variables: tuple[Variable, ...]) -> tuple[Step, ...]:
+    """Run an expression on SymPy symbols and write it as steps; nothing is simplified on the way."""
+    import sympy
 
-    def digest(self) -> str:
-        """SHA-256 of everything that is claimed: names, ranges, units, the whole model text, relation, bound."""
-        content = {
-            "name": self.name,
-            "variables": [[v.name, text(v.low), text(v.high), v.unit] for v in self.variables],
-            "model": model_text(self.definition()),
-            "form": model_text(self.formula()),
-            "relation": self.relation,
-            "bound": text(self.bound),
-            "unit": self.unit,
-        }
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    with sympy.evaluate(False):
+        found = sympy.sympify(expression({v.name: sympy.Symbol(v.name) for v in variables}))
+    return steps_of(found)
+
+
+def steps_of(symbolic: Any) -> tuple[Step, ...]:
+    """Write a SymPy expression as the steps of the checker, each shared part once.
+
+    Raises
+    ------
+    ValueError
+        If it contains a function or a number that a claim may not contain.
+    """
+    places: dict[Any, int] = {}
+    steps: list[Step] = []
+
+    def visit(node: Any) -> int:
+        if node not in places:
+            step = _step(node, visit)
+            places[node] = len(steps)
+            steps.append(step)
+        return places[node]
+
+    visit(symbolic)
+    return tuple(steps)
+
+
+def _step(node: Any, visit: Callable[[Any], int]) -> Step:
+    if node.is_Symbol:
+        return ("x", node.name)
+    if node.is_number and not node.args:
+        return ("n", text(constant(node)))
+    if node.is_Pow:
+        return ("pow", visit(node.args[0]), text(constant(node.args[1])))
+    name = type(node).__name__.lower()
+    if name not in OPERATIONS:
+        raise ValueError(f"{type(node).__name__} is not a function that a claim may contain")
+    return (name, *(visit(argument) for argument in node.args))
 
 
 def constant(symbolic: Any) -> Fraction:
@@ -148,26 +171,4 @@ def constant(symbolic: Any) -> Fraction:
         return Fraction(int(symbolic.p), int(symbolic.q))
     if symbolic.is_Float:
         return Fraction(float(symbolic))
-    raise ValueError(f"{symbolic} is no number that a claim may contain")
-
-
-def model_text(formula: Any) -> str:
-    """Write a SymPy expression as numbered steps, each shared part once."""
-    steps: dict[Any, int] = {}
-    lines: list[str] = []
-
-    def visit(node: Any) -> int:
-        if node not in steps:
-            arguments = [visit(argument) for argument in node.args]
-            if node.is_Symbol:
-                line = node.name
-            elif node.is_number and not node.args:
-                line = text(constant(node))
-            else:
-                line = f"{type(node).__name__}({', '.join(f'#{i}' for i in arguments)})"
-            steps[node] = len(lines)
-            lines.append(line)
-        return steps[node]
-
-    visit(formula)
-    return "\n".join(lines)
+    raise ValueError(f"{symbolic} is not a number that a claim may contain")

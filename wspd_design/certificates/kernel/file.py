@@ -1,29 +1,27 @@
-"""Certificates as JSON files: what is claimed, for people, and the proofs, for the checker.
+"""Certificates as JSON files: what is claimed, for people, and what was found, for the checkers.
 
-Nothing in a file is believed. :mod:`wspd_design.certificates.replay` rebuilds the claims from the design and reads
-nothing but the name of the check, its status, the proofs, and the witness of what is refuted.
+Nothing in a file is believed. :mod:`wspd_design.certificates.replay` makes the whole certificate again from the design
+and the findings, and compares it with the file word for word.
 """
 
 import json
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from fractions import Fraction
+from importlib.metadata import PackageNotFoundError, version
+from math import isfinite
+from typing import Any
 
-from wspd_design.certificates.kernel.enclosures import Refused
+from wspd_design.certificates.kernel.checker import Refused, number, read
+from wspd_design.certificates.kernel.claim import text
+from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.records import Certificate, Point, Status
 
-SCHEMA = "wspd-certificate/1"
-MOST_BYTES = 20_000_000
-MOST_PROOFS = 100
-MOST_POINTS = 100
-
-
-class Stated(NamedTuple):
-    """What a file states, nothing of it checked."""
-
-    check: str
-    status: Status
-    proofs: tuple[str, ...]  # JSON, one per statement
-    witness: tuple[Point, ...]  # in the units that people read
+SCHEMA = "wspd-certificate/2"
+PACKAGES = ("crival", "casadi", "cvxpy", "clarabel", "python-flint", "sympy")
+HEARSAY = ("findings", "made_by")
+"""Entries of a file that no sentence of a certificate is compared with: one is decided about, the other is idle."""
+MOST_FINDINGS = 100
+MOST_BOXES = 10**9
 
 
 def file_name(certificate: Certificate) -> str:
@@ -32,82 +30,127 @@ def file_name(certificate: Certificate) -> str:
 
 
 def certificate_text(certificate: Certificate) -> str:
-    """Write a certificate with its proofs as JSON.
+    """Write a certificate with what was found as JSON, one entry a line.
 
     Times are left out, so that the same design gives the same file. Floats are written without loss.
     """
+    found = {key: _stated(each.stated) for key, each in certificate.findings.items()}
+    content = sentences(certificate) | {
+        "findings": {key: each for key, each in found.items() if each},
+        "made_by": versions(),
+    }
+    lines = [f"{json.dumps(key)}: {json.dumps(entry, ensure_ascii=False)}" for key, entry in content.items()]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def sentences(certificate: Certificate) -> dict[str, Any]:
+    """Return all that a certificate says, as JSON."""
     margin = certificate.margin
-    content = {
+    return {
         "schema": SCHEMA,
         "check": certificate.name,
+        "title": certificate.title,
         "status": certificate.status.name,
         "claim": certificate.claim,
         "explanation": certificate.explanation,
         "margin": None if margin is None else {"low": margin.low, "high": margin.high, "unit": margin.unit},
-        "worst_point": _places(certificate.worst_point),
-        "witness": _places(certificate.witness),
+        "worst_point": _points(certificate.worst_point),
+        "witness": _points(certificate.witness),
         "hypotheses": [{"text": each.text, "status": each.status.name} for each in certificate.hypotheses],
         "assumptions": list(certificate.assumptions),
-        "undecided": certificate.undecided,
+        "varied": list(certificate.varied),
+        "held": list(certificate.held),
+        "method": certificate.method,
         "reference": certificate.reference,
-        "engine": certificate.engine,
         "model_sha256": certificate.model_hash,
-        "proofs": [json.loads(each.certificate) for each in certificate.proofs],
     }
-    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
-def read_certificate(text: str) -> Stated:
-    """Read what a file states.
-
-    Parameters
-    ----------
-    text : str
-        It may be anything.
-
-    Raises
-    ------
-    Refused
-        If the text is no certificate.
-    """
-    content = certificate_content(text)
-    proofs = content.get("proofs")
-    if not isinstance(proofs, list) or len(proofs) > MOST_PROOFS:
-        raise Refused("the file holds no list of proofs, or too many")
-    return Stated(
-        check=content["check"],
-        status=Status[content["status"]],
-        proofs=tuple(json.dumps(each) for each in proofs),
-        witness=_points(content.get("witness")),
-    )
-
-
-def certificate_content(text: str) -> Mapping[str, Any]:
-    """Read what stands in a file of which at least ``check`` and ``status`` are names, or refuse it."""
-    if len(text) > MOST_BYTES:
-        raise Refused("the file is too long for a certificate")
-    try:
-        content = json.loads(text)
-    except (ValueError, RecursionError):
-        raise Refused("the file is no complete JSON") from None
-    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
-        raise Refused(f"the file is no certificate of this version, {SCHEMA}")
+def read_certificate(written: str) -> tuple[str, Mapping[str, Any]]:
+    """Return the name of the check that a file is about, and its content; or refuse it."""
+    content = read(written)
+    if content.get("schema") != SCHEMA:
+        raise Refused(f"the file is not a certificate of this version, {SCHEMA}")
     check, status = content.get("check"), content.get("status")
     if not (isinstance(check, str) and check.isascii() and check.isidentifier()):
         raise Refused("the file names no check")
     if not isinstance(status, str) or status not in Status.__members__:
         raise Refused("the file states no status")
-    return content
+    return check, content
 
 
-def _points(stated: Any) -> tuple[Point, ...]:
-    """Read what :func:`_places` wrote."""
+def stated_findings(content: Mapping[str, Any]) -> dict[str, Stated]:
+    """Read what a file states about obligations, or refuse it."""
+    table = content.get("findings")
+    if not isinstance(table, dict) or len(table) > MOST_FINDINGS:
+        raise Refused("the file has no table of findings, or one that is too long")
+    return {key: _read(each) for key, each in table.items()}
+
+
+def _stated(stated: Stated) -> dict[str, Any]:
+    """Write what is stated about an obligation; what is empty is left out."""
+    effort = stated.effort
+    content = {
+        "proof": stated.proof,
+        "place": {name: text(Fraction(at)) for name, at in stated.place.items()},
+        "numbers": {name: text(Fraction(at)) for name, at in stated.numbers.items()},
+        "effort": {"boxes": effort.boxes, "undecided": effort.undecided, "cut": effort.cut},
+    }
+    if effort == Effort():
+        del content["effort"]
+    return {key: each for key, each in content.items() if each}
+
+
+def _read(table: object) -> Stated:
+    if not isinstance(table, dict) or not table.keys() <= {"proof", "place", "numbers", "effort"}:
+        raise Refused("a finding has unknown entries")
+    proof = table.get("proof")
+    if proof is not None and not isinstance(proof, dict):
+        raise Refused("a finding has a proof that is not an object")
+    return Stated(
+        proof=proof,
+        place=_doubles(table.get("place", {})),
+        numbers=_doubles(table.get("numbers", {})),
+        effort=_effort(table.get("effort")),
+    )
+
+
+def _doubles(table: object) -> dict[str, float]:
+    if not isinstance(table, dict):
+        raise Refused("a finding has a place or numbers that are not a table")
+    exact = {name: number(each) for name, each in table.items()}
     try:
-        given = [(each["name"], each["value"], each["unit"]) for each in stated[:MOST_POINTS]]
-        return tuple(Point(name=str(name), value=float(value), unit=str(unit)) for name, value, unit in given)
-    except (TypeError, KeyError, ValueError, OverflowError):
-        raise Refused("the file states no witness, not even an empty one") from None
+        found = {name: float(each) for name, each in exact.items()}
+    except OverflowError:
+        raise Refused("a finding has a number that is too large") from None
+    if any(Fraction(found[name]) != exact[name] for name in found):
+        raise Refused("a finding has a number that is not a double")
+    return found
 
 
-def _places(points: tuple[Point, ...]) -> list[dict[str, Any]]:
+def _effort(table: object) -> Effort:
+    if table is None:
+        return Effort()
+    if not isinstance(table, dict) or table.keys() != {"boxes", "undecided", "cut"}:
+        raise Refused("a finding does not say how hard the search tried")
+    boxes, undecided, cut = table["boxes"], table["undecided"], table["cut"]
+    if not (type(boxes) is int and 0 <= boxes <= MOST_BOXES and type(cut) is bool):
+        raise Refused("a finding does not say how hard the search tried")
+    if not (type(undecided) in (int, float) and isfinite(undecided) and 0 <= undecided <= 1):
+        raise Refused("a finding does not say which share of the box is undecided")
+    return Effort(boxes=boxes, undecided=float(undecided), cut=cut)
+
+
+def versions() -> dict[str, str]:
+    """Versions of what searches and what checks."""
+    found = {}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "missing"
+    return found
+
+
+def _points(points: tuple[Point, ...]) -> list[dict[str, Any]]:
     return [{"name": each.name, "value": each.value, "unit": each.unit} for each in points]

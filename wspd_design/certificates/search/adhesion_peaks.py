@@ -7,8 +7,8 @@ import json
 from collections.abc import Iterable
 from fractions import Fraction
 
-from wspd_design.certificates.checks.frame import model_hash
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import (
     CLAIM,
     FORMAT,

@@ -5,10 +5,6 @@ lies below the threshold; otherwise it is reduced to a face where the expression
 slope matters most. Internally every claim is an upper bound; one from below is turned around.
 """
 
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
@@ -16,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.search.boxes import Boxes, joined
+from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.intervals import Backend, Intervals, default_backend
 from wspd_design.certificates.search.progress import tell
 from wspd_design.certificates.search.tape import Tape, enclosing, trace
@@ -32,33 +29,6 @@ POLISH = 12  # rounds of narrowing around the best sample
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Budget:
-    """When a run of the prover gives up."""
-
-    seconds: float = 20.0
-    boxes: int = 2_000_000  # a tree of more is longer than the checker takes
-
-
-DEFAULT_BUDGET = Budget()
-_budget: ContextVar[Budget] = ContextVar("budget", default=DEFAULT_BUDGET)
-
-
-def budget() -> Budget:
-    """Return what a search may use."""
-    return _budget.get()
-
-
-@contextmanager
-def within(allowed: Budget) -> Iterator[None]:
-    """Give every search inside the block this budget."""
-    token = _budget.set(allowed)
-    try:
-        yield
-    finally:
-        _budget.reset(token)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Outcome:
     """What the prover found, all of it hearsay until the checker agrees."""
 
@@ -67,7 +37,7 @@ class Outcome:
     point: dict[str, Fraction]  # where the end that a point attains was found
     undecided: float  # share of the box
     boxes: int
-    seconds: float
+    cut: bool  # whether the budget ended the search
     tree: str  # split tree in preorder, empty if some box is undecided
 
 
@@ -122,7 +92,7 @@ class _Search:
     ceiling: float = -inf  # largest upper bound of a decided box
     pending: "Boxes | None" = None
     count: int = 0
-    seconds: float = 0.0
+    cut: bool = False
 
     def __post_init__(self) -> None:
         self.tape = trace(self.claim, self.backend)
@@ -132,7 +102,7 @@ class _Search:
         """Decide boxes against the bound, or against the best point plus the tolerance."""
         import numpy as np
 
-        started, allowed = time.perf_counter(), budget()
+        allowed = budget().boxes
         size = len(self.claim.free)
         self._look_around(size)
         waiting = Boxes(
@@ -140,10 +110,9 @@ class _Search:
         )
         while waiting.upper.size:
             threshold = self.best + tolerance if bound is None else bound
-            self.seconds = time.perf_counter() - started
             # The box as a whole is looked at whatever the budget, so that some enclosure is known.
-            spent = self.count > 0 and (self.seconds > allowed.seconds or self.count > allowed.boxes)
-            if self.best > threshold or spent:
+            self.cut = self.count > 0 and self.count >= allowed
+            if self.best > threshold or self.cut:
                 break
             order = np.argsort(-waiting.upper)
             batch, rest = waiting.take(order[:BATCH]), waiting.take(order[BATCH:])
@@ -151,7 +120,6 @@ class _Search:
             waiting = joined(rest, fresh)
             tell(1.0 - float(waiting.share.sum()))
         self.pending = waiting
-        self.seconds = time.perf_counter() - started
 
     def outcome(self) -> Outcome:
         """Sum up."""
@@ -167,7 +135,7 @@ class _Search:
             point={v.name: v.low + (v.high - v.low) * Fraction(places[v.name]) for v in self.claim.free},
             undecided=float(self.pending.share.sum()),
             boxes=self.count,
-            seconds=self.seconds,
+            cut=self.cut,
             tree=self._tree() if decided else "",
         )
 
@@ -305,7 +273,7 @@ class _Search:
 
 
 def _upper(found: Intervals) -> "Array":
-    """Upper ends; what is no number may be anything."""
+    """Upper ends; what is not a number may be anything."""
     import numpy as np
 
     return np.where(np.isnan(found.hi), inf, found.hi)

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.checks.frame import OutsideModel
 from wspd_design.certificates.records import Point, Problem
+from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.model.number import Number
 from wspd_design.model.slip import SlipDynamics, slip_dynamics
 from wspd_design.parameters.records import Rail, Vehicle

@@ -10,8 +10,8 @@ from wspd_design.certificates.checks.linear import routh_lag
 from wspd_design.certificates.checks.sliding import reaching, sliding_exists
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.kernel.arb import below
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.claim import Claim
-from wspd_design.certificates.kernel.enclosures import Refused
 from wspd_design.certificates.kernel.obligation import (
     Answer,
     Obligation,

@@ -15,16 +15,14 @@ matrix exponential is enclosed. It is affine in gamma, and x'Px is convex, so th
 
 import json
 import re
-import time
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel import checker
 from wspd_design.certificates.kernel.arb import Ball, ball, point
-from wspd_design.certificates.kernel.checker import Verdict
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.claim import Claim, Relation
-from wspd_design.certificates.kernel.enclosures import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import Values, plant_dynamics, plant_forces, plant_variables
 from wspd_design.controllers.torque_feedback import TorqueFeedback
@@ -156,34 +154,6 @@ def held(loop: Loop, q: Ball, gamma: Ball) -> Matrix:
     return (
         (step[0, 0] + step[0, 2] * kappa, step[0, 1] - step[0, 2] * back),
         (step[1, 0] + step[1, 2] * kappa, step[1, 1] - step[1, 2] * back),
-    )
-
-
-def check_quadratic(certificate: str, problem: Problem) -> Verdict:
-    """Decide whether a certificate shows a common quadratic Lyapunov function of a loop.
-
-    Plant, law, lag and sample time come from the problem, never from the certificate. Only fractions and
-    python-flint's balls are used.
-
-    Parameters
-    ----------
-    certificate : str
-        JSON text; it may be anything.
-    problem : Problem
-        The loop, with a :class:`TorqueFeedback` as controller.
-    """
-    started = time.perf_counter()
-    parts, reason = 0, "the function falls on the whole polytope, continuous and sampled"
-    try:
-        parts = _replay(certificate, problem)
-    except Refused as refusal:
-        reason = str(refusal)
-    return Verdict(
-        accepted=parts > 0,
-        statement=STATEMENT if parts else "",
-        reason=reason,
-        leaves=parts,
-        seconds=time.perf_counter() - started,
     )
 
 

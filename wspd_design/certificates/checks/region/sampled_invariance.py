@@ -6,15 +6,17 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
-from wspd_design.certificates.checks.frame import OutsideModel, certified, model_hash
+from wspd_design.certificates.checks.frame import certified
 from wspd_design.certificates.checks.region.outlines import outlines
 from wspd_design.certificates.records import Certificate, Point, Problem, Proof, Range, Series, Status
+from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.invariant_sets import document, escape
 from wspd_design.certificates.search.invariant_sets.search import Found, holding_share, search, windows
-from wspd_design.certificates.search.prover import budget
 from wspd_design.certificates.search.settle import engine
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.setting.fingerprint import model_hash
+from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.certificates.theorems.invariant_sets import checker
 from wspd_design.controllers.protocol import Measurement
 

@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from wspd_design.certificates.kernel.enclosures import Refused
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.file import certificate_content
 from wspd_design.certificates.records import Problem, Status
 from wspd_design.certificates.setting import domain

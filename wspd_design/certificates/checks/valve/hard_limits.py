@@ -4,7 +4,7 @@ The controller does not matter but for its sample time: a deviation is seen up t
 """
 
 from wspd_design.certificates.checks import verdict
-from wspd_design.certificates.checks.frame import OutsideModel, certified, level, series
+from wspd_design.certificates.checks.frame import certified, level, series
 from wspd_design.certificates.kernel.subdomain import with_part
 from wspd_design.certificates.records import (
     Certificate,
@@ -27,6 +27,7 @@ from wspd_design.certificates.search.recovery_samples import SPEEDS, Samples, sa
 from wspd_design.certificates.search.settle import Finding, enclose, engine, settle
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import KMH, SLIP
+from wspd_design.certificates.setting.outside import OutsideModel
 
 NAME, TITLE = "hard_limits", "Limits of recovery"
 DEVIATION = 0.05  # of the slip, to be brought back: as wide as the usual band around a reference

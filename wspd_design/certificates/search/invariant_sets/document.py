@@ -3,9 +3,9 @@
 import json
 from collections.abc import Sequence
 
-from wspd_design.certificates.checks.frame import model_hash
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.invariant_sets.search import Found
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.invariant_sets.runs import FORMAT
 
 

@@ -12,7 +12,7 @@ from functools import reduce
 from itertools import pairwise
 from typing import Any
 
-from wspd_design.certificates.kernel.enclosures import Refused
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.invariant_sets.ball_plant import BallPlant
 from wspd_design.certificates.theorems.invariant_sets.ball_slopes import Ball, hull, law_slopes

@@ -5,9 +5,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from wspd_design.certificates.checks.frame import model_hash
-from wspd_design.certificates.kernel.enclosures import Refused
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.invariant_sets.ball_slopes import Ball
 
 FORMAT = "wspd-invariant-sets/1"
