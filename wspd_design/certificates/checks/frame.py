@@ -10,8 +10,8 @@ from functools import wraps
 from math import inf, nextafter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Problem, Range, Series, Status
-from wspd_design.parameters.errors import UserError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,10 +20,6 @@ if TYPE_CHECKING:
 Check: TypeAlias = Callable[[Problem], Certificate]
 
 MOST_PLOT_POINTS = 500
-
-
-class OutsideModel(UserError):
-    """The claim cannot be examined, because the model does not hold there."""
 
 
 def certified(*, name: str, title: str) -> Callable[[Check], Check]:

@@ -6,7 +6,7 @@ from wspd_design.certificates.checks.frame import certified, enclosure
 from wspd_design.certificates.kernel import exact
 from wspd_design.certificates.kernel.exact import Positive
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
-from wspd_design.certificates.setting.domain import KMH
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "gain_positive", "Sign of the input gain"
 SHOWN = {"m/s": (KMH, "km/h")}  # scale and unit in which people read a quantity
@@ -19,7 +19,7 @@ def claims(problem: Problem) -> tuple[Positive, ...]:
     """
     factors = (
         ("wheel radius", problem.vehicle.wheel_radius, "m"),
-        ("wheelset inertia", problem.inertia_bounds[0], "kg m2"),
+        ("wheelset inertia", problem.span("wheelset inertia")[0], "kg m2"),
         ("speed", problem.speeds[0], "m/s"),
     )
     return tuple(Positive(quantity=name, value=Fraction(least), unit=unit) for name, least, unit in factors)
@@ -31,13 +31,13 @@ def check(problem: Problem) -> Certificate:
     settled = [(claim, exact.prove(claim)) for claim in claims(problem)]
     witness = tuple(_point(claim) for claim, proof in settled if proof is None)
     # The inertia of the bounds is that of a wheelset, 2 I; G is smallest where both inertia and speed are largest.
-    largest = Fraction(problem.inertia_bounds[1]) * Fraction(problem.speeds[1])
+    largest = Fraction(problem.span("wheelset inertia")[1]) * Fraction(problem.speeds[1])
     smallest = None if witness else Fraction(problem.vehicle.wheel_radius) / largest
     return Certificate(
         name=NAME,
         title=TITLE,
-        claim=f"G = R/(2 I v) > 0 for wheelset inertia {problem.inertia_bounds[0]:g} to "
-        f"{problem.inertia_bounds[1]:g} kg m2 and {problem.speeds[0] * KMH:.3g} to "
+        claim=f"G = R/(2 I v) > 0 for wheelset inertia {problem.span('wheelset inertia')[0]:g} to "
+        f"{problem.span('wheelset inertia')[1]:g} kg m2 and {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h.",
         status=Status.PROVED if smallest is not None else Status.REFUTED,
         explanation=(
@@ -50,7 +50,7 @@ def check(problem: Problem) -> Certificate:
         worst_point=()
         if smallest is None
         else (
-            Point(name="wheelset inertia", value=problem.inertia_bounds[1], unit="kg m2"),
+            Point(name="wheelset inertia", value=problem.span("wheelset inertia")[1], unit="kg m2"),
             Point(name="speed", value=problem.speeds[1] * KMH, unit="km/h"),
         ),
         witness=witness,

@@ -10,15 +10,16 @@ from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.checks.frame import OutsideModel, certified, level, series
+from wspd_design.certificates.checks.frame import certified, level, series
 from wspd_design.certificates.checks.margin_map import margin_map
 from wspd_design.certificates.checks.verdict import hypothesis, proofs, status, undecided
 from wspd_design.certificates.kernel.claim import Claim, Relation
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Point, Problem, Series, Status
 from wspd_design.certificates.search.prover import extreme
 from wspd_design.certificates.search.settle import engine, settle
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH, SLIP, SPEED
+from wspd_design.certificates.setting.domain import SLIP, SPEED
 from wspd_design.certificates.setting.model_error import (
     Mismatch,
     inertia_ratio,
@@ -28,6 +29,7 @@ from wspd_design.certificates.setting.model_error import (
     variables,
 )
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Values,
     place,
     plant_dynamics,
@@ -39,6 +41,7 @@ from wspd_design.model.number import Number
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
@@ -111,8 +114,8 @@ def reserve(problem: Problem) -> float:
 
 def largest_deceleration(problem: Problem) -> float:
     """Return a_max: full friction on all wheels and the resistance at the highest speed [m/s2]."""
-    rolling = float(resistance(problem.vehicle, problem.speeds[1])) / problem.mass_bounds[0]
-    return problem.mu0_bounds[1] * constants().gravity + rolling
+    rolling = float(resistance(problem.vehicle, problem.speeds[1])) / problem.span("mass")[0]
+    return problem.span("mu0")[1] * constants().gravity + rolling
 
 
 def deceleration_claim(
@@ -133,7 +136,7 @@ def deceleration_claim(
     """
     return Claim(
         name="deceleration",
-        variables=plant_variables(problem, **ranges),
+        variables=plant_variables(problem, hold=OTHERS, ranges=ranges),
         expression=lambda x: plant_dynamics(problem, x).deceleration,
         form=lambda x: plant_forces(problem, x).deceleration,
         relation=relation,
@@ -248,7 +251,7 @@ def _plots(problem: Problem, law: SlidingMode, reserve: float) -> tuple[Series, 
 
     low, high = domain.box(problem)
     speeds = np.geomspace(low[SPEED], high[SPEED], PLOT_SPEEDS)
-    corners = product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
+    corners = product(problem.span("mass"), problem.span("wheelset inertia"), problem.span("mu0"))
     grid = product(speeds, np.linspace(low[SLIP], high[SLIP], PLOT_SLIPS), corners)
     points = np.array([(slip, speed, *corner) for speed, slip, corner in grid])
     needed = _needed_gain(mismatch(problem, law, points), reserve).reshape(PLOT_SPEEDS, -1).max(axis=1)

@@ -15,9 +15,10 @@ from wspd_design.certificates.kernel.subdomain import with_part
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.search.settle import engine, settle
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.setting.domain import PARAMETERS
 from wspd_design.certificates.setting.plant import place
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
@@ -97,9 +98,7 @@ def interval_claim(problem: Problem, limit: float, speeds: tuple[float, float], 
         relation,
         limit,
         speed=speeds,
-        mass=problem.vehicle.mass,
-        inertia=problem.vehicle.wheelset_inertia,
-        mu0=problem.rail.mu0,
+        **{name: problem.nominal(name) for name in PARAMETERS},
     )
 
 
