@@ -6,11 +6,12 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.finding import Finding, above, below
 from wspd_design.certificates.kernel.obligation import Sign
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems.theorem import Theorem, all_of, hypothesis
+from wspd_design.parameters.units import KMH
 
-SHOWN = {"m/s": (KMH, "km/h")}
-"""Scale and unit in which people read a quantity."""
+USED = ("speed", "wheelset inertia", "wheel radius")
+"""Quantities of the table that G depends on."""
 
 
 def _always(problem: Problem) -> str:  # noqa: ARG001 - the theorem speaks about every design
@@ -20,8 +21,8 @@ def _always(problem: Problem) -> str:  # noqa: ARG001 - the theorem speaks about
 def _factors(problem: Problem) -> tuple[Sign, ...]:
     """Return the factors of G, each at its smallest: a quotient of positive factors is positive on the box."""
     factors = (
-        ("wheel radius", problem.vehicle.wheel_radius, "m"),
-        ("wheelset inertia", problem.inertia_bounds[0], "kg m2"),
+        ("wheel radius", problem.span("wheel radius")[0], "m"),
+        ("wheelset inertia", problem.span("wheelset inertia")[0], "kg m2"),
         ("speed", problem.speeds[0], "m/s"),
     )
     return tuple(
@@ -34,20 +35,18 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
     status = all_of(*findings.values())
     wrong = [each for each in factors if findings[each.key].status is Status.REFUTED]
     # The inertia of the bounds is that of a wheelset, 2 I; G is smallest where both inertia and speed are largest.
-    largest = Fraction(problem.inertia_bounds[1]) * Fraction(problem.speeds[1])
-    smallest = Fraction(problem.vehicle.wheel_radius) / largest if status is Status.PROVED else None
+    largest = Fraction(problem.span("wheelset inertia")[1]) * Fraction(problem.speeds[1])
+    smallest = Fraction(problem.span("wheel radius")[0]) / largest if status is Status.PROVED else None
     return Certificate(
         name="gain_positive",
         title="Sign of the input gain",
-        claim=f"G = R/(2 I v) > 0 for wheelset inertia {problem.inertia_bounds[0]:g} to "
-        f"{problem.inertia_bounds[1]:g} kg m2 and {problem.speeds[0] * KMH:.3g} to "
-        f"{problem.speeds[1] * KMH:.3g} km/h.",
+        claim=f"G = R/(2 I v) > 0 on {domain.described(problem, USED)}.",
         status=status,
         explanation=(
             "A factor of G is zero or negative in the box, so that G has no sign there; correct the bounds."
             if smallest is None
             else "More torque means more slip wherever the train is. G is smallest at the highest "
-            f"speed and inertia, {float(smallest) * 1e6:.4g} 1/s per MN m."
+            f"speed and inertia and the smallest wheel, {float(smallest) * 1e6:.4g} 1/s per MN m."
         ),
         method="exact rational arithmetic at the end points of the monotone quotient",
         margin=None
@@ -56,19 +55,18 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
         worst_point=()
         if smallest is None
         else (
-            Point(name="wheelset inertia", value=problem.inertia_bounds[1], unit="kg m2"),
+            Point(name="wheelset inertia", value=problem.span("wheelset inertia")[1], unit="kg m2"),
             Point(name="speed", value=problem.speeds[1] * KMH, unit="km/h"),
         ),
         witness=tuple(_point(each) for each in wrong),
         hypotheses=tuple(hypothesis(each.text, findings[each.key]) for each in factors),
-        varied=("wheelset inertia",),
-        held=("wheel radius",),
+        varied=USED[1:],
         reference="eq. (19); docs/theory.md#slip-equation",
     )
 
 
 def _point(factor: Sign) -> Point:
-    scale, unit = SHOWN.get(factor.unit, (1.0, factor.unit))
+    scale, unit = domain.SHOWN.get(factor.unit, (1.0, factor.unit))
     return Point(name=factor.quantity, value=float(factor.value) * scale, unit=unit)
 
 

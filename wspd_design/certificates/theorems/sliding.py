@@ -9,17 +9,17 @@ from fractions import Fraction
 
 from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.kernel.obligation import Inequality
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.model_error import (
     inertia_ratio,
     residual,
     residual_over_ratio,
     variables,
 )
-from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Values,
     place,
     plant_dynamics,
@@ -31,6 +31,7 @@ from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.loading import constants
+from wspd_design.parameters.units import KMH
 
 
 def reserve(problem: Problem) -> float:
@@ -48,8 +49,8 @@ def reserve(problem: Problem) -> float:
 
 def largest_deceleration(problem: Problem) -> float:
     """Return a_max: full friction on all wheels and the resistance at the highest speed [m/s2]."""
-    rolling = float(resistance(problem.vehicle, problem.speeds[1])) / problem.mass_bounds[0]
-    return problem.mu0_bounds[1] * constants().gravity + rolling
+    rolling = float(resistance(problem.vehicle, problem.speeds[1])) / problem.span("mass")[0]
+    return problem.span("mu0")[1] * constants().gravity + rolling
 
 
 def deceleration_claim(
@@ -58,7 +59,7 @@ def deceleration_claim(
     """Return a claim about the deceleration of the train [m/s2], by default on the whole domain."""
     return Claim(
         name="deceleration",
-        variables=plant_variables(problem, **ranges),
+        variables=plant_variables(problem, hold=OTHERS, ranges=ranges),
         expression=lambda x: plant_dynamics(problem, x).deceleration,
         form=lambda x: plant_forces(problem, x).deceleration,
         relation=relation,

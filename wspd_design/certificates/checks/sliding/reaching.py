@@ -13,11 +13,12 @@ from wspd_design.certificates.records import Certificate, Point, Problem
 from wspd_design.certificates.search.prover import extreme
 from wspd_design.certificates.search.settle import settle_all
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import KMH, SLIP, SPEED
+from wspd_design.certificates.setting.domain import SLIP, SPEED
 from wspd_design.certificates.setting.model_error import Mismatch, mismatch
 from wspd_design.certificates.setting.plant import place
 from wspd_design.certificates.theorems.sliding import REACHING, gain_claim, reserve
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
@@ -64,7 +65,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     assert isinstance(law, SlidingMode)
     low, high = domain.box(problem)
     speeds = np.geomspace(low[SPEED], high[SPEED], PLOT_SPEEDS)
-    corners = product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
+    corners = product(problem.span("mass"), problem.span("wheelset inertia"), problem.span("mu0"))
     grid = product(speeds, np.linspace(low[SLIP], high[SLIP], PLOT_SLIPS), corners)
     points = np.array([(slip, speed, *corner) for speed, slip, corner in grid])
     needed = _needed_gain(mismatch(problem, law, points), eta).reshape(PLOT_SPEEDS, -1).max(axis=1)

@@ -6,6 +6,7 @@ The controller does not matter but for its sample time: a deviation is seen up t
 from wspd_design.certificates.checks import verdict
 from wspd_design.certificates.checks.frame import certified, level, series
 from wspd_design.certificates.kernel.subdomain import with_part
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import (
     Certificate,
     Hypothesis,
@@ -26,8 +27,8 @@ from wspd_design.certificates.search.recovery import (
 from wspd_design.certificates.search.recovery_samples import SPEEDS, Samples, sample
 from wspd_design.certificates.search.settle import Finding, enclose, engine, settle
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import KMH, SLIP
-from wspd_design.certificates.setting.outside import OutsideModel
+from wspd_design.certificates.setting.domain import SLIP
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "hard_limits", "Limits of recovery"
 DEVIATION = 0.05  # of the slip, to be brought back: as wide as the usual band around a reference
