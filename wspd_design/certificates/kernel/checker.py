@@ -472,7 +472,7 @@ def read(text: str) -> Mapping[str, Any]:
 
     try:
         if len(text) <= MOST_BYTES:
-            return _typed(json.loads(text, object_pairs_hook=once), dict, "JSON object")
+            return dict(_typed(json.loads(text, object_pairs_hook=once), dict, "JSON object"))
     except (ValueError, RecursionError) as error:
         raise (error if isinstance(error, Refused) else Refused("the file is not complete JSON")) from None
     raise Refused("the file is too long")
