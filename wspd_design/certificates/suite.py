@@ -24,8 +24,7 @@ from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.search.progress import Listener, listening
 from wspd_design.certificates.search.prover import DEFAULT_BUDGET, Budget, within
-from wspd_design.certificates.setting.linear_loop import LinearLaw
-from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.controllers.offers import Linear
 from wspd_design.parameters.errors import UserError
 
 MODULES = (
@@ -92,9 +91,9 @@ def verify(
             offer = f', did you mean "{near[0]}"?' if near else ""
             raise UserError(f'unknown check "{name}"{offer}; available: {", ".join(NAMES)}')
     _agree("sample time", problem.sample_time, problem.controller.sample_time)
-    if isinstance(problem.controller, LinearLaw):
-        _agree("slip reference", problem.slip, problem.controller.gains.slip_reference)
-        _agree("wheel radius", problem.vehicle.wheel_radius, _wheel_radius(problem.controller))
+    if isinstance(problem.controller, Linear):
+        _agree("slip reference", problem.slip, problem.controller.slip_reference)
+        _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
     certificates = []
     for module in MODULES:
         if only is None or module.NAME in only:
@@ -102,11 +101,6 @@ def verify(
             with listening(_at(module.TITLE, progress)), within(budget):
                 certificates.append(module.check(problem))
     return tuple(certificates)
-
-
-def _wheel_radius(law: LinearLaw) -> float:
-    """Return the radius from which a law works out its slip [m]."""
-    return law.wheel_radius if isinstance(law, AdaptiveFuzzy) else law.vehicle.wheel_radius
 
 
 def _at(title: str, progress: Callable[[str], None]) -> Listener:

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 from flint import arb, fmpq
 
 from wspd_design.certificates.kernel.claim import Variable, constant
+from wspd_design.parameters.errors import WspdError
 
 Ends: TypeAlias = tuple[Any, Any]
 """Balls around the lower and the upper end of an interval."""
@@ -21,7 +22,7 @@ ZERO, ONE, MINUS = ((arb(n), arb(n)) for n in (0, 1, -1))
 NAMES = ("Symbol", "Add", "Mul", "Pow", "Abs", "exp", "atan")
 
 
-class Refused(ValueError):
+class Refused(WspdError, ValueError):
     """The certificate does not show the claim."""
 
 
