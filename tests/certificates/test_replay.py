@@ -5,11 +5,11 @@ import math
 from dataclasses import replace
 
 import pytest
+from wspd_design.certificates.kernel.exact import FORMAT
 
 from wspd_design.certificates import suite
 from wspd_design.certificates.checks.sliding import sliding_exists
 from wspd_design.certificates.checks.valve import no_go
-from wspd_design.certificates.kernel.exact import FORMAT
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay

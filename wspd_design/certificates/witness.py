@@ -39,11 +39,7 @@ _TIGHT = {
     "wheelset inertia": _Allowed("kg m2", 10.0, 1e4),
     "mu0": _Allowed("-", 1e-3, 1.0),
 }
-_NUMBERS = {
-    row.name: _Allowed(row.unit, 0.0, 1e15)
-    for row in TABLE
-    if row.record not in ("state", "axle")
-}
+_NUMBERS = {row.name: _Allowed(row.unit, 0.0, 1e15) for row in TABLE if row.record not in ("state", "axle")}
 _COORDINATES = {**_NUMBERS, **_TIGHT, **_STATE}
 _ANEW = "write it anew with wspd certify"
 

@@ -11,11 +11,11 @@ from rich.text import Text
 
 from wspd_design.certificates.kernel.file import FOLDER
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.cli.case import Case
 from wspd_design.cli.console import console, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
-from wspd_design.cli.own_controller import is_own_controller
+from wspd_design.design.case import Case
 from wspd_design.design.catalog import is_design_file
+from wspd_design.design.own_controller import is_own_controller
 
 
 class _Shown(NamedTuple):

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from tests.certificates.invariance.loops import drawn, feedback_problem
-from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.search.invariant_sets import document, one_sample, search
 from wspd_design.certificates.search.invariant_sets.search import search as search_sets
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.invariant_sets.ball_plant import BallPlant
 from wspd_design.certificates.theorems.invariant_sets.ball_slopes import law_slopes
 from wspd_design.certificates.theorems.invariant_sets.checker import check

@@ -5,9 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.checks.frame import enclosure
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail

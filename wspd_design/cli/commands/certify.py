@@ -11,7 +11,6 @@ from rich.text import Text
 from wspd_design.certificates.kernel.file import FOLDER, certificate_text, file_name
 from wspd_design.certificates.records import Certificate, Status
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, resolve
 from wspd_design.cli.console import console, spaced, table
 from wspd_design.cli.output import check_folder, write_text
 from wspd_design.cli.verification import (
@@ -26,6 +25,7 @@ from wspd_design.cli.verification import (
     status_text,
     stored_beside,
 )
+from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
 from wspd_design.parameters.errors import UserError
 
@@ -62,7 +62,7 @@ def certify(
     Exit code 1 when a claim is refuted or a limitation is proved, else 3 when one is undecided, else 0. With --only a
     check that is not proved counts as undecided.
     """
-    case = resolve(design, Wishes(vehicle=vehicle, rail=rail))
+    case = load_case(design, CaseOptions(vehicle=vehicle, rail=rail))
     folder = output if output is not None else folder_beside(design)
     check_folder(folder, force=force)
     problem = problem_of(case)

@@ -3,7 +3,7 @@
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_quarter, chosen, resolve
+from wspd_design.cli.arguments import check_quarter, chosen
 from wspd_design.cli.console import print_json
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.json_objects import verification_object
@@ -16,6 +16,7 @@ from wspd_design.cli.verification import (
     show_verdicts,
     stored_beside,
 )
+from wspd_design.design.case import CaseOptions, load_case
 
 _VERDICTS = {GOOD: "good", REFUTED: "refuted", UNDECIDED: "undecided"}
 
@@ -40,9 +41,9 @@ def verify(
     check that is not proved counts as undecided. What lies beside a design and is accepted again is not searched again.
     """
     check_quarter(plant, "verify")
-    case = resolve(
+    case = load_case(
         chosen(name, controller),
-        Wishes(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),
+        CaseOptions(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),
     )
     problem = problem_of(case, seed=seed)
     certificates = run_checks(problem, only, effort, stored_beside(chosen(name, controller)))
