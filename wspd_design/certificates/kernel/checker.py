@@ -29,15 +29,12 @@ from math import floor, isfinite
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
-import flint
-from flint import arb, fmpq
+from flint import arb, ctx, fmpq
 
 FORMAT = "wspd-proof/2"
-PRECISION = 80  # bits
-PRIME = 2**255 - 19
+PRECISION, PRIME = 80, 2**255 - 19  # bits of a ball; of the field of identities
 MOST_BYTES = 20_000_000  # of a file
-MOST_FREE = 26  # variables with a range: one letter each
-MOST_HALVINGS = 400  # of one box
+MOST_FREE, MOST_HALVINGS = 26, 400  # variables with a range, one letter each; of one box
 MOST_DIGITS = 2_000  # of a fraction
 MOST_STEPS, MOST_EXPONENT = 20_000, 64  # of a formula, of a power in it
 MOST_WORK = 25_000_000  # operations on intervals, about 40 s
@@ -46,9 +43,7 @@ RATIO = re.compile(rf"-?[0-9]{{1,{MOST_DIGITS}}}/[0-9]{{1,{MOST_DIGITS}}}")
 WORDS = re.compile(r"[ -~]{1,300}")  # printable ASCII: no byte of a file steers a terminal
 
 Ends: TypeAlias = tuple[Any, Any]  # balls around both ends of an interval: a ball alone would fail on 1 + x^2
-Slopes: TypeAlias = dict[
-    int, Ends
-]  # derivatives by the number of the variable; one that is not there is zero
+Slopes: TypeAlias = dict[int, Ends]  # derivatives by the number of the variable, unless they are zero
 Box: TypeAlias = list[tuple[Any, Any]]  # exact ends of every variable (fmpq)
 Formula: TypeAlias = Sequence[Sequence[Any]]
 
@@ -86,7 +81,7 @@ def decide(proof: object, work: Work) -> Shown:
     match statement.get("kind"):
         case "inequality":
             given, tree = _Inequality(statement), _typed(content.get("tree"), str, "tree")
-            with flint.ctx.workprec(PRECISION):
+            with ctx.workprec(PRECISION):
                 return Shown(given.words(), _replay(given, tree, work))
         case "identity":
             one, other = (_formula(statement.get(key)) for key in ("left", "right"))
@@ -115,7 +110,7 @@ def value(
         if not low <= at <= high:
             raise Refused(f"{name} = {float(at):g} lies outside the box")
         box.append((fmpq(*at.as_integer_ratio()),) * 2)
-    with flint.ctx.workprec(PRECISION):
+    with ctx.workprec(PRECISION):
         found, _ = Program(given.model, given.variables, work).run(_ends(box))
         if not finite(found) and given.model is not given.form and same(given.form, given.model):
             found, _ = Program(given.form, given.variables, work).run(_ends(box))
@@ -287,14 +282,20 @@ def _apply(name: str, operands: list[tuple[Ends, Slopes]], exponent: Any) -> tup
         sign = ONE if x[0] >= 0 else MINUS if x[1] <= 0 else (arb(-1), arb(1))
         x, dx = magnitude(x), _times(dx, sign)
     elif name == "exp":
-        x = x[0].exp(), x[1].exp()
+        x = rising("exp", x)
         dx = _times(dx, x)
     else:
-        x, dx = (x[0].atan(), x[1].atan()), _times(dx, inverse(add(ONE, sqr(x))))
+        x, dx = rising("atan", x), _times(dx, inverse(add(ONE, sqr(x))))
     return x, dx
 
 
 ZERO, ONE, MINUS = ((arb(n), arb(n)) for n in (0, 1, -1))
+RISING = {"exp": arb.exp, "log": arb.log, "atan": arb.atan}
+
+
+def rising(name: str, x: Ends) -> Ends:
+    """Return a rising function of an interval."""
+    return RISING[name](x[0]), RISING[name](x[1])
 
 
 def add(x: Ends, y: Ends) -> Ends:
@@ -340,8 +341,7 @@ def power(x: Ends, exponent: Fraction) -> Ends:
     if exponent.denominator > 1:
         if not x[0] > 0:
             return arb.nan(), arb.nan()
-        low, high = mul(exactly(exponent), (x[0].log(), x[1].log()))
-        return low.exp(), high.exp()
+        return rising("exp", mul(exactly(exponent), rising("log", x)))
     if exponent == 0:
         return add(ONE, mul(ZERO, x))
     if exponent % 2 == 0:
