@@ -7,7 +7,7 @@ from pathlib import Path
 from wspd_design.certificates.checks.foundations import gain_positive
 from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.sliding import reaching
-from wspd_design.certificates.checks.valve import no_go
+from wspd_design.certificates.checks.valve import no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
@@ -21,7 +21,9 @@ CHECKS: Mapping[str, Check] = {
     for each in (
         gain_positive.CHECK,
         reaching.CHECK,
+        open_loop_pole.CHECK,
         no_go.CHECK,
+        sampling.CHECK,
     )
 }
 NAMES = tuple(THEOREMS)

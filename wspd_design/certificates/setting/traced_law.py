@@ -116,9 +116,7 @@ def law_of_theorem(problem: Problem, family: str) -> str | None:
     if isinstance(wanted, str):
         return wanted
     if not same_function(found, wanted):
-        return (
-            f"the step of {law.name} is not the {title} that this theorem speaks about, or was not shown to be"
-        )
+        return f"the step of {law.name} is not the {title} that this theorem speaks about, or was not shown to be"
     return None
 
 
@@ -217,7 +215,9 @@ def _instructions(function: Any) -> list[tuple[object, ...]]:
             function.instruction_id(k),
             tuple(function.instruction_input(k)),
             tuple(function.instruction_output(k)),
-            float(function.instruction_constant(k)).hex() if function.instruction_id(k) == ca.OP_CONST else "",
+            float(function.instruction_constant(k)).hex()
+            if function.instruction_id(k) == ca.OP_CONST
+            else "",
         )
         for k in range(function.n_instructions())
     ]

@@ -10,7 +10,9 @@ THEOREMS: Mapping[str, Theorem] = {
     for each in (
         foundations.GAIN_POSITIVE,
         sliding.REACHING,
+        valve.OPEN_LOOP_POLE,
         valve.NO_GO,
+        valve.SAMPLING,
     )
 }
 """By name; a check without a row here does not exist."""
