@@ -7,7 +7,7 @@ from pathlib import Path
 from wspd_design.certificates.checks.foundations import gain_positive
 from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.sliding import reaching
-from wspd_design.certificates.checks.valve import no_go, open_loop_pole, sampling
+from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
@@ -23,6 +23,7 @@ CHECKS: Mapping[str, Check] = {
         reaching.CHECK,
         open_loop_pole.CHECK,
         no_go.CHECK,
+        hard_limits.CHECK,
         sampling.CHECK,
     )
 }

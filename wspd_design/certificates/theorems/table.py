@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from wspd_design.certificates.theorems import foundations, sliding, valve
+from wspd_design.certificates.theorems import foundations, recovery, sliding, valve
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
@@ -12,6 +12,7 @@ THEOREMS: Mapping[str, Theorem] = {
         sliding.REACHING,
         valve.OPEN_LOOP_POLE,
         valve.NO_GO,
+        recovery.HARD_LIMITS,
         valve.SAMPLING,
     )
 }
