@@ -159,7 +159,9 @@ class WrittenAdaptiveFuzzy(WrittenLaw):
             duty = torque / self.max_torque
             up, down = where(duty > 1.0, surface > 0.0, False), where(duty < 0.0, surface < 0.0, False)
             span = where(up, 0.0, where(down, 0.0, span))
-        adapted = [b + span * (gains.weight_rate * driving * share) for b, share in zip(weights, w, strict=True)]
+        adapted = [
+            b + span * (gains.weight_rate * driving * share) for b, share in zip(weights, w, strict=True)
+        ]
         following = (
             total + self.sample_time * error,
             *adapted,

@@ -47,7 +47,7 @@ def check(problem: Problem) -> Certificate:
     poles = slip_pole.pole_map(problem)
     # A pole on the other side of 1/tau somewhere says that the interval was chosen badly, no more.
     status = Status.PROVED if finding.status is Status.PROVED else Status.UNDECIDED
-    if form.status is Status.REFUTED:
+    if form.status is not Status.PROVED:
         status = Status.NOT_APPLICABLE
         meaning = f"{problem.controller.name} feeds back more than the slip and is not bound by this."
     elif interval:

@@ -74,7 +74,7 @@ def check(problem: Problem) -> Certificate:
         f"between {lowest.ends[0]:.4g} and {most:.4g} 1/s, highest at {highest.place['speed'] * KMH:.3g} km/h"
     )
     exceeded = least >= reached
-    if form.status is Status.REFUTED:
+    if form.status is not Status.PROVED:
         status = Status.NOT_APPLICABLE
         meaning = "The law uses more than the slip, so that this limit does not bind it"
     elif exceeded:

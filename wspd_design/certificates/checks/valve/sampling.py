@@ -87,7 +87,7 @@ def check(problem: Problem) -> Certificate:
     form = laws.slip_feedback_only(problem)
     where = place(found.place)
     exceeded = found.status is Status.REFUTED
-    status = Status.NOT_APPLICABLE if form.status is Status.REFUTED else found.status
+    status = found.status if form.status is Status.PROVED else Status.NOT_APPLICABLE
     growth = math.exp(max(highest, 0.0) * problem.sample_time)
     over_lag = math.exp(max(highest, 0.0) * (problem.sample_time + lag))
     return Certificate(
