@@ -121,7 +121,7 @@ def test_what_has_no_content_is_refused():
     with pytest.raises(UserError, match="no content that can be told"):
         fingerprint(Own(file=object()))
     with pytest.raises(UserError, match="no content that can be told"):
-        fingerprint((number for number in range(3)))
+        fingerprint(number for number in range(3))
 
 
 def test_fingerprints_are_the_same_in_every_process():
