@@ -1,8 +1,8 @@
 """Fingerprints: the SHA-256 of everything that a result rests on.
 
 Numbers count to their last bit, records by their fields, and an object of a user's class by its attributes and by
-what Python made of its methods. What has no certain content is refused: a fingerprint that misses something would let an old
-verdict stand for a new law.
+what Python made of its methods. What has no certain content is refused: a fingerprint that misses something would
+let an old verdict stand for a new law.
 """
 
 import hashlib

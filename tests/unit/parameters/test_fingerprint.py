@@ -77,7 +77,7 @@ def test_the_same_content_has_the_same_fingerprint():
 
 
 def by_factor(factor):
-    return type("Made", (), {"step": lambda self, state: factor * state})()
+    return type("Made", (), {"step": lambda _self, state: factor * state})()
 
 
 def test_what_a_step_closes_over_is_seen():
