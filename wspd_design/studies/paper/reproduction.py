@@ -104,8 +104,7 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
     ablations = []
     for rail, scenario in scenarios.items():
         progress(f"parts of the adaptive fuzzy law on {rail}")
-        law = controller("afsmc", vehicle, scenario.rail, specification)
-        assert isinstance(law, AdaptiveFuzzy)
+        law = cast(AdaptiveFuzzy, controller("afsmc", vehicle, scenario.rail, specification))
         ablations.append(ablation(vehicle, law, scenario))
     progress("track irregularities")
     spectra = load_track_spectrum("erri-b176")
