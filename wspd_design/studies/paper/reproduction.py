@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.design.catalog import controller
