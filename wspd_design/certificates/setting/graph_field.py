@@ -12,6 +12,7 @@ there, so that "different" means "not shown to be the same".
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import cache
 from hashlib import sha256
 from math import isfinite
 from typing import Any
@@ -133,6 +134,7 @@ def _residue(number: float) -> int:
     return exact.numerator * pow(exact.denominator, -1, PRIME) % PRIME
 
 
+@cache
 def _names() -> dict[int, str]:
     import casadi as ca
 
