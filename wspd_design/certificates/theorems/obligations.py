@@ -79,7 +79,7 @@ def _boundary_layer(problem: Problem) -> tuple[Obligation, ...]:
 def _feedback(problem: Problem) -> tuple[Obligation, ...]:
     """Return the condition of the no-go theorem on the law."""
     form = laws.slip_feedback_only(problem)
-    return conditions((form.text, form.status is not Status.REFUTED))
+    return conditions((form.text, form.status is Status.PROVED))
 
 
 def _open_loop_pole(problem: Problem) -> tuple[Obligation, ...]:
