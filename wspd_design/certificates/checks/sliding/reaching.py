@@ -77,7 +77,7 @@ def supremum(problem: Problem) -> Supremum:
     return _supremum(
         Claim(
             name="abs(r)",
-            variables=variables(problem, law),
+            variables=variables(problem, law, hold=OTHERS),
             expression=lambda x: abs(residual(problem, law, x)),
             form=lambda x: abs(residual_over_ratio(problem, law, x) * inertia_ratio(x)),
             relation="<=",
@@ -159,7 +159,7 @@ def claims(problem: Problem, law: SlidingMode) -> tuple[Claim, Claim]:
 
     gain = Claim(
         name="(abs(r) + eta)/rho",
-        variables=variables(problem, law),
+        variables=variables(problem, law, hold=OTHERS),
         expression=needed,
         form=arranged,
         relation="<=",
