@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -120,6 +121,17 @@ def test_static_range_contains_and_nearly_reaches_the_loads_of_the_plant(problem
         found, slowing = static_shares(vehicle, adhesions, generator.uniform(*problem.speeds))
         shares.append(found)
         assert slow <= slowing <= fast
+    # The outermost loads: a light vehicle, high centers, all wheels at their friction or those of one bogie.
+    for mass, rod, front, rear in product(
+        nominal.bounds["mass"], np.linspace(0.4, 0.6, 5), (0.0, 0.36), (0.0, 0.36)
+    ):
+        known = {
+            "mass": mass,
+            "body_mass": nominal.body_mass + mass - nominal.mass,
+            "traction_rod_height": rod,
+        }
+        vehicle = replace(nominal, **known, body_height=2.1, bogie_height=0.85)
+        shares.append(static_shares(vehicle, np.array([front, front, rear, rear]), problem.speeds[1])[0])
     assert low <= np.min(shares)
     assert np.max(shares) <= high
     assert high - np.max(shares) < 0.1 * (high - 1.0)
