@@ -7,8 +7,10 @@ import pytest
 
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.design.problem import stated_bounds
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 PUBLISHED_RAILS = ("polach-dry", "polach-wet")
@@ -23,12 +25,10 @@ def _problem(controller, *, rail="polach-dry", vehicle=None, **changes):
         "slip": 0.14,
         "speeds": (10.0 / 3.6, 120.0 / 3.6),
         "slips": (0.02, 0.6),
-        "mass_bounds": vehicle.mass_bounds,
-        "inertia_bounds": vehicle.wheelset_inertia_bounds,
-        "mu0_bounds": friction.mu0_bounds,
         "sample_time": controller.sample_time,
     }
-    return Problem(**{**stated, **changes})
+    bounds = stated_bounds(vehicle, friction) | changes.pop("bounds", {})
+    return Problem(**{**stated, **changes}, bounds=bounds)
 
 
 @pytest.fixture(scope="session")
@@ -94,9 +94,7 @@ def make_reference_problem():
             slip=0.14,
             speeds=(2.0, 33.4),
             slips=(0.02, 0.6),
-            mass_bounds=(0.8 * mass, 1.2 * mass),
-            inertia_bounds=(662.0, 662.0),
-            mu0_bounds=(0.2, 0.6),
+            bounds=Bounds.of({"mass": (0.8 * mass, 1.2 * mass), "mu0": (0.2, 0.6)}),
             sample_time=0.1,
             contact_grows_with_load=False,
         )
@@ -119,6 +117,6 @@ def make_adaptive_problem(er24pc, make_problem):
 
     def make(**changes):
         law = replace(designed, gains=replace(designed.gains, **changes))
-        return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), mu0_bounds=(0.28, 0.3))
+        return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), bounds={"mu0": (0.28, 0.3)})
 
     return make

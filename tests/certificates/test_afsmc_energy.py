@@ -8,7 +8,7 @@ import pytest
 from wspd_design.certificates.checks.adaptive import afsmc_energy
 from wspd_design.certificates.checks.ideal_run import adaptive_run
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.setting.domain import varied
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.controllers.adaptive_fuzzy import firing_strengths
 from wspd_design.model.generated import adaptive_fuzzy as generated
 from wspd_design.model.number import saturation
@@ -94,7 +94,9 @@ def test_runs_keep_the_bounds(repaired):
     at = {point.name: point.value for point in verdict.worst_point}
     gains = problem.controller.gains
     for mass, inertia, mu0 in ((76841.0, 752.0, 1.0), (61473.0, 860.0, 0.8), (92209.0, 640.0, 1.2)):
-        vehicle, rail = varied(problem, mass, inertia, mu0 * problem.rail.mu0)
+        vehicle, rail = plant_with(
+            problem, {"mass": mass, "wheelset inertia": inertia, "mu0": mu0 * problem.rail.mu0}
+        )
         run = adaptive_run(vehicle, rail, gains, speeds=problem.speeds)
         surface = 0.14 - run.slip + gains.integral_gain * run.integral
         dead = surface - gains.boundary_layer * saturation(surface / gains.boundary_layer)
@@ -105,7 +107,7 @@ def test_runs_keep_the_bounds(repaired):
 def test_brake_that_suffices_makes_it_a_proof(make_problem, make_controller):
     """A slippery, exactly known rail and a narrow range of slip leave room to apply and to release."""
     law = designed(make_controller)
-    problem = make_problem(law, rail="polach-wet", slips=(0.05, 0.3), mu0_bounds=(0.28, 0.3))
+    problem = make_problem(law, rail="polach-wet", slips=(0.05, 0.3), bounds={"mu0": (0.28, 0.3)})
     verdict = afsmc_energy.check(problem)
     assert verdict.status is Status.PROVED
     assert verdict.margin.low > 0.0
@@ -123,7 +125,7 @@ def test_brake_that_suffices_makes_it_a_proof(make_problem, make_controller):
 )
 def test_planted_law_loses_a_hypothesis(make_problem, make_controller, changes):
     law = designed(make_controller, **changes)
-    problem = make_problem(law, rail="polach-wet", slips=(0.05, 0.3), mu0_bounds=(0.28, 0.3))
+    problem = make_problem(law, rail="polach-wet", slips=(0.05, 0.3), bounds={"mu0": (0.28, 0.3)})
     verdict = afsmc_energy.check(problem)
     assert verdict.status is Status.UNDECIDED
     assert Status.REFUTED in {hypothesis.status for hypothesis in verdict.hypotheses}

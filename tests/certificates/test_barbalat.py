@@ -47,7 +47,7 @@ def test_train_that_never_slows_down_leaves_the_claim_undecided(make_problem, ma
     coasting = replace(
         er24pc, resistance_constant=1e-3, resistance_linear=0.0, resistance_quadratic=0.0, name="coasting"
     )
-    problem = make_problem(make_controller("smc"), vehicle=coasting, mu0_bounds=(1e-5, 1e-5))
+    problem = make_problem(make_controller("smc"), vehicle=coasting, bounds={"mu0": (1e-5, 1e-5)})
     problem = replace(problem, rail=replace(problem.rail, mu0=1e-5))
     assert barbalat.check(problem).status is Status.UNDECIDED
 

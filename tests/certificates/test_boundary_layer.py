@@ -8,8 +8,8 @@ import pytest
 from wspd_design.certificates.checks.ideal_run import sliding_run
 from wspd_design.certificates.checks.sliding import boundary_layer
 from wspd_design.certificates.records import Hypothesis, Status
-from wspd_design.certificates.setting.domain import varied
 from wspd_design.certificates.setting.laws import of_theorem
+from wspd_design.certificates.setting.plant import plant_with
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +33,7 @@ def test_runs_keep_the_bound(strong, proved):
     at = {point.name: point.value for point in proved.worst_point}
     gains = strong.controller.gains
     for mass, mu0, slip in ((61473.0, 0.66, 0.6), (92209.0, 0.44, 0.02), (76841.0, 0.55, 0.4)):
-        vehicle, rail = varied(strong, mass, 752.0, mu0)
+        vehicle, rail = plant_with(strong, {"mass": mass, "wheelset inertia": 752.0, "mu0": mu0})
         run = sliding_run(vehicle, rail, strong.controller, speeds=strong.speeds, slip=slip)
         error = gains.slip_reference - run.slip
         inside = np.abs(error + gains.surface_rate * run.integral) <= gains.boundary_layer

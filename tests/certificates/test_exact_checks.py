@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from wspd_design.certificates.kernel.exact import Positive
 
 from wspd_design.certificates.checks.foundations import gain_positive, surface_hurwitz
 from wspd_design.certificates.kernel import exact
-from wspd_design.certificates.kernel.exact import Positive
 from wspd_design.certificates.records import Status
 from wspd_design.model.generated.slip import slip_gain
 
@@ -62,7 +62,7 @@ def test_gain_is_proved_positive_and_its_minimum_enclosed(make_problem, make_con
     verdict = gain_positive.check(problem)
     assert verdict.status is Status.PROVED
     speeds = np.linspace(*problem.speeds, 200)
-    inertias = np.linspace(*problem.inertia_bounds, 100)[:, None]
+    inertias = np.linspace(*problem.span("wheelset inertia"), 100)[:, None]
     sampled = slip_gain(speeds, inertias / 2.0, problem.vehicle.wheel_radius).min()
     assert verdict.margin.low <= sampled * (1.0 + 1e-15)
     assert verdict.margin.high == pytest.approx(sampled, rel=1e-12)
@@ -71,8 +71,8 @@ def test_gain_is_proved_positive_and_its_minimum_enclosed(make_problem, make_con
 @pytest.mark.parametrize(
     ("changes", "blamed"),
     [
-        ({"inertia_bounds": (-10.0, 860.0)}, "wheelset inertia"),
-        ({"inertia_bounds": (0.0, 860.0)}, "wheelset inertia"),
+        ({"bounds": {"wheelset inertia": (-10.0, 860.0)}}, "wheelset inertia"),
+        ({"bounds": {"wheelset inertia": (0.0, 860.0)}}, "wheelset inertia"),
         ({"speeds": (0.0, 30.0)}, "speed"),
     ],
 )

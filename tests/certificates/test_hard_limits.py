@@ -17,7 +17,9 @@ from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search import recovery, recovery_samples
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.setting.plant import dynamics_at, plant_with
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.bounds import Bounds
 
 
 @pytest.fixture(scope="module")
@@ -51,12 +53,12 @@ def pinned(problem):
     """Return the problem without uncertainty."""
     vehicle, mu0 = problem.vehicle, problem.rail.mu0
     inertia = (vehicle.wheelset_inertia,) * 2
-    return replace(problem, mass_bounds=(vehicle.mass,) * 2, inertia_bounds=inertia, mu0_bounds=(mu0, mu0))
+    return replace(problem, bounds=Bounds.of({"wheelset inertia": inertia, "mu0": (mu0, mu0)}))
 
 
 def leaves(problem, point, deviation):
     """Integrate slip and torque forwards: held for a sample, then vented; does the slip pass the highest?"""
-    vehicle, rail = domain.varied(problem, point[MASS], point[INERTIA], point[MU0])
+    vehicle, rail = plant_with(problem, dict(zip(domain.PARAMETERS, point[MASS:], strict=True)))
     brake, speed, reference = vehicle.brake, point[SPEED], problem.slip
     at = slip_dynamics(vehicle, rail, reference, speed)
     torque = min(-at.drift / at.gain, brake.max_torque)
@@ -84,7 +86,7 @@ def leaves(problem, point, deviation):
 
 def slip_when_seen(problem, point, deviation):
     """Integrate the slip under the torque that held it, for one sample."""
-    vehicle, rail = domain.varied(problem, point[MASS], point[INERTIA], point[MU0])
+    vehicle, rail = plant_with(problem, dict(zip(domain.PARAMETERS, point[MASS:], strict=True)))
     holding = -slip_dynamics(vehicle, rail, problem.slip, point[SPEED]).drift
 
     def rate(_, state):
@@ -135,8 +137,8 @@ def test_the_worst_lies_where_the_brake_just_holds_the_reference(dry):
     assert np.all(np.diff(np.diff(samples.worst[samples.speeds < 10.0])) > -1e-3)  # no bump
     slow = int(np.searchsorted(samples.speeds, 24.0 / domain.KMH))
     point, worst = samples.tightest[slow], samples.worst[slow]
-    assert dry.mass_bounds[0] < point[MASS] < dry.mass_bounds[1]
-    plant = domain.dynamics(dry, point[None])
+    assert dry.span("mass")[0] < point[MASS] < dry.span("mass")[1]
+    plant = dynamics_at(dry, point[None])
     assert -plant.drift / plant.gain == pytest.approx(dry.vehicle.brake.max_torque, rel=1e-9)
     assert not leaves(dry, point, 0.99 * worst)
     assert leaves(dry, point, 1.01 * worst)
@@ -151,11 +153,11 @@ def test_corners_alone_are_too_hopeful(dry, monkeypatch):
 def test_no_guarantee_exceeds_what_integration_finds(make_problem, make_controller, rail):
     problem = make_problem(make_controller("afsmc"), rail=rail)
     points = np.random.default_rng(8).uniform(*domain.slip_held(problem), (300, 5))
-    fall = -domain.dynamics(problem, points).drift
+    fall = -dynamics_at(problem, points).drift
     shares = []
     for slip in np.linspace(problem.slip, problem.slips[1], 60):
         points[:, SLIP] = slip
-        pole = domain.dynamics(problem, points).pole
+        pole = dynamics_at(problem, points).pole
         shares.append(recovery.per_deviation(problem, pole, pole / fall))
     guaranteed = np.minimum(1.0 / np.max(shares, axis=0), recovery.reach(problem))
     assert np.all(guaranteed <= 1.0001 * recovery.recoverable(problem, points))
@@ -175,14 +177,14 @@ def test_growth_is_that_of_a_small_deviation(dry, refuted):
     corners = product(
         np.linspace(dry.slip, dry.slips[1], 60),
         dry.speeds[:1],
-        dry.mass_bounds,
-        dry.inertia_bounds,
-        dry.mu0_bounds,
+        dry.span("mass"),
+        dry.span("wheelset inertia"),
+        dry.span("mu0"),
     )
     points = np.array(list(corners))
-    poles = domain.dynamics(dry, points).pole
+    poles = dynamics_at(dry, points).pole
     slip, speed, *plant = points[poles.argmax()]
-    vehicle, rail = domain.varied(dry, *plant)
+    vehicle, rail = plant_with(dry, dict(zip(domain.PARAMETERS, plant, strict=True)))
     holding = -slip_dynamics(vehicle, rail, slip, speed).drift
 
     def rate(_, state):
@@ -289,5 +291,6 @@ def test_forged_files_are_refused(dry, wet, refuted, proved):
 
 
 def test_arranged_form_is_the_model_also_with_a_fixed_contact(make_reference_problem):
-    problem = replace(make_reference_problem(1.0), speeds=(25.0, 33.0), mu0_bounds=(0.3, 0.4))
+    problem = make_reference_problem(1.0)
+    problem = replace(problem, speeds=(25.0, 33.0), bounds=problem.bounds | {"mu0": (0.3, 0.4)})
     assert hard_limits.check(problem).status is Status.PROVED

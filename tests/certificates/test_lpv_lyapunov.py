@@ -64,9 +64,9 @@ def test_function_falls_along_random_courses(problem, content):
                 rng.uniform(*bounds)
                 for bounds in (
                     problem.speeds,
-                    problem.mass_bounds,
-                    problem.inertia_bounds,
-                    problem.mu0_bounds,
+                    problem.span("mass"),
+                    problem.span("wheelset inertia"),
+                    problem.span("mu0"),
                 )
             )
             plant = slip_dynamics(
@@ -127,8 +127,8 @@ def test_other_loops_are_refused(problem, content, make_problem, make_controller
     brake = problem.vehicle.brake
     others = (
         replace(problem, speeds=(2.0, 120.0 / 3.6)),
-        replace(problem, mu0_bounds=(0.44, 0.7)),
-        replace(problem, inertia_bounds=(300.0, 860.0)),
+        replace(problem, bounds=problem.bounds | {"mu0": (0.44, 0.7)}),
+        replace(problem, bounds=problem.bounds | {"wheelset inertia": (300.0, 860.0)}),
         replace(problem, sample_time=0.1),
         replace(problem, slip=0.1),
         replace(problem, controller=replace(law, gains=replace(law.gains, torque_gain=1.0))),

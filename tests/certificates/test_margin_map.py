@@ -10,7 +10,6 @@ from wspd_design.certificates.checks.margin_map import margin_map
 from wspd_design.certificates.checks.sliding import reaching, sliding_exists
 from wspd_design.certificates.checks.valve import open_loop_pole
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.plant import UNITS
 
 ROUNDING = 1e-6
 
@@ -44,7 +43,7 @@ def test_the_worst_of_the_map_is_what_is_proved(make_controller, make_problem, r
 
 def _map(problem, quantity, largest=True, **changes):
     low, high = domain.box(problem)
-    worst = dict(zip(UNITS, high.tolist(), strict=True)) | changes
+    worst = dict(zip(domain.BASIC, high.tolist(), strict=True)) | changes
     return margin_map(
         "name", "value [-]", quantity, (low, high), over=domain.SLIP, limit=0.0, worst=worst, largest=largest
     )
@@ -57,11 +56,11 @@ def test_each_point_holds_the_worst_of_the_other_coordinates(make_controller, ma
         return points[:, domain.SLIP] + 10.0 * points[:, domain.MU0] - points[:, domain.MASS] / 1e5
 
     (most,), (least,) = _map(problem, quantity), _map(problem, quantity, largest=False)
-    shift = 10.0 * problem.mu0_bounds[1] - problem.mass_bounds[0] / 1e5
+    shift = 10.0 * problem.span("mu0")[1] - problem.span("mass")[0] / 1e5
     assert np.array(most.values) == pytest.approx(
         np.array(most.y)[:, np.newaxis] + shift + 0 * np.array(most.x)
     )
-    shift = 10.0 * problem.mu0_bounds[0] - problem.mass_bounds[1] / 1e5
+    shift = 10.0 * problem.span("mu0")[0] - problem.span("mass")[1] / 1e5
     assert np.array(least.values)[:, 0] == pytest.approx(np.array(least.y) + shift)
     assert (most.y[0], most.y[-1]) == problem.slips
     assert (most.x[0], most.x[-1]) == pytest.approx([speed * 3.6 for speed in problem.speeds])

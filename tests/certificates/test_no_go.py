@@ -5,21 +5,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from wspd_design.certificates.kernel.subdomain import with_part
 
 from wspd_design.certificates.checks.valve import no_go, open_loop_pole
 from wspd_design.certificates.kernel.file import certificate_text
-from wspd_design.certificates.kernel.subdomain import with_part
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.settle import settle
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.plant import dynamics_at
 
 
 def test_pole_is_enclosed(make_problem, make_controller):
     problem = make_problem(make_controller("afsmc"))
     verdict = open_loop_pole.check(problem)
     points = np.random.default_rng(6).uniform(*domain.slip_held(problem), (20_000, 5))
-    found = domain.dynamics(problem, points).pole
+    found = dynamics_at(problem, points).pole
     limit = 1.0 / problem.vehicle.brake.fill_time
     assert verdict.margin.high - verdict.margin.low < 2e-3
     assert limit - found.max() >= verdict.margin.low

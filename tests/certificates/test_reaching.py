@@ -9,8 +9,9 @@ from wspd_design.certificates.checks.sliding import reaching
 from wspd_design.certificates.kernel.checker import check
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.setting.domain import MASS, SLIP, SPEED
 from wspd_design.certificates.setting.model_error import mismatch
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.controllers.sliding_mode import sliding_torque
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.errors import UserError
@@ -66,7 +67,9 @@ def test_proof_is_replayed_against_the_claim_of_the_problem_alone(make_reference
     weaker = make_reference_problem(20.0)
     demanding, _ = reaching.claims(weaker, weaker.controller)
     assert "less than is claimed" in check(demanding, proof.certificate).reason
-    heavier = replace(problem, mass_bounds=(problem.mass_bounds[0], 1.01 * problem.mass_bounds[1]))
+    heavier = replace(
+        problem, bounds=problem.bounds | {"mass": (problem.span("mass")[0], 1.01 * problem.span("mass")[1])}
+    )
     other, _ = reaching.claims(heavier, problem.controller)
     assert "another claim" in check(other, proof.certificate).reason
 
@@ -86,7 +89,7 @@ def test_mismatch_is_what_the_plant_does_under_the_law(make_problem, make_contro
     points = _random_points(problem, 50, seed=4)
     known = mismatch(problem, law, points)
     for row, residual, ratio in zip(points, known.residual, known.inertia_ratio, strict=True):
-        vehicle, rail = domain.varied(problem, row[MASS], row[INERTIA], row[MU0])
+        vehicle, rail = plant_with(problem, dict(zip(domain.PARAMETERS, row[MASS:], strict=True)))
         plant = slip_dynamics(vehicle, rail, row[SLIP], row[SPEED])
         error = 0.14 - row[SLIP]
         for surface in (0.5, 0.01, -0.3):
@@ -101,7 +104,7 @@ def test_mismatch_is_what_the_plant_does_under_the_law(make_problem, make_contro
 
 def test_unknown_inertia_asks_for_more_gain(make_problem, make_controller):
     law = make_controller("smc")
-    known = make_problem(law, inertia_bounds=(law.vehicle.wheelset_inertia,) * 2)
+    known = make_problem(law, bounds={"wheelset inertia": (law.vehicle.wheelset_inertia,) * 2})
     assert reaching.required_gain(make_problem(law)).value > reaching.required_gain(known).value
     expected = reaching.supremum(known).value + reaching.reserve(known)
     assert reaching.required_gain(known).value == pytest.approx(expected, abs=1e-4)

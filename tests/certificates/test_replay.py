@@ -5,11 +5,11 @@ import math
 from dataclasses import replace
 
 import pytest
+from wspd_design.certificates.kernel.exact import FORMAT
 
 from wspd_design.certificates import suite
 from wspd_design.certificates.checks.sliding import sliding_exists
 from wspd_design.certificates.checks.valve import no_go
-from wspd_design.certificates.kernel.exact import FORMAT
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
@@ -106,7 +106,7 @@ def test_a_witness_is_evaluated_again(settled):
         found = replay(problem, json.dumps(content))
         assert "slip pole <= 1.66667 1/s: it is " in found.denied[0]
         # The lightest train on the most slippery rail has a slower pole, and what is evaluated counts.
-        calm = {"mu0": problem.mu0_bounds[0], "mass": problem.mass_bounds[0], "speed": 120.0}
+        calm = {"mu0": problem.span("mu0")[0], "mass": problem.span("mass")[0], "speed": 120.0}
         moved = [each | {"value": calm.get(each["name"], each["value"])} for each in content["witness"]]
         assert "denies nothing" in replay(problem, json.dumps(content | {"witness": moved})).reason
 

@@ -95,7 +95,12 @@ def test_proved_loop_is_stable_wherever_one_looks(make_problem, make_controller,
     for _ in range(300):
         speed, mass, inertia, mu0 = (
             rng.uniform(*bounds)
-            for bounds in (problem.speeds, problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
+            for bounds in (
+                problem.speeds,
+                problem.span("mass"),
+                problem.span("wheelset inertia"),
+                problem.span("mu0"),
+            )
         )
         found = eigenvalues(problem, speed, mass=mass, inertia=inertia, mu0=mu0)
         if name == "torque-feedback":  # no integral action: one eigenvalue is that of the unused integral

@@ -12,7 +12,7 @@ from wspd_design.certificates.checks.adaptive import barbalat, sigma_time
 from wspd_design.certificates.checks.ideal_run import adaptive_run
 from wspd_design.certificates.kernel.checker import check, value
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.setting.domain import varied
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.model.number import saturation
 from wspd_design.model.slip import slip_dynamics
 
@@ -52,7 +52,7 @@ def test_runs_keep_what_is_proved(proved):
     gains = problem.controller.gains
     integrals = []
     for mass, inertia, mu0 in ((76841.0, 752.0, 0.3), (61473.0, 860.0, 0.28), (92209.0, 640.0, 0.3)):
-        vehicle, rail = varied(problem, mass, inertia, mu0)
+        vehicle, rail = plant_with(problem, {"mass": mass, "wheelset inertia": inertia, "mu0": mu0})
         run = adaptive_run(vehicle, rail, gains, speeds=(0.01, problem.speeds[1]))
         assert not run.cut
         surface = 0.14 - run.slip + gains.integral_gain * run.integral
@@ -78,7 +78,8 @@ def test_planted_law_loses_a_hypothesis(make_scheduled, changes):
 
 
 def test_brake_that_does_not_suffice_leaves_it_undecided(make_scheduled):
-    verdict = barbalat.check(replace(make_scheduled(), mu0_bounds=(0.28, 0.9)))
+    problem = make_scheduled()
+    verdict = barbalat.check(replace(problem, bounds=problem.bounds | {"mu0": (0.28, 0.9)}))
     assert verdict.status is Status.UNDECIDED
     assert "Not shown" in verdict.explanation
 
@@ -96,7 +97,9 @@ def test_claims_reach_standstill(proved):
         float(value(most, {**point, "speed": speed})[0]) for speed in (Fraction(0), Fraction(1, 1000))
     )
     assert still == pytest.approx(crawl, rel=1e-3)
-    vehicle, rail = varied(problem, *(float(point[name]) for name in ("mass", "wheelset inertia", "mu0")))
+    vehicle, rail = plant_with(
+        problem, {name: float(point[name]) for name in ("mass", "wheelset inertia", "mu0")}
+    )
     plant = slip_dynamics(vehicle, rail, 0.3, 1e-3)
     closing = problem.controller.gains.integral_gain * (0.14 - 0.3)
     assert crawl > float((-plant.drift + closing) / plant.gain)

@@ -12,6 +12,7 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import MU0, SLIP, SPEED
+from wspd_design.certificates.setting.plant import dynamics_at
 
 
 def _with_torque(vehicle, torque):
@@ -35,7 +36,7 @@ def test_largest_friction_parts_what_the_brake_can_hold(make_problem, make_contr
 
     def most(mu0):
         points[:, MU0] = mu0
-        plant = domain.dynamics(problem, points)
+        plant = dynamics_at(problem, points)
         rate = law.gains.integral_gain / law.gains.proportional_gain
         ideal = (-plant.drift + rate * (0.14 - points[:, SLIP])) / plant.gain
         return (ideal + margin / (plant.gain * points[:, SPEED])).max()
@@ -49,7 +50,7 @@ def test_margin_is_not_above_any_random_point(make_problem, make_controller):
     law = make_controller("smc")
     problem = make_problem(law)
     points = np.random.default_rng(3).uniform(*domain.box(problem), (5000, 5))
-    plant = domain.dynamics(problem, points)
+    plant = dynamics_at(problem, points)
     ideal = (-plant.drift + law.gains.surface_rate * (0.14 - points[:, SLIP])) / plant.gain
     slack = ideal - reaching.reserve(problem) / (plant.gain * points[:, SPEED])
     assert sliding_exists.check(problem).margin.low <= slack.min()

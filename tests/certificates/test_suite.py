@@ -172,7 +172,7 @@ def test_problem_about_another_loop_is_refused(make_problem, make_controller):
 
 
 @pytest.mark.parametrize("name", ["afsmc", "smc"])
-@pytest.mark.parametrize("changes", [{"inertia_bounds": (0.0, 860.0)}, {"speeds": (0.0, 30.0)}])
+@pytest.mark.parametrize("changes", [{"bounds": {"wheelset inertia": (0.0, 860.0)}}, {"speeds": (0.0, 30.0)}])
 def test_box_outside_the_model_leaves_the_rest_undecided(make_problem, make_controller, name, changes):
     found = {c.name: c for c in verify(make_problem(make_controller(name), **changes))}
     assert found["gain_positive"].status is Status.REFUTED

@@ -11,6 +11,7 @@ from wspd_design.certificates.search import adhesion_peaks as peak_search
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail
 from wspd_design.simulation.ideal import ideal_stop
@@ -27,7 +28,7 @@ rails = st.builds(
     friction_decay=st.floats(0.0, 0.8),
     adhesion_reduction=st.floats(0.3, 1.0),
     slip_reduction=st.floats(0.05, 0.3),
-    mu0_bounds=st.just((0.05, 0.6)),
+    bounds=st.just(Bounds.of({"mu0": (0.05, 0.6)})),
 )
 
 

@@ -28,7 +28,6 @@ def rails(draw):
         friction_decay=draw(st.floats(0.0, 1.0)),
         adhesion_reduction=adhesion,
         slip_reduction=adhesion * draw(st.floats(0.2, 1.0)),
-        mu0_bounds=(mu0, mu0),
     )
 
 

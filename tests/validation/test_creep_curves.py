@@ -70,7 +70,7 @@ def rms(values):
 
 def coulomb(**changes):
     values = {"mu0": 0.33, "friction_ratio": 1.0, "friction_decay": 0.0, "adhesion_reduction": 1.0}
-    values |= {"slip_reduction": 1.0, "mu0_bounds": (0.33, 0.33)}
+    values |= {"slip_reduction": 1.0}
     return Rail(name="coulomb", **(values | changes))
 
 

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING
 
+from wspd_design.certificates.quantities import QUANTITIES, STATE
 from wspd_design.controllers.protocol import Controller
+from wspd_design.parameters.bounds import Bounds, Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -122,7 +124,9 @@ class Certificate:
 class Problem:
     """The closed loop and the domain that all checks speak about.
 
-    ``contact_grows_with_load`` says whether Hertz's ellipse follows the wheel load when the mass varies.
+    ``bounds`` are the ranges of the numbers of vehicle and rail by their names in the table of
+    :mod:`wspd_design.certificates.quantities`; a number without bounds is known. ``contact_grows_with_load`` says
+    whether Hertz's ellipse follows the wheel load when the mass varies.
     """
 
     vehicle: Vehicle
@@ -131,22 +135,14 @@ class Problem:
     slip: float  # -, reference
     speeds: tuple[float, float]  # m/s, lowest and highest
     slips: tuple[float, float]  # -, range of slip
-    mass_bounds: tuple[float, float]  # kg
-    inertia_bounds: tuple[float, float]  # kg m2, per wheelset
-    mu0_bounds: tuple[float, float]
+    bounds: Bounds  # SI units
     sample_time: float  # s
     seed: int = 0
     contact_grows_with_load: bool = True
 
     def __post_init__(self) -> None:
-        """Refuse ranges that are no ranges; a sign that no vehicle has is left to the checks to refute."""
-        for name, (low, high) in (
-            ("speeds", self.speeds),
-            ("slips", self.slips),
-            ("mass_bounds", self.mass_bounds),
-            ("inertia_bounds", self.inertia_bounds),
-            ("mu0_bounds", self.mu0_bounds),
-        ):
+        """Refuse ranges that are not ranges; a sign that no vehicle has is left to the checks to refute."""
+        for name, (low, high) in (("speeds", self.speeds), ("slips", self.slips)):
             if not (math.isfinite(low) and math.isfinite(high) and low <= high):
                 raise UserError(
                     f"{name} = ({low:g}, {high:g}) must be two finite numbers, the smaller one first"
@@ -155,3 +151,33 @@ class Problem:
             raise UserError(f"slip = {self.slip:g} must lie in (0, 1); for percent write for example 14 %")
         if not 0.0 < self.sample_time < math.inf:
             raise UserError(f"sample time = {self.sample_time:g} s must be above 0")
+        unknown = [name for name in self.bounds if name not in QUANTITIES or name in STATE]
+        if unknown:
+            allowed = ", ".join(name for name in QUANTITIES if name not in STATE)
+            raise UserError(
+                f"bounds of {', '.join(unknown)}: there is no such number; the names are {allowed}"
+            )
+
+    def nominal(self, name: str) -> float:
+        """Return the value of a number of vehicle or rail by its name in the table, or the reference of the slip."""
+        quantity = QUANTITIES[name]
+        if name == "slip":
+            return self.slip
+        records: dict[str, object] = {
+            "vehicle": self.vehicle,
+            "brake": self.vehicle.brake,
+            "contact": self.vehicle.contact,
+            "rail": self.rail,
+        }
+        if quantity.record not in records:
+            raise ValueError(f"{name} has no nominal value")
+        value: float = getattr(records[quantity.record], quantity.field)
+        return value
+
+    def span(self, name: str) -> Ends:
+        """Return the range of slip, speed, or a number of vehicle or rail; one without bounds is known."""
+        states = {"slip": self.slips, "speed": self.speeds}
+        if name in states or name in self.bounds:
+            return states.get(name) or self.bounds[name]
+        value = self.nominal(name)
+        return value, value

@@ -40,9 +40,7 @@ _NOT_NUMBERS = (
     "wheelsets",
     "brake",
     "contact",
-    "mass_bounds",
-    "wheelset_inertia_bounds",
-    "mu0_bounds",
+    "bounds",
 )
 
 PARAMETERS: tuple[tuple[str, str], ...] = tuple(

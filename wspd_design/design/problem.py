@@ -1,9 +1,28 @@
 """From a design's specification to the problem that the certificates speak about."""
 
+from wspd_design.certificates.quantities import TABLE
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.records import Specification
-from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
+
+
+def stated_bounds(vehicle: Vehicle, rail: Rail) -> Bounds:
+    """Return the range of every number that stands in claims, as vehicle and rail state it."""
+    records: dict[str, Vehicle | Brake | Contact | Rail] = {
+        "vehicle": vehicle,
+        "brake": vehicle.brake,
+        "contact": vehicle.contact,
+        "rail": rail,
+    }
+    return Bounds.of(
+        {
+            row.name: records[row.record].bounds[row.field]
+            for row in TABLE
+            if row.record in records and row.field in records[row.record].bounds
+        }
+    )
 
 
 def stability_problem(
@@ -17,9 +36,7 @@ def stability_problem(
         slip=specification.slip,
         speeds=specification.speeds,
         slips=specification.slips,
-        mass_bounds=vehicle.mass_bounds,
-        inertia_bounds=vehicle.wheelset_inertia_bounds,
-        mu0_bounds=rail.mu0_bounds,
+        bounds=stated_bounds(vehicle, rail),
         sample_time=controller.sample_time,
         seed=seed,
     )

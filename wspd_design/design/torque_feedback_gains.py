@@ -17,6 +17,7 @@ from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.linear_loop import lag_of
+from wspd_design.certificates.setting.plant import dynamics_at
 from wspd_design.certificates.theorems.quadratic import held, loop_of
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
 from wspd_design.design.maximize import maximize
@@ -68,7 +69,7 @@ def torque_feedback_gains(vehicle: Vehicle, rail: Rail, specification: Specifica
     problem = stability_problem(vehicle, rail, unfinished, specification)
     poles, lag, period = _poles(problem), lag_of(problem), specification.sample_time
     kappa, back = _rules(problem, poles, period)
-    heaviest = problem.inertia_bounds[1]
+    heaviest = problem.span("wheelset inertia")[1]
     gamma = _acceleration(problem)
     largest = (
         f"q = p - a/v = {poles.high:.3g} 1/s, the largest that sampling finds ({poles.where})"
@@ -109,14 +110,14 @@ def _slow_pole(lag: float) -> float:
 def _acceleration(problem: Problem) -> float:
     """Change of the sliding speed by full torque with the heaviest wheelset, gamma [m/s2]."""
     vehicle = problem.vehicle
-    return vehicle.wheel_radius * vehicle.brake.max_torque / problem.inertia_bounds[1]
+    return vehicle.wheel_radius * vehicle.brake.max_torque / problem.span("wheelset inertia")[1]
 
 
 def _poles(problem: Problem) -> Poles:
     """Search the ends of q on the domain, at the reference."""
 
     def pole(points: "Array") -> "Array":
-        at = domain.dynamics(problem, points)
+        at = dynamics_at(problem, points)
         found: Array = at.pole - at.deceleration / points[:, domain.SPEED]
         return found
 

@@ -58,9 +58,15 @@ class SlipDynamics(NamedTuple):
 
 
 def slip_dynamics(
-    vehicle: Vehicle, rail: Rail, slip: Number, speed: Number, *, wheel_load: Number | None = None
+    vehicle: Vehicle,
+    rail: Rail,
+    slip: Number,
+    speed: Number,
+    *,
+    wheel_load: Number | None = None,
+    deceleration: Number | None = None,
 ) -> SlipDynamics:
-    """Evaluate eq. (19) of the quarter locomotive.
+    """Evaluate eq. (19), by default of the quarter locomotive.
 
     Parameters
     ----------
@@ -75,18 +81,29 @@ def slip_dynamics(
     wheel_load : number, optional
         Vertical load of a wheel [N]; the static load by default. The design model of a controller and the
         bounds of a certificate may fix it apart from the mass.
+    deceleration : number, optional
+        That of the train [m/s2]; by default eight wheels like this one brake it.
     """
     load = static_wheel_load(vehicle) if wheel_load is None else wheel_load
     stiffness = adhesion.contact_stiffness(vehicle.contact, load)
     force = adhesion.creep_force(slip, speed * slip, load, rail, stiffness)
     force_slope = adhesion.creep_force_slip_derivative(slip, speed, load, rail, stiffness)
-    resisting = resistance(vehicle, speed)
     inertia = vehicle.wheel_inertia
     mechanics = (vehicle.mass, inertia, vehicle.wheel_radius, vehicle.wheel_damping)
+    if deceleration is None:
+        resisting = resistance(vehicle, speed)
+        slowing = -motion.train_acceleration(force, resisting, vehicle.mass)
+    else:
+        # The kernels know the deceleration as that by a resistance and eight wheels, which change with the slip.
+        resisting = vehicle.mass * deceleration - 8.0 * force
+        slowing = deceleration
+    pole = generated.slip_drift_slip_derivative(slip, speed, force, force_slope, resisting, *mechanics)
+    if deceleration is not None:
+        pole = pole + (1.0 - slip) * 8.0 * force_slope / (vehicle.mass * speed)
     return SlipDynamics(
         drift=generated.slip_drift(slip, speed, force, resisting, *mechanics),
         gain=generated.slip_gain(speed, inertia, vehicle.wheel_radius),
-        pole=generated.slip_drift_slip_derivative(slip, speed, force, force_slope, resisting, *mechanics),
+        pole=pole,
         creep_force=force,
-        deceleration=-motion.train_acceleration(force, resisting, vehicle.mass),
+        deceleration=slowing,
     )

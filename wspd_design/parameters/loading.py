@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, data_file, load_entries, read_toml
 from wspd_design.parameters.records import (
@@ -100,10 +101,9 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         values,
         name=parameters.name,
         wheelsets=4,
-        brake=_build(Brake, values, "brake."),
-        contact=_build(Contact, values, "contact."),
-        mass_bounds=_bounds(parameters, "mass"),
-        wheelset_inertia_bounds=_bounds(parameters, "wheelset_inertia"),
+        brake=_build(Brake, values, "brake.", bounds=_bounds(parameters, "brake.")),
+        contact=_build(Contact, values, "contact.", bounds=_bounds(parameters, "contact.")),
+        bounds=_bounds(parameters),
     )
 
 
@@ -126,7 +126,7 @@ def load_rail(name_or_path: str | Path) -> Rail:
         If there is no such rail or its file is wrong.
     """
     parameters = load_entries("rail", name_or_path)
-    return _build(Rail, _values(parameters), name=parameters.name, mu0_bounds=_bounds(parameters, "mu0"))
+    return _build(Rail, _values(parameters), name=parameters.name, bounds=parameters.bounds)
 
 
 def load_paper_gains() -> PaperGains:
@@ -189,10 +189,12 @@ def _values(parameters: ParameterSet) -> dict[str, Any]:
     return {name: entry.value for name, entry in parameters.entries.items()}
 
 
-def _bounds(parameters: ParameterSet, name: str) -> tuple[float, float]:
-    """Bounds of a number; one without bounds counts as exactly known."""
-    value: Any = parameters.entries[name].value
-    return parameters.entries[name].bounds or (value, value)
+def _bounds(parameters: ParameterSet, prefix: str = "") -> Bounds:
+    """Bounds of the numbers of one record; those of the parts of a vehicle begin with the name of the part."""
+    named = {
+        name.removeprefix(prefix): ends for name, ends in parameters.bounds.items() if name.startswith(prefix)
+    }
+    return Bounds.of({name: ends for name, ends in named.items() if "." not in name})
 
 
 def _preset_values(controller: str, preset: Preset) -> dict[str, Any]:

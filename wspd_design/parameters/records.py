@@ -1,9 +1,12 @@
 """The records that carry numbers: plain SI floats, without their history.
 
-The history of each number (unit, source, status, bounds) stays with the :class:`Entry` it was loaded from.
+The history of each number (unit, source, status) stays with the :class:`Entry` it was loaded from; its bounds
+stay with the record.
 """
 
 from dataclasses import dataclass
+
+from wspd_design.parameters.bounds import EXACT, Bounds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,9 +37,11 @@ class ParameterSet:
     entries: dict[str, Entry]
 
     @property
-    def bounds(self) -> dict[str, tuple[float, float]]:
+    def bounds(self) -> Bounds:
         """Lower and upper bound of every uncertain number, by its name [SI units]."""
-        return {name: entry.bounds for name, entry in self.entries.items() if entry.bounds is not None}
+        return Bounds.of(
+            {name: entry.bounds for name, entry in self.entries.items() if entry.bounds is not None}
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,6 +79,7 @@ class Brake:
     disturbance_gain: float  # -, of T_d, the vibration of the pads at the onset of braking
     disturbance_decay: float  # 1/s
     disturbance_frequency: float  # Hz
+    bounds: Bounds = EXACT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,6 +91,7 @@ class Contact:
     semi_axis_lateral: float  # m, b
     kalker_c11: float  # -
     reference_load: float  # N, wheel load at which a and b are given
+    bounds: Bounds = EXACT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,8 +120,7 @@ class Vehicle:
     pitch_damping_ratio: float  # -
     brake: Brake
     contact: Contact
-    mass_bounds: tuple[float, float]  # kg
-    wheelset_inertia_bounds: tuple[float, float]  # kg m2
+    bounds: Bounds = EXACT  # of the numbers above; brake and contact have their own
 
     @property
     def wheel_inertia(self) -> float:
@@ -132,7 +138,7 @@ class Rail:
     friction_decay: float  # s/m, B
     adhesion_reduction: float  # -, kA
     slip_reduction: float  # -, kS
-    mu0_bounds: tuple[float, float]  # -
+    bounds: Bounds = EXACT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -66,6 +66,9 @@ _UNITS: dict[str, Dimension] = {unit: dimension for dimension, row in _TABLE.ite
 
 _EXAMPLES: dict[Dimension, str] = {"speed": "120 km/h", "time": "100 ms", "mass": "76.8 t"}
 
+KMH = 3.6
+"""Kilometres per hour in one metre per second."""
+
 _NUMBER = re.compile(
     r"(?P<number>[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)", re.DOTALL
 )

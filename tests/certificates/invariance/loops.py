@@ -10,6 +10,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 SAMPLE, REFERENCE = 0.02, 0.14
@@ -31,9 +32,13 @@ def feedback_problem(*, spread=0.01, speeds=(23.0, 26.0), rail="polach-wet", sli
         "slip": REFERENCE,
         "speeds": speeds,
         "slips": (0.02, 0.6),
-        "mass_bounds": around(vehicle.mass, spread),
-        "inertia_bounds": around(vehicle.wheelset_inertia, spread),
-        "mu0_bounds": around(friction.mu0, spread),
+        "bounds": Bounds.of(
+            {
+                "mass": around(vehicle.mass, spread),
+                "wheelset inertia": around(vehicle.wheelset_inertia, spread),
+                "mu0": around(friction.mu0, spread),
+            }
+        ),
         "sample_time": SAMPLE,
     }
     return Problem(**{**stated, **changes})
@@ -42,7 +47,7 @@ def feedback_problem(*, spread=0.01, speeds=(23.0, 26.0), rail="polach-wet", sli
 def drawn(problem, rng):
     """Plant with parameters from the box."""
     mass, inertia, mu0 = (
-        rng.uniform(*b) for b in (problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
+        rng.uniform(*b) for b in (problem.span("mass"), problem.span("wheelset inertia"), problem.span("mu0"))
     )
     vehicle = replace(problem.vehicle, mass=mass, wheelset_inertia=inertia)
     return vehicle, replace(problem.rail, mu0=mu0)

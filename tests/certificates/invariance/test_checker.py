@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from tests.certificates.invariance.loops import drawn, feedback_problem
-from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.search.invariant_sets import document, one_sample, search
 from wspd_design.certificates.search.invariant_sets.search import search as search_sets
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.invariant_sets.ball_plant import BallPlant
 from wspd_design.certificates.theorems.invariant_sets.ball_slopes import law_slopes
 from wspd_design.certificates.theorems.invariant_sets.checker import check
@@ -19,6 +19,7 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.model.number import atan, clip, exp
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.bounds import EXACT
 
 
 def changed(text, change, problem=None):
@@ -50,9 +51,23 @@ def test_true_sets_are_accepted(problem, text, found):
 
 def test_other_claims_are_refused(problem, text):
     for other in (
-        replace(problem, mu0_bounds=(0.9 * problem.mu0_bounds[0], problem.mu0_bounds[1])),
-        replace(problem, mass_bounds=(problem.mass_bounds[0], 1.2 * problem.mass_bounds[1])),
-        replace(problem, inertia_bounds=(0.3 * problem.inertia_bounds[0], problem.inertia_bounds[1])),
+        replace(
+            problem, bounds=problem.bounds | {"mu0": (0.9 * problem.span("mu0")[0], problem.span("mu0")[1])}
+        ),
+        replace(
+            problem,
+            bounds=problem.bounds | {"mass": (problem.span("mass")[0], 1.2 * problem.span("mass")[1])},
+        ),
+        replace(
+            problem,
+            bounds=problem.bounds
+            | {
+                "wheelset inertia": (
+                    0.3 * problem.span("wheelset inertia")[0],
+                    problem.span("wheelset inertia")[1],
+                )
+            },
+        ),
         replace(problem, sample_time=0.2),
         feedback_problem(sliding_gain=0.2),
         feedback_problem(rail="polach-dry"),
@@ -188,7 +203,7 @@ def test_wrong_searches_are_refused(problem, monkeypatch):
 
     assert check(problem, found_by(problem)).accepted
     nominal = feedback_problem(spread=0.0)
-    hopeful = replace(nominal, mu0_bounds=problem.mu0_bounds)
+    hopeful = replace(nominal, bounds=nominal.bounds | {"mu0": problem.span("mu0")})
     assert refused(
         feedback_problem(spread=0.03),
         changed(found_by(hopeful), lambda _: None, feedback_problem(spread=0.03)),
@@ -235,9 +250,7 @@ def test_rate_on_balls_is_that_of_the_kernels():
         thin = BallPlant(
             replace(
                 problem,
-                mass_bounds=2 * (vehicle.mass,),
-                inertia_bounds=2 * (vehicle.wheelset_inertia,),
-                mu0_bounds=2 * (rail.mu0,),
+                bounds=EXACT,
             )
         ).rate(flint.arb(slip), flint.arb(speed), flint.arb(torque))
         assert float(thin.rad()) < vehicle.wheel_damping / vehicle.wheel_inertia

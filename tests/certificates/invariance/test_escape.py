@@ -11,6 +11,7 @@ from wspd_design.certificates.search.invariant_sets.escape import described, esc
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller
+from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.loading import load_rail
 
 
@@ -37,8 +38,12 @@ def test_plants_that_never_change_leave_as_scipy_finds(designed):
     assert escapes(designed, [speed]).constant.all()
     # The law gives up too little torque there: with little friction the wheel slides on.
     slippery = (
-        replace(designed.vehicle, mass=designed.mass_bounds[0], wheelset_inertia=designed.inertia_bounds[0]),
-        replace(designed.rail, mu0=designed.mu0_bounds[0]),
+        replace(
+            designed.vehicle,
+            mass=designed.span("mass")[0],
+            wheelset_inertia=designed.span("wheelset inertia")[0],
+        ),
+        replace(designed.rail, mu0=designed.span("mu0")[0]),
     )
     for share in (0.2, 0.6, 1.0):
         assert leaves(designed, slippery, share, speed)
@@ -47,9 +52,7 @@ def test_plants_that_never_change_leave_as_scipy_finds(designed):
 def test_nominal_parameters_stay_as_scipy_finds(designed):
     nominal = replace(
         designed,
-        mass_bounds=2 * (designed.vehicle.mass,),
-        inertia_bounds=2 * (designed.vehicle.wheelset_inertia,),
-        mu0_bounds=2 * (designed.rail.mu0,),
+        bounds=EXACT,
     )
     speeds = [3.0, 12.0, 30.0]
     found = escapes(nominal, speeds)

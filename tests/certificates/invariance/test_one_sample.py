@@ -12,6 +12,7 @@ from wspd_design.certificates.search.invariant_sets.duals import mean_value
 from wspd_design.certificates.search.invariant_sets.one_sample import Window, images, slip_rate, torque_path
 from wspd_design.model.number import atan, clip, exp
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.bounds import EXACT
 
 WINDOWS = [(Window(low=2.8, high=2.94, tilt=0.25), 5), (Window(low=9.0, high=9.45, tilt=0.8), 2)]
 WINDOWS += [(Window(low=30.0, high=31.5, tilt=2.5), 1)]
@@ -80,7 +81,7 @@ def test_planted_faults_are_seen(monkeypatch):
     assert seen() == 0
     quick = replace(brake, fill_time=0.1 * brake.fill_time, vent_time=0.1 * brake.vent_time)
     assert seen(replace(problem, vehicle=replace(problem.vehicle, brake=quick))) > 0  # lag left out
-    assert seen(replace(problem, mu0_bounds=(0.33, 0.33))) > 0  # another rail
+    assert seen(replace(problem, bounds=problem.bounds | {"mu0": (0.33, 0.33)})) > 0  # another rail
     assert seen(replace(problem, sample_time=0.5 * problem.sample_time)) > 0  # half a sample
     right = module.slip_rate
     with monkeypatch.context() as patch:
@@ -108,9 +109,7 @@ def test_rate_is_that_of_the_kernels():
         assert wide.inf <= exact <= wide.sup
         fixed = replace(
             problem,
-            mass_bounds=2 * (vehicle.mass,),
-            inertia_bounds=2 * (vehicle.wheelset_inertia,),
-            mu0_bounds=2 * (rail.mu0,),
+            bounds=EXACT,
         )
         thin = slip_rate(fixed, *(ival.Interval(x, x) for x in (slip, speed, torque)))
         damping = vehicle.wheel_damping / vehicle.wheel_inertia

@@ -14,9 +14,9 @@ from wspd_design.certificates.kernel.checker import check, value
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search import outward
 from wspd_design.certificates.search import settle as engine
+from wspd_design.certificates.search.budget import Budget, within
 from wspd_design.certificates.search.progress import listening
 from wspd_design.certificates.search.prover import extreme, prove
-from wspd_design.certificates.search.budget import Budget, within
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.model_error import mismatch
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from wspd_design.certificates.kernel.checker import check
 from wspd_design.certificates.kernel.claim import Claim, variable
-from wspd_design.certificates.search.prover import prove
 from wspd_design.certificates.search.budget import Budget, within
+from wspd_design.certificates.search.prover import prove
 from wspd_design.model.number import atan, exp
 
 BOX = {"x": (-1.0, 1.5), "y": (0.25, 2.0)}

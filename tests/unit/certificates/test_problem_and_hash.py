@@ -5,11 +5,14 @@ from fractions import Fraction
 
 import pytest
 
-from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.checks.frame import enclosure
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.fingerprint import model_hash
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
+
+BOUNDS = Bounds.of({"mass": (6e4, 9e4), "wheelset inertia": (640.0, 860.0), "mu0": (0.4, 0.6)})
 
 
 @pytest.fixture
@@ -21,9 +24,7 @@ def problem(er24pc, make_controller):
         slip=0.14,
         speeds=(2.0, 33.0),
         slips=(0.02, 0.6),
-        mass_bounds=(6e4, 9e4),
-        inertia_bounds=(640.0, 860.0),
-        mu0_bounds=(0.4, 0.6),
+        bounds=BOUNDS,
         sample_time=0.1,
     )
 
@@ -32,8 +33,6 @@ def problem(er24pc, make_controller):
     "changes",
     [
         {"speeds": (33.0, 2.0)},
-        {"mass_bounds": (float("nan"), 9e4)},
-        {"mu0_bounds": (0.4, float("inf"))},
         {"slip": 1.4},
         {"slip": float("nan")},
         {"sample_time": 0.0},
@@ -42,6 +41,22 @@ def problem(er24pc, make_controller):
 def test_ranges_that_are_none_are_refused(problem, changes):
     with pytest.raises(UserError, match=next(iter(changes)).split("_")[0]):
         replace(problem, **changes)
+
+
+@pytest.mark.parametrize(
+    ("name", "ends", "words"),
+    [
+        ("mass", (float("nan"), 9e4), "mass.* finite"),
+        ("mu0", (0.4, float("inf")), "mu0.* finite"),
+        ("wheel radius", (0.55, 0.51), "wheel radius.* reversed"),
+        ("wheel_radius", (0.51, 0.55), "wheel_radius: there is no such number; the names are mass"),
+        ("speed", (2.0, 33.0), "speed: there is no such number"),
+    ],
+)
+def test_bounds_that_are_none_are_refused_in_one_sentence(problem, name, ends, words):
+    with pytest.raises(UserError, match=words) as refusal:
+        replace(problem, bounds=problem.bounds | {name: ends})
+    assert "\n" not in str(refusal.value)
 
 
 def test_hash_is_the_same_for_the_same_numbers(problem):
@@ -60,13 +75,16 @@ def test_hash_sees_every_field_of_a_problem(problem):
         "slip": 0.15,
         "speeds": (2.0, 33.000000000000007),
         "slips": (0.02, 0.61),
-        "mass_bounds": (6e4, 9.1e4),
-        "inertia_bounds": (641.0, 860.0),
-        "mu0_bounds": (0.41, 0.6),
+        "bounds": BOUNDS | {"fill time": (0.3, 0.9)},
         "sample_time": 0.11,
         "seed": 1,
         "contact_grows_with_load": False,
     }
+    for name, (low, high) in BOUNDS.items():
+        for ends in ((low, 1.01 * high), (0.99 * low, high)):
+            changed = model_hash(replace(problem, bounds=BOUNDS | {name: ends}))
+            assert changed not in known
+            known.add(changed)
     assert set(other) == {field.name for field in fields(Problem)}
     for name, value in other.items():
         changed = model_hash(replace(problem, **{name: value}))

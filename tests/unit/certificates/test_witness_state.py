@@ -8,6 +8,7 @@ import pytest
 
 from wspd_design.certificates.checks.stop.witness_state import plant_at, read_witness, start_at
 from wspd_design.certificates.records import Problem, Status
+from wspd_design.design.problem import stated_bounds
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
@@ -105,9 +106,7 @@ def problem(er24pc, make_controller):
         slip=0.14,
         speeds=(3.0, 33.0),
         slips=(0.02, 0.6),
-        mass_bounds=er24pc.mass_bounds,
-        inertia_bounds=er24pc.wheelset_inertia_bounds,
-        mu0_bounds=(0.2, 0.6),
+        bounds=stated_bounds(er24pc, load_rail("polach-dry")) | {"mu0": (0.2, 0.6)},
         sample_time=0.1,
     )
 

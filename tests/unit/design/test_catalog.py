@@ -96,7 +96,7 @@ def test_a_design_for_another_vehicle_is_refused(er24pc, tmp_path):
     [
         lambda v: replace(v, mass=v.mass + 1.0),
         lambda v: replace(v, brake=replace(v.brake, vent_time=0.61)),
-        lambda v: replace(v, mass_bounds=(6e4, 9e4)),
+        lambda v: replace(v, bounds=v.bounds | {"mass": (6e4, 9e4)}),
     ],
 )
 def test_a_design_for_older_numbers_of_the_vehicle_is_refused(er24pc, tmp_path, change):

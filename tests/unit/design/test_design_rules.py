@@ -14,6 +14,7 @@ from wspd_design.design.laws import GAINS_OF
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import deceleration_limit, design_controller
+from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_paper_gains, load_rail
 
@@ -69,25 +70,27 @@ def test_boundary_layer_keeps_the_error_within_the_tolerance(er24pc, rail):
 
 @pytest.mark.parametrize(
     "change",
-    ["mu0_bounds", "mass_bounds", "wheelset_inertia_bounds"],
+    ["mu0", "mass", "wheelset_inertia"],
 )
 def test_more_uncertainty_needs_a_larger_switching_gain(er24pc, rail, change):
     small, large = gain("switching_gain", er24pc, rail), None
-    if change == "mu0_bounds":
-        large = gain("switching_gain", er24pc, replace(rail, mu0_bounds=(0.1, 0.55)))
-    elif change == "mass_bounds":
-        large = gain("switching_gain", replace(er24pc, mass_bounds=(50e3, 110e3)), rail)
+    if change == "mu0":
+        large = gain("switching_gain", er24pc, replace(rail, bounds=rail.bounds | {"mu0": (0.1, 0.55)}))
+    elif change == "mass":
+        large = gain("switching_gain", replace(er24pc, bounds=er24pc.bounds | {"mass": (50e3, 110e3)}), rail)
     else:
-        large = gain("switching_gain", replace(er24pc, wheelset_inertia_bounds=(500.0, 1100.0)), rail)
+        large = gain(
+            "switching_gain",
+            replace(er24pc, bounds=er24pc.bounds | {"wheelset_inertia": (500.0, 1100.0)}),
+            rail,
+        )
     assert large > 1.05 * small
 
 
 def test_without_uncertainty_only_the_reserve_is_left(er24pc, rail):
-    known = replace(
-        er24pc, mass_bounds=(er24pc.mass,) * 2, wheelset_inertia_bounds=(er24pc.wheelset_inertia,) * 2
-    )
+    known = replace(er24pc, bounds=EXACT)
     slips = (0.1, 0.2)  # the model error is 0 wherever it is looked for, and intervals show it slowly
-    certain = gain("switching_gain", known, replace(rail, mu0_bounds=(rail.mu0,) * 2), slips=slips)
+    certain = gain("switching_gain", known, replace(rail, bounds=EXACT), slips=slips)
     assert 0.0 < certain < 0.1 * gain("switching_gain", er24pc, rail, slips=slips)
 
 
@@ -100,8 +103,8 @@ def test_the_switching_gain_outweighs_the_model_error_at_random_points(er24pc, n
     rng = np.random.default_rng(5)
     n = 20_000
     slip, v = rng.uniform(*specification.slips, n), rng.uniform(*specification.speeds, n)
-    m, inertia = rng.uniform(*er24pc.mass_bounds, n), rng.uniform(*er24pc.wheelset_inertia_bounds, n)
-    mu0 = rng.uniform(*rail.mu0_bounds, n)
+    m, inertia = rng.uniform(*er24pc.bounds["mass"], n), rng.uniform(*er24pc.bounds["wheelset_inertia"], n)
+    mu0 = rng.uniform(*rail.bounds["mu0"], n)
 
     def psi(m, wheelset_inertia, mu0):
         """Psi = v F of eq. (19)."""

@@ -31,7 +31,7 @@ def reason(made, name):
 def loops(vehicle, rail, count=2000, speeds=(10.0 / 3.6, 120.0 / 3.6)):
     """Pairs of q = p - a/v [1/s] and gamma = R T_max/inertia [m/s2] at random points of the domain and its corners."""
     friction, rng = load_rail(rail), np.random.default_rng(3)
-    ends = (speeds, vehicle.mass_bounds, vehicle.wheelset_inertia_bounds, friction.mu0_bounds)
+    ends = (speeds, vehicle.bounds["mass"], vehicle.bounds["wheelset_inertia"], friction.bounds["mu0"])
     draws = [np.concatenate([rng.uniform(*end, count), rng.choice(end, count)]) for end in ends]
     draws[0] = rng.uniform(*speeds, 2 * count)
     speed, mass, inertia, mu0 = draws
@@ -125,8 +125,11 @@ def test_gains_follow_the_bounds(er24pc):
 
     rail = load_rail("polach-dry")
     usual = sliding(er24pc, rail)
-    assert sliding(er24pc, replace(rail, mu0_bounds=(0.44, 0.8))) > 1.05 * usual
-    assert sliding(replace(er24pc, wheelset_inertia_bounds=(640.0, 1100.0)), rail) > 1.05 * usual
+    assert sliding(er24pc, replace(rail, bounds=rail.bounds | {"mu0": (0.44, 0.8)})) > 1.05 * usual
+    assert (
+        sliding(replace(er24pc, bounds=er24pc.bounds | {"wheelset_inertia": (640.0, 1100.0)}), rail)
+        > 1.05 * usual
+    )
     slow = replace(er24pc, brake=replace(er24pc.brake, fill_time=0.9))
     assert sliding(slow, rail) > 1.1 * usual  # K grows with the slower of both time constants
 

@@ -11,10 +11,10 @@ from typing import Any, TypeAlias
 from wspd_design.certificates.checks.ideal_run import Flow, ProofRun, State
 from wspd_design.certificates.kernel.arb import Ball, below, point
 from wspd_design.certificates.records import Point
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import model_variables, records_of
 from wspd_design.certificates.theorems.invariant_sets.ball_slopes import law_slopes
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.units import KMH
 
 MOST_TRIED = 50  # states of a run whose derivative is evaluated exactly
 

@@ -5,8 +5,8 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Map
-from wspd_design.certificates.setting.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
-from wspd_design.certificates.setting.plant import UNITS
+from wspd_design.certificates.setting.domain import BASIC, INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
@@ -58,7 +58,7 @@ def margin_map(
     low, high = box
     if low[SPEED] == high[SPEED] or low[over] == high[over]:
         return ()
-    tightest = np.array([worst[each] for each in UNITS])
+    tightest = np.array([worst[each] for each in BASIC])
     speeds = np.union1d(np.geomspace(low[SPEED], high[SPEED], SPEEDS), tightest[SPEED])
     rows = np.union1d(np.linspace(low[over], high[over], ROWS), tightest[over])
     others = [column for column in (SLIP, MASS, INERTIA, MU0) if column != over]

@@ -20,11 +20,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.claim import Claim, Variable, variable
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
 from wspd_design.certificates.setting.plant import (
     EXPONENT,
+    OTHERS,
     Values,
+    dynamics_at,
     plant_dynamics,
     plant_forces,
     plant_variables,
@@ -101,8 +102,8 @@ def torque_claim(problem: Problem) -> Claim:
 
     def arranged(x: Values) -> Number:
         found = plant_forces(problem, x)
-        slowing = x["wheelset inertia"] * found.deceleration - 2.0 * x["speed"] * x["wheel_damping"]
-        return found.creep_force * x["wheel_radius"] * 2.0 + (1.0 - x["slip"]) * slowing / x["wheel_radius"]
+        slowing = x["wheelset inertia"] * found.deceleration - 2.0 * x["speed"] * x["wheel damping"]
+        return found.creep_force * x["wheel radius"] * 2.0 + (1.0 - x["slip"]) * slowing / x["wheel radius"]
 
     def expression(x: Values) -> Number:
         plant = plant_dynamics(problem, x)
@@ -110,7 +111,7 @@ def torque_claim(problem: Problem) -> Claim:
 
     return Claim(
         name="holding torque",
-        variables=plant_variables(problem, slip=problem.slip),
+        variables=plant_variables(problem, hold=OTHERS, ranges={"slip": problem.slip}),
         expression=expression,
         form=arranged,
         relation=">=",
@@ -144,7 +145,7 @@ def reach(problem: Problem) -> float:
 
 
 def _above_reference(problem: Problem, **ranges: float | tuple[float, float]) -> tuple[Variable, ...]:
-    return plant_variables(problem, slip=(problem.slip, problem.slips[1]), **ranges)
+    return plant_variables(problem, hold=OTHERS, ranges={"slip": (problem.slip, problem.slips[1]), **ranges})
 
 
 class _Slopes(NamedTuple):
@@ -216,7 +217,7 @@ def recoverable(problem: Problem, points: "Array") -> "Array":
 
     def dynamics(slip: "float | Array") -> tuple["Array", "Array"]:
         at[:, SLIP] = slip
-        plant = domain.dynamics(problem, at)
+        plant = dynamics_at(problem, at)
         return plant.drift, plant.gain
 
     def back(x: "Array", torque: Callable[[float], "Array"], step: "float | Array", count: int) -> "Array":
@@ -271,7 +272,8 @@ def passes(problem: Problem, at: "Array", deviation: float) -> Seen | None:
         The state from which it vents, or None if it is not certain that the slip passes.
     """
     mass, inertia, mu0, brake = float(at[MASS]), float(at[INERTIA]), float(at[MU0]), problem.vehicle.brake
-    pinned = replace(problem, mass_bounds=(mass,) * 2, inertia_bounds=(inertia,) * 2, mu0_bounds=(mu0,) * 2)
+    known = {"mass": (mass, mass), "wheelset inertia": (inertia, inertia), "mu0": (mu0, mu0)}
+    pinned = replace(problem, bounds=problem.bounds | known)
     plant = BallPlant(pinned)
     point, speed, edge = plant.point, plant.point(float(at[SPEED])), plant.point(problem.slips[1])
     gain = plant.radius / (2 * plant.inertia * speed)

@@ -11,6 +11,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.recovery import per_deviation, recoverable
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.setting.plant import dynamics_at
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
@@ -50,7 +51,7 @@ def sample(problem: Problem) -> Samples:
         points[:, MASS], points[:, INERTIA], points[:, MU0] = corner
         return points
 
-    corners = list(product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds))
+    corners = list(product(problem.span("mass"), problem.span("wheelset inertia"), problem.span("mu0")))
     held = [at(corner, problem.slip) for corner in corners]
     # Each edge of the box once, from the corners at the lower end of its mass or mu0.
     edges = [*((MASS, each) for each in held[:4]), *((MU0, each) for each in held[::2])]
@@ -58,9 +59,9 @@ def sample(problem: Problem) -> Samples:
     exact = np.array([recoverable(problem, each) for each in tried])
     shares, poles = [], []
     for corner in corners:
-        fall = -domain.dynamics(problem, at(corner, problem.slip)).drift
+        fall = -dynamics_at(problem, at(corner, problem.slip)).drift
         for slip in slips:
-            pole = domain.dynamics(problem, at(corner, float(slip))).pole
+            pole = dynamics_at(problem, at(corner, float(slip))).pole
             shares.append(per_deviation(problem, pole, pole / fall))
             poles.append(pole)
     smallest = exact.argmin(axis=0)
@@ -90,7 +91,7 @@ def just_held(problem: Problem, points: "Array", column: int) -> "Array":
 
     def lacking(value: "Array") -> "Array":
         moved[:, column] = value
-        plant = domain.dynamics(problem, moved)
+        plant = dynamics_at(problem, moved)
         found: Array = -plant.drift / plant.gain - problem.vehicle.brake.max_torque
         return found
 

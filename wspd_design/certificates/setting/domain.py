@@ -1,13 +1,14 @@
-"""The box of states and parameters on which a claim is made, and the slip dynamics anywhere inside it."""
+"""The domain of a claim: the range of each quantity of the table, in numbers and in words."""
 
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from wspd_design.certificates.quantities import AXLE, QUANTITIES, STATE
 from wspd_design.certificates.records import Point, Problem
+from wspd_design.certificates.setting import axle
 from wspd_design.certificates.setting.outside import OutsideModel
-from wspd_design.model.number import Number
-from wspd_design.model.slip import SlipDynamics, slip_dynamics
-from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.units import KMH as KMH
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,75 +16,105 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+BASIC = ("slip", "speed", "mass", "wheelset inertia", "mu0")
+"""Quantities that every map and sampled point has; more can be named."""
+
+PARAMETERS = BASIC[2:]
+
 SLIP, SPEED, MASS, INERTIA, MU0 = range(5)
-"""Columns of an array of points of the domain, in SI units; the inertia is that of a wheelset."""
+"""Columns of an array of points of :data:`BASIC`, in SI units; the inertia is that of a wheelset."""
 
-KMH = 3.6
+SHOWN = {"m/s": (KMH, "km/h")}
+"""Factor and unit in which people read a quantity, where it is not the SI unit."""
 
 
-def box(problem: Problem) -> tuple["Array", "Array"]:
-    """Lowest and highest corner of the domain, in the order of the columns.
+def span(problem: Problem, name: str) -> Ends:
+    """Range of a quantity on the domain, in SI units; one without bounds is known.
+
+    The axle load share and the train deceleration have the ranges that the problem states for them, or those that
+    follow from the load transfer of the vehicle.
 
     Raises
     ------
     OutsideModel
-        If the box holds a speed, mass, inertia or friction that is not positive.
+        If the load transfer has no range in which all wheels stay on the rail.
+    """
+    if name in AXLE and name not in problem.bounds:
+        return axle.load_share(problem) if name == AXLE[0] else axle.deceleration(problem)
+    return problem.span(name)
+
+
+def uncertain(problem: Problem) -> tuple[str, ...]:
+    """Names of all numbers that vary on the domain, in the order of the table; slip and speed are not numbers."""
+    return tuple(
+        name for name in QUANTITIES if name not in STATE and (name in AXLE or _wide(problem.span(name)))
+    )
+
+
+def not_varied(problem: Problem, names: Iterable[str]) -> tuple[str, ...]:
+    """Return the numbers with a range that are not among ``names``, in the order of the table."""
+    varied = set(names)
+    return tuple(name for name in uncertain(problem) if name not in varied)
+
+
+def box(problem: Problem, names: Sequence[str] = BASIC) -> tuple["Array", "Array"]:
+    """Lowest and highest corner of the domain, in the order of the names.
+
+    Raises
+    ------
+    OutsideModel
+        If the box holds a speed, mass, inertia or friction that is not positive, or any value without meaning.
     """
     import numpy as np
 
-    ranges = (
-        ("slip", problem.slips),
-        ("speed", problem.speeds),
-        ("mass", problem.mass_bounds),
-        ("wheelset inertia", problem.inertia_bounds),
-        ("mu0", problem.mu0_bounds),
-    )
-    for name, (low, high) in ranges:
-        if low <= 0.0:
-            raise OutsideModel(f"the {name} range {low:g} to {high:g} holds values that are not positive")
-    return np.array([low for _, (low, _) in ranges]), np.array([high for _, (_, high) in ranges])
+    ranges = {name: span(problem, name) for name in names}
+    for name, (low, high) in ranges.items():
+        if low < 0.0 or (low == 0.0 and QUANTITIES[name].positive):
+            kind = "not positive" if QUANTITIES[name].positive else "negative"
+            raise OutsideModel(f"the {name} range {low:g} to {high:g} holds values that are {kind}")
+    return np.array([low for low, _ in ranges.values()]), np.array([high for _, high in ranges.values()])
 
 
-def slip_held(problem: Problem) -> tuple["Array", "Array"]:
+def slip_held(problem: Problem, names: Sequence[str] = BASIC) -> tuple["Array", "Array"]:
     """Return the domain with the slip at its reference."""
-    low, high = box(problem)
-    low[SLIP] = high[SLIP] = problem.slip
+    low, high = box(problem, names)
+    column = names.index("slip")
+    low[column] = high[column] = problem.slip
     return low, high
 
 
-def varied(problem: Problem, mass: Number, inertia: Number, mu0: Number) -> tuple[Vehicle, Rail]:
-    """Return the plant with other uncertain parameters [kg, kg m2 per wheelset, -]."""
-    contact = problem.vehicle.contact
-    if not problem.contact_grows_with_load:
-        # The slope depends on load / reference load; scaling both keeps it.
-        contact = replace(contact, reference_load=contact.reference_load * mass / problem.vehicle.mass)
-    vehicle = replace(problem.vehicle, mass=mass, wheelset_inertia=inertia, contact=contact)
-    return vehicle, replace(problem.rail, mu0=mu0)
-
-
-def dynamics(problem: Problem, points: "Array") -> SlipDynamics:
-    """Slip dynamics (19) of the plant at many points of the domain at once."""
-    vehicle, rail = varied(problem, points[:, MASS], points[:, INERTIA], points[:, MU0])
-    return slip_dynamics(vehicle, rail, points[:, SLIP], points[:, SPEED])
-
-
-def readable(point: "Array") -> tuple[Point, ...]:
+def readable(point: "Array", names: Sequence[str] = BASIC) -> tuple[Point, ...]:
     """One point of the domain in the units that people read."""
-    return (
-        Point(name="slip", value=float(point[SLIP]), unit="-"),
-        Point(name="speed", value=float(point[SPEED]) * KMH, unit="km/h"),
-        Point(name="mass", value=float(point[MASS]), unit="kg"),
-        Point(name="wheelset inertia", value=float(point[INERTIA]), unit="kg m2"),
-        Point(name="mu0", value=float(point[MU0]), unit="-"),
-    )
+    found = []
+    for name, value in zip(names, point, strict=True):
+        factor, unit = SHOWN.get(QUANTITIES[name].unit, (1.0, QUANTITIES[name].unit))
+        found.append(Point(name=name, value=float(value) * factor, unit=unit))
+    return tuple(found)
 
 
-def described(problem: Problem) -> str:
-    """The domain in words."""
-    low, high = (speed * KMH for speed in problem.speeds)
-    return (
-        f"slip {problem.slips[0]:g} to {problem.slips[1]:g}, {low:.3g} to {high:.3g} km/h, "
-        f"mass {problem.mass_bounds[0]:g} to {problem.mass_bounds[1]:g} kg, "
-        f"wheelset inertia {problem.inertia_bounds[0]:g} to {problem.inertia_bounds[1]:g} kg m2, "
-        f"mu0 {problem.mu0_bounds[0]:g} to {problem.mu0_bounds[1]:g}"
-    )
+def described(problem: Problem, names: Iterable[str] = BASIC, held: Iterable[str] = ()) -> str:
+    """The domain in words.
+
+    Parameters
+    ----------
+    problem : Problem
+        Domain.
+    names : iterable of str
+        Quantities that vary.
+    held : iterable of str
+        Quantities with a range that the claim depends on and does not vary: they stand at their nominal values.
+    """
+    text = ", ".join(_range_text(name, span(problem, name)) for name in names)
+    nominal = ", ".join(_range_text(name, 2 * (problem.nominal(name),)) for name in held)
+    return f"{text}; held: {nominal}" if nominal else text
+
+
+def _range_text(name: str, ends: Ends) -> str:
+    factor, unit = SHOWN.get(QUANTITIES[name].unit, (1.0, QUANTITIES[name].unit))
+    low, high = (f"{end * factor:.3g}" if name == "speed" else f"{end * factor:.6g}" for end in ends)
+    numbers = low if low == high else f"{low} to {high}"
+    return f"{numbers} {unit}" if name == "speed" else f"{name} {numbers} {unit}".removesuffix(" -")
+
+
+def _wide(ends: Ends) -> bool:
+    return ends[0] < ends[1]

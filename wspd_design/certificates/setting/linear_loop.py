@@ -16,6 +16,7 @@ from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
 from wspd_design.certificates.kernel.claim import Variable, variable
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Values,
     forces,
     model_variables,
@@ -142,7 +143,7 @@ def lag_of(problem: Problem) -> float:
 
 def variables(problem: Problem, law: LinearLaw) -> tuple[Variable, ...]:
     """Quantities of the loop at the slip reference, for claims: plant on its domain, law as it is."""
-    plant = plant_variables(problem, slip=problem.slip)
+    plant = plant_variables(problem, hold=OTHERS, ranges={"slip": problem.slip})
     if isinstance(law, SlidingMode):
         return plant + model_variables(law.vehicle, law.rail)
     if isinstance(law, AdaptiveFuzzy):
@@ -161,7 +162,7 @@ def loop_at(
     max_torque = problem.vehicle.brake.max_torque
     speed, slip = values["speed"], values["slip"]
     if arranged:
-        gain = slip_gain(speed, values["wheelset inertia"] / 2.0, values["wheel_radius"])
+        gain = slip_gain(speed, values["wheelset inertia"] / 2.0, values["wheel radius"])
         plant = Plant(pole=plant_forces(problem, values).pole, gain=gain)
     else:
         dynamics = plant_dynamics(problem, values)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.claim import Variable
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import INERTIA, SLIP, SPEED
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Values,
+    dynamics_at,
     model_forces,
     model_variables,
     plant_dynamics,
@@ -38,7 +39,7 @@ class Mismatch(NamedTuple):
 def mismatch(problem: Problem, law: SlidingMode, points: "Array") -> Mismatch:
     """Evaluate r and rho at points of the domain."""
     slip, speed = points[:, SLIP], points[:, SPEED]
-    plant = domain.dynamics(problem, points)
+    plant = dynamics_at(problem, points)
     model = slip_dynamics(law.vehicle, law.rail, slip, speed)
     ratio = law.vehicle.wheelset_inertia / points[:, INERTIA]
     error = sliding_surface.slip_error(law.gains.slip_reference, slip)
@@ -48,7 +49,7 @@ def mismatch(problem: Problem, law: SlidingMode, points: "Array") -> Mismatch:
 
 def variables(problem: Problem, law: SlidingMode) -> tuple[Variable, ...]:
     """Return the quantities of plant and design model."""
-    return plant_variables(problem) + model_variables(law.vehicle, law.rail)
+    return plant_variables(problem, hold=OTHERS) + model_variables(law.vehicle, law.rail)
 
 
 def inertia_ratio(x: Values) -> Number:
@@ -71,8 +72,8 @@ def residual_over_ratio(problem: Problem, law: SlidingMode, x: Values) -> Number
     slip, speed = x["slip"], x["speed"]
     inverse = x["wheelset inertia"] / x["model wheelset inertia"]
     error = sliding_surface.slip_error(law.gains.slip_reference, slip)
-    torque = plant.creep_force * x["wheel_radius"] ** 2 - model.creep_force * x["model wheel_radius"] ** 2
-    damping = speed * (1.0 - slip) * (x["model wheel_damping"] - x["wheel_damping"])
+    torque = plant.creep_force * x["wheel radius"] ** 2 - model.creep_force * x["model wheel radius"] ** 2
+    damping = speed * (1.0 - slip) * (x["model wheel damping"] - x["wheel damping"])
     closing = (inverse - 1.0) * speed * law.gains.surface_rate * error
     slowing = (1.0 - slip) * (inverse * plant.deceleration - model.deceleration)
     return closing + (torque + damping) * 2.0 / x["model wheelset inertia"] + slowing

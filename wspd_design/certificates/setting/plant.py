@@ -1,122 +1,190 @@
-"""The slip dynamics as functions of named quantities, for claims on intervals.
+"""The slip dynamics as functions of named quantities, for claims on intervals and for points of the domain.
 
 Every number of vehicle and rail is a quantity of its own, so that nothing is rounded before the arithmetic of the
-prover or of the checker begins.
+prover or of the checker begins. With the quantities "axle load share" k and "train deceleration" a among the values,
+the functions describe one axle of the vehicle, whatever the others do: its wheels carry k times the static load, and
+
+    F = -(1/v) [R^2 f(k) / I + (1 - slip) a] + B_W (1 - slip) / I.
+
+Without them they describe the axle at static load, and a = (f_d + 8 f) / m.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import pi
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.claim import Variable, variable
+from wspd_design.certificates.quantities import AXLE, PLANT, QUANTITIES, TABLE, Record
 from wspd_design.certificates.records import Point, Problem
 from wspd_design.certificates.setting import domain
 from wspd_design.model.generated import adhesion as generated
 from wspd_design.model.number import Number, atan, exp
 from wspd_design.model.slip import SlipDynamics, resistance, slip_dynamics, static_wheel_load
+from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
-Values = Mapping[str, Number]
-Parameters = tuple[float, float, float]
-"""Mass [kg], inertia of a wheelset [kg m2] and mu0 [-]."""
+if TYPE_CHECKING:
+    from wspd_design.certificates.setting.domain import Array
 
-VEHICLE = (
-    ("wheel_radius", "m"),
-    ("wheel_damping", "N m s"),
-    ("resistance_constant", "N"),
-    ("resistance_linear", "N s/m"),
-    ("resistance_quadratic", "N s2/m2"),
-)
-CONTACT = (
-    ("shear_modulus", "Pa"),
-    ("semi_axis_rolling", "m"),
-    ("semi_axis_lateral", "m"),
-    ("kalker_c11", "-"),
-    ("reference_load", "N"),
-)
-RAIL = (
-    ("friction_ratio", "-"),
-    ("friction_decay", "s/m"),
-    ("adhesion_reduction", "-"),
-    ("slip_reduction", "-"),
-)
-UNITS = {"slip": "-", "speed": "m/s", "mass": "kg", "wheelset inertia": "kg m2", "mu0": "-"}
-"""Quantities that span the domain."""
+Values: TypeAlias = Mapping[str, Number]
+
+LOAD_SHARE, DECELERATION = AXLE
+AXLE_PLANT = PLANT + AXLE
+"""What (19) depends on at any axle."""
+
+OTHERS = tuple(name for name in PLANT if name not in domain.BASIC)
+"""Numbers that a claim holds at their nominal values with ``hold=OTHERS``: all of the plant but mass, inertia, mu0."""
 
 
-def plant_variables(problem: Problem, **ranges: float | tuple[float, float]) -> tuple[Variable, ...]:
-    """Return the quantities of the plant: five with the ranges of the domain, the rest known.
+def plant_variables(
+    problem: Problem,
+    *,
+    uses: Sequence[str] = PLANT,
+    hold: Iterable[str] = (),
+    ranges: Mapping[str, float | Ends] | None = None,
+) -> tuple[Variable, ...]:
+    """Return the quantities of a claim about the plant: every number with bounds varies.
 
     Parameters
     ----------
     problem : Problem
         Domain, vehicle and rail.
-    **ranges : float or tuple of float
-        Other ranges or numbers for ``slip``, ``speed``, ``mass``, ``inertia`` (of a wheelset) or ``mu0``.
+    uses : sequence of str
+        Names in the table of what the claim uses, :data:`PLANT` or :data:`AXLE_PLANT`, with numbers of the brake
+        where they count.
+    hold : iterable of str
+        Names that keep their nominal value, which the claim has to say.
+    ranges : mapping, optional
+        Other ranges or numbers than those of the domain, by names.
 
     Raises
     ------
     OutsideModel
-        If the domain holds a speed, mass, inertia or friction that is not positive.
+        If the domain holds a value that has no meaning, such as a mass that is not positive.
+    ValueError
+        If a name is not in use.
     """
-    low, high = domain.box(problem)
-    short = ("slip", "speed", "mass", "inertia", "mu0")
-    spans = {name: (float(low[k]), float(high[k])) for k, name in enumerate(short)} | ranges
-    spanning = tuple(
-        variable(name, spans[key], unit) for (name, unit), key in zip(UNITS.items(), short, strict=True)
-    )
+    low, high = domain.box(problem, uses)
+    spans: dict[str, float | Ends] = {name: (float(low[k]), float(high[k])) for k, name in enumerate(uses)}
+    stated = dict(ranges or {})
+    held = {name: problem.nominal(name) for name in hold if name not in stated}
+    unknown = [name for name in (*stated, *held) if name not in spans]
+    if unknown:
+        raise ValueError(f"{', '.join(unknown)}: not among the quantities of the claim, {', '.join(uses)}")
+    spans |= held | stated
     nominal = variable("nominal mass", problem.vehicle.mass, "kg")
-    return (*spanning, nominal, *known_variables(problem.vehicle, problem.rail, ""))
+    return (*(variable(name, spans[name], QUANTITIES[name].unit) for name in uses), nominal)
 
 
 def model_variables(vehicle: Vehicle, rail: Rail) -> tuple[Variable, ...]:
     """Return the quantities of a design model, all known."""
-    spanning = (
-        variable("model mass", vehicle.mass, "kg"),
-        variable("model wheelset inertia", vehicle.wheelset_inertia, "kg m2"),
-        variable("model mu0", rail.mu0, "-"),
-    )
-    return spanning + known_variables(vehicle, rail, "model ")
+    return known_variables(vehicle, rail, "model ")
 
 
 def known_variables(vehicle: Vehicle, rail: Rail, prefix: str) -> tuple[Variable, ...]:
-    """Return the numbers of vehicle and rail that no range covers."""
-    records = ((vehicle, VEHICLE), (vehicle.contact, CONTACT), (rail, RAIL))
+    """Return the numbers of vehicle and rail that (19) depends on, without their ranges."""
+    records: dict[Record, object] = {"vehicle": vehicle, "contact": vehicle.contact, "rail": rail}
     return tuple(
-        variable(prefix + name, getattr(record, name), unit)
-        for record, fields in records
-        for name, unit in fields
+        variable(prefix + row.name, getattr(records[row.record], row.field), row.unit)
+        for row in TABLE
+        if row.record in records
     )
 
 
 def records_of(values: Values, vehicle: Vehicle, rail: Rail, prefix: str = "") -> tuple[Vehicle, Rail]:
-    """Return vehicle and rail with the quantities in place of their numbers."""
+    """Return vehicle and rail with the quantities in place of their numbers; those of the brake if there are any."""
 
-    def named(fields: tuple[tuple[str, str], ...]) -> dict[str, Number]:
-        return {name: values[prefix + name] for name, _ in fields}
+    def named(record: Record) -> dict[str, Number]:
+        rows = (row for row in TABLE if row.record == record)
+        return {row.field: values[prefix + row.name] for row in rows}
 
-    contact = replace(vehicle.contact, **named(CONTACT))
-    mass, inertia = values[f"{prefix}mass"], values[f"{prefix}wheelset inertia"]
-    changed = replace(vehicle, mass=mass, wheelset_inertia=inertia, contact=contact, **named(VEHICLE))
-    return changed, replace(rail, mu0=values[f"{prefix}mu0"], **named(RAIL))
+    brake = {
+        row.field: values[prefix + row.name]
+        for row in TABLE
+        if row.record == "brake" and prefix + row.name in values
+    }
+    changed = replace(
+        vehicle,
+        contact=replace(vehicle.contact, **named("contact")),
+        brake=replace(vehicle.brake, **brake),
+        **named("vehicle"),
+    )
+    return changed, replace(rail, **named("rail"))
 
 
 def plant_records(problem: Problem, values: Values) -> tuple[Vehicle, Rail]:
     """Return the plant's records; its contact follows the load or not, as the problem says."""
     vehicle, rail = records_of(values, problem.vehicle, problem.rail)
     if not problem.contact_grows_with_load:
+        # The slope depends on load / reference load; scaling both keeps it.
         load = vehicle.contact.reference_load * vehicle.mass / values["nominal mass"]
         vehicle = replace(vehicle, contact=replace(vehicle.contact, reference_load=load))
     return vehicle, rail
 
 
+def complete(problem: Problem, values: Values) -> dict[str, Number]:
+    """Return values of all numbers of the plant: the nominal ones where none is given.
+
+    For numbers, arrays and balls; a claim names all its quantities instead.
+    """
+    known = known_variables(problem.vehicle, problem.rail, "")
+    nominal = {v.name: float(v.low) for v in known} | {"nominal mass": problem.vehicle.mass}
+    return {**nominal, **values}
+
+
+def plant_with(problem: Problem, values: Values) -> tuple[Vehicle, Rail]:
+    """Return vehicle and rail with some numbers changed, the others at their nominal values.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop.
+    values : mapping
+        From names in the table to numbers, arrays or balls.
+    """
+    return plant_records(problem, complete(problem, values))
+
+
+def exact_plant(problem: Problem, values: Mapping[str, float] | None = None) -> tuple[Vehicle, Rail]:
+    """Return vehicle and rail with their numbers as balls, so that nothing is rounded.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop.
+    values : mapping, optional
+        Numbers that differ from the nominal ones, by their names in the table.
+    """
+    return plant_records(problem, {name: point(x) for name, x in complete(problem, values or {}).items()})
+
+
 def plant_dynamics(problem: Problem, values: Values) -> SlipDynamics:
-    """Evaluate the kernels of (19) for the plant."""
+    """Evaluate the kernels of (19) for the plant; see the head of the module for one axle of several."""
     vehicle, rail = plant_records(problem, values)
-    return slip_dynamics(vehicle, rail, values["slip"], values["speed"])
+    slip, speed = values["slip"], values["speed"]
+    if LOAD_SHARE not in values:
+        return slip_dynamics(vehicle, rail, slip, speed)
+    load = static_wheel_load(vehicle) * values[LOAD_SHARE]
+    return slip_dynamics(vehicle, rail, slip, speed, wheel_load=load, deceleration=values[DECELERATION])
+
+
+def dynamics_at(problem: Problem, points: "Array", names: Sequence[str] = domain.BASIC) -> SlipDynamics:
+    """Slip dynamics (19) of the plant at many points of the domain at once.
+
+    Parameters
+    ----------
+    problem : Problem
+        Domain, vehicle and rail.
+    points : ndarray
+        One point per row, the columns as in ``names``, SI units.
+    names : sequence of str
+        Slip, speed and the numbers that vary; the others are nominal.
+    """
+    columns = {name: points[..., k] for k, name in enumerate(names)}
+    return plant_dynamics(problem, complete(problem, columns))
 
 
 class Forces(NamedTuple):
@@ -134,13 +202,18 @@ EXPONENT = 2.0 / 3.0
 def plant_forces(problem: Problem, values: Values) -> Forces:
     """Arrange force and deceleration of the plant."""
     vehicle, rail = records_of(values, problem.vehicle, problem.rail)
+    slip, speed = values["slip"], values["speed"]
+    share, given = values.get(LOAD_SHARE), values.get(DECELERATION)
     if problem.contact_grows_with_load:
-        return forces(vehicle, rail, values["slip"], values["speed"])
+        return forces(vehicle, rail, slip, speed, share=share, deceleration=given)
     # Load over reference load does not depend on the mass; the stiffness per load falls with it.
     known = replace(vehicle, mass=values["nominal mass"])
     growth = static_wheel_load(known) / vehicle.contact.reference_load
-    per_load = growth**EXPONENT / static_wheel_load(vehicle)
-    return forces(vehicle, rail, values["slip"], values["speed"], per_load)
+    if share is None:
+        per_load = growth**EXPONENT / static_wheel_load(vehicle)
+    else:
+        per_load = (growth * share) ** (EXPONENT - 1.0) * growth / static_wheel_load(vehicle)
+    return forces(vehicle, rail, slip, speed, per_load, share=share, deceleration=given)
 
 
 def model_forces(values: Values, vehicle: Vehicle, rail: Rail) -> Forces:
@@ -150,16 +223,24 @@ def model_forces(values: Values, vehicle: Vehicle, rail: Rail) -> Forces:
 
 
 def forces(
-    vehicle: Vehicle, rail: Rail, slip: Number, speed: Number, per_load: Number | None = None
+    vehicle: Vehicle,
+    rail: Rail,
+    slip: Number,
+    speed: Number,
+    per_load: Number | None = None,
+    *,
+    share: Number | None = None,
+    deceleration: Number | None = None,
 ) -> Forces:
     """Arrange Polach's force and the deceleration so that mass and load cancel where they can.
 
     The kernels multiply a stiffness that grows with the power 2/3 of the load by the slip, divide by friction and
     load, and multiply by the load in the end. ``per_load`` is the stiffness over its value at the reference load
-    and over the load [1/N].
+    and over the load [1/N]; ``share`` the load over the static load, and ``deceleration`` that of the train if it is
+    not the one of eight wheels like this one [m/s2].
     """
     contact = vehicle.contact
-    load = static_wheel_load(vehicle)
+    load = static_wheel_load(vehicle) if share is None else static_wheel_load(vehicle) * share
     if per_load is None:
         per_load = (load / contact.reference_load) ** (EXPONENT - 1.0) / contact.reference_load
     stiffness = generated.contact_stiffness(
@@ -171,8 +252,6 @@ def forces(
     weak, slow = rail.adhesion_reduction * gradient, rail.slip_reduction * gradient
     adhesion, sliding = weak**2 + 1.0, slow**2 + 1.0
     used = friction * (weak / adhesion + atan(slow)) * 2.0 / pi
-    gravity = 8.0 * constants().gravity / (2 * vehicle.wheelsets)
-    deceleration = used * gravity + resistance(vehicle, speed) / vehicle.mass
     # The slope of force over load and speed: by the creep itself, and by the friction that falls with sliding.
     by_creep = (
         stiffness
@@ -182,32 +261,17 @@ def forces(
     shape = weak**3 * 2.0 / adhesion**2 + atan(slow) - slow / sliding
     slope = (by_creep / speed - rail.friction_decay * falling * shape) * (2.0 / pi)
     inertia = vehicle.wheel_inertia
-    pole = (
-        deceleration / speed
-        - slope * (load * vehicle.wheel_radius**2 / inertia + (1.0 - slip) * gravity)
-        - vehicle.wheel_damping / inertia
-    )
+    per_slope = load * vehicle.wheel_radius**2 / inertia
+    if deceleration is None:
+        gravity = 8.0 * constants().gravity / (2 * vehicle.wheelsets)
+        deceleration = used * gravity + resistance(vehicle, speed) / vehicle.mass
+        per_slope = per_slope + (1.0 - slip) * gravity
+    pole = deceleration / speed - slope * per_slope - vehicle.wheel_damping / inertia
     return Forces(creep_force=used * load, deceleration=deceleration, pole=pole)
 
 
-def place(values: Mapping[str, float]) -> tuple[Point, ...]:
-    """Return a point of the domain in the units that people read."""
+def place(values: Mapping[str, float], names: Sequence[str] = domain.BASIC) -> tuple[Point, ...]:
+    """Return a point of the domain in the units that people read: the quantities of these names."""
     import numpy as np
 
-    return domain.readable(np.array([values[name] for name in UNITS]))
-
-
-def exact_plant(problem: Problem, parameters: Parameters | None = None) -> tuple[Vehicle, Rail]:
-    """Return vehicle and rail with their numbers as balls, so that nothing is rounded.
-
-    Parameters
-    ----------
-    problem : Problem
-        The closed loop.
-    parameters : tuple of float, optional
-        Mass [kg], inertia of a wheelset [kg m2] and mu0 [-]; the nominal ones by default.
-    """
-    nominal = (problem.vehicle.mass, problem.vehicle.wheelset_inertia, problem.rail.mu0)
-    mass, inertia, mu0 = parameters or nominal
-    known = plant_variables(problem, mass=mass, inertia=inertia, mu0=mu0)
-    return plant_records(problem, {v.name: point(v.low) for v in known})
+    return domain.readable(np.array([float(values[name]) for name in names]), names)

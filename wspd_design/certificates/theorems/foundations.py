@@ -21,7 +21,7 @@ def _factors(problem: Problem) -> tuple[Sign, ...]:
     """Return the factors of G, each at its smallest: a quotient of positive factors is positive on the box."""
     factors = (
         ("wheel radius", problem.vehicle.wheel_radius, "m"),
-        ("wheelset inertia", problem.inertia_bounds[0], "kg m2"),
+        ("wheelset inertia", problem.span("wheelset inertia")[0], "kg m2"),
         ("speed", problem.speeds[0], "m/s"),
     )
     return tuple(
@@ -34,13 +34,13 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
     status = all_of(*findings.values())
     wrong = [each for each in factors if findings[each.key].status is Status.REFUTED]
     # The inertia of the bounds is that of a wheelset, 2 I; G is smallest where both inertia and speed are largest.
-    largest = Fraction(problem.inertia_bounds[1]) * Fraction(problem.speeds[1])
+    largest = Fraction(problem.span("wheelset inertia")[1]) * Fraction(problem.speeds[1])
     smallest = Fraction(problem.vehicle.wheel_radius) / largest if status is Status.PROVED else None
     return Certificate(
         name="gain_positive",
         title="Sign of the input gain",
-        claim=f"G = R/(2 I v) > 0 for wheelset inertia {problem.inertia_bounds[0]:g} to "
-        f"{problem.inertia_bounds[1]:g} kg m2 and {problem.speeds[0] * KMH:.3g} to "
+        claim=f"G = R/(2 I v) > 0 for wheelset inertia {problem.span('wheelset inertia')[0]:g} to "
+        f"{problem.span('wheelset inertia')[1]:g} kg m2 and {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h.",
         status=status,
         explanation=(
@@ -56,7 +56,7 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
         worst_point=()
         if smallest is None
         else (
-            Point(name="wheelset inertia", value=problem.inertia_bounds[1], unit="kg m2"),
+            Point(name="wheelset inertia", value=problem.span("wheelset inertia")[1], unit="kg m2"),
             Point(name="speed", value=problem.speeds[1] * KMH, unit="km/h"),
         ),
         witness=tuple(_point(each) for each in wrong),

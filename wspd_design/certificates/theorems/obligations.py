@@ -28,7 +28,6 @@ from wspd_design.certificates.kernel.subdomain import Ends
 from wspd_design.certificates.records import Problem, Status
 from wspd_design.certificates.search import recovery
 from wspd_design.certificates.setting import laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.linear_loop import LinearLaw, outermost
 from wspd_design.certificates.theorems import quadratic
 from wspd_design.certificates.theorems.invariant_sets import checker as invariance
@@ -36,6 +35,7 @@ from wspd_design.certificates.theorems.invariant_sets.runs import FORMAT as SETS
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.units import KMH
 
 BOTH = (Status.PROVED, Status.VACUOUS)
 
@@ -118,8 +118,8 @@ def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
 
     return (
         inequality(sliding_exists.torque_claim(problem, law, ">=", 0.0), needed=BOTH),
-        inequality(enough(problem.mu0_bounds), needed=()),
-        on_part(enough, "mu0", problem.mu0_bounds, "", needed=(), longer=False),
+        inequality(enough(problem.span("mu0")), needed=()),
+        on_part(enough, "mu0", problem.span("mu0"), "", needed=(), longer=False),
         inequality(sliding_exists.least_demand(problem, law), needed=(Status.VACUOUS,)),
     )
 

@@ -24,7 +24,13 @@ from wspd_design.certificates.kernel.arb import Ball, ball, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.plant import Values, plant_dynamics, plant_forces, plant_variables
+from wspd_design.certificates.setting.plant import (
+    OTHERS,
+    Values,
+    plant_dynamics,
+    plant_forces,
+    plant_variables,
+)
 from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.model.number import Number
 
@@ -72,7 +78,7 @@ def loop_of(problem: Problem, law: TorqueFeedback) -> Loop:
     """Exact numbers of the loop."""
     brake = problem.vehicle.brake
     torque = Fraction(problem.vehicle.wheel_radius) * Fraction(brake.max_torque)
-    light, heavy = (Fraction(each) for each in problem.inertia_bounds)
+    light, heavy = (Fraction(each) for each in problem.span("wheelset inertia"))
     # The law counts in its own T_max.
     share = Fraction(brake.max_torque) / Fraction(law.vehicle.brake.max_torque)
     return Loop(
@@ -97,7 +103,7 @@ def pole_claim(problem: Problem, relation: Relation, bound: Fraction) -> Claim:
 
     return Claim(
         name="slip pole less a/v",
-        variables=plant_variables(problem, slip=problem.slip),
+        variables=plant_variables(problem, hold=OTHERS, ranges={"slip": problem.slip}),
         expression=difference,
         form=arranged,
         relation=relation,

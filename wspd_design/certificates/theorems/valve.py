@@ -9,6 +9,7 @@ from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Values,
     place,
     plant_dynamics,
@@ -29,7 +30,7 @@ def pole_claim(
 
     return Claim(
         name="slip pole",
-        variables=plant_variables(problem, slip=problem.slip, **ranges),
+        variables=plant_variables(problem, hold=OTHERS, ranges={"slip": problem.slip, **ranges}),
         expression=lambda x: plant_dynamics(problem, x).pole,
         form=arranged,
         relation=relation,
@@ -51,9 +52,7 @@ def interval_claim(problem: Problem, limit: float, speeds: tuple[float, float], 
         relation,
         limit,
         speed=speeds,
-        mass=problem.vehicle.mass,
-        inertia=problem.vehicle.wheelset_inertia,
-        mu0=problem.rail.mu0,
+        **{name: problem.nominal(name) for name in domain.PARAMETERS},
     )
 
 

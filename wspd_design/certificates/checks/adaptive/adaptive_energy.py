@@ -75,7 +75,7 @@ def energy(
     choices = [lowest - span + 3.0 * span * k / (CHOICES - 1) for k in range(CHOICES)]
     beta = min(choices, key=lambda choice: float(adaptive(choice)[0]))
     stored, bound = adaptive(beta)
-    light, heavy = (point(each) for each in problem.inertia_bounds)
+    light, heavy = (point(each) for each in problem.span("wheelset inertia"))
     radius = point(problem.vehicle.wheel_radius)
     outside = point(gains.slip_reference) - point(gains.boundary_layer) / gains.proportional_gain
     # From the layer, of a rolling wheel or one that slips more.

@@ -18,8 +18,8 @@ from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Status
 from wspd_design.certificates.search.settle import enclose, engine, settle
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "afsmc_energy", "Energy of the adaptive law"
 LIMITS = 5  # hypotheses that hold without limits of the brake; the others speak about those

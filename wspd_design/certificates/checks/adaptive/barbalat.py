@@ -9,12 +9,12 @@ from wspd_design.certificates.checks.ideal_run import ASSUMPTIONS, ProofRun, sli
 from wspd_design.certificates.checks.sliding.reaching import reserve
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import saturation
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.checks.ideal_run import Array

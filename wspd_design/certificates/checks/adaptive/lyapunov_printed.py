@@ -21,12 +21,12 @@ from wspd_design.certificates.checks.sliding.reaching import reserve
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import exact_plant
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.model.generated import adaptive_fuzzy as generated
 from wspd_design.model.number import Number
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.units import KMH
 
 Function: TypeAlias = Callable[[State], Number]
 

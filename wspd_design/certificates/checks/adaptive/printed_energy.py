@@ -6,11 +6,11 @@ from wspd_design.certificates.checks.frame import level, series
 from wspd_design.certificates.kernel.arb import Ball, ball, below, point
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Series, Status
 from wspd_design.certificates.search.settle import versions
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import exact_plant
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, firing_strengths
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.units import KMH
 
 SPEEDS = 41
 

@@ -25,9 +25,9 @@ from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Status
 from wspd_design.certificates.search.settle import enclose, engine, settle
 from wspd_design.certificates.setting import laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.parameters.loading import constants
+from wspd_design.parameters.units import KMH
 
 
 def claims(problem: Problem, law: AdaptiveFuzzy) -> tuple[Claim, Claim, Claim]:
@@ -78,7 +78,7 @@ def convergence(problem: Problem, law: AdaptiveFuzzy) -> Certificate:
     said = "There is no bound of the integral to state"
     if positive and bounded is Status.PROVED:
         found = energy(problem, gains, float(low.claim.bound), float(high.claim.bound), eta, 1.0)
-        lightest, radius = point(problem.inertia_bounds[0]), point(problem.vehicle.wheel_radius)
+        lightest, radius = point(problem.span("wheelset inertia")[0]), point(problem.vehicle.wheel_radius)
         steepest = radius / lightest * point(max(high.claim.bound, Fraction(limit) - low.claim.bound))
         where = (
             Point(name="V(0) in sigma", value=above(found.start), unit="N s2"),

@@ -11,10 +11,11 @@ from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.search.settle import engine, settle
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Forces,
     Values,
+    dynamics_at,
     place,
     plant_dynamics,
     plant_forces,
@@ -23,6 +24,7 @@ from wspd_design.certificates.setting.plant import (
 from wspd_design.model.generated import slip as generated
 from wspd_design.model.number import Number
 from wspd_design.model.slip import SlipDynamics
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "well_posed", "Signs of the model"
 MEGA = 1e6  # N m in a MN m, so that the gain is a number of common size
@@ -40,7 +42,7 @@ def claims(problem: Problem) -> tuple[Claim, ...]:
     def of(name: str, unit: str, kernel: Callable[[SlipDynamics, Values], Number], form: Form) -> Claim:
         return Claim(
             name=name,
-            variables=plant_variables(problem),
+            variables=plant_variables(problem, hold=OTHERS),
             expression=lambda x: kernel(plant_dynamics(problem, x), x),
             form=lambda x: form(plant_forces(problem, x), x),
             relation=">=",
@@ -49,7 +51,7 @@ def claims(problem: Problem) -> tuple[Claim, ...]:
         )
 
     def gain(x: Values) -> Number:
-        return generated.slip_gain(x["speed"], x["wheelset inertia"] / 2.0, x["wheel_radius"]) * MEGA
+        return generated.slip_gain(x["speed"], x["wheelset inertia"] / 2.0, x["wheel radius"]) * MEGA
 
     return (
         of(
@@ -118,7 +120,7 @@ def check(problem: Problem) -> Certificate:
         maps=margin_map(
             "deceleration",
             "deceleration a [m/s2]",
-            lambda points: domain.dynamics(problem, points).deceleration,
+            lambda points: dynamics_at(problem, points).deceleration,
             domain.box(problem),
             over=domain.SLIP,
             limit=0.0,

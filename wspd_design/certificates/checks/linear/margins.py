@@ -9,7 +9,6 @@ from wspd_design.certificates.checks.frame import certified, level, series
 from wspd_design.certificates.checks.linear.disk_margin import disk_margin
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.linear_loop import (
     LinearLaw,
     feedback,
@@ -18,6 +17,7 @@ from wspd_design.certificates.setting.linear_loop import (
     on_brake,
     outermost,
 )
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     import numpy as np

@@ -12,7 +12,6 @@ from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.records import Certificate, Point, Problem, Series, Status
 from wspd_design.certificates.search.settle import Finding, engine
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.linear_loop import (
     Cubic,
     LinearLaw,
@@ -29,6 +28,7 @@ from wspd_design.certificates.theorems.inequality import decide, positive
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "routh_lag", "Loop near its reference with valve lag"
 TOLERANCE = 0.1  # of the enclosed margins

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import level, series
 from wspd_design.certificates.records import Series
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.laws import SlipLaw, surface_rate
 from wspd_design.certificates.setting.linear_loop import Plant, feedback
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.parameters.loading import load_paper_gains
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array

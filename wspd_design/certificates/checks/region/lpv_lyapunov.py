@@ -19,7 +19,6 @@ from wspd_design.certificates.records import (
 from wspd_design.certificates.search.quadratic import NotFound, search
 from wspd_design.certificates.search.settle import Finding, enclose, engine
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import place, plant_dynamics
 from wspd_design.certificates.theorems.quadratic import (
     Loop,
@@ -34,6 +33,7 @@ from wspd_design.certificates.theorems.quadratic import (
 )
 from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.kernel.claim import Relation

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from wspd_design.certificates.checks.frame import level, series
 from wspd_design.certificates.records import Problem, Series
 from wspd_design.certificates.search.invariant_sets.search import Found
-from wspd_design.certificates.setting.domain import KMH
+from wspd_design.parameters.units import KMH
 
 OUTLINES = 5  # sets that the plot shows
 AXES = ("slip [-]", "braking torque [kN m]")

@@ -14,11 +14,13 @@ from wspd_design.certificates.search.invariant_sets import document, escape
 from wspd_design.certificates.search.invariant_sets.search import Found, holding_share, search, windows
 from wspd_design.certificates.search.settle import engine
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.outside import OutsideModel
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.invariant_sets import checker
 from wspd_design.controllers.protocol import Measurement
+from wspd_design.parameters.bounds import EXACT
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.search.invariant_sets.one_sample import Window
@@ -167,8 +169,8 @@ def _authority(problem: Problem) -> str:
     """Compare what the torque would have to do over the box with what the law does."""
     span = windows(problem)[0]
     shares = []
-    for mass, mu0 in zip(problem.mass_bounds, problem.mu0_bounds, strict=True):
-        vehicle, rail = domain.varied(problem, mass, problem.vehicle.wheelset_inertia, mu0)
+    for mass, mu0 in zip(problem.span("mass"), problem.span("mu0"), strict=True):
+        vehicle, rail = plant_with(problem, {"mass": mass, "mu0": mu0})
         shares.append(holding_share(replace(problem, vehicle=vehicle, rail=rail), span.low))
     return (
         f"At {span.low * KMH:.0f} km/h the torque that holds the reference is {100 * shares[0]:.0f} to "
@@ -187,12 +189,9 @@ class _Nominal(NamedTuple):
 
 def _nominal(problem: Problem) -> _Nominal:
     """Try the same with nominal parameters."""
-    vehicle, rail = problem.vehicle, problem.rail
     nominal = replace(
         problem,
-        mass_bounds=(vehicle.mass, vehicle.mass),
-        inertia_bounds=(vehicle.wheelset_inertia, vehicle.wheelset_inertia),
-        mu0_bounds=(rail.mu0, rail.mu0),
+        bounds=EXACT,
     )
     if nominal == problem:
         return _Nominal("These are nominal parameters already.")

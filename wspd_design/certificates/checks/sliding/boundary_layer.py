@@ -9,9 +9,9 @@ from wspd_design.certificates.checks.verdict import condition
 from wspd_design.certificates.kernel.arb import above, below, point
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Series, Status
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "boundary_layer", "Slip error inside the layer"
 SETTLED = 0.1  # of the bound: what is left of the transient

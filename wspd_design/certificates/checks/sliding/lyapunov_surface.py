@@ -25,13 +25,13 @@ from wspd_design.certificates.checks.ideal_run import (
 )
 from wspd_design.certificates.records import Certificate, Point, Problem, Range
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
-from wspd_design.certificates.setting.plant import Parameters, exact_plant
+from wspd_design.certificates.setting.plant import exact_plant, place, plant_with
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import Number
+from wspd_design.parameters.units import KMH
 
-RisingRun: TypeAlias = tuple[ProofRun, Parameters, int, int]
+RisingRun: TypeAlias = tuple[ProofRun, dict[str, float], int, int]
 """A run, its parameters, and the instants between which V rises."""
 
 NAME, TITLE = "lyapunov_surface", "V of the sliding mode"
@@ -50,14 +50,15 @@ def check(problem: Problem) -> Certificate:
             problem, NAME, "V = s^2/2 does not rise outside the boundary layer.", reason
         )
     domain.box(problem)
-    nominal = (problem.vehicle.mass, problem.vehicle.wheelset_inertia, problem.rail.mu0)
-    corners = product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds)
-    parameters = list(dict.fromkeys([nominal, *corners]))
+    names = domain.PARAMETERS
+    nominal = {name: problem.nominal(name) for name in names}
+    corners = (dict(zip(names, ends, strict=True)) for ends in product(*map(problem.span, names)))
+    parameters = [nominal, *(corner for corner in corners if corner != nominal)]
     edge = float(sliding_surface.lyapunov_surface(law.gains.boundary_layer))
     curves, runs = [], []
     worst: tuple[float, *RisingRun] | None = None
     for chosen, slip in product(parameters, problem.slips):
-        vehicle, rail = domain.varied(problem, *chosen)
+        vehicle, rail = plant_with(problem, chosen)
         run = sliding_run(vehicle, rail, law, speeds=problem.speeds, slip=slip)
         runs.append(run)
         values = sliding_surface.lyapunov_surface(_surface(law, run.states))
@@ -69,13 +70,11 @@ def check(problem: Problem) -> Certificate:
         if chosen == nominal:
             curves.append(series(f"V from slip {slip:g}", "time [s]", "V [-]", run.time, values))
     assert worst is not None
-    rise, run, (mass, inertia, mu0), start, end = worst
+    rise, run, chosen, start, end = worst
     rises = not rise <= TOLERANCE
     shown = _certain_rise(problem, law, worst[1:]) if rises else None
     where: tuple[Point, ...] = (
-        Point(name="mass", value=mass, unit="kg"),
-        Point(name="wheelset inertia", value=inertia, unit="kg m2"),
-        Point(name="mu0", value=mu0, unit="-"),
+        *place(chosen, names),
         Point(name="rising since", value=float(run.time[start]), unit="s"),
         Point(name="rising until", value=float(run.time[end]), unit="s"),
     )

@@ -14,9 +14,11 @@ from wspd_design.certificates.records import Certificate, Hypothesis, Point, Pro
 from wspd_design.certificates.search.prover import prove
 from wspd_design.certificates.search.settle import Finding, enclose, engine, settle
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH, SLIP, SPEED
+from wspd_design.certificates.setting.domain import SLIP, SPEED
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Values,
+    dynamics_at,
     place,
     plant_dynamics,
     plant_forces,
@@ -27,6 +29,7 @@ from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import Number
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
@@ -72,13 +75,13 @@ def torque_claim(
         forces = plant_forces(problem, x)
         slip, speed, inertia = x["slip"], x["speed"], x["wheelset inertia"]
         error = sliding_surface.slip_error(reference, slip)
-        slowing = (1.0 - slip) * (inertia * forces.deceleration - 2.0 * speed * x["wheel_damping"])
+        slowing = (1.0 - slip) * (inertia * forces.deceleration - 2.0 * speed * x["wheel damping"])
         surface = inertia * (rate * speed * error + eta)
-        return forces.creep_force * x["wheel_radius"] * 2.0 + (slowing + surface) / x["wheel_radius"]
+        return forces.creep_force * x["wheel radius"] * 2.0 + (slowing + surface) / x["wheel radius"]
 
     return Claim(
         name="u* + eta/g" if relation == "<=" else "u* - eta/g",
-        variables=plant_variables(problem, **ranges),
+        variables=plant_variables(problem, hold=OTHERS, ranges=ranges),
         expression=torque,
         form=arranged,
         relation=relation,
@@ -171,7 +174,7 @@ def largest_friction(problem: Problem, law: laws.SlipLaw) -> tuple[float, float]
     def suffices(mu0: float) -> bool:
         return bool(prove(torque_claim(problem, law, "<=", limit, mu0=mu0)).tree)
 
-    low, high = problem.mu0_bounds
+    low, high = problem.span("mu0")
     if suffices(high):
         return high, high
     if not suffices(low):
@@ -192,7 +195,7 @@ def _unlimited(problem: Problem, law: laws.SlipLaw, limit: float) -> Finding | N
     friction = largest_friction(problem, law)
     if friction is None:
         return None
-    span = problem.mu0_bounds[0], friction[0]
+    span = problem.span("mu0")[0], friction[0]
     return settle(torque_claim(problem, law, "<=", limit, mu0=span), tolerance=TOLERANCE)
 
 
@@ -237,7 +240,7 @@ def _spot(finding: Finding) -> str:
 
 def _released(problem: Problem, law: laws.SlipLaw, points: "Array") -> "Array":
     """Ideal torque less the reserve, u* - eta/g, at points of the domain [N m]."""
-    plant = domain.dynamics(problem, points)
+    plant = dynamics_at(problem, points)
     error = sliding_surface.slip_error(law.gains.slip_reference, points[:, SLIP])
     ideal = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, error, laws.surface_rate(law))
     left: Array = ideal - reserve(problem) / (plant.gain * points[:, SPEED])

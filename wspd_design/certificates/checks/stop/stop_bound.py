@@ -14,12 +14,12 @@ from wspd_design.certificates.records import (
 from wspd_design.certificates.search import adhesion_peaks as peak_search
 from wspd_design.certificates.search.settle import versions
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import INSTANTS, Limit, NoBound, require
 from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import CLAIM, rounded_down
+from wspd_design.parameters.units import KMH
 from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario
 from wspd_design.simulation.stop import simulate

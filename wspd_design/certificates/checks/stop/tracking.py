@@ -3,10 +3,10 @@
 from wspd_design.certificates.checks.frame import certified, level, series
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.units import KMH
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Ending, Scenario

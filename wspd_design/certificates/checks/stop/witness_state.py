@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.file import certificate_content
 from wspd_design.certificates.records import Problem, Status
-from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.units import KMH
 from wspd_design.simulation.records import Start
 from wspd_design.simulation.start import full_supply_time, holding_torque
 
@@ -124,7 +124,7 @@ def plant_at(problem: Problem, witness: Witness) -> tuple[Vehicle, Rail]:
             f"{witness.source} has a witness with a mass of {mass:g} kg, which leaves none for the body of "
             f"{nominal.name}; name the vehicle that the certificate is about with --vehicle"
         )
-    vehicle, rail = domain.varied(problem, mass, inertia, mu0)
+    vehicle, rail = plant_with(problem, {"mass": mass, "wheelset inertia": inertia, "mu0": mu0})
     return replace(vehicle, body_mass=body_mass), rail
 
 

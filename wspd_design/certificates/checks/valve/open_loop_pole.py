@@ -11,15 +11,17 @@ from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.search.settle import enclose, engine
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import (
+    OTHERS,
     Values,
+    dynamics_at,
     place,
     plant_dynamics,
     plant_forces,
     plant_variables,
 )
 from wspd_design.model.number import Number
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "open_loop_pole", "Slip pole against the valve"
 TOLERANCE = 1e-3  # 1/s, of the enclosures
@@ -47,7 +49,7 @@ def pole_claim(
 
     return Claim(
         name="slip pole",
-        variables=plant_variables(problem, slip=problem.slip, **ranges),
+        variables=plant_variables(problem, hold=OTHERS, ranges={"slip": problem.slip, **ranges}),
         expression=lambda x: plant_dynamics(problem, x).pole,
         form=arranged,
         relation=relation,
@@ -119,7 +121,7 @@ def check(problem: Problem) -> Certificate:
         maps=margin_map(
             "slip pole",
             "slip pole p [1/s]",
-            lambda points: domain.dynamics(problem, points).pole,
+            lambda points: dynamics_at(problem, points).pole,
             domain.slip_held(problem),
             over=domain.MU0,
             limit=limit,

@@ -23,8 +23,8 @@ from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.search.settle import Finding, engine, settle
 from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import place
+from wspd_design.parameters.units import KMH
 
 NAME, TITLE = "sampling", "Slip pole against sampling and valve"
 PRECISION = 120  # bits, so that the doubles around p_max are neighbors

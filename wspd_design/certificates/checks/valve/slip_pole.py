@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates.checks.frame import level, series
 from wspd_design.certificates.records import Problem, Series
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import INERTIA, KMH, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.setting.plant import dynamics_at
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
@@ -38,11 +40,11 @@ def pole_map(problem: Problem) -> PoleMap:
         points = np.empty((len(speeds), 5))
         points[:, SLIP], points[:, SPEED] = problem.slip, speeds
         points[:, MASS], points[:, INERTIA], points[:, MU0] = mass, inertia, mu0
-        found: Array = domain.dynamics(problem, points).pole
+        found: Array = dynamics_at(problem, points).pole
         return found
 
     frictions = np.linspace(low[MU0], high[MU0], FRICTIONS)
-    varied = product(problem.mass_bounds, problem.inertia_bounds, frictions)
+    varied = product(problem.span("mass"), problem.span("wheelset inertia"), frictions)
     return PoleMap(
         speeds=speeds,
         nominal=poles(vehicle.mass, vehicle.wheelset_inertia, rail.mu0),

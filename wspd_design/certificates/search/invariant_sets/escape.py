@@ -12,10 +12,10 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,7 +86,7 @@ def escapes(problem: Problem, speeds: Sequence[float]) -> Escapes:
         np.asarray(speeds),
         np.linspace(0.0, 1.0, TORQUES),
         np.array(SPANS),
-        problem.inertia_bounds,
+        problem.span("wheelset inertia"),
         (0.0, 1.0),
     )
     lanes = (each.ravel() for each in np.meshgrid(*axes, indexing="ij"))
@@ -112,8 +112,8 @@ def _leaves(
     steps = math.ceil(sample / LONGEST_STEP)
     for k in range(math.ceil(DURATION * brake.vent_time / sample)):
         heavy = (np.floor(k * sample / (span * brake.vent_time)) + first) % 2.0
-        mass, mu0 = (low + heavy * (high - low) for low, high in (problem.mass_bounds, problem.mu0_bounds))
-        vehicle, rail = domain.varied(problem, mass, inertia, mu0)
+        mass, mu0 = (low + heavy * (high - low) for low, high in (problem.span("mass"), problem.span("mu0")))
+        vehicle, rail = plant_with(problem, {"mass": mass, "wheelset inertia": inertia, "mu0": mu0})
         _, command = problem.controller.step((), Measurement(speed, speed * (1.0 - slip) / radius, torque))
         fill, vent = (np.broadcast_to(each, speed.shape) for each in command)
         for part, aim, lag in (

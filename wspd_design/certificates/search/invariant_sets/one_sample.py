@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.invariant_sets.duals import Interval, mean_value
-from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.model import adhesion
 from wspd_design.model import slip as slip_model
@@ -141,7 +141,10 @@ def slip_rate(problem: Problem, slip: Interval, speed: Interval, torque: Interva
     import ival
 
     vehicle = problem.vehicle
-    mass, inertia = ival.Interval(*problem.mass_bounds), ival.Interval(*problem.inertia_bounds) / 2.0
+    mass, inertia = (
+        ival.Interval(*problem.span("mass")),
+        ival.Interval(*problem.span("wheelset inertia")) / 2.0,
+    )
     force, used = _forces(problem, slip, speed)
     rolling = 1.0 - slip
     deceleration = slip_model.resistance(vehicle, speed) / mass + _braking_gravity(problem) * used
@@ -159,11 +162,9 @@ def _forces(problem: Problem, slip: Interval, speed: Interval) -> tuple[Interval
     sliding = slip * speed
     loads, forces = [], []
     # With a single value of both, one end will do.
-    for friction, mass in dict.fromkeys(zip(problem.mu0_bounds, problem.mass_bounds, strict=True)):
+    for friction, mass in dict.fromkeys(zip(problem.span("mu0"), problem.span("mass"), strict=True)):
         thin = ival.Interval(mass, mass)
-        vehicle, rail = domain.varied(
-            problem, thin, problem.vehicle.wheelset_inertia, ival.Interval(friction, friction)
-        )
+        vehicle, rail = plant_with(problem, {"mass": thin, "mu0": ival.Interval(friction, friction)})
         loads.append(slip_model.static_wheel_load(vehicle))
         slope = widened * adhesion.contact_stiffness(vehicle.contact, loads[-1])
         forces.append(widened * adhesion.creep_force(slip, sliding, loads[-1], rail, slope))
@@ -176,8 +177,8 @@ def largest_deceleration(problem: Problem, window: Window) -> Interval:
     import ival
 
     top = ival.Interval(window.high, window.high)
-    resistance = slip_model.resistance(problem.vehicle, top) / problem.mass_bounds[0]
-    grip = ival.Interval(0.0, MAX_SHAPE * (1.0 + ROUNDING)) * problem.mu0_bounds[1]
+    resistance = slip_model.resistance(problem.vehicle, top) / problem.span("mass")[0]
+    grip = ival.Interval(0.0, MAX_SHAPE * (1.0 + ROUNDING)) * problem.span("mu0")[1]
     return ival.Interval(0.0, (resistance + _braking_gravity(problem) * grip).sup)
 
 

@@ -16,8 +16,8 @@ class BallPlant:
         contact = vehicle.contact
         self.sample, self.full = arb(problem.sample_time), arb(vehicle.brake.max_torque)
         self.radius, self.reference = arb(vehicle.wheel_radius), arb(problem.slip)
-        self.inertia = hull(*map(arb, problem.inertia_bounds)) / 2
-        self.mass = hull(*map(arb, problem.mass_bounds))
+        self.inertia = hull(*map(arb, problem.span("wheelset inertia"))) / 2
+        self.mass = hull(*map(arb, problem.span("mass")))
         self.damping = hull(arb(0), arb(vehicle.wheel_damping))
         self.gravity = arb(constants().gravity)
         self.pull = self.gravity * 8 / (2 * vehicle.wheelsets)  # deceleration per adhesion
@@ -25,7 +25,7 @@ class BallPlant:
         slope = product * arb(contact.semi_axis_lateral) * arb(contact.kalker_c11)
         power = fmpq(2, 3)
         self.ends = []
-        for mu0, mass in dict.fromkeys(zip(problem.mu0_bounds, problem.mass_bounds, strict=True)):
+        for mu0, mass in dict.fromkeys(zip(problem.span("mu0"), problem.span("mass"), strict=True)):
             load = arb(mass) * self.gravity / (2 * vehicle.wheelsets)
             shaping = mass if problem.contact_grows_with_load else vehicle.mass
             ratio = arb(shaping) * self.gravity / (2 * vehicle.wheelsets) / arb(contact.reference_load)
@@ -34,7 +34,7 @@ class BallPlant:
 
     def loss(self, speed: float) -> Ball:
         """Speed that a sample takes off at most: creep force below (1 + 1/pi) mu0 Q."""
-        grip = self.pull * self.point(self.problem.mu0_bounds[1]) * (1 + 1 / self.point.pi())
+        grip = self.pull * self.point(self.problem.span("mu0")[1]) * (1 + 1 / self.point.pi())
         return self.sample * (self.resistance(self.point(speed)) / self.mass + grip).upper()
 
     def resistance(self, speed: Ball) -> Ball:

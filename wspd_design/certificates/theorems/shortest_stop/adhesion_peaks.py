@@ -26,13 +26,13 @@ from typing import Any
 from wspd_design.certificates.kernel.arb import Ball, ball, in_balls, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import Limit, NoBound, require, stop_limit
 from wspd_design.model import adhesion
 from wspd_design.model.generated import adhesion as generated
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.units import KMH
 
 FORMAT = "wspd-adhesion-peaks/1"
 CLAIM = "shortest stop"
