@@ -13,11 +13,13 @@ if TYPE_CHECKING:
     from wspd_design.controllers.protocol import Command, Controller, Measurement
     from wspd_design.design.catalog import controller
     from wspd_design.design.file import read_design, write_design
+    from wspd_design.design.own_controller import load_controller
     from wspd_design.design.problem import stability_problem
     from wspd_design.design.records import Design, Specification
     from wspd_design.design.selection import design_controller
-    from wspd_design.parameters.errors import UserError
+    from wspd_design.parameters.errors import UserError, WspdError
     from wspd_design.parameters.loading import load_rail, load_vehicle
+    from wspd_design.parameters.records import Rail, Vehicle
     from wspd_design.reporting.report import write_report
     from wspd_design.simulation.campaign import simulate_many
     from wspd_design.simulation.comparison import compare, trial
@@ -34,17 +36,21 @@ _HOME = {
     "Linearization": "analysis.linearization",
     "Measurement": "controllers.protocol",
     "Problem": "certificates.records",
+    "Rail": "parameters.records",
     "Scenario": "simulation.records",
     "Specification": "design.records",
     "Start": "simulation.records",
     "Status": "certificates.records",
     "UserError": "parameters.errors",
+    "Vehicle": "parameters.records",
+    "WspdError": "parameters.errors",
     "compare": "simulation.comparison",
     "controller": "design.catalog",
     "design_controller": "design.selection",
     "dossier": "studies.dossier",
     "ideal_stop": "simulation.ideal",
     "linearize": "analysis.linearization",
+    "load_controller": "design.own_controller",
     "load_rail": "parameters.loading",
     "load_vehicle": "parameters.loading",
     "read_design": "design.file",
@@ -65,17 +71,21 @@ __all__ = [
     "Linearization",
     "Measurement",
     "Problem",
+    "Rail",
     "Scenario",
     "Specification",
     "Start",
     "Status",
     "UserError",
+    "Vehicle",
+    "WspdError",
     "compare",
     "controller",
     "design_controller",
     "dossier",
     "ideal_stop",
     "linearize",
+    "load_controller",
     "load_rail",
     "load_vehicle",
     "read_design",

@@ -79,19 +79,18 @@ def _problem(
     vehicle: Vehicle | str | Path | None,
     rail: Rail | str | Path | None,
 ) -> Problem:
+    from wspd_design.design.case import CaseOptions, case_of
     from wspd_design.design.file import read_design
     from wspd_design.design.problem import stability_problem
-    from wspd_design.parameters.loading import load_rail, load_vehicle
 
     if isinstance(design, Problem):
         if vehicle is not None or rail is not None:
             raise UserError("a problem has its own vehicle and rail; leave vehicle and rail out")
         return design
+    options = CaseOptions(vehicle=vehicle, rail=rail)
     made = design if isinstance(design, Design) else read_design(design)
-    loco = vehicle if isinstance(vehicle, Vehicle) else load_vehicle(vehicle or made.vehicle)
-    track = rail if isinstance(rail, Rail) else load_rail(rail or made.rail)
-    controller = made.build(loco, track if track.name == made.rail else load_rail(made.rail))
-    return stability_problem(loco, track, controller, made.specification)
+    case = case_of(made, options, where=made.name if isinstance(design, Design) else str(design))
+    return stability_problem(case.vehicle, case.rail, case.controller, case.specification)
 
 
 def _message(certificate: Certificate, allowed: tuple[Status, ...]) -> str:

@@ -9,7 +9,7 @@ import pytest
 
 from wspd_design.certificates.checks.linear import margins
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.setting.linear_loop import feedback, loop_at, outermost, variables
+from wspd_design.certificates.setting.linear_loop import loop_at, outermost, variables
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.model.slip import slip_dynamics
 
@@ -98,7 +98,7 @@ def test_sampled_loop_is_the_law_between_samples(problem):
     opened = margins.loop(problem, problem.controller, speed, sample_time=0.02)
     closed = np.sort_complex(control.feedback(opened, 1).poles())
     dynamics = margins.nominal(problem.vehicle, problem.rail, 0.14, speed)
-    gains, lag, limit = feedback(problem.controller, speed), 0.6, 60e3
+    gains, lag, limit = problem.controller.linear_form(speed), 0.6, 60e3
     steps, h = 4000, 0.02
     a = np.array([[dynamics.pole, dynamics.gain * limit], [0.0, -1.0 / lag]])
     matrix = np.empty((2, 2))
@@ -151,7 +151,7 @@ def test_witness_is_unstable(make_problem, make_controller, name):
     verdict = margins.check(problem)
     assert verdict.status is Status.REFUTED
     at = {point.name: point.value for point in verdict.witness}
-    speed, gains = at["speed"] / 3.6, feedback(problem.controller, at["speed"] / 3.6)
+    speed, gains = at["speed"] / 3.6, problem.controller.linear_form(at["speed"] / 3.6)
     step = 1e-6
     more, less = (slip_dynamics(problem.vehicle, problem.rail, 0.14 + d, speed) for d in (step, -step))
     pole, gain = (more.drift - less.drift) / (2.0 * step), more.gain
@@ -199,5 +199,5 @@ def test_a_law_for_another_brake_has_other_gains(make_problem, make_controller, 
     by_torque = (commanded(slip, middle + 1.0) - commanded(slip, middle - 1.0)) / 2.0
     assert gains.proportional == pytest.approx(by_slip, rel=1e-4)
     assert gains.torque == pytest.approx(-by_torque, rel=1e-6, abs=1e-9)
-    whole = feedback(law, speed)
+    whole = law.linear_form(speed)
     assert gains.proportional == pytest.approx(0.5 * whole.proportional, rel=1e-12)

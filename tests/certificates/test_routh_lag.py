@@ -13,7 +13,6 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting.linear_loop import (
     Feedback,
     cubic,
-    feedback,
     lag_of,
     nominal,
     torque_per_surface,
@@ -31,7 +30,7 @@ def eigenvalues(problem, speed, *, mass=None, inertia=None, mu0=None):
     )
     rail = replace(problem.rail, mu0=mu0 or problem.rail.mu0)
     plant = slip_dynamics(vehicle, rail, problem.slip, speed)
-    gains, lag = feedback(law, speed), vehicle.brake.fill_time
+    gains, lag = law.linear_form(speed), vehicle.brake.fill_time
     return np.linalg.eigvals(
         [
             [plant.pole, plant.gain, 0.0],
@@ -47,7 +46,7 @@ def test_polynomial_has_the_eigenvalues_of_the_loop(make_problem, make_controlle
     problem = make_problem(make_controller(name, rail), rail=rail)
     for speed in (3.0, 12.0, 33.0):
         plant = nominal(problem.vehicle, problem.rail, 0.14, speed)
-        roots = np.roots(cubic(plant, lag_of(problem), feedback(problem.controller, speed)))
+        roots = np.roots(cubic(plant, lag_of(problem), problem.controller.linear_form(speed)))
         assert np.sort_complex(roots) == pytest.approx(
             np.sort_complex(eigenvalues(problem, speed)), rel=1e-6, abs=1e-6
         )
@@ -59,7 +58,7 @@ def test_polynomial_of_the_sliding_mode_on_its_own_model_is_the_derived_one(make
     plant = nominal(problem.vehicle, problem.rail, 0.14, 9.0)
     rate = law.gains.switching_gain / 9.0 / law.gains.boundary_layer
     derived = sliding_surface.lag_characteristic(plant.pole, 0.6, law.gains.surface_rate, rate)
-    assert tuple(cubic(plant, 0.6, feedback(law, 9.0))) == pytest.approx(derived, rel=1e-12)
+    assert tuple(cubic(plant, 0.6, law.linear_form(9.0))) == pytest.approx(derived, rel=1e-12)
 
 
 def test_slope_of_the_adaptive_law(printed_gains):
@@ -146,7 +145,7 @@ def test_laws_without_reference_claim_nothing(make_problem, make_controller):
 
 def test_no_gain_at_all_is_not_stable(make_problem, make_controller, monkeypatch):
     monkeypatch.setattr(
-        "wspd_design.certificates.setting.linear_loop.feedback",
+        "wspd_design.controllers.adaptive_fuzzy.AdaptiveFuzzy.linear_form",
         lambda *_, **__: Feedback(proportional=0.0, integral=0.0, torque=0.0),
     )
     assert routh_lag.check(make_problem(make_controller("afsmc"))).status is Status.REFUTED

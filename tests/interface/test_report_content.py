@@ -9,8 +9,8 @@ import pypdf
 import pytest
 
 from wspd_design.certificates.records import Status
-from wspd_design.design.catalog import named_design
 from wspd_design.design.records import Specification
+from wspd_design.design.selection import named_design
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.reporting.report import write_report
 from wspd_design.reporting.sections.summary import verdict

@@ -13,6 +13,7 @@ from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
 from wspd_design.certificates.search.progress import Listener, listening
 from wspd_design.certificates.theorems.table import THEOREMS
+from wspd_design.controllers.offers import Linear
 from wspd_design.parameters.errors import UserError
 
 CHECKS: Mapping[str, Check] = {
@@ -66,6 +67,9 @@ def verify(
             offer = f', did you mean "{near[0]}"?' if near else ""
             raise UserError(f'unknown check "{name}"{offer}; available: {", ".join(NAMES)}')
     _agree("sample time", problem.sample_time, problem.controller.sample_time)
+    if isinstance(problem.controller, Linear):
+        _agree("slip reference", problem.slip, problem.controller.slip_reference)
+        _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
     certificates = []
     for name in NAMES:
         if only is None or name in only:

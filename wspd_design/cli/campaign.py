@@ -6,7 +6,6 @@ from pathlib import Path
 import typer
 from rich.text import Text
 
-from wspd_design.cli.case import Case
 from wspd_design.cli.console import console, print_json, progress_bar, spaced, table
 from wspd_design.cli.exit_codes import INTERRUPTED
 from wspd_design.cli.from_witness import Origin
@@ -15,6 +14,7 @@ from wspd_design.cli.stop_figures import number
 from wspd_design.cli.stop_options import disturbances_of, rails_of
 from wspd_design.cli.summary import Summary, summarize
 from wspd_design.cli.tables import write_table
+from wspd_design.design.case import Case
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.simulation.campaign import simulate_many

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from wspd_design.certificates.checks.stop.witness_state import Witness, plant_at, read_witness, start_at
 from wspd_design.certificates.setting.fingerprint import model_hash
-from wspd_design.cli.case import Case
 from wspd_design.cli.console import console
 from wspd_design.cli.verification import problem_of
+from wspd_design.design.case import Case
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH

@@ -6,10 +6,10 @@ from typing import Any
 
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Problem
-from wspd_design.cli.case import Case
 from wspd_design.cli.console import program_version
 from wspd_design.cli.from_witness import LEFT, Origin
 from wspd_design.cli.summary import Summary
+from wspd_design.design.case import Case
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.start import leaving_time

@@ -5,7 +5,8 @@ from typing import Annotated, Any, TypeAlias
 
 import typer
 
-from wspd_design.design.catalog import BASELINES, CONTROLLERS
+from wspd_design.controllers.family import FAMILIES, designed, with_presets
+from wspd_design.design.case import RAIL, VEHICLE
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import available
 from wspd_design.parameters.units import format_quantity
@@ -13,12 +14,11 @@ from wspd_design.simulation.records import PLANTS
 
 _PAPER = Specification()
 
-VEHICLE = "er24pc"
-RAIL = "polach-wet"
 CONTROLLER = "afsmc"
 PLANT = PLANTS[0]
 QUARTER = "quarter"
 LAW = "afsmc"
+LAWS = " or ".join(family.name for family in designed())
 SPEED = format_quantity(_PAPER.speeds[1], "km/h")
 SPEEDS = f"{format_quantity(_PAPER.speeds[0], 'km/h')} to {SPEED}"
 SLIP = format_quantity(_PAPER.slip, "-")
@@ -29,8 +29,9 @@ DESIGN_FILE = "design.toml"
 CASE = "Case"
 DISTURBANCES = "Disturbances, all off by default"
 _CONTROLLERS = (
-    f"{', '.join(CONTROLLERS)}, a design file, which brings its own case, or FILE.py:NAME "
-    f"(docs/own-controller.md). {', '.join(BASELINES)} also with :textbook for the textbook tables."
+    f"{', '.join(FAMILIES)}, a design file, which brings its own case, or FILE.py:NAME "
+    f"(docs/own-controller.md). {', '.join(family.name for family in with_presets())} also with :textbook "
+    "for the textbook tables."
 )
 
 

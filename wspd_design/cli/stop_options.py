@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from wspd_design.cli.case import parse_speed
+from wspd_design.cli.arguments import parse_speed
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
 from wspd_design.parameters.records import Rail
@@ -17,7 +17,7 @@ _GRADE = 'write "5 permille", "0.5 %" or 0.005, negative downhill'
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StopWords:
+class StopOptions:
     """What the user wrote about the stop; None where nothing was written."""
 
     speed: str
@@ -32,14 +32,14 @@ class StopWords:
     dead_time: str | None = None
 
 
-def scenario(rail: Rail, words: StopWords) -> Scenario:
+def scenario(rail: Rail, words: StopOptions) -> Scenario:
     """Return the stop that the user asks for.
 
     Parameters
     ----------
     rail : Rail
         Rail below all axles from the start, unless the words say otherwise.
-    words : StopWords
+    words : StopOptions
         The options.
     """
     return Scenario(

@@ -9,9 +9,9 @@ from rich.padding import Padding
 from rich.text import Text
 
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.cli.case import Case
 from wspd_design.cli.console import console, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
+from wspd_design.design.case import Case
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.units import parse_quantity
 

@@ -16,6 +16,8 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
+from wspd_design.parameters.errors import WspdError
+
 # No -ffast-math: in the link step it switches flush-to-zero on for the whole Python process. Without contraction
 # the bits do not depend on the instruction set.
 PORTABLE_FLAGS = (
@@ -32,7 +34,7 @@ PORTABLE_FLAGS = (
 FLAGS = ("-march=native", "-mprefer-vector-width=512", *PORTABLE_FLAGS)
 
 
-class NoCompilerError(RuntimeError):
+class NoCompilerError(WspdError, RuntimeError):
     """This machine has no working C compiler."""
 
 

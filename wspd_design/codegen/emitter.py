@@ -7,6 +7,8 @@ turns the loop into vector instructions.
 import math
 from typing import Any
 
+from wspd_design.parameters.errors import WspdError
+
 _BINARY = {"OP_ADD": "+", "OP_SUB": "-", "OP_MUL": "*", "OP_DIV": "/"}
 _COMPARISONS = {"OP_LT": "<", "OP_LE": "<=", "OP_EQ": "==", "OP_NE": "!=", "OP_AND": "&&", "OP_OR": "||"}
 _CALLS = {
@@ -32,7 +34,7 @@ _CALLS = {
 }
 
 
-class UntraceableError(ValueError):
+class UntraceableError(WspdError, ValueError):
     """An operation that the emitter has no C for."""
 
 

@@ -1,13 +1,24 @@
 """Adaptive fuzzy sliding-mode control of the slip ratio, eqs. (29)-(42), and its repair."""
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
+from wspd_design.controllers.gains import Quantity
+from wspd_design.controllers.offers import Feedback, SlipModel
 from wspd_design.controllers.protocol import Command, Measurement, State, pulse_width
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import Number, clip, exp, maximum, minimum, saturation, where
 from wspd_design.model.slip import slip_ratio
 from wspd_design.parameters.loading import constants
+from wspd_design.parameters.records import Rail, Vehicle
+
+SLOPE = "du/ds"
+"""Name of the one number of the linear form, the slope of the torque over s [N m]."""
+
+_TORQUE = Quantity(dimension="torque", counted="ratio")
+_TORQUE_RATE = Quantity(dimension="torque rate", counted="rate")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,16 +32,18 @@ class AdaptiveFuzzyGains:
     """
 
     slip_reference: float  # -
-    proportional_gain: float  # K_P
-    integral_gain: float  # K_I
-    boundary_layer: float  # Phi, in s
-    weight_rate: float  # alpha_1
-    bound_rate: float  # alpha_2
-    initial_weights: tuple[float, ...]  # b_hat(0)
-    initial_bound: float  # psi_hat(0)
-    centres: tuple[float, ...]  # membership functions, in s
-    widths: tuple[float, ...]
-    torque_unit: float  # N m
+    proportional_gain: Annotated[float, Quantity(dimension="ratio", divisor=True)]  # K_P
+    integral_gain: Annotated[float, Quantity(dimension="rate")]  # K_I
+    boundary_layer: Annotated[float, Quantity(dimension="ratio", divisor=True)]  # Phi, in s
+    weight_rate: Annotated[float, _TORQUE_RATE]  # alpha_1
+    bound_rate: Annotated[float, _TORQUE_RATE]  # alpha_2
+    initial_weights: Annotated[
+        tuple[float, ...], Quantity(dimension="torque", counted="ratio", per_rule=True)
+    ]  # b_hat(0)
+    initial_bound: Annotated[float, _TORQUE]  # psi_hat(0)
+    centres: Annotated[tuple[float, ...], Quantity(dimension="ratio", per_rule=True)]  # of memberships, in s
+    widths: Annotated[tuple[float, ...], Quantity(dimension="ratio", divisor=True, per_rule=True)]
+    torque_unit: Annotated[float, Quantity(dimension="torque", divisor=True)]  # N m
     dead_zone: bool
     hold_when_saturated: bool
     scheduled_rates: bool
@@ -53,6 +66,56 @@ class AdaptiveFuzzy:
     max_torque: float  # N m
     gains: AdaptiveFuzzyGains
 
+    @property
+    def slip_reference(self) -> float:
+        """Slip that the law holds [-]."""
+        return self.gains.slip_reference
+
+    @property
+    def surface_gains(self) -> tuple[float, float]:
+        """K_I [1/s] and K_P [-]."""
+        return self.gains.integral_gain, self.gains.proportional_gain
+
+    @property
+    def surface_rate(self) -> float:
+        """Rate c = K_I / K_P of the error on the surface, not a number without a surface, K_P = 0 [1/s]."""
+        return _over(self.gains.integral_gain, self.gains.proportional_gain)
+
+    @property
+    def layer(self) -> float:
+        """Width Phi / K_P of the boundary layer, in slip [-]."""
+        return _over(self.gains.boundary_layer, self.gains.proportional_gain)
+
+    @property
+    def memory(self) -> tuple[str, ...]:
+        """Names of the elements of the state."""
+        weights = (f"weight b_hat {number}" for number in range(1, len(self.gains.initial_weights) + 1))
+        return ("integral of the slip error", *weights, "bound psi_hat")
+
+    @property
+    def linear_model(self) -> tuple[Vehicle, Rail] | None:
+        """None: the law has no design model."""
+        return None
+
+    def linear_numbers(self, zero: Number) -> Mapping[str, Number]:
+        """Work out the slope of the torque over s, with what the law adapts as at the start."""
+        return {SLOPE: torque_per_surface(self.gains, zero)}
+
+    def linear_form(
+        self,
+        speed: Number,  # noqa: ARG002 - the same at all speeds
+        *,
+        model: SlipModel | None = None,  # noqa: ARG002 - the law has none
+        numbers: Mapping[str, Number] | None = None,
+    ) -> Feedback:
+        """Return the gains near the reference, with what the law adapts held as at the start."""
+        slope = (numbers or self.linear_numbers(0.0))[SLOPE]
+        return Feedback(
+            proportional=slope * self.gains.proportional_gain,
+            integral=slope * self.gains.integral_gain,
+            torque=0.0,
+        )
+
     def start(self, measurement: Measurement) -> State:  # noqa: ARG002 - the law starts from its gains alone
         """Start without integral and with the initial weights and bound."""
         return (0.0, *self.gains.initial_weights, self.gains.initial_bound)
@@ -73,6 +136,10 @@ class AdaptiveFuzzy:
         adapted = tuple(b + span * rate for b, rate in zip(weights, rates.weights, strict=True))
         following = (integral + self.sample_time * error, *adapted, bound + span * rates.bound)
         return following, pulse_width(clip(demand, 0.0, 1.0))
+
+
+def _over(numerator: float, denominator: float) -> float:
+    return numerator / denominator if denominator else math.nan
 
 
 def sliding_variable(gains: AdaptiveFuzzyGains, error: Number, integral: Number) -> Number:
@@ -128,3 +195,31 @@ def adaptation(gains: AdaptiveFuzzyGains, surface: Number, speed: Number) -> Ada
         weights=tuple(gains.weight_rate * driving * w for w in strengths),
         bound=gains.bound_rate * abs(driving),
     )
+
+
+def torque_per_surface(gains: AdaptiveFuzzyGains, zero: Number) -> Number:
+    """Slope du/ds of the law on its surface, with what it adapts as at the start [N m].
+
+    The rule strengths are memberships exp(-(s - center)^2/width^2) over their sum, so that each has the slope
+    w (d - mean of d), d = 2 center/width^2, at s = 0. The type of ``zero`` is that of the arithmetic.
+    """
+    strengths = firing_strengths(gains, zero)
+    pulls = [
+        (zero + 2.0 * center) / width / width
+        for center, width in zip(gains.centres, gains.widths, strict=True)
+    ]
+    mean = sum(w * pull for w, pull in zip(strengths, pulls, strict=True))
+    moved = sum(
+        b * w * (pull - mean) for b, w, pull in zip(gains.initial_weights, strengths, pulls, strict=True)
+    )
+    return gains.torque_unit * (moved + (zero + gains.initial_bound) / gains.boundary_layer)
+
+
+def torque_rate_per_surface(gains: AdaptiveFuzzyGains, zero: Number) -> Number:
+    """Rate at which the adaptation of the weights moves the torque near s = 0, over s: alpha_1 w'w [N m/s].
+
+    For constant rates without a dead zone; scheduled rates divide it by the speed, and inside a dead zone nothing
+    adapts. The bound psi_hat moves with abs(s), so that it adds nothing to first order.
+    """
+    strengths = firing_strengths(gains, zero)
+    return gains.torque_unit * gains.weight_rate * sum(w * w for w in strengths)

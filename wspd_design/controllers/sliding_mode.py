@@ -1,7 +1,11 @@
 """Sliding-mode control of the slip ratio, eqs. (21)-(26) in their corrected form."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
+from wspd_design.controllers.gains import Quantity
+from wspd_design.controllers.offers import Feedback, SlipModel
 from wspd_design.controllers.protocol import Command, Measurement, State, pulse_width
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import Number, clip, maximum, saturation
@@ -15,9 +19,9 @@ class SlidingModeGains:
     """Gains of the law on the surface sbar = s / K_P = e + c * integral of e."""
 
     slip_reference: float  # -
-    surface_rate: float  # c = K_I / K_P, 1/s
-    switching_gain: float  # W0 = W v, m/s2
-    boundary_layer: float  # Phi / K_P, in slip
+    surface_rate: Annotated[float, Quantity(dimension="rate")]  # c = K_I / K_P, 1/s
+    switching_gain: Annotated[float, Quantity(dimension="acceleration")]  # W0 = W v, m/s2
+    boundary_layer: Annotated[float, Quantity(dimension="ratio", divisor=True)]  # Phi / K_P, in slip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,6 +33,69 @@ class SlidingMode:
     vehicle: Vehicle  # design model
     rail: Rail  # design model
     gains: SlidingModeGains
+
+    @property
+    def slip_reference(self) -> float:
+        """Slip that the law holds [-]."""
+        return self.gains.slip_reference
+
+    @property
+    def wheel_radius(self) -> float:
+        """Radius from which the law works out its slip [m]."""
+        return self.vehicle.wheel_radius
+
+    @property
+    def max_torque(self) -> float:
+        """Torque that a duty of one stands for [N m]."""
+        return self.vehicle.brake.max_torque
+
+    @property
+    def surface_gains(self) -> tuple[float, float]:
+        """K_I = c [1/s] and K_P = 1: the gains state the rate."""
+        return self.gains.surface_rate, 1.0
+
+    @property
+    def surface_rate(self) -> float:
+        """Rate c of the error on the surface [1/s]."""
+        return self.gains.surface_rate
+
+    @property
+    def layer(self) -> float:
+        """Width of the boundary layer, in slip [-]."""
+        return self.gains.boundary_layer
+
+    @property
+    def memory(self) -> tuple[str, ...]:
+        """Names of the elements of the state."""
+        return ("integral of the slip error",)
+
+    @property
+    def linear_model(self) -> tuple[Vehicle, Rail] | None:
+        """The design model, whose drift and gain the law cancels."""
+        return self.vehicle, self.rail
+
+    def linear_numbers(self, zero: Number) -> Mapping[str, Number]:  # noqa: ARG002 - none but the gains
+        """Return nothing: the gains are all numbers of the linear form."""
+        return {}
+
+    def linear_form(
+        self,
+        speed: Number,
+        *,
+        model: SlipModel | None = None,
+        numbers: Mapping[str, Number] | None = None,  # noqa: ARG002 - there are none
+    ) -> Feedback:
+        """Return the gains near the reference: (p + c + k)/G on the error and k c/G on its integral."""
+        gains = self.gains
+        if model is None:
+            at = slip_dynamics(self.vehicle, self.rail, gains.slip_reference, speed)
+            model = SlipModel(pole=at.pole, gain=at.gain)
+        layer_rate = 1.0 / speed * gains.switching_gain / gains.boundary_layer  # k
+        return Feedback(
+            proportional=(model.pole + gains.surface_rate + layer_rate) / model.gain,
+            integral=layer_rate * gains.surface_rate / model.gain,
+            torque=0.0,
+        )
 
     def start(self, measurement: Measurement) -> State:  # noqa: ARG002 - nothing to remember yet
         """Start without integral."""

@@ -4,8 +4,12 @@ Feedback of the slip alone cannot move the sum of the poles p - 1/tau; feedback 
 p - (1 + K)/tau.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
+from wspd_design.controllers.gains import Quantity
+from wspd_design.controllers.offers import Feedback, SlipModel
 from wspd_design.controllers.protocol import Command, Measurement, State, pulse_width
 from wspd_design.model.number import Number, clip, maximum
 from wspd_design.model.slip import slip_dynamics
@@ -18,8 +22,8 @@ class TorqueFeedbackGains:
     """Gains of the law; the error of the sliding speed v slip_reference - (v - R omega) is v times that of slip."""
 
     slip_reference: float  # -
-    sliding_gain: float  # duty per m/s of sliding speed
-    torque_gain: float  # duty per T_max of torque, K
+    sliding_gain: Annotated[float, Quantity(dimension="1/speed")]  # duty per m/s of sliding speed
+    torque_gain: Annotated[float, Quantity(dimension="ratio")]  # duty per T_max of torque, K
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,6 +35,49 @@ class TorqueFeedback:
     vehicle: Vehicle  # design model
     rail: Rail  # design model
     gains: TorqueFeedbackGains
+
+    @property
+    def slip_reference(self) -> float:
+        """Slip that the law holds [-]."""
+        return self.gains.slip_reference
+
+    @property
+    def wheel_radius(self) -> float:
+        """Radius from which the law works out its slip [m]."""
+        return self.vehicle.wheel_radius
+
+    @property
+    def max_torque(self) -> float:
+        """Torque that a duty of one stands for [N m]."""
+        return self.vehicle.brake.max_torque
+
+    @property
+    def memory(self) -> tuple[str, ...]:
+        """Nothing."""
+        return ()
+
+    @property
+    def linear_model(self) -> tuple[Vehicle, Rail] | None:
+        """None: at a frozen speed the design model only gives the torque that is held."""
+        return None
+
+    def linear_numbers(self, zero: Number) -> Mapping[str, Number]:  # noqa: ARG002 - none but the gains
+        """Return nothing: the gains are all numbers of the linear form."""
+        return {}
+
+    def linear_form(
+        self,
+        speed: Number,
+        *,
+        model: SlipModel | None = None,  # noqa: ARG002 - the form contains none
+        numbers: Mapping[str, Number] | None = None,  # noqa: ARG002 - there are none
+    ) -> Feedback:
+        """Return the gains near the reference: kappa v T_max on the slip error and K on the torque."""
+        return Feedback(
+            proportional=speed * self.gains.sliding_gain * self.max_torque,
+            integral=0.0,
+            torque=self.gains.torque_gain,
+        )
 
     def start(self, measurement: Measurement) -> State:  # noqa: ARG002 - nothing to remember
         """Start without memory."""

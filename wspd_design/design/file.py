@@ -6,22 +6,22 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from wspd_design.design.laws import DIVISORS, FORM_OF, GAINS_OF, PER_RULE
-from wspd_design.design.records import Design, Gain, GainValue, Specification
+from wspd_design.controllers.family import designed, designed_family
+from wspd_design.controllers.gains import GainForm
+from wspd_design.design.records import Design, Gain, GainValue, Specification, in_the_law
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
 from wspd_design.parameters.writing import write_whole
 
-SCHEMA = "wspd-design/1"
-_HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail")
+SCHEMA = "wspd-design/2"
+_HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail", "rail_hash")
 _FORMS = {float: "one number", bool: "true or false", tuple[float, ...]: "a list of numbers"}
 _SPECIFICATION = {"slip": "-", "speeds": "m/s", "slips": "-", "slip_tolerance": "-", "sample_time": "s"}
 
 
 def design_text(design: Design) -> str:
     """Return the TOML text of a design; reading it gives the same design back."""
-    head = (SCHEMA, design.name, design.law, design.vehicle, design.vehicle_hash, design.rail)
-    lines = [f"{key} = {_toml(value)}" for key, value in zip(_HEAD, head, strict=True)]
+    lines = [f"schema = {_toml(SCHEMA)}", *(f"{key} = {_toml(getattr(design, key))}" for key in _HEAD[1:])]
     lines += ["", "[specification]"]
     for key, unit in _SPECIFICATION.items():
         lines.append(f"{key} = {_toml(getattr(design.specification, key))}  # {unit}")
@@ -48,20 +48,22 @@ def read_design(path: str | Path) -> Design:
     Raises
     ------
     UserError
-        If the file is missing, not a design, of another version, or anything in it is misspelled or no number.
+        If the file is missing, not a design, of another version, or anything in it is misspelled or not a number.
     """
     where = str(path)
     document = read_toml(Path(path), where)
     if document.get("schema") != SCHEMA:
         raise UserError(
             f'{where} is not a design of this version: schema = "{document.get("schema", "")}" '
-            f'must be "{SCHEMA}"; make the design again with wspd design'
+            f'must be "{SCHEMA}"; re-run wspd design'
         )
     _check_keys(document, (*_HEAD, "specification", "gains"), where, "")
     head = {key: _string(document[key], f"{key} in {where}") for key in _HEAD[1:]}
-    law = head.pop("law")
-    if law not in GAINS_OF:
-        raise UserError(f'law = "{law}" in {where} must be one of {", ".join(GAINS_OF)}')
+    law = head["law"]
+    if law not in [family.name for family in designed()]:
+        choice = ", ".join(family.name for family in designed())
+        raise UserError(f'law = "{law}" in {where} must be one of {choice}')
+    forms = designed_family(law).forms
     table = _table(document["specification"], "specification", where)
     _check_keys(table, tuple(_SPECIFICATION), where, "specification.")
     values = {key: _value(table[key], f"specification.{key} in {where}") for key in _SPECIFICATION}
@@ -72,41 +74,47 @@ def read_design(path: str | Path) -> Design:
                 f"specification.{key} in {where} must be {'two numbers' if pair else 'one number'}"
             )
     gains = _table(document["gains"], "gains", where)
-    _check_keys(gains, tuple(GAINS_OF[law]), where, "gains.")
-    read = tuple(_gain(name, gains[name], where) for name in GAINS_OF[law])
-    if len({len(gain.value) for gain in read if gain.name in PER_RULE and isinstance(gain.value, tuple)}) > 1:
+    _check_keys(gains, tuple(form.name for form in forms), where, "gains.")
+    read = tuple(_gain(form, gains[form.name], where) for form in forms)
+    per_rule = [form.name for form in forms if form.quantity.per_rule]
+    if len({len(gain.value) for gain in read if gain.name in per_rule and isinstance(gain.value, tuple)}) > 1:
         raise UserError(
-            f"{', '.join(f'gains.{name}' for name in PER_RULE)} in {where} must have the same length: "
+            f"{', '.join(f'gains.{name}' for name in per_rule)} in {where} must have the same length: "
             "one number for each fuzzy rule"
         )
-    return Design(**head, law=law, specification=Specification(**values), gains=read)
+    return Design(**head, specification=Specification(**values), gains=read)
 
 
-def _gain(name: str, table: object, where: str) -> Gain:
+def _gain(form: GainForm, table: object, where: str) -> Gain:
+    name = form.name
     entry = _table(table, f"gains.{name}", where)
     _check_keys(entry, ("value", "unit", "why"), where, f"gains.{name}.")
     value = _value(entry["value"], f"gains.{name}.value in {where}")
-    _check_gain(name, value, where)
-    return Gain(
+    _check_gain(form, value, where)
+    gain = Gain(
         name=name,
         value=value,
         unit=_string(entry["unit"], f"gains.{name}.unit in {where}"),
         why=_string(entry["why"], f"gains.{name}.why in {where}"),
     )
+    try:
+        in_the_law(gain, form, 1.0)
+    except UserError as error:
+        raise UserError(f"{error} in {where}") from None
+    return gain
 
 
-def _check_gain(name: str, value: GainValue, where: str) -> None:
+def _check_gain(form: GainForm, value: GainValue, where: str) -> None:
     """Refuse a value that the law cannot compute with."""
     numbers = value if isinstance(value, tuple) else (value,)
-    form = FORM_OF[name]
-    if form == tuple[float, ...]:
+    if form.type == tuple[float, ...]:
         fits = isinstance(value, tuple) and value and all(isinstance(number, float) for number in value)
     else:
-        fits = isinstance(value, form)
+        fits = isinstance(value, form.type)
     if not fits:
-        raise UserError(f"gains.{name} in {where} must be {_FORMS[form]}")
-    if name in DIVISORS and min(numbers) <= 0.0:
-        raise UserError(f"gains.{name} = {min(numbers):g} in {where} must be above 0")
+        raise UserError(f"gains.{form.name} in {where} must be {_FORMS[form.type]}")
+    if form.quantity.divisor and min(numbers) <= 0.0:
+        raise UserError(f"gains.{form.name} = {min(numbers):g} in {where} must be above 0")
 
 
 def _table(value: object, name: str, where: str) -> dict[str, Any]:
@@ -123,7 +131,7 @@ def _check_keys(table: dict[str, Any], known: tuple[str, ...], where: str, prefi
             raise UserError(f"unknown key {prefix}{key} in {where}; {remedy}")
     for key in known:
         if key not in table:
-            raise UserError(f"{prefix}{key} is missing in {where}; make the design again with wspd design")
+            raise UserError(f"{prefix}{key} is missing in {where}; re-run wspd design")
 
 
 def _string(value: object, what: str) -> str:

@@ -1,16 +1,17 @@
 """What a design starts from and what it is: a specification, a law and its gains with their reasons."""
 
-import hashlib
-from dataclasses import asdict, dataclass
-from typing import Literal, TypeAlias
+from dataclasses import dataclass
+from typing import TypeAlias
 
-from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
-from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
-from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
+from wspd_design.controllers.family import Given, designed_family
+from wspd_design.controllers.gains import SLIP_REFERENCE, GainForm
+from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.fingerprint import fingerprint
+from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.units import dimension_of, factor, units_of
 
-Law: TypeAlias = Literal["afsmc", "smc", "torque-feedback"]
 GainValue: TypeAlias = float | bool | tuple[float, ...]
 
 
@@ -52,7 +53,7 @@ class Gain:
     """One number of a design with the rule that chose it."""
 
     name: str
-    value: GainValue
+    value: GainValue  # in the unit
     unit: str
     why: str
 
@@ -62,18 +63,23 @@ class Design:
     """A controller design: everything that is needed to rebuild the controller, and why it is so."""
 
     name: str
-    law: Law
+    law: str  # family of laws
     vehicle: str
     vehicle_hash: str
     rail: str  # design rail
+    rail_hash: str
     specification: Specification
     gains: tuple[Gain, ...]
 
     def gain(self, name: str) -> GainValue:
-        """Return the value of a gain by its name."""
+        """Return the value of a gain by its name, in the unit of the gain."""
         return next(gain.value for gain in self.gains if gain.name == name)
 
-    def build(self, vehicle: Vehicle, rail: Rail) -> AdaptiveFuzzy | SlidingMode | TorqueFeedback:
+    def made_on(self, rail: Rail) -> bool:
+        """Whether a rail is the design rail: the same name and the same numbers."""
+        return rail.name == self.rail and rail_hash(rail) == self.rail_hash
+
+    def build(self, vehicle: Vehicle, rail: Rail) -> Controller:
         """Build the controller of one wheelset.
 
         Parameters
@@ -86,7 +92,8 @@ class Design:
         Raises
         ------
         UserError
-            If the vehicle is another one or its numbers have changed since, or the rail is not the design rail.
+            If vehicle or rail is another one or its numbers have changed since, or a gain has a unit that does not
+            fit.
         """
         if vehicle.name != self.vehicle:
             raise UserError(
@@ -96,36 +103,71 @@ class Design:
         if vehicle_hash(vehicle) != self.vehicle_hash:
             raise UserError(
                 f"the numbers of vehicle {vehicle.name} have changed since design {self.name} was made; "
-                "make the design again with wspd design"
+                "re-run wspd design"
             )
         if rail.name != self.rail:
             raise UserError(f"design {self.name} was made on rail {self.rail}, not on {rail.name}")
-        values = {gain.name: gain.value for gain in self.gains}
-        if self.law == "smc":
-            return SlidingMode(
+        if not self.made_on(rail):
+            raise UserError(
+                f"design {self.name} was made on another rail {rail.name}: its numbers are not those of this one; "
+                "give the rail file of the design with --rail, or re-run wspd design"
+            )
+        family = designed_family(self.law)
+        assert family.gains is not None
+        given = {gain.name: gain for gain in self.gains}
+        unit = given.get("torque_unit")
+        counted = float(unit.value) * factor(unit.unit) if unit and isinstance(unit.value, float) else 1.0
+        numbers = {form.name: in_the_law(given[form.name], form, counted) for form in family.forms}
+        return family.build(
+            Given(
                 name=self.name,
                 sample_time=self.specification.sample_time,
                 vehicle=vehicle,
                 rail=rail,
-                gains=SlidingModeGains(slip_reference=self.specification.slip, **values),  # type: ignore[arg-type]
+                numbers=family.gains(**{SLIP_REFERENCE: self.specification.slip}, **numbers),
             )
-        if self.law == "torque-feedback":
-            return TorqueFeedback(
-                name=self.name,
-                sample_time=self.specification.sample_time,
-                vehicle=vehicle,
-                rail=rail,
-                gains=TorqueFeedbackGains(slip_reference=self.specification.slip, **values),  # type: ignore[arg-type]
-            )
-        return AdaptiveFuzzy(
-            name=self.name,
-            sample_time=self.specification.sample_time,
-            wheel_radius=vehicle.wheel_radius,
-            max_torque=vehicle.brake.max_torque,
-            gains=AdaptiveFuzzyGains(slip_reference=self.specification.slip, **values),  # type: ignore[arg-type]
         )
 
 
+def in_the_law(gain: Gain, form: GainForm, torque_unit: float) -> GainValue:
+    """Convert a gain from its unit to the number that the law takes.
+
+    Parameters
+    ----------
+    gain : Gain
+        A gain of a design.
+    form : GainForm
+        The same gain as the law has it.
+    torque_unit : float
+        Torque that a gain counts in if it can be counted [N m].
+
+    Raises
+    ------
+    UserError
+        If the unit is unknown or of another dimension.
+    """
+    quantity, value = form.quantity, gain.value
+    allowed = [*units_of(quantity.dimension), *(units_of(quantity.counted) if quantity.counted else ())]
+    try:
+        found = dimension_of(gain.unit)
+    except UserError:
+        found = None
+    if found not in (quantity.dimension, quantity.counted) or found is None:
+        choice = " or ".join(f'"{unit}"' for unit in allowed)
+        raise UserError(f'unit = "{gain.unit}" of gain {gain.name} must be {choice}')
+    scale = factor(gain.unit)
+    if quantity.counted is not None and found == quantity.dimension:
+        scale /= torque_unit
+    if isinstance(value, bool):
+        return value
+    return tuple(each * scale for each in value) if isinstance(value, tuple) else value * scale
+
+
 def vehicle_hash(vehicle: Vehicle) -> str:
-    """Fingerprint of all numbers of a vehicle."""
-    return hashlib.sha256(repr(sorted(asdict(vehicle).items())).encode()).hexdigest()[:16]
+    """Fingerprint of all numbers of a vehicle, with their bounds, and of the constants that belong to no vehicle."""
+    return fingerprint(vehicle, constants())
+
+
+def rail_hash(rail: Rail) -> str:
+    """Fingerprint of all numbers of a rail, with their bounds, and of the constants that belong to no rail."""
+    return fingerprint(rail, constants())

@@ -113,7 +113,7 @@ _VEHICLE: Schema = {
 _RAIL: Schema = {
     "mu0": _share(zero=False),
     "friction_ratio": _share(),
-    "friction_decay": _not_negative("friction decay"),
+    "friction_decay": _not_negative("1/speed"),
     "adhesion_reduction": _share(zero=False),
     "slip_reduction": _share(zero=False),
 }

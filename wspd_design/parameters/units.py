@@ -28,7 +28,8 @@ Dimension: TypeAlias = Literal[
     "linear resistance",
     "quadratic resistance",
     "rotational damping",
-    "friction decay",
+    "1/speed",
+    "torque rate",
     "1/length",
     "1/length^2",
     "1/length^3",
@@ -54,7 +55,8 @@ _TABLE: dict[Dimension, dict[str, Fraction]] = {
     "linear resistance": {"N s/m": _ONE},
     "quadratic resistance": {"N s^2/m^2": _ONE},
     "rotational damping": {"N m s": _ONE},
-    "friction decay": {"s/m": _ONE},
+    "1/speed": {"s/m": _ONE},
+    "torque rate": {"N m/s": _ONE, "kN m/s": Fraction(1000)},
     "1/length": {"1/m": _ONE},
     "1/length^2": {"1/m^2": _ONE},
     "1/length^3": {"1/m^3": _ONE},
@@ -122,6 +124,11 @@ def to_si(value: float, unit: str) -> float:
         )  # through decimals: 7.73 mm becomes 0.00773, to the last bit
     except OverflowError:
         return math.copysign(math.inf, value)
+
+
+def factor(unit: str) -> float:
+    """SI value of one unit; an unknown spelling raises :class:`UserError`."""
+    return float(_factor(unit))
 
 
 def format_quantity(value_si: float, unit: str) -> str:

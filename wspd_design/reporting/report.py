@@ -5,13 +5,14 @@ import os
 from datetime import UTC, datetime
 from pathlib import Path
 
+from wspd_design.controllers.family import designed_family
 from wspd_design.design.file import design_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Attachment, Document
 from wspd_design.reporting.output import write_document
 from wspd_design.reporting.record import report_record
-from wspd_design.reporting.sections.case import LAWS, case
+from wspd_design.reporting.sections.case import case
 from wspd_design.reporting.sections.checks import certificate_files, checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
@@ -57,7 +58,8 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
     record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
     return Document(
         title=f"Wheel slide protection: {made.name}",
-        subtitle=f"{LAWS[made.law]}, for {dossier.vehicle.name} on {dossier.rail.name}, from {speed}",
+        subtitle=f"{designed_family(made.law).heading}, for {dossier.vehicle.name} on {dossier.rail.name}, "
+        f"from {speed}",
         status_line=f"wspd {version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {dossier.provenance.seed} · "
         f"inputs {dossier.provenance.input_hash[:12]}",
         verdict=verdict(dossier),

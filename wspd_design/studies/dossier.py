@@ -8,15 +8,15 @@ from importlib.metadata import version
 
 from wspd_design.analysis.linearization import Linearization, linearize
 from wspd_design.certificates.records import Certificate
-from wspd_design.certificates.setting import laws
 from wspd_design.certificates.suite import verify
+from wspd_design.controllers.family import FAMILIES
+from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Controller
-from wspd_design.controllers.torque_feedback import TorqueFeedback
-from wspd_design.design.catalog import controller, is_design_file, named_design
+from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import design_text, read_design
-from wspd_design.design.laws import law_of
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
+from wspd_design.design.selection import named_design
 from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
@@ -109,7 +109,7 @@ def dossier(
     import numpy as np
 
     vehicle, rail = load_vehicle(vehicle_name), load_rail(rail_name)
-    own = made.build(vehicle, _design_rail(made, rail))
+    own = controller_of(made, vehicle, rail)
     specification = made.specification
     progress("linearization")
     speeds = np.geomspace(1.0, max(specification.speeds[1], initial_speed), POLE_SPEEDS)
@@ -138,9 +138,7 @@ def dossier(
         certificates=certificates,
         trials=trials,
         lag_distances=tuple(initial_speed * each.metrics.lag for each in trials),
-        phase_plane=None
-        if isinstance(own, TorqueFeedback)
-        else phase_plane(trials[0].run, own, slip_reference=specification.slip),
+        phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
         initial_speed=initial_speed,
         provenance=Provenance(
             command=command,
@@ -156,20 +154,20 @@ def versions() -> tuple[tuple[str, str], ...]:
     return (("Python", platform.python_version()), *((name, version(name)) for name in PACKAGES))
 
 
-def phase_plane(run: Run, law: laws.SlipLaw, *, slip_reference: float) -> PhasePlane:
+def phase_plane(run: Run, law: Surface) -> PhasePlane:
     """Return the path of a stop in the plane of the slip error and its integral."""
     import numpy as np
 
     times = [sample.time for sample in run.samples]
     judged = np.interp(times, run.time, run.speed) > JUDGING_SPEED
-    errors = slip_reference - np.interp(times, run.time, run.slip[:, 0])
+    errors = law.slip_reference - np.interp(times, run.time, run.slip[:, 0])
     # A sample remembers the state after its step; the law decided by the integral before it.
     integrals = np.array([0.0, *(sample.state[0] for sample in run.samples[:-1])])
     return PhasePlane(
         integral=tuple(integrals[judged].tolist()),
         error=tuple(errors[judged].tolist()),
-        surface_rate=laws.surface_rate(law),
-        layer=laws.layer(law),
+        surface_rate=law.surface_rate,
+        layer=law.layer,
     )
 
 
@@ -177,24 +175,18 @@ def _baseline(
     name: str, vehicle: Vehicle, rail: Rail, specification: Specification
 ) -> tuple[Controller, Design | None]:
     """Build a controller to compare with, and return the design behind it if it has one."""
-    law = law_of(name)
     if is_design_file(name):
         found = read_design(name)
-    elif law is not None:
-        found = named_design(law, vehicle, rail, specification)
+    elif name in FAMILIES and FAMILIES[name].gains is not None:
+        found = named_design(name, vehicle, rail, specification)
     else:
         return controller(name, vehicle, rail, specification), None
-    return found.build(vehicle, _design_rail(found, rail)), found
-
-
-def _design_rail(made: Design, rail: Rail) -> Rail:
-    """Return the design rail; it may be the file of a user, which only its path can load."""
-    return rail if rail.name == made.rail else load_rail(made.rail)
+    return controller_of(found, vehicle, rail), found
 
 
 def _other_parameters(made: Design, rail: Rail, baselines: Sequence[str]) -> tuple[ParameterSet, ...]:
     found = [load_entries("constants", "constants")]
-    if made.rail != rail.name:
+    if not made.made_on(rail):
         found.append(load_entries("rail", made.rail))
     unused = tuple(f"{preset}." for preset in PRESETS if preset != PRESET)
     for name in baselines:

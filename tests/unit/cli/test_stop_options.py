@@ -2,7 +2,7 @@
 
 import pytest
 
-from wspd_design.cli.stop_options import StopWords, disturbances_of, rails_of, scenario
+from wspd_design.cli.stop_options import StopOptions, disturbances_of, rails_of, scenario
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.records import Patch, Scenario, Sensing
@@ -11,7 +11,7 @@ WET, DRY = load_rail("polach-wet"), load_rail("polach-dry")
 
 
 def made(**words):
-    return scenario(WET, StopWords(speed="120 km/h", seed=3, **words))
+    return scenario(WET, StopOptions(speed="120 km/h", seed=3, **words))
 
 
 def test_nothing_written_disturbs_nothing():

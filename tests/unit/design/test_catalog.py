@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.sliding_mode import SlidingMode
-from wspd_design.design.catalog import CONTROLLERS, controller, named_design
+from wspd_design.design.catalog import controller
 from wspd_design.design.file import write_design
 from wspd_design.design.records import Specification, vehicle_hash
-from wspd_design.design.selection import design_controller
+from wspd_design.design.selection import design_controller, named_design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.metrics import energy_residual, momentum_residual
@@ -19,7 +20,7 @@ DESIGNED = ("smc", "torque-feedback")
 """Laws whose gains the rules choose."""
 
 
-@pytest.mark.parametrize("name", [name for name in CONTROLLERS if name not in DESIGNED])
+@pytest.mark.parametrize("name", [name for name in FAMILIES if name not in DESIGNED])
 @pytest.mark.parametrize("period", [0.1, 0.02])
 def test_names(er24pc, make_controller, name, period):
     made = controller(name, er24pc, load_rail("polach-wet"), Specification(sample_time=period))

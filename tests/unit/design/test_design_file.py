@@ -7,10 +7,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from wspd_design.design.catalog import paper_design
 from wspd_design.design.file import design_text, read_design, write_design
 from wspd_design.design.records import Specification
-from wspd_design.design.selection import design_controller
+from wspd_design.design.selection import design_controller, paper_design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
 
@@ -80,7 +79,7 @@ FAULTS = {
     "misspelled specification": ("sample_time =", "sampel_time =", "did you mean specification.sample_time"),
     "misspelled key of a gain": ("why =", "wy =", r"did you mean gains\.surface_rate\.why"),
     "unknown law": ('law = "smc"', 'law = "pid"', 'law = "pid" .* must be one of afsmc, smc'),
-    "another version": ("wspd-design/1", "wspd-design/0", "not a design of this version"),
+    "another version": ("wspd-design/2", "wspd-design/0", "not a design of this version"),
     "not a number": (
         "value = 0.025",
         "value = nan",

@@ -9,11 +9,11 @@ import pytest
 from wspd_design.analysis.linearization import linearize
 from wspd_design.certificates.checks.sliding import reaching
 from wspd_design.certificates.records import Status
-from wspd_design.design.catalog import paper_design
-from wspd_design.design.laws import GAINS_OF
+from wspd_design.controllers.family import designed_family
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
-from wspd_design.design.selection import deceleration_limit, design_controller
+from wspd_design.design.selection import design_controller, paper_design
+from wspd_design.design.sliding_gains import deceleration_limit
 from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_paper_gains, load_rail
@@ -37,7 +37,7 @@ def test_every_gain_has_a_reason_and_a_unit(er24pc, rail, law):
         if law == "printed"
         else design_controller(er24pc, rail, Specification(), law=law)
     )
-    assert tuple(g.name for g in made.gains) == GAINS_OF[made.law]
+    assert tuple(g.name for g in made.gains) == tuple(form.name for form in designed_family(made.law).forms)
     for each in made.gains:
         assert len(each.why.split()) >= 3, each.name
         assert each.unit

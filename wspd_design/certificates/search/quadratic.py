@@ -15,6 +15,7 @@ from wspd_design.certificates.theorems.quadratic import (
     held,
     rates,
 )
+from wspd_design.parameters.errors import WspdError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -29,7 +30,7 @@ HALVINGS = 6  # of the interval of the decay
 LEAST_FALL = 1e-3
 
 
-class NotFound(ValueError):
+class NotFound(WspdError, ValueError):
     """The search found no function; there may be one all the same."""
 
 

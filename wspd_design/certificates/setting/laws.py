@@ -1,34 +1,15 @@
 """What the checks need to know of a law: its surface, its layer, and what it feeds back."""
 
 from collections.abc import Iterable
-from typing import TypeAlias
 
 from wspd_design.certificates.records import Certificate, Hypothesis, Problem, Status
-from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Command, Controller, Measurement
-from wspd_design.controllers.sliding_mode import SlidingMode
-
-SlipLaw: TypeAlias = AdaptiveFuzzy | SlidingMode
-"""Laws with a sliding surface in the slip."""
 
 PROBE_SPEEDS = (3.0, 10.0, 20.0, 33.0)  # m/s
 PROBE_SLIPS = (0.02, 0.08, 0.14, 0.25, 0.5)
 PROBE_TORQUES = (0.0, 10e3, 40e3)  # N m
 PROBE_WHEEL_CHANGES = (0.8, 0.95, 1.05, 1.2)  # earlier over present wheel speed
-
-
-def surface_rate(law: SlipLaw) -> float:
-    """Rate c = K_I / K_P of the error on the surface [1/s]."""
-    if isinstance(law, SlidingMode):
-        return law.gains.surface_rate
-    return law.gains.integral_gain / law.gains.proportional_gain
-
-
-def layer(law: SlipLaw) -> float:
-    """Width Phi / K_P of the boundary layer, in slip [-]."""
-    if isinstance(law, SlidingMode):
-        return law.gains.boundary_layer
-    return law.gains.boundary_layer / law.gains.proportional_gain
 
 
 _WEAKNESS = (Status.UNDECIDED, Status.VACUOUS, Status.EVIDENCE, Status.PROVED)
@@ -72,7 +53,7 @@ def slip_feedback_only(problem: Problem) -> Hypothesis:
     law = problem.controller
     radius = problem.vehicle.wheel_radius
     text = f"{law.name} feeds back neither torque nor wheel acceleration"
-    memory = not isinstance(law, (AdaptiveFuzzy, SlidingMode))
+    memory = not isinstance(law, Surface)
     for speed in PROBE_SPEEDS:
         for slip in PROBE_SLIPS:
             wheel = speed * (1.0 - slip) / radius

@@ -28,12 +28,13 @@ from wspd_design.certificates.kernel.subdomain import Ends
 from wspd_design.certificates.records import Problem, Status
 from wspd_design.certificates.search import recovery
 from wspd_design.certificates.setting import laws
-from wspd_design.certificates.setting.linear_loop import LinearLaw, outermost
+from wspd_design.certificates.setting.linear_loop import outermost
 from wspd_design.certificates.theorems import quadratic
 from wspd_design.certificates.theorems.invariant_sets import checker as invariance
 from wspd_design.certificates.theorems.invariant_sets.runs import FORMAT as SETS_FORMAT
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.controllers.offers import Linear, Surface
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.parameters.units import KMH
 
@@ -46,7 +47,7 @@ def _strange(problem: Problem, name: str) -> Refused:
 
 def _surface_hurwitz(problem: Problem) -> tuple[Obligation, ...]:
     law = problem.controller
-    if not isinstance(law, laws.SlipLaw):
+    if not isinstance(law, Surface):
         raise _strange(problem, "surface_hurwitz")
     claims = surface_hurwitz.claims(law)
     return (*exact_claims(claims), *conditions(("two gains that define a surface", bool(claims))))
@@ -109,7 +110,7 @@ def _no_go(problem: Problem) -> tuple[Obligation, ...]:
 
 def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
     law = problem.controller
-    if not isinstance(law, laws.SlipLaw):
+    if not isinstance(law, Surface):
         raise _strange(problem, "sliding_exists")
     limit = problem.vehicle.brake.max_torque
 
@@ -172,14 +173,14 @@ def _sampling(problem: Problem) -> tuple[Obligation, ...]:
 
 
 def _routh_lag(problem: Problem) -> tuple[Obligation, ...]:
-    if not isinstance(problem.controller, LinearLaw):
+    if not isinstance(problem.controller, Linear):
         raise _strange(problem, "routh_lag")
     return inequalities(routh_lag.claims(problem, problem.controller))
 
 
 def _margins(problem: Problem) -> tuple[Obligation, ...]:
     law = problem.controller
-    if not isinstance(law, LinearLaw):
+    if not isinstance(law, Linear):
         raise _strange(problem, "margins")
 
     def unstable(speed: float) -> str:

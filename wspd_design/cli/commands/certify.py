@@ -11,10 +11,8 @@ from rich.text import Text
 from wspd_design.certificates.kernel.file import certificate_text, file_name
 from wspd_design.certificates.records import Certificate, Status
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, resolve
 from wspd_design.cli.console import console, spaced, table
 from wspd_design.cli.output import check_folder, write_text
-from wspd_design.cli.own_controller import is_own_controller
 from wspd_design.cli.verification import (
     exit_code,
     margin_text,
@@ -24,7 +22,9 @@ from wspd_design.cli.verification import (
     show_counts,
     status_text,
 )
+from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
+from wspd_design.design.own_controller import is_own_controller
 from wspd_design.parameters.errors import UserError
 
 FOLDER = ".certificates"
@@ -62,7 +62,7 @@ def certify(
     So does each check that is refuted, with its witness: wspd simulate DESIGN --from-witness FILE starts there.
     Exit code 1 when a claim is refuted, else 3 when one is undecided, else 0.
     """
-    case = resolve(design, Wishes(vehicle=vehicle, rail=rail))
+    case = load_case(design, CaseOptions(vehicle=vehicle, rail=rail))
     folder = output if output is not None else _beside(design)
     check_folder(folder, force=force)
     problem = problem_of(case)

@@ -10,11 +10,11 @@ from rich.text import Text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import Replayed, replay
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, resolve
 from wspd_design.cli.commands.certify import FOLDER
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.verification import problem_of
+from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.parameters.errors import UserError
 
 
@@ -40,8 +40,8 @@ def check(
     """
     cases = [(path, _text(path), design or _design_of(path)) for path in certificates]
     found = []
-    wishes = Wishes(vehicle=vehicle, rail=rail)
-    problems = {made: problem_of(resolve(made, wishes)) for _, _, made in cases}
+    wanted = CaseOptions(vehicle=vehicle, rail=rail)
+    problems = {made: problem_of(load_case(made, wanted)) for _, _, made in cases}
     for path, text, made in cases:
         with progress() as tell:
             tell(f"Checking {path.name}")

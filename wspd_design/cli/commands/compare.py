@@ -5,12 +5,13 @@ from collections.abc import Callable
 from rich.text import Text
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_plant, resolve_all
+from wspd_design.cli.arguments import check_plant
 from wspd_design.cli.console import console, print_json, progress, spaced, table
 from wspd_design.cli.json_objects import comparison_object, stop_object
 from wspd_design.cli.stop_figures import CHAOTIC, number
-from wspd_design.cli.stop_options import StopWords, disturbances_of, rails_of, scenario
-from wspd_design.design.catalog import CONTROLLERS
+from wspd_design.cli.stop_options import StopOptions, disturbances_of, rails_of, scenario
+from wspd_design.controllers.family import FAMILIES
+from wspd_design.design.case import CaseOptions, load_cases
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
@@ -59,11 +60,11 @@ def compare(
     file among them.
     """
     check_plant(plant)
-    wishes = Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
-    cases = resolve_all(names or list(CONTROLLERS), wishes)
+    wanted = CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
+    cases = load_cases(names or list(FAMILIES), wanted)
     stop = scenario(
         cases[0].rail,
-        StopWords(
+        StopOptions(
             speed=speed,
             seed=seed,
             axle_rails=axle_rails,

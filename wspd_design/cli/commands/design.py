@@ -6,18 +6,18 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_law, specification
 from wspd_design.cli.console import progress
 from wspd_design.cli.gains import show_design
 from wspd_design.cli.output import check_output
+from wspd_design.controllers.family import designed_family
 from wspd_design.design import selection
+from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.design.file import write_design
-from wspd_design.design.laws import GAINS_OF
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 
 def design(
-    law: Annotated[str, typer.Option("--law", metavar="LAW", help=f"{' or '.join(GAINS_OF)}.")] = options.LAW,
+    law: Annotated[str, typer.Option("--law", metavar="LAW", help=f"{options.LAWS}.")] = options.LAW,
     vehicle: options.VehicleOption = None,
     rail: options.RailOption = None,
     slip: options.SlipOption = None,
@@ -34,9 +34,11 @@ def design(
 ) -> None:
     """Choose the gains of a slip controller by rules, say why, and write a design file."""
     check_output(output, force=force)
-    wanted = specification(Wishes(slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time))
-    chosen = check_law(law)
-    locomotive, friction = load_vehicle(vehicle or options.VEHICLE), load_rail(rail or options.RAIL)
+    wanted = specification(
+        CaseOptions(slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time)
+    )
+    chosen = designed_family(law).name
+    locomotive, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
     with progress() as tell:
         tell("choosing the gains")
         made = selection.design_controller(locomotive, friction, wanted, law=chosen)

@@ -6,9 +6,10 @@ import typer
 from rich.text import Text
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_quarter, parse_speed, specification
+from wspd_design.cli.arguments import check_quarter, parse_speed
 from wspd_design.cli.console import console, print_json, spaced, table
 from wspd_design.cli.json_objects import linearization_object
+from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 if TYPE_CHECKING:
@@ -42,8 +43,8 @@ def linearize(
     from wspd_design.analysis import linearization
 
     check_quarter(plant, "linearize")
-    reference = specification(Wishes(slip=slip)).slip
-    locomotive, friction = load_vehicle(vehicle or options.VEHICLE), load_rail(rail or options.RAIL)
+    reference = specification(CaseOptions(slip=slip)).slip
+    locomotive, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
     speeds = [parse_speed(text) for text in speed] if speed else [kmh / 3.6 for kmh in SPEEDS_KMH]
     points = [linearization.linearize(locomotive, friction, slip=reference, speed=v) for v in speeds]
     beyond = [point.slip_pole > 1.0 / point.time_constant for point in points]

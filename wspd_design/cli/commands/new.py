@@ -8,7 +8,6 @@ import typer
 from rich.text import Text
 
 from wspd_design.cli import options
-from wspd_design.cli.case import check_law
 from wspd_design.cli.console import console, is_interactive, progress, spaced, table
 from wspd_design.cli.exit_codes import INTERRUPTED
 from wspd_design.cli.gains import show_design
@@ -119,7 +118,7 @@ def _design(answers: Answers, target: Path) -> None:
     with progress() as tell:
         tell("choosing the gains")
         made = selection.design_controller(
-            load_vehicle(vehicle), load_rail(rail), wanted(answers), law=check_law(answers["law"])
+            load_vehicle(vehicle), load_rail(rail), wanted(answers), law=answers["law"]
         )
     write_design(made, target)
     show_design(made, target)

@@ -8,12 +8,13 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Case, Wishes, check_plant, chosen, parse_speed, resolve
+from wspd_design.cli.arguments import check_plant, chosen, parse_speed
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.output import check_output
-from wspd_design.design.catalog import CONTROLLERS, named_design
-from wspd_design.design.laws import GAINS_OF, law_of
+from wspd_design.controllers.family import FAMILIES
+from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.records import Design
+from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
 
 
@@ -44,7 +45,7 @@ def report(
             raise UserError(f"report {path} must end in .html or .pdf, which chooses the format")
         check_output(path, force=force)
     chosen_name = chosen(name, controller)
-    case = resolve(chosen_name, Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
+    case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
     made = _design(chosen_name, case)
     initial_speed = parse_speed(speed)
     with progress() as tell:
@@ -53,7 +54,7 @@ def report(
             vehicle_name=case.vehicle_name,
             rail_name=case.rail_name,
             initial_speed=initial_speed,
-            baselines=[other for other in CONTROLLERS if other != made.name],
+            baselines=[other for other in FAMILIES if other != made.name],
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
             seed=seed,
@@ -69,10 +70,9 @@ def _design(name: str, case: Case) -> Design:
     """Return the design that the report is about."""
     if case.design is not None:
         return case.design
-    law = law_of(name)
-    if law is None:
+    if name not in FAMILIES or FAMILIES[name].gains is None:
         raise UserError(
-            f"{name} has no design to report on; choose {' or '.join(GAINS_OF)} or a design file, "
+            f"{name} has no design to report on; choose {options.LAWS} or a design file, "
             "which are compared with all others"
         )
-    return named_design(law, case.vehicle, case.rail, case.specification)
+    return named_design(name, case.vehicle, case.rail, case.specification)

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from wspd_design.cli import options
+from wspd_design.cli.arguments import check_plant, chosen
 from wspd_design.cli.campaign import simulate_campaign
-from wspd_design.cli.case import Wishes, check_plant, chosen, resolve
 from wspd_design.cli.console import console, print_json, progress
 from wspd_design.cli.from_witness import check_words, origin, read, show_leaving, show_origin
 from wspd_design.cli.json_objects import stop_object
 from wspd_design.cli.stop_figures import show_stop
-from wspd_design.cli.stop_options import StopWords, scenario
+from wspd_design.cli.stop_options import StopOptions, scenario
 from wspd_design.cli.tables import check_table, write_table
+from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.parameters.errors import UserError
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.records import Run
@@ -93,12 +94,12 @@ def simulate(
         draws = runs is not None and not nominal
         check_words(named=bool(name or controller), speed=speed, axle_rails=axle_rails, draws=draws)
         witness = read(from_witness)
-    case = resolve(
-        chosen(name, controller), Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
+    case = load_case(
+        chosen(name, controller), CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     )
     stop = scenario(
         case.rail,
-        StopWords(
+        StopOptions(
             speed=options.SPEED if speed is None else speed,
             seed=seed,
             axle_rails=axle_rails,

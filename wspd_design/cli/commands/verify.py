@@ -3,11 +3,12 @@
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, check_quarter, chosen, resolve
+from wspd_design.cli.arguments import check_quarter, chosen
 from wspd_design.cli.console import print_json
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.json_objects import verification_object
 from wspd_design.cli.verification import exit_code, problem_of, run_checks, show_claims, show_verdicts
+from wspd_design.design.case import CaseOptions, load_case
 
 _VERDICTS = {GOOD: "good", REFUTED: "refuted", UNDECIDED: "undecided"}
 
@@ -31,9 +32,9 @@ def verify(
     Exit code 1 when a claim is refuted, else 3 when one is undecided, else 0.
     """
     check_quarter(plant, "verify")
-    case = resolve(
+    case = load_case(
         chosen(name, controller),
-        Wishes(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),
+        CaseOptions(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),
     )
     problem = problem_of(case, seed=seed)
     certificates = run_checks(problem, only, search_time)

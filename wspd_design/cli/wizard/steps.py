@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Wishes, specification
+from wspd_design.controllers.family import designed
+from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import available, load_entries, load_rail, load_vehicle
@@ -46,16 +47,14 @@ class Step:
 def steps() -> tuple[Step, ...]:
     """Return all questions in their order."""
     return (
-        _parameter_set(
-            "vehicle", "Vehicle", options.VEHICLE, f"{options.VEHICLE} is the paper's locomotive."
-        ),
+        _parameter_set("vehicle", "Vehicle", VEHICLE, f"{VEHICLE} is the paper's locomotive."),
         _own_file("vehicle", 'The same format as the shipped vehicles; it may start with base = "er24pc".'),
         _parameter_set(
             "rail",
             "Rail",
-            options.RAIL,
+            RAIL,
             "The controller is designed for this rail and can be tried on all others. "
-            f"{options.RAIL} is the paper's harder case.",
+            f"{RAIL} is the paper's harder case.",
         ),
         _own_file("rail", 'The same format as the shipped rails; it may start with base = "polach-wet".'),
         Step(
@@ -66,11 +65,7 @@ def steps() -> tuple[Step, ...]:
             "cylinder pressure. Where adhesion falls steeply with sliding, as on dry rail, it is the only one of the "
             "three that the lag of the valve leaves free to be stable, with a sample time of about 20 ms.",
             default=options.LAW,
-            options=(
-                Option(value="afsmc", text="adaptive fuzzy sliding mode"),
-                Option(value="smc", text="sliding mode with a friction model"),
-                Option(value="torque-feedback", text="static feedback of sliding speed and torque"),
-            ),
+            options=tuple(Option(value=family.name, text=family.title) for family in designed()),
         ),
         Step(
             key="slip",
@@ -128,7 +123,7 @@ def accept(step: Step, text: str, answers: Answers) -> str:
 def wanted(answers: Answers) -> Specification:
     """Return the specification that the answers ask for; what was not asked yet keeps its default."""
     return specification(
-        Wishes(
+        CaseOptions(
             slip=answers.get("slip"),
             speeds=split_speeds(answers["speeds"]) if "speeds" in answers else None,
             tolerance=answers.get("tolerance"),

@@ -1,5 +1,6 @@
 """The vehicle, the rail and the controller in short."""
 
+from wspd_design.controllers.family import designed_family
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
@@ -8,22 +9,11 @@ from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.text import Text, rich
 from wspd_design.studies.dossier import Dossier
 
-LAWS = {
-    "afsmc": "Adaptive fuzzy sliding mode",
-    "smc": "Sliding mode with a friction model",
-    "torque-feedback": "Static feedback of slip and torque",
-}
-ORIGINS = {
-    "afsmc": "eqs. (29) to (42)",
-    "smc": "eqs. (22) to (26)",
-    "torque-feedback": "not in the paper",
-}
-
 
 def case(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about what was designed, for what."""
     design, vehicle, rail = dossier.design, dossier.vehicle, dossier.rail
-    specification = design.specification
+    specification, family = design.specification, designed_family(design.law)
     low, high = (numbers.significant(speed * KMH) for speed in specification.speeds)
     slip_low, slip_high = specification.slips
     brake = (
@@ -44,7 +34,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Rail of the stops", friction),
         (
             "Controller",
-            f"{LAWS[design.law]}, {ORIGINS[design.law]}; design {design.name}, made on rail {design.rail}",
+            f"{family.heading}, {family.origin}; design {design.name}, made on rail {design.rail}",
         ),
         ("Slip reference", f"{specification.slip:g}, tolerance {specification.slip_tolerance:g}"),
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),

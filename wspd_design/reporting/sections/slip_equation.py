@@ -1,5 +1,6 @@
 """Equation (19) and what became of the equations that the design rests on."""
 
+from wspd_design.controllers.family import designed_family
 from wspd_design.parameters.equations import Equation as PaperEquation
 from wspd_design.parameters.equations import load_equations
 from wspd_design.reporting.blocks import Block, Cell, Column, Equation, Heading, Paragraph, Status, Table
@@ -7,14 +8,7 @@ from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
 
 PLANT = ("1", "2", "3", "5", "6", "7", "8", "9", "10", "13", "14", "15", "19", "B_W")
-SLIDING_MODE = ("20", "22", "23", "24", "25", "26", "27", "28")
-ADAPTIVE = tuple(str(number) for number in range(29, 49))
-USED_BY = {
-    "smc": (*PLANT, *SLIDING_MODE),
-    "afsmc": (*PLANT, *SLIDING_MODE, *ADAPTIVE),
-    "torque-feedback": PLANT,
-}
-"""Numbers of the equations that each law rests on."""
+"""Numbers of the equations that every design rests on."""
 
 TONES = {"holds": Status.GOOD, "definition": Status.NEUTRAL, "misprint": Status.BAD, "gap": Status.UNDECIDED}
 
@@ -23,7 +17,8 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the equations."""
     equations = load_equations()
     slip = next(each for each in equations if each.number == "19")
-    used = [each for each in equations if each.number in USED_BY[dossier.design.law]]
+    numbers = (*PLANT, *designed_family(dossier.design.law).equations)
+    used = [each for each in equations if each.number in numbers]
     faulty = [each for each in used if each.verdict in ("misprint", "gap")]
     return (
         Heading(text="The slip dynamics", anchor="slip-equation"),

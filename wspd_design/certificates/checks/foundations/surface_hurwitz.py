@@ -8,14 +8,14 @@ from wspd_design.certificates.kernel import exact
 from wspd_design.certificates.kernel.exact import Positive
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting import laws
-from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.controllers.offers import Surface
 
 NAME, TITLE = "surface_hurwitz", "Sliding surface"
 
 
-def claims(law: laws.SlipLaw) -> tuple[Positive, ...]:
+def claims(law: Surface) -> tuple[Positive, ...]:
     """Return the claim that c is positive; none if the gains define no surface."""
-    numerator, denominator = _gains(law)
+    numerator, denominator = law.surface_gains
     if not (math.isfinite(numerator) and math.isfinite(denominator) and denominator != 0.0):
         return ()
     rate = Fraction(numerator) / Fraction(denominator)
@@ -26,9 +26,9 @@ def claims(law: laws.SlipLaw) -> tuple[Positive, ...]:
 def check(problem: Problem) -> Certificate:
     """Decide the sign of c in exact arithmetic on the gains as they are stored."""
     law = problem.controller
-    if not isinstance(law, laws.SlipLaw):
+    if not isinstance(law, Surface):
         return laws.no_surface(problem, NAME, "e' + c e = 0 is stable.")
-    numerator, denominator = _gains(law)
+    numerator, denominator = law.surface_gains
     gains = (
         Point(name="K_I", value=numerator, unit="1/s"),
         Point(name="K_P", value=denominator, unit="-"),
@@ -65,10 +65,3 @@ def check(problem: Problem) -> Certificate:
         reference="eqs. (21), (22), (28) with the error in place of the slip; docs/theory.md#layer",
         proofs=() if proof is None else (proof,),
     )
-
-
-def _gains(law: laws.SlipLaw) -> tuple[float, float]:
-    """Return K_I and K_P; a sliding mode is scaled so that K_P = 1."""
-    if isinstance(law, SlidingMode):
-        return law.gains.surface_rate, 1.0
-    return law.gains.integral_gain, law.gains.proportional_gain

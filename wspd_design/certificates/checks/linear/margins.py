@@ -10,13 +10,12 @@ from wspd_design.certificates.checks.linear.disk_margin import disk_margin
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.linear_loop import (
-    LinearLaw,
-    feedback,
     lag_of,
     nominal,
     on_brake,
     outermost,
 )
+from wspd_design.controllers.offers import Linear
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -74,7 +73,7 @@ def check(problem: Problem) -> Certificate:
     import numpy as np
 
     law = problem.controller
-    if not isinstance(law, LinearLaw):
+    if not isinstance(law, Linear):
         return laws.no_surface(problem, NAME, "The loop near its reference has margins at every speed.")
     domain.box(problem)
     speeds = np.geomspace(*problem.speeds, SPEEDS)
@@ -144,7 +143,7 @@ def check(problem: Problem) -> Certificate:
     )
 
 
-def _certain(problem: Problem, law: LinearLaw, speeds: list[list[float]]) -> Unstable | None:
+def _certain(problem: Problem, law: Linear, speeds: list[list[float]]) -> Unstable | None:
     """Look for a speed at which the loop is unstable for certain, among those where floats say so."""
     for sampled, tried in zip((False, True), speeds, strict=True):
         for speed in tried:
@@ -165,14 +164,14 @@ def _exactly(beyond: Unstable | None) -> str:
     return f"At {beyond.speed * KMH:.3g} km/h {size}, in exact arithmetic."
 
 
-def loop(problem: Problem, law: LinearLaw, speed: float, *, sample_time: float | None = None) -> Any:
+def loop(problem: Problem, law: Linear, speed: float, *, sample_time: float | None = None) -> Any:
     """Loop opened at the valve command, to be closed by negative feedback.
 
     Parameters
     ----------
     problem : Problem
         With the nominal plant.
-    law : LinearLaw
+    law : Linear
         Controller.
     speed : float
         Train speed [m/s].
@@ -190,7 +189,7 @@ def loop(problem: Problem, law: LinearLaw, speed: float, *, sample_time: float |
     vehicle = problem.vehicle
     dynamics = nominal(vehicle, problem.rail, problem.slip, speed)
     lag, limit = lag_of(problem), vehicle.brake.max_torque
-    gains = on_brake(law, feedback(law, speed), limit)
+    gains = on_brake(law, law.linear_form(speed), limit)
     plant = control.ss(
         np.array([[dynamics.pole, dynamics.gain * limit], [0.0, -1.0 / lag]]),
         np.array([[0.0], [1.0 / lag]]),

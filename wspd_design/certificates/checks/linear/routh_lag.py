@@ -14,9 +14,7 @@ from wspd_design.certificates.search.settle import Finding, engine
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.linear_loop import (
     Cubic,
-    LinearLaw,
     cubic,
-    feedback,
     lag_of,
     loop_at,
     nominal,
@@ -26,6 +24,7 @@ from wspd_design.certificates.setting.linear_loop import (
 from wspd_design.certificates.setting.plant import Values, place
 from wspd_design.certificates.theorems.inequality import decide, positive
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.controllers.offers import Linear
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import Number
 from wspd_design.parameters.units import KMH
@@ -50,7 +49,7 @@ def check(problem: Problem) -> Certificate:
     interval proof covers the whole range, with speed, pole and layer gain of a point kept together.
     """
     law = problem.controller
-    if not isinstance(law, LinearLaw):
+    if not isinstance(law, Linear):
         return laws.no_surface(problem, NAME, "The loop near its reference is stable with the valve lag.")
     domain.box(problem)
     lag = lag_of(problem)
@@ -109,10 +108,10 @@ def check(problem: Problem) -> Certificate:
     )
 
 
-def claims(problem: Problem, law: LinearLaw) -> tuple[Claim, ...]:
+def claims(problem: Problem, law: Linear) -> tuple[Claim, ...]:
     """Return what must be positive, each in multiples of what it would be without slip pole and lag."""
     lag, quantities = lag_of(problem), variables(problem, law)
-    most = feedback(law, problem.speeds[1]).integral
+    most = law.linear_form(problem.speeds[1]).integral
 
     def at(values: Values, arranged: bool) -> tuple[Cubic, Number, float]:
         plant, gains = loop_at(problem, law, values, arranged=arranged)
@@ -148,7 +147,7 @@ def claims(problem: Problem, law: LinearLaw) -> tuple[Claim, ...]:
     )
 
 
-def _frozen(law: LinearLaw) -> tuple[str, ...]:
+def _frozen(law: Linear) -> tuple[str, ...]:
     """What is held that the law moves."""
     return ("weights and bound frozen at their initial values",) if isinstance(law, AdaptiveFuzzy) else ()
 
@@ -167,13 +166,13 @@ def _tolerable_lag(pole: float, found: Cubic, torque_gain: float) -> float:
     return math.inf if growth <= 0.0 else (1.0 + torque_gain) * found.first / growth
 
 
-def _plots(problem: Problem, law: LinearLaw, lag: float) -> tuple[tuple[Series, ...], int]:
+def _plots(problem: Problem, law: Linear, lag: float) -> tuple[tuple[Series, ...], int]:
     """Margin over speed, and the region of (c, k) with the law in it; also the number of unstable speeds."""
     import numpy as np
 
     speeds = np.geomspace(*problem.speeds, PLOT_SPEEDS)
     plant = nominal(problem.vehicle, problem.rail, problem.slip, speeds)
-    gains = on_brake(law, feedback(law, speeds), problem.vehicle.brake.max_torque)
+    gains = on_brake(law, law.linear_form(speeds), problem.vehicle.brake.max_torque)
     found = cubic(plant, lag, gains)
     opened = 1.0 + gains.torque
     margin = np.minimum(

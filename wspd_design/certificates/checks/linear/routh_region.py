@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import level, series
 from wspd_design.certificates.records import Series
-from wspd_design.certificates.setting.laws import SlipLaw, surface_rate
-from wspd_design.certificates.setting.linear_loop import Plant, feedback
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
+from wspd_design.controllers.offers import SlipModel
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.parameters.loading import load_paper_gains
 from wspd_design.parameters.units import KMH
@@ -25,7 +24,7 @@ HIGHEST_RATE = 2.0  # of the plot, in multiples of the law's c or of 1/tau
 MARGIN = 5.0  # of the plot above and below the gains
 
 
-def region(law: SlipLaw, lag: float, speeds: "Array", plant: Plant) -> list[Series]:
+def region(law: AdaptiveFuzzy | SlidingMode, lag: float, speeds: "Array", plant: SlipModel) -> list[Series]:
     """Draw the border where the slip pole is largest and smallest, the law over speed, and the paper's gains.
 
     Parameters
@@ -36,19 +35,19 @@ def region(law: SlipLaw, lag: float, speeds: "Array", plant: Plant) -> list[Seri
         Time constant of the valve [s].
     speeds : ndarray
         Of the train [m/s].
-    plant : Plant
+    plant : SlipModel
         Nominal pole [1/s] and gain at these speeds.
     """
     import numpy as np
 
     printed = _printed(law)
-    rate, paper_rate = surface_rate(law), surface_rate(printed)
+    rate, paper_rate = law.surface_rate, printed.surface_rate
     own = (
         law.gains.switching_gain / law.gains.boundary_layer / speeds
         if isinstance(law, SlidingMode)
-        else plant.gain * feedback(law, speeds).proportional
+        else plant.gain * law.linear_form(speeds).proportional
     )
-    paper = plant.gain * feedback(printed, speeds).proportional
+    paper = plant.gain * printed.linear_form(speeds).proportional
     rates = np.linspace(0.0, HIGHEST_RATE * max(rate, 1.0 / lag), PLOT_RATES)[1:]
     shown = np.concatenate([own, paper])
     bottom, top = float(shown.min()) / MARGIN, float(shown.max()) * MARGIN
@@ -68,7 +67,7 @@ def region(law: SlipLaw, lag: float, speeds: "Array", plant: Plant) -> list[Seri
     return curves
 
 
-def _border(law: SlipLaw, pole: float, lag: float, rates: "Array") -> tuple[str, "Array"]:
+def _border(law: AdaptiveFuzzy | SlidingMode, pole: float, lag: float, rates: "Array") -> tuple[str, "Array"]:
     """Return where in k the determinant vanishes over c, and on which side of it the loop is stable."""
     import numpy as np
 
@@ -84,16 +83,19 @@ def _border(law: SlipLaw, pole: float, lag: float, rates: "Array") -> tuple[str,
     return ("above", border) if pole > 0.0 else ("below", np.where(excess < 0.0, border, np.inf))
 
 
-def _printed(law: SlipLaw) -> AdaptiveFuzzy:
+def _printed(law: AdaptiveFuzzy | SlidingMode) -> AdaptiveFuzzy:
     """Return the adaptive law with the gains that the paper prints, on the brake of a law."""
     gains = AdaptiveFuzzyGains(
-        slip_reference=law.gains.slip_reference,
+        slip_reference=law.slip_reference,
         dead_zone=False,
         hold_when_saturated=False,
         scheduled_rates=False,
         **asdict(load_paper_gains()),
     )
-    brake = law.vehicle.brake.max_torque if isinstance(law, SlidingMode) else law.max_torque
     return AdaptiveFuzzy(
-        name="printed", sample_time=law.sample_time, wheel_radius=1.0, max_torque=brake, gains=gains
+        name="printed",
+        sample_time=law.sample_time,
+        wheel_radius=law.wheel_radius,
+        max_torque=law.max_torque,
+        gains=gains,
     )

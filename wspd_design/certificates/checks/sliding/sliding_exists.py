@@ -25,6 +25,7 @@ from wspd_design.certificates.setting.plant import (
     plant_variables,
 )
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
+from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.number import Number
@@ -42,7 +43,7 @@ HALVINGS = 9  # of the friction at which the brake begins to limit
 
 def torque_claim(
     problem: Problem,
-    law: laws.SlipLaw,
+    law: Surface,
     relation: Relation,
     bound: float,
     **ranges: float | tuple[float, float],
@@ -62,7 +63,7 @@ def torque_claim(
     **ranges : float or tuple of float
         Other ranges of the quantities, as in :func:`plant_variables`.
     """
-    rate, reference = laws.surface_rate(law), law.gains.slip_reference
+    rate, reference = law.surface_rate, law.slip_reference
     eta = reserve(problem) if relation == "<=" else -reserve(problem)
 
     def torque(x: Values) -> Number:
@@ -146,7 +147,7 @@ def check(problem: Problem) -> Certificate:
             *verdict.proofs(release, force, *((lacking,) if never_enough else ())),
             *(() if until is None else _until(until)),
         ),
-        series=_plots(problem, laws.surface_rate(law)),
+        series=_plots(problem, law.surface_rate),
         maps=margin_map(
             "room to release",
             "room to release u* - eta/g [kN m]",
@@ -160,7 +161,7 @@ def check(problem: Problem) -> Certificate:
     )
 
 
-def largest_friction(problem: Problem, law: laws.SlipLaw) -> tuple[float, float] | None:
+def largest_friction(problem: Problem, law: Surface) -> tuple[float, float] | None:
     """Enclose the largest mu0 up to which T_max suffices on the whole domain, by the prover.
 
     Returns
@@ -185,12 +186,12 @@ def largest_friction(problem: Problem, law: laws.SlipLaw) -> tuple[float, float]
     return low, high
 
 
-def least_demand(problem: Problem, law: laws.SlipLaw) -> Claim:
+def least_demand(problem: Problem, law: Surface) -> Claim:
     """Claim that the brake never suffices: u* + eta/g >= T_max everywhere."""
     return replace(torque_claim(problem, law, "<=", problem.vehicle.brake.max_torque), relation=">=")
 
 
-def _unlimited(problem: Problem, law: laws.SlipLaw, limit: float) -> Finding | None:
+def _unlimited(problem: Problem, law: Surface, limit: float) -> Finding | None:
     """Prove that the brake is not the limit up to the largest friction for which that is true."""
     friction = largest_friction(problem, law)
     if friction is None:
@@ -238,7 +239,7 @@ def _spot(finding: Finding) -> str:
     return f"slip {finding.place['slip']:.3f} and {finding.place['speed'] * KMH:.3g} km/h"
 
 
-def _released(problem: Problem, law: laws.SlipLaw, points: "Array") -> "Array":
+def _released(problem: Problem, law: Surface, points: "Array") -> "Array":
     """Ideal torque less the reserve, u* - eta/g, at points of the domain [N m]."""
     plant = dynamics_at(problem, points)
     error = sliding_surface.slip_error(law.gains.slip_reference, points[:, SLIP])

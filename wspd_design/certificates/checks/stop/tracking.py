@@ -28,7 +28,7 @@ def check(problem: Problem) -> Certificate:
         )
     if min(problem.speeds) <= 0.0:
         raise OutsideModel(f"the speeds {problem.speeds[0]:g} to {problem.speeds[1]:g} m/s must be positive")
-    bound = 2.0 * laws.layer(law)
+    bound = 2.0 * law.layer
     reference = law.gains.slip_reference
     scenario = Scenario(rail=problem.rail, initial_speed=problem.speeds[1])
     run = simulate(problem.vehicle, law, scenario, plant="quarter")

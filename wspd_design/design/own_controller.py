@@ -9,7 +9,9 @@ from types import ModuleType
 from typing import Any
 
 from wspd_design.controllers.protocol import Command, Controller, Measurement
+from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.records import Rail, Vehicle
 
 _MODULE_PREFIX = "wspd_own_controller."
 _PROBES = tuple(Measurement(speed, speed * ratio, 2e4) for speed in (30.0, 10.0) for ratio in (1.8, 1.2, 0.1))
@@ -21,25 +23,40 @@ def is_own_controller(name: str) -> bool:
     return name.endswith(".py") or name.rpartition(":")[0].endswith(".py")
 
 
-def load_own_controller(
-    name: str, *, options: Mapping[str, object], written: Mapping[str, object]
+def load_controller(
+    name: str,
+    *,
+    vehicle: Vehicle,
+    rail: Rail,
+    slip: float | None = None,
+    sample_time: float | None = None,
 ) -> Controller:
     """Load a controller from a Python file.
+
+    A class or function that makes the controller is given what it has parameters for, by these names.
 
     Parameters
     ----------
     name : str
         ``FILE.py:NAME``. NAME is a controller, or a class or function that makes one.
-    options : mapping
-        What a class or function may ask for by the names of its parameters.
-    written : mapping
-        Those of the options that the user wrote. Only they replace a default of a parameter.
+    vehicle : Vehicle
+        The vehicle it shall brake.
+    rail : Rail
+        Of the stop.
+    slip : float, optional
+        Slip reference [-]. Without it the default of the controller holds, or the paper's if it has none.
+    sample_time : float, optional
+        As ``slip`` [s].
 
     Raises
     ------
     UserError
-        If the file fails or what it gives is no controller.
+        If the file fails or what it gives is not a controller.
     """
+    paper = Specification()
+    wanted = {"vehicle": vehicle, "rail": rail, "slip": slip, "sample_time": sample_time}
+    written = {key: value for key, value in wanted.items() if value is not None}
+    options = {"slip": paper.slip, "sample_time": paper.sample_time} | written
     file, _, attribute = name.rpartition(":")
     if not file.endswith(".py"):
         raise UserError(f"{name} needs the name of the controller in it: {name}:NAME; {_HOW}")
@@ -79,7 +96,7 @@ def _run(path: Path) -> ModuleType:
     try:
         exec(compile(source, str(path), "exec"), module.__dict__)
     except SyntaxError as error:
-        raise UserError(f"{path}, line {error.lineno}, is no Python: {error.msg}") from None
+        raise UserError(f"{path}, line {error.lineno}, is not Python: {error.msg}") from None
     except Exception as error:
         raise UserError(_fault(error, path.name)) from None
     finally:
@@ -119,7 +136,7 @@ def _check(made: Any, name: str) -> None:
     """Look at the attributes, and at what ``start`` and ``step`` do with numbers."""
     missing = [key for key in ("name", "sample_time", "start", "step") if not hasattr(made, key)]
     if missing:
-        raise UserError(f"{name} makes no controller, it lacks {', '.join(missing)}; {_HOW}")
+        raise UserError(f"{name} does not make a controller: it lacks {', '.join(missing)}; {_HOW}")
     sampling = made.sample_time
     if not isinstance(sampling, int | float) or not 1e-3 <= sampling <= 1.0:
         raise UserError(f"sample_time = {sampling!r} of {name} must be a number between 0.001 and 1 s")

@@ -1,0 +1,137 @@
+"""Values of CasADi graphs in a prime field: whether two graphs are the same function, decided exactly.
+
+The idea is that of :mod:`wspd_design.certificates.kernel.identity`: inputs and everything that is not rational become
+pseudo-random elements of the field of 2^255 - 19 elements, which depend on the values of their arguments. Numbers are
+the exact doubles of the graph. Two graphs with the same value at such a point are the same function of real numbers
+wherever both are defined, except with a probability of about their degree in 2^255.
+
+A comparison becomes an element b that stands for 0 or 1: ``not b`` is 1 - b, ``a and b`` is a b, and
+``if b then x else 0`` is b x. What holds for such an element holds for both branches. The converse fails here and
+there, so that "different" means "not shown to be the same".
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from hashlib import sha256
+from math import isfinite
+from typing import Any
+
+PRIME = 2**255 - 19
+
+
+class UndecidedError(ValueError):
+    """The graph has no value in the field: a division by zero, or a constant that is not a finite number."""
+
+
+def element(*content: object) -> int:
+    """Pseudo-random element of the field that stands for its content."""
+    return int.from_bytes(sha256(repr(content).encode()).digest() * 2, "big") % PRIME
+
+
+def values(function: Any, inputs: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Evaluate a graph in the field.
+
+    Parameters
+    ----------
+    function : casadi.Function
+        Of SX, with dense inputs and outputs.
+    inputs : sequence of sequence of int
+        Elements of the field, for each input of the function.
+
+    Returns
+    -------
+    list of list of int
+        Elements for each output.
+
+    Raises
+    ------
+    UndecidedError
+        If the graph has no value there.
+    """
+    names = _names()
+    work = [0] * function.sz_w()
+    boolean = [False] * function.sz_w()
+    outputs = [[0] * function.nnz_out(k) for k in range(function.n_out())]
+    for k in range(function.n_instructions()):
+        name = names[function.instruction_id(k)]
+        read, written = function.instruction_input(k), function.instruction_output(k)
+        if name == "OP_OUTPUT":
+            outputs[written[0]][written[1]] = work[read[0]]
+        elif name == "OP_INPUT":
+            work[written[0]], boolean[written[0]] = inputs[read[0]][read[1]], False
+        elif name == "OP_CONST":
+            work[written[0]], boolean[written[0]] = _residue(function.instruction_constant(k)), False
+        else:
+            x, truths = [work[i] for i in read], [boolean[i] for i in read]
+            work[written[0]], boolean[written[0]] = _apply(name, x, truths)
+    return outputs
+
+
+def _apply(name: str, x: list[int], boolean: list[bool]) -> tuple[int, bool]:
+    """Value of an operation, and whether it stands for 0 or 1."""
+    if name in _RATIONAL:
+        return _RATIONAL[name](*x) % PRIME, False
+    if name in ("OP_DIV", "OP_INV"):
+        top, bottom = x if name == "OP_DIV" else (1, x[0])
+        return top * _inverse(bottom) % PRIME, False
+    if name in ("OP_FMIN", "OP_FMAX"):
+        least = element("min", *sorted(x))
+        return (least if name == "OP_FMIN" else sum(x) - least) % PRIME, False
+    if name == "OP_FABS":  # the magnitude does not know the sign of its argument
+        return element("abs", x[0] * x[0] % PRIME), False
+    if name in ("OP_LT", "OP_LE"):
+        return (_less(*x) if name == "OP_LT" else (1 - _less(x[1], x[0])) % PRIME), True
+    if name in ("OP_EQ", "OP_NE"):
+        equal = 1 if x[0] == x[1] else element("equal", *sorted(x))
+        return (equal if name == "OP_EQ" else (1 - equal) % PRIME), True
+    if name in _LOGICAL:
+        truths = [value if flag else _truth(value) for value, flag in zip(x, boolean, strict=True)]
+        return _LOGICAL[name](*truths) % PRIME, True
+    if name == "OP_IF_ELSE_ZERO":
+        condition = x[0] if boolean[0] else _truth(x[0])
+        return condition * x[1] % PRIME, False
+    return element(name, *x), False
+
+
+_RATIONAL = {
+    "OP_ASSIGN": lambda a: a,
+    "OP_ADD": lambda a, b: a + b,
+    "OP_SUB": lambda a, b: a - b,
+    "OP_MUL": lambda a, b: a * b,
+    "OP_NEG": lambda a: -a,
+    "OP_SQ": lambda a: a * a,
+    "OP_TWICE": lambda a: 2 * a,
+}
+_LOGICAL = {
+    "OP_NOT": lambda a: 1 - a,
+    "OP_AND": lambda a, b: a * b,
+    "OP_OR": lambda a, b: a + b - a * b,
+}
+
+
+def _less(a: int, b: int) -> int:
+    return 0 if a == b else element("less", a, b)
+
+
+def _truth(value: int) -> int:
+    """0 for zero, 1 for one; an element for what is not known to be either."""
+    return value if value in (0, 1) else element("truth", value)
+
+
+def _inverse(value: int) -> int:
+    if value == 0:
+        raise UndecidedError("a divisor vanishes")
+    return pow(value, -1, PRIME)
+
+
+def _residue(number: float) -> int:
+    if not isfinite(number):
+        raise UndecidedError(f"{number} is not a finite number")
+    exact = Fraction(number)
+    return exact.numerator * pow(exact.denominator, -1, PRIME) % PRIME
+
+
+def _names() -> dict[int, str]:
+    import casadi as ca
+
+    return {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}

@@ -1,0 +1,223 @@
+"""What the ``step`` of a law is: traced to a graph, compared with the law of a theorem, and asked for its memory.
+
+A verdict belongs to the law that runs. A theorem speaks about a law that is written out in
+:mod:`wspd_design.certificates.setting.written_laws`; it applies to a controller only if the step that runs is shown
+to be the same function, whatever its class or its attributes say.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.graph_field import UndecidedError, element, values
+from wspd_design.certificates.setting.written_laws import WRITTEN, WrittenLaw
+from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.kernels import controller_kernels
+from wspd_design.controllers import offers
+from wspd_design.controllers.family import FAMILIES
+from wspd_design.controllers.protocol import Controller
+from wspd_design.parameters.fingerprint import fingerprint
+
+POINTS = 3  # of the field at which two graphs are compared
+TORQUE = 2  # place of the torque in a measurement
+MEASURED = ("speed", "wheel speed", "torque")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TracedLaw:
+    """A law as graphs of CasADi."""
+
+    name: str
+    start: Any  # casadi.Function, measurement -> state
+    step: Any  # casadi.Function, (state, measurement) -> [state, fill, vent]
+    states: int
+
+    def fingerprint(self) -> str:
+        """SHA-256 of the graphs: every operation and every constant to its last bit."""
+        return fingerprint([_instructions(self.start), _instructions(self.step)])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LawMemory:
+    """How the state of a law follows from the state before it.
+
+    ``own_dynamics`` names the elements that are not integrals: what a step makes of such an element depends on the
+    element in another way than by adding to it, or on itself through other elements. Without them all eigenvalues of
+    the memory are 1, so that in continuous time trace(A_c) = 0.
+    """
+
+    names: tuple[str, ...]
+    own_dynamics: tuple[str, ...]
+    command_reads_torque: bool  # within one step
+    memory_reads_torque: bool  # so that a later command may depend on it
+
+    @property
+    def integrals_alone(self) -> bool:
+        """Whether the memory holds integrals and nothing else."""
+        return not self.own_dynamics
+
+
+def trace(law: Controller) -> TracedLaw | str:
+    """Run ``start`` and ``step`` of a law on symbols.
+
+    Returns
+    -------
+    TracedLaw or str
+        The graphs, or the reason why there are none.
+    """
+    try:
+        start, step, states = controller_kernels(law)
+    except UntraceableError as reason:
+        return f"the step of {law.name} cannot be traced ({reason})"
+    return TracedLaw(name=law.name, start=start, step=step, states=states)
+
+
+def same_function(one: TracedLaw, other: TracedLaw) -> bool:
+    """Whether two laws are the same function of state and measurement; False where that cannot be decided."""
+    if one.states != other.states:
+        return False
+    try:
+        return all(
+            values(a, _point(a, number)) == values(b, _point(b, number))
+            for a, b in ((one.start, other.start), (one.step, other.step))
+            for number in range(POINTS)
+        )
+    except UndecidedError:
+        return False
+
+
+def law_of_theorem(problem: Problem, family: str) -> str | None:
+    """Say why a theorem about a family of laws does not speak about the controller of a problem.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop.
+    family : str
+        Name of a family with a written law, such as ``smc``.
+
+    Returns
+    -------
+    str or None
+        The reason, a clause without a full stop; None if the step that runs is the written law.
+    """
+    law = problem.controller
+    title = FAMILIES[family].title if family in FAMILIES else family
+    if family not in WRITTEN:
+        return f"no theorem is written for the {title}"
+    written = written_law(law, family)
+    if written is None:
+        return f"{law.name} does not have the gains and the model of the {title}"
+    found = trace(law)
+    if isinstance(found, str):
+        return found
+    wanted = trace(written)
+    if isinstance(wanted, str):
+        return wanted
+    if not same_function(found, wanted):
+        return f"the step of {law.name} is not the {title} that this theorem speaks about, or was not shown to be"
+    return None
+
+
+def written_law(law: Controller, family: str) -> WrittenLaw | None:
+    """Write out the law of the theorems with the gains of a controller; None if it lacks what the law needs."""
+    record = FAMILIES[family].gains
+    gains = getattr(law, "gains", None)
+    if record is None or type(gains) is not record:
+        return None
+    kind = WRITTEN[family]
+    try:
+        return kind.of(law, gains)
+    except (AttributeError, TypeError):
+        return None
+
+
+def memory(law: Controller) -> LawMemory | str:
+    """Differentiate the step of a law in its memory, on the graph.
+
+    Returns
+    -------
+    LawMemory or str
+        What was found, or the reason why nothing was.
+    """
+    import casadi as ca
+
+    traced = trace(law)
+    if isinstance(traced, str):
+        return traced
+    states, step = traced.states, traced.step
+    x, m = ca.SX.sym("x", states), ca.SX.sym("m", len(MEASURED))
+    slopes = ca.densify(ca.jacobian(step(x, m)[:states], x)) if states else ca.SX(0, 0)
+    jacobian = ca.Function("memory_slopes", [x, m], [slopes])
+    try:
+        rows = [_square(values(jacobian, _point(jacobian, k))[0], states) for k in range(POINTS)]
+        moved = [_with_other_torque(step, k) for k in range(POINTS)]
+    except UndecidedError as reason:
+        return f"the memory of {law.name} is not decided ({reason})"
+    names = _state_names(law, states)
+    own = [
+        names[i]
+        for i in range(states)
+        if any(matrix[i][i] != 1 for matrix in rows) or i in _in_circles(rows, states)
+    ]
+    return LawMemory(
+        names=names,
+        own_dynamics=tuple(own),
+        command_reads_torque=any(plain[states:] != other[states:] for plain, other in moved),
+        memory_reads_torque=any(plain[:states] != other[:states] for plain, other in moved),
+    )
+
+
+def _point(function: Any, number: int) -> list[list[int]]:
+    return [
+        [element("input", place, index, number) for index in range(function.nnz_in(place))]
+        for place in range(function.n_in())
+    ]
+
+
+def _with_other_torque(step: Any, number: int) -> tuple[list[int], list[int]]:
+    """Outputs of a step at two points that differ in the torque alone."""
+    point = _point(step, number)
+    other = [point[0], [*point[1][:TORQUE], element("other torque", number)]]
+    return values(step, point)[0], values(step, other)[0]
+
+
+def _square(column: Sequence[int], size: int) -> list[list[int]]:
+    """Rows of a matrix that is stored column by column."""
+    return [[column[j * size + i] for j in range(size)] for i in range(size)]
+
+
+def _in_circles(rows: list[list[list[int]]], size: int) -> set[int]:
+    """Elements of the state that act on themselves through others.
+
+    What is left when elements on which nothing else acts are taken away one by one is not all in a circle, but acts on
+    or is reached from one; it is counted with it.
+    """
+    acts = {(j, i) for i in range(size) for j in range(size) if i != j and any(m[i][j] for m in rows)}
+    left = set(range(size))
+    while free := {i for i in left if not any((j, i) in acts for j in left)}:
+        left -= free
+    return left
+
+
+def _state_names(law: Controller, states: int) -> tuple[str, ...]:
+    if isinstance(law, offers.Memory) and len(law.memory) == states:
+        return tuple(law.memory)
+    return tuple(f"element {number} of the state" for number in range(1, states + 1))
+
+
+def _instructions(function: Any) -> list[tuple[object, ...]]:
+    import casadi as ca
+
+    return [
+        (
+            function.instruction_id(k),
+            tuple(function.instruction_input(k)),
+            tuple(function.instruction_output(k)),
+            float(function.instruction_constant(k)).hex()
+            if function.instruction_id(k) == ca.OP_CONST
+            else "",
+        )
+        for k in range(function.n_instructions())
+    ]

@@ -1,0 +1,38 @@
+"""Arguments that several commands read in the same way."""
+
+from difflib import get_close_matches
+
+from wspd_design.cli.options import CONTROLLER, QUARTER
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.units import parse_quantity
+from wspd_design.simulation.records import PLANTS
+
+
+def parse_speed(text: str) -> float:
+    """Read a speed [m/s]."""
+    return parse_quantity(text, "speed", what="speed")
+
+
+def chosen(argument: str | None, option: str | None) -> str:
+    """Return the controller, which may stand as an argument or after ``--controller``."""
+    if argument is not None and option is not None and argument != option:
+        raise UserError(f'two controllers are given, "{argument}" and --controller "{option}"; leave one out')
+    return argument or option or CONTROLLER
+
+
+def check_plant(name: str) -> None:
+    """Refuse a plant that does not exist."""
+    if name not in PLANTS:
+        near = get_close_matches(name, PLANTS, n=1)
+        offer = f', did you mean "{near[0]}"?' if near else ""
+        raise UserError(f'unknown plant "{name}"{offer}; available: {", ".join(PLANTS)}')
+
+
+def check_quarter(name: str, command: str) -> None:
+    """Refuse a plant other than the quarter locomotive, which the analysis at a point speaks about."""
+    check_plant(name)
+    if name != QUARTER:
+        raise UserError(
+            f"{command} speaks about the quarter locomotive, whose wheelsets are alike, not about {name}; "
+            f"leave --plant out or write --plant {QUARTER}"
+        )

@@ -1,0 +1,210 @@
+"""The families of laws: one row for each, from which all tables of laws are made.
+
+A new law needs its class and its record of gains, a row here, and the rule that chooses its gains
+(``design/selection.py``). Nothing else has to know it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any, TypeAlias
+
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
+from wspd_design.controllers.baselines.knorr_bremse import KnorrBremse
+from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
+from wspd_design.controllers.baselines.trenitalia import Trenitalia
+from wspd_design.controllers.baselines.unprotected import Unprotected
+from wspd_design.controllers.gains import GainForm, gain_forms
+from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_knorr_bremse, load_mitsubishi, load_trenitalia
+from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.schema import PRESETS, Preset
+
+INDUSTRY = "law of the industry"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Given:
+    """What the controller of one wheelset is built from."""
+
+    name: str
+    sample_time: float  # s
+    vehicle: Vehicle
+    rail: Rail  # design rail
+    numbers: Any  # record of the gains, or the table of a law of the industry
+
+
+Builder: TypeAlias = Callable[[Given], Controller]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Family:
+    """A family of laws."""
+
+    name: str
+    title: str  # a noun phrase, as it stands within a sentence
+    origin: str  # where the law comes from
+    law: type  # class of the controllers
+    build: Builder
+    gains: type | None = None  # record of the gains; None for a law that is not designed
+    tables: Callable[[Preset], object] | None = None  # of a law whose numbers come in presets
+    equations: tuple[
+        str, ...
+    ] = ()  # numbers of the paper's equations that it rests on, besides those of the plant
+
+    @property
+    def heading(self) -> str:
+        """Title at the start of a sentence."""
+        return self.title[0].upper() + self.title[1:]
+
+    @property
+    def forms(self) -> tuple[GainForm, ...]:
+        """Gains of a design, in the order of its file."""
+        return () if self.gains is None else gain_forms(self.gains)
+
+
+def _with_model(law: type) -> Builder:
+    """Build a law that knows its design model."""
+    return lambda given: law(
+        name=given.name,
+        sample_time=given.sample_time,
+        vehicle=given.vehicle,
+        rail=given.rail,
+        gains=given.numbers,
+    )
+
+
+def _with_table(law: type) -> Builder:
+    """Build a law that decides by a table."""
+    return lambda given: law(
+        name=given.name,
+        sample_time=given.sample_time,
+        wheel_radius=given.vehicle.wheel_radius,
+        table=given.numbers,
+    )
+
+
+def _adaptive_fuzzy(given: Given) -> Controller:
+    return AdaptiveFuzzy(
+        name=given.name,
+        sample_time=given.sample_time,
+        wheel_radius=given.vehicle.wheel_radius,
+        max_torque=given.vehicle.brake.max_torque,
+        gains=given.numbers,
+    )
+
+
+def _unprotected(given: Given) -> Controller:
+    return Unprotected(name=given.name, sample_time=given.sample_time)
+
+
+_SLIDING_MODE_EQUATIONS = ("20", *(str(number) for number in range(22, 29)))
+
+FAMILIES: dict[str, Family] = {
+    family.name: family
+    for family in (
+        Family(
+            name="afsmc",
+            title="adaptive fuzzy sliding mode",
+            origin="eqs. (29) to (42)",
+            law=AdaptiveFuzzy,
+            gains=AdaptiveFuzzyGains,
+            build=_adaptive_fuzzy,
+            equations=(*_SLIDING_MODE_EQUATIONS, *(str(number) for number in range(29, 49))),
+        ),
+        Family(
+            name="smc",
+            title="sliding mode with a friction model",
+            origin="eqs. (22) to (26)",
+            law=SlidingMode,
+            gains=SlidingModeGains,
+            build=_with_model(SlidingMode),
+            equations=_SLIDING_MODE_EQUATIONS,
+        ),
+        Family(
+            name="torque-feedback",
+            title="static feedback of sliding speed and torque",
+            origin="not in the paper",
+            law=TorqueFeedback,
+            gains=TorqueFeedbackGains,
+            build=_with_model(TorqueFeedback),
+        ),
+        Family(
+            name="trenitalia",
+            title="speed and acceleration bands of Trenitalia",
+            origin=f"{INDUSTRY}, eq. (16)",
+            law=Trenitalia,
+            tables=load_trenitalia,
+            build=_with_table(Trenitalia),
+        ),
+        Family(
+            name="knorr-bremse",
+            title="decision table of Knorr-Bremse",
+            origin=f"{INDUSTRY}, eqs. (17), (18)",
+            law=KnorrBremse,
+            tables=load_knorr_bremse,
+            build=_with_table(KnorrBremse),
+        ),
+        Family(
+            name="mitsubishi",
+            title="fuzzy rules of Mitsubishi",
+            origin=f"{INDUSTRY}, Table 5",
+            law=Mitsubishi,
+            tables=load_mitsubishi,
+            build=_with_table(Mitsubishi),
+        ),
+        Family(
+            name="none",
+            title="brake without wheel slide protection",
+            origin="for comparison",
+            law=Unprotected,
+            build=_unprotected,
+        ),
+    )
+}
+"""All families by name, in the order of tables."""
+
+
+def designed() -> tuple[Family, ...]:
+    """Return the families whose gains can be designed."""
+    return tuple(family for family in FAMILIES.values() if family.gains is not None)
+
+
+def with_presets() -> tuple[Family, ...]:
+    """Return the families whose tables come in presets."""
+    return tuple(family for family in FAMILIES.values() if family.tables is not None)
+
+
+def designed_family(name: str) -> Family:
+    """Return a family whose gains can be designed.
+
+    Raises
+    ------
+    UserError
+        If there is none of that name.
+    """
+    family = FAMILIES.get(name)
+    if family is not None and family.gains is not None:
+        return family
+    names = [each.name for each in designed()]
+    near = get_close_matches(name, names, n=1)
+    offer = f' (did you mean "{near[0]}"?)' if near else ""
+    raise UserError(f'law "{name}" cannot be designed{offer}; choose {" or ".join(names)}')
+
+
+def preset_of(family: Family, name: str) -> Preset:
+    """Return a preset of the tables of a family.
+
+    Raises
+    ------
+    UserError
+        If there is no such preset.
+    """
+    for preset in PRESETS:
+        if preset == name:
+            return preset
+    choice = " or ".join(f"{family.name}:{preset}" for preset in PRESETS)
+    raise UserError(f'unknown preset "{name}" of {family.name}; write {choice}')
