@@ -15,14 +15,18 @@ At a given slip, speed and load
   the end that makes it large, they give every q.
 
 What rises with f at a given slip, speed, load and deceleration is therefore extreme on the edges that are named here.
-The deceleration of a train whose wheels are all alike rises with f as well.
+The deceleration of a train whose wheels are all alike rises with f as well. Where the deceleration is a quantity of its
+own, the load counts for f alone. q falls with a power of the load that is at most 1, so that the slope of f over the
+load has at least the sign of H - (w H_w + s H_s), the slope over the friction, or of H: f rises with the load, that is
+with the mass and the share of the axle. The resistance then counts for the deceleration alone.
 """
 
 from collections.abc import Iterator, Mapping
 from typing import TypeAlias
 
-from wspd_design.certificates.quantities import CONTACT, RAIL
+from wspd_design.certificates.quantities import AXLE, CONTACT, RAIL
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting import domain
 from wspd_design.parameters.bounds import Ends
 
 Ranges: TypeAlias = Mapping[str, float | Ends]
@@ -31,9 +35,11 @@ RISING = ("mu0", "friction ratio", "slip reduction")
 FALLING = ("friction decay",)
 LESS_STIFF = ("reference load",)
 """Number of the contact that makes q smaller; all others make it larger."""
+LOAD = ("mass", AXLE[0])
+RESISTANCE = ("resistance constant", "resistance linear", "resistance quadratic")
 
 
-def adhesion_edges(problem: Problem, *, most: bool) -> dict[str, Ranges]:
+def adhesion_edges(problem: Problem, *, most: bool, axle: bool) -> dict[str, Ranges]:
     """Return ranges of the numbers of rail and contact on which the adhesion takes its extreme.
 
     Parameters
@@ -42,6 +48,8 @@ def adhesion_edges(problem: Problem, *, most: bool) -> dict[str, Ranges]:
         With the bounds of rail and contact.
     most : bool
         Whether the largest adhesion is meant.
+    axle : bool
+        Whether the claim is one about every axle, with load share and deceleration as quantities of their own.
 
     Returns
     -------
@@ -51,6 +59,9 @@ def adhesion_edges(problem: Problem, *, most: bool) -> dict[str, Ranges]:
     end = int(most)
     base: dict[str, float | Ends] = {name: problem.span(name)[end] for name in RISING}
     base |= {name: problem.span(name)[1 - end] for name in FALLING}
+    if axle:
+        base |= {name: domain.span(problem, name)[end] for name in LOAD}
+        base |= {name: problem.nominal(name) for name in RESISTANCE}
     weak = problem.span("adhesion reduction")
     found = {
         name: base | {"adhesion reduction": weak[1 - end]} | ranges for name, ranges in _stiffening(problem)

@@ -4,15 +4,16 @@ With Psi = v F and rho = (inertia of the design model) / (true inertia) the law 
 v sbar' = r - rho W0 sat(sbar / layer), r = (1 - rho) v c e - Psi + rho Psi_hat at a constant reference.
 """
 
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.claim import Variable
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.domain import INERTIA, SLIP, SPEED
+from wspd_design.certificates.setting.adhesion_edges import Ranges
+from wspd_design.certificates.setting.domain import BASIC, INERTIA, SLIP, SPEED
 from wspd_design.certificates.setting.plant import (
-    OTHERS,
     Values,
-    dynamics_at,
+    complete,
     model_forces,
     model_variables,
     plant_dynamics,
@@ -36,10 +37,25 @@ class Mismatch(NamedTuple):
     inertia_ratio: "Array"  # -, rho
 
 
-def mismatch(problem: Problem, law: SlidingMode, points: "Array") -> Mismatch:
-    """Evaluate r and rho at points of the domain."""
+def mismatch(
+    problem: Problem, law: SlidingMode, points: "Array", others: Mapping[str, float] | None = None
+) -> Mismatch:
+    """Evaluate r and rho at points of the domain.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop.
+    law : SlidingMode
+        With its design model.
+    points : ndarray
+        Columns as in ``domain.BASIC``.
+    others : mapping, optional
+        Further numbers of the plant that are not nominal, by their names in the table.
+    """
     slip, speed = points[:, SLIP], points[:, SPEED]
-    plant = dynamics_at(problem, points)
+    columns = {name: points[:, k] for k, name in enumerate(BASIC)}
+    plant = plant_dynamics(problem, complete(problem, {**(others or {}), **columns}))
     model = slip_dynamics(law.vehicle, law.rail, slip, speed)
     ratio = law.vehicle.wheelset_inertia / points[:, INERTIA]
     error = sliding_surface.slip_error(law.gains.slip_reference, slip)
@@ -47,9 +63,12 @@ def mismatch(problem: Problem, law: SlidingMode, points: "Array") -> Mismatch:
     return Mismatch(residual=closing - speed * plant.drift + ratio * speed * model.drift, inertia_ratio=ratio)
 
 
-def variables(problem: Problem, law: SlidingMode) -> tuple[Variable, ...]:
-    """Return the quantities of plant and design model."""
-    return plant_variables(problem, hold=OTHERS) + model_variables(law.vehicle, law.rail)
+def variables(
+    problem: Problem, law: SlidingMode, *, uses: Sequence[str], hold: Iterable[str], ranges: Ranges
+) -> tuple[Variable, ...]:
+    """Return the quantities of plant and design model, as in :func:`plant_variables`."""
+    plant = plant_variables(problem, uses=uses, hold=hold, ranges=ranges)
+    return plant + model_variables(law.vehicle, law.rail)
 
 
 def inertia_ratio(x: Values) -> Number:

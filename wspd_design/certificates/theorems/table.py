@@ -10,6 +10,7 @@ THEOREMS: Mapping[str, Theorem] = {
     for each in (
         foundations.GAIN_POSITIVE,
         sliding.REACHING,
+        sliding.BOUNDARY_LAYER,
         valve.NO_GO,
     )
 }
