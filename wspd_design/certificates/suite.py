@@ -6,7 +6,7 @@ from pathlib import Path
 
 from wspd_design.certificates.checks.foundations import gain_positive
 from wspd_design.certificates.checks.frame import Check, illustrated
-from wspd_design.certificates.checks.sliding import boundary_layer, reaching
+from wspd_design.certificates.checks.sliding import boundary_layer, reaching, sliding_exists
 from wspd_design.certificates.checks.valve import no_go
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
@@ -21,6 +21,7 @@ CHECKS: Mapping[str, Check] = {
     each.name: each
     for each in (
         gain_positive.CHECK,
+        sliding_exists.CHECK,
         reaching.CHECK,
         boundary_layer.CHECK,
         no_go.CHECK,
