@@ -6,21 +6,21 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.finding import Finding, above, below
 from wspd_design.certificates.kernel.obligation import Sign
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.theorems.scope import scope
 from wspd_design.certificates.theorems.theorem import Theorem, all_of, hypothesis
+from wspd_design.certificates.theorems.whom import every_law
+from wspd_design.parameters.units import KMH
 
 SHOWN = {"m/s": (KMH, "km/h")}
 """Scale and unit in which people read a quantity."""
 
-
-def _always(problem: Problem) -> str:  # noqa: ARG001 - the theorem speaks about every design
-    return ""
+USED = ("speed", "wheelset inertia", "wheel radius")
 
 
 def _factors(problem: Problem) -> tuple[Sign, ...]:
     """Return the factors of G, each at its smallest: a quotient of positive factors is positive on the box."""
     factors = (
-        ("wheel radius", problem.vehicle.wheel_radius, "m"),
+        ("wheel radius", problem.span("wheel radius")[0], "m"),
         ("wheelset inertia", problem.span("wheelset inertia")[0], "kg m2"),
         ("speed", problem.speeds[0], "m/s"),
     )
@@ -35,19 +35,17 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
     wrong = [each for each in factors if findings[each.key].status is Status.REFUTED]
     # The inertia of the bounds is that of a wheelset, 2 I; G is smallest where both inertia and speed are largest.
     largest = Fraction(problem.span("wheelset inertia")[1]) * Fraction(problem.speeds[1])
-    smallest = Fraction(problem.vehicle.wheel_radius) / largest if status is Status.PROVED else None
+    smallest = Fraction(problem.span("wheel radius")[0]) / largest if status is Status.PROVED else None
     return Certificate(
         name="gain_positive",
         title="Sign of the input gain",
-        claim=f"G = R/(2 I v) > 0 for wheelset inertia {problem.span('wheelset inertia')[0]:g} to "
-        f"{problem.span('wheelset inertia')[1]:g} kg m2 and {problem.speeds[0] * KMH:.3g} to "
-        f"{problem.speeds[1] * KMH:.3g} km/h.",
+        claim=f"G = R/(2 I v) > 0 {scope(problem, USED).text}.",
         status=status,
         explanation=(
             "A factor of G is zero or negative in the box, so that G has no sign there; correct the bounds."
             if smallest is None
             else "More torque means more slip wherever the train is. G is smallest at the highest "
-            f"speed and inertia, {float(smallest) * 1e6:.4g} 1/s per MN m."
+            f"speed and inertia and the smallest radius, {float(smallest) * 1e6:.4g} 1/s per MN m."
         ),
         method="exact rational arithmetic at the end points of the monotone quotient",
         margin=None
@@ -61,8 +59,7 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
         ),
         witness=tuple(_point(each) for each in wrong),
         hypotheses=tuple(hypothesis(each.text, findings[each.key]) for each in factors),
-        varied=("wheelset inertia",),
-        held=("wheel radius",),
+        varied=scope(problem, USED).varied,
         reference="eq. (19); docs/theory.md#slip-equation",
     )
 
@@ -76,7 +73,7 @@ GAIN_POSITIVE = Theorem(
     name="gain_positive",
     title="Sign of the input gain",
     claim="The input gain G of (19) is positive.",
-    speaks_about=_always,
+    speaks_about=every_law,
     obligations=_factors,
     tell=_tell_gain_positive,
 )

@@ -2,17 +2,31 @@
 
 from collections.abc import Mapping
 
-from wspd_design.certificates.theorems import authority, foundations, sliding, valve
+from wspd_design.certificates.theorems import (
+    authority,
+    equations,
+    foundations,
+    signs,
+    simulated_stop,
+    sliding,
+    surface,
+    valve,
+)
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
     each.name: each
     for each in (
+        equations.DERIVATION,
+        surface.SURFACE_HURWITZ,
         foundations.GAIN_POSITIVE,
+        signs.WELL_POSED,
         authority.SLIDING_EXISTS,
         sliding.REACHING,
         sliding.BOUNDARY_LAYER,
         valve.NO_GO,
+        simulated_stop.TRACKING,
+        simulated_stop.CONSERVATION,
     )
 }
 """By name; a check without a row here does not exist."""
