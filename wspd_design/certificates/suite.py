@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
+from wspd_design.certificates.checks.adaptive import lyapunov_printed, lyapunov_repaired
 from wspd_design.certificates.checks.foundations import (
     conservation,
     derivation,
@@ -12,7 +13,7 @@ from wspd_design.certificates.checks.foundations import (
     well_posed,
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
-from wspd_design.certificates.checks.sliding import boundary_layer, reaching, sliding_exists
+from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
 from wspd_design.certificates.checks.stop import tracking
 from wspd_design.certificates.checks.valve import no_go
 from wspd_design.certificates.records import Certificate, Problem
@@ -34,6 +35,9 @@ CHECKS: Mapping[str, Check] = {
         sliding_exists.CHECK,
         reaching.CHECK,
         boundary_layer.CHECK,
+        lyapunov_surface.CHECK,
+        lyapunov_printed.CHECK,
+        lyapunov_repaired.CHECK,
         no_go.CHECK,
         tracking.CHECK,
         conservation.CHECK,
