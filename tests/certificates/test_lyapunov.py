@@ -179,12 +179,14 @@ def test_wrong_v_is_refuted(printed, monkeypatch, wrong):
     assert verdict.status is Status.REFUTED
 
 
-def test_wrong_sign_of_the_adaptation_is_refuted(printed, monkeypatch):
+@pytest.mark.parametrize(("weights", "bound"), [(-0.05, 1.0), (1.0, -1.0)])
+def test_wrong_sign_of_the_adaptation_is_refuted(printed, monkeypatch, weights, bound):
+    """The weights unlearn slowly, so that the run has states at which the hypotheses of the repair hold."""
     right = law_module.adaptation
 
     def wrong(gains, surface, speed):
         rates = right(gains, surface, speed)
-        return rates._replace(weights=tuple(-rate for rate in rates.weights))
+        return rates._replace(weights=tuple(weights * rate for rate in rates.weights), bound=bound * rates.bound)
 
     monkeypatch.setattr("wspd_design.certificates.theorems.ideal_loop.adaptation", wrong)
     assert lyapunov_repaired.CHECK.run(printed).status is Status.REFUTED

@@ -4,7 +4,12 @@ from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
-from wspd_design.certificates.checks.adaptive import lyapunov_printed, lyapunov_repaired
+from wspd_design.certificates.checks.adaptive import (
+    afsmc_energy,
+    barbalat,
+    lyapunov_printed,
+    lyapunov_repaired,
+)
 from wspd_design.certificates.checks.foundations import (
     conservation,
     derivation,
@@ -38,6 +43,8 @@ CHECKS: Mapping[str, Check] = {
         lyapunov_surface.CHECK,
         lyapunov_printed.CHECK,
         lyapunov_repaired.CHECK,
+        afsmc_energy.CHECK,
+        barbalat.CHECK,
         no_go.CHECK,
         tracking.CHECK,
         conservation.CHECK,

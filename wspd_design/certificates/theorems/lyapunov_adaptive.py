@@ -41,7 +41,7 @@ RATE_TOLERANCE = 1e-4  # of the largest rate, for a formula against differences
 RUN = ("rise", "first", "last", "before", "after", "since", "until", "slip", "instants", "cut short")
 FORMULA = ("deviation", "scale")
 INTEGRAL = "integral of the slip error"
-SLIPS = (-1e-3, 1.0)  # a rolling wheel among them, as exactly as a run can hold it
+SLIPS = (0.0, 1.0)
 
 
 class Candidate(NamedTuple):
@@ -279,7 +279,8 @@ def _tell_repaired(problem: Problem, findings: Findings) -> Certificate:
         title="Repaired V",
         claim="V = v s_D^2/(2 g) + |b~|^2/(2 alpha1) + psi~^2/(2 alpha2) does not rise along the closed loop of the "
         f"repaired law, at any state with {problem.speeds[0] * KMH:.3g} to {problem.speeds[1] * KMH:.3g} km/h and slip "
-        f"{SLIPS[0]:g} to {SLIPS[1]:g} on {problem.rail.name}, for any ideal weights and bound that satisfy (34) there.",
+        f"{SLIPS[0]:g} to {SLIPS[1]:g} on {problem.rail.name}, for any ideal weights and bound that satisfy (34) "
+        "there.",
         status=status,
         explanation=told,
         margin=_margin("V", status, run),

@@ -237,7 +237,7 @@ def _tell_tracking(problem: Problem, findings: Findings) -> Certificate:
         name="tracking",
         title="Slip of the sampled loop",
         claim="In the simulated stop of the quarter locomotive with nominal parameters, sampling, valves, lag and "
-        f"wheel lock, the slip error stays below 2 Phi/K_P = {bound:.3g} around the reference {reference:g} of the law, "
+        f"wheel lock, the slip error stays below 2 Phi/K_P = {bound:.3g} around the reference {reference:g} of the law "
         f"from {settled * KMH:.3g} km/h, half of the initial speed, down to {problem.speeds[0] * KMH:.3g} km/h on "
         f"{problem.rail.name}.",
         status=status,

@@ -3,7 +3,9 @@
 from collections.abc import Mapping
 
 from wspd_design.certificates.theorems import (
+    afsmc_energy,
     authority,
+    barbalat,
     equations,
     foundations,
     lyapunov_adaptive,
@@ -29,6 +31,8 @@ THEOREMS: Mapping[str, Theorem] = {
         lyapunov_surface.LYAPUNOV_SURFACE,
         lyapunov_adaptive.LYAPUNOV_PRINTED,
         lyapunov_adaptive.LYAPUNOV_REPAIRED,
+        afsmc_energy.AFSMC_ENERGY,
+        barbalat.BARBALAT,
         valve.NO_GO,
         simulated_stop.TRACKING,
         simulated_stop.CONSERVATION,

@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.ideal_run import ProofRun, largest_rise
-from wspd_design.certificates.theorems.lyapunov_adaptive import SLIPS
 
 if TYPE_CHECKING:
     from wspd_design.certificates.checks.ideal_run import Array
