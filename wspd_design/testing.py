@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from wspd_design.certificates.kernel.file import FOLDER
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.design.records import Design
 from wspd_design.parameters.errors import UserError
@@ -17,8 +18,13 @@ def assert_certified(
     vehicle: Vehicle | str | Path | None = None,
     rail: Rail | str | Path | None = None,
     at_least: Status = Status.PROVED,
+    limitation: bool = False,
+    effort: float = 1.0,
 ) -> tuple[Certificate, ...]:
     """Assert that checks of a design succeed.
+
+    What ``wspd certify`` has kept beside a design file is taken if the checkers accept it again; only what is missing
+    is searched.
 
     Parameters
     ----------
@@ -30,6 +36,10 @@ def assert_certified(
         Records, shipped names or files; those of the design by default.
     at_least : Status
         PROVED, or EVIDENCE, which a proof meets as well.
+    limitation : bool
+        Whether the proof of what the loop cannot do, LIMITATION, is what you ask for.
+    effort : float
+        Of the searches, as a multiple of the usual work.
 
     Returns
     -------
@@ -46,8 +56,8 @@ def assert_certified(
     __tracebackhide__ = True  # pytest shows the line of the user's test
     if at_least not in _LEVELS:
         raise UserError(f"at_least = {at_least.name} must be PROVED or EVIDENCE")
-    allowed = _LEVELS[_LEVELS.index(at_least) :]
-    return _expect(_problem(design, vehicle, rail), names, allowed)
+    allowed = (Status.LIMITATION,) if limitation else _LEVELS[_LEVELS.index(at_least) :]
+    return _expect(_problem(design, vehicle, rail), names, allowed, _stored(design), effort)
 
 
 def assert_refuted(
@@ -55,19 +65,28 @@ def assert_refuted(
     *names: str,
     vehicle: Vehicle | str | Path | None = None,
     rail: Rail | str | Path | None = None,
+    effort: float = 1.0,
 ) -> tuple[Certificate, ...]:
     """Assert that checks of a design are refuted; parameters and errors as in :func:`assert_certified`."""
     __tracebackhide__ = True
-    return _expect(_problem(design, vehicle, rail), names, (Status.REFUTED,))
+    return _expect(_problem(design, vehicle, rail), names, (Status.REFUTED,), _stored(design), effort)
 
 
-def _expect(problem: Problem, names: tuple[str, ...], allowed: tuple[Status, ...]) -> tuple[Certificate, ...]:
+def _stored(design: Design | Problem | str | Path) -> Path | None:
+    """Return where wspd certify keeps what is proved about a design file."""
+    return Path(design).with_suffix(FOLDER) if isinstance(design, (str, Path)) else None
+
+
+def _expect(
+    problem: Problem, names: tuple[str, ...], allowed: tuple[Status, ...], stored: Path | None, effort: float
+) -> tuple[Certificate, ...]:
     from wspd_design.certificates import suite
+    from wspd_design.certificates.search.budget import Budget
 
     __tracebackhide__ = True
     if not names:
         raise UserError(f"no check is named; available: {', '.join(suite.NAMES)}")
-    certificates = suite.verify(problem, only=names)
+    certificates = suite.verify(problem, only=names, budget=Budget(effort=effort), stored=stored)
     failed = [_message(each, allowed) for each in certificates if each.status not in allowed]
     if failed:
         raise AssertionError("\n\n".join(failed))

@@ -84,8 +84,8 @@ class Map:
 class Certificate:
     """A claim about a closed loop and its verdict.
 
-    ``margin`` is positive when the claim holds: how far the tightest point is from the limit. ``remark`` is what samples
-    say beside the verdict; no file keeps it.
+    ``margin`` is positive when the claim holds: how far the tightest point is from the limit. ``remark`` is what
+    samples say beside the verdict; no file keeps it.
     """
 
     name: str

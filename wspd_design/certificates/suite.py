@@ -20,7 +20,7 @@ from wspd_design.certificates.checks.foundations import (
 from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
 from wspd_design.certificates.checks.stop import tracking
-from wspd_design.certificates.checks.valve import no_go
+from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
@@ -45,7 +45,10 @@ CHECKS: Mapping[str, Check] = {
         lyapunov_repaired.CHECK,
         afsmc_energy.CHECK,
         barbalat.CHECK,
+        open_loop_pole.CHECK,
         no_go.CHECK,
+        hard_limits.CHECK,
+        sampling.CHECK,
         tracking.CHECK,
         conservation.CHECK,
     )

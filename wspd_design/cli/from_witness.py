@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from wspd_design.certificates.checks.stop.witness_state import Witness, plant_at, read_witness, start_at
 from wspd_design.certificates.setting.fingerprint import model_hash
+from wspd_design.certificates.witness import Witness, plant_at, read_witness, start_at
 from wspd_design.cli.console import console
 from wspd_design.cli.verification import problem_of
 from wspd_design.design.case import Case

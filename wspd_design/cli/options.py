@@ -172,13 +172,15 @@ DeadTimeOption: TypeAlias = Annotated[
 OnlyOption: TypeAlias = Annotated[
     list[str] | None, typer.Option("--only", metavar="CHECK", help="One check; repeat it for several.")
 ]
-SearchTimeOption: TypeAlias = Annotated[
-    str | None,
+EffortOption: TypeAlias = Annotated[
+    float,
     typer.Option(
-        "--search-time",
-        metavar="TIME",
-        help='How long to search for the proof of one claim before it stays undecided: "2 min". Default: 20 s.',
-        show_default=False,
+        "--effort",
+        metavar="FACTOR",
+        min=0.01,
+        max=1000.0,
+        help="How hard to search before a claim stays undecided, as a multiple of the usual work. Work is counted, so "
+        "that a busy machine comes to the same verdict.",
     ),
 ]
 JsonOption: TypeAlias = Annotated[

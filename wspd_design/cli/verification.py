@@ -2,18 +2,20 @@
 
 from collections import Counter
 from collections.abc import Collection, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from rich.console import Group
 from rich.padding import Padding
 from rich.text import Text
 
+from wspd_design.certificates.kernel.file import FOLDER
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.cli.console import console, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.design.case import Case
-from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.units import parse_quantity
+from wspd_design.design.catalog import is_design_file
+from wspd_design.design.own_controller import is_own_controller
 
 
 class _Shown(NamedTuple):
@@ -29,6 +31,7 @@ _SHOWN = {
     status: _Shown(sign, style, status.name.replace("_", " "), status.value)
     for status, sign, style in (
         (Status.PROVED, "✓", "green"),
+        (Status.LIMITATION, "!", "bold red"),
         (Status.EVIDENCE, "~", "cyan"),
         (Status.VACUOUS, "○", "yellow"),
         (Status.NOT_APPLICABLE, "-", "dim"),
@@ -36,9 +39,17 @@ _SHOWN = {
         (Status.REFUTED, "✗", "bold red"),
     )
 }
-_LIMIT = _Shown(
-    "!", "bold red", "LIMIT PROVED", f"{Status.PROVED.value}, and says what the closed loop cannot do"
-)
+
+
+def folder_beside(design: str) -> Path:
+    """Return the folder for what is kept about a design, beside its file if it has one."""
+    return Path(design.rpartition(":")[0] if is_own_controller(design) else design).with_suffix(FOLDER)
+
+
+def stored_beside(design: str) -> Path | None:
+    """Return the folder of certificates beside a design file, if there is one."""
+    folder = folder_beside(design)
+    return folder if is_design_file(design) and folder.is_dir() else None
 
 
 def problem_of(case: Case, *, seed: int = 0) -> Problem:
@@ -49,27 +60,28 @@ def problem_of(case: Case, *, seed: int = 0) -> Problem:
 
 
 def run_checks(
-    problem: Problem, only: Collection[str] | None, search_time: str | None
+    problem: Problem, only: Collection[str] | None, effort: float, stored: Path | None
 ) -> tuple[Certificate, ...]:
-    """Run the checks with their progress on standard error; ``search_time`` is what the user wrote."""
+    """Run the checks with their progress on standard error, or take what the folder keeps and the checkers accept."""
     from wspd_design.certificates import suite
-    from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget
+    from wspd_design.certificates.search.budget import Budget
 
-    budget = DEFAULT_BUDGET
-    if search_time is not None:
-        seconds = parse_quantity(search_time, "time", what="search time")
-        if seconds <= 0.0:
-            raise UserError(f'search time "{search_time}" must be above 0; write for example "2 min"')
-        budget = Budget(seconds=seconds)
     with progress() as tell:
-        return suite.verify(problem, only=only or None, progress=tell, budget=budget)
+        return suite.verify(
+            problem, only=only or None, progress=tell, budget=Budget(effort=effort), stored=stored
+        )
 
 
-def exit_code(certificates: Sequence[Certificate]) -> int:
-    """Return the exit code of a verification; a refuted claim counts more than an undecided one."""
+def exit_code(certificates: Sequence[Certificate], *, asked: bool) -> int:
+    """Return the exit code of a verification: bad news first, then what is open.
+
+    A check that was ``asked`` for by its name is open unless it is proved.
+    """
     statuses = {certificate.status for certificate in certificates}
-    if Status.REFUTED in statuses:
+    if statuses & {Status.REFUTED, Status.LIMITATION}:
         return REFUTED
+    if asked:
+        return GOOD if statuses == {Status.PROVED} else UNDECIDED
     return UNDECIDED if Status.UNDECIDED in statuses else GOOD
 
 
@@ -85,7 +97,18 @@ def show_claims(problem: Problem, certificates: Sequence[Certificate]) -> None:
         markup=False,
     )
     for certificate in certificates:
-        out.print(_claim(certificate))
+        out.print(claim_text(certificate))
+
+
+def show_not_varied(problem: Problem, certificates: Sequence[Certificate]) -> None:
+    """Print which numbers with bounds no claim varies, or held by some."""
+    from wspd_design.certificates.setting.domain import not_varied
+
+    never = not_varied(problem, {name for each in certificates for name in each.varied})
+    held = sorted({name for each in certificates for name in each.held} - set(never))
+    console().print(f"not varied: {', '.join(never) or 'none'}", style="dim", markup=False)
+    if held:
+        console().print(f"held by some claims, as they say: {', '.join(held)}", style="dim", markup=False)
 
 
 def show_verdicts(certificates: Sequence[Certificate]) -> None:
@@ -100,22 +123,17 @@ def show_verdicts(certificates: Sequence[Certificate]) -> None:
 def show_counts(certificates: Sequence[Certificate]) -> None:
     """Print how often each status was found, and what it means."""
     out = console()
-    counts = Counter(map(_shown, certificates))
-    present = [shown for shown in (*_SHOWN.values(), _LIMIT) if counts[shown]]
+    counts = Counter(_SHOWN[certificate.status] for certificate in certificates)
+    present = [shown for shown in _SHOWN.values() if counts[shown]]
     out.print(Text(", ").join(Text(f"{counts[each]} {each.word}", style=each.style) for each in present))
     for each in present:
         out.print(f"{each.word}: {each.meaning}.", style="dim")
 
 
 def status_text(certificate: Certificate) -> Text:
-    """Return sign and word of a finding, in its color; a limitation that is proved is no good news."""
-    shown = _shown(certificate)
+    """Return sign and word of a finding, in its color; only good news is green."""
+    shown = _SHOWN[certificate.status]
     return Text(f"{shown.sign} {shown.word}", style=shown.style)
-
-
-def _shown(certificate: Certificate) -> _Shown:
-    limit = certificate.limitation and certificate.status is Status.PROVED
-    return _LIMIT if limit else _SHOWN[certificate.status]
 
 
 def margin_text(margin: Range | None) -> str:
@@ -135,10 +153,10 @@ def margin_text(margin: Range | None) -> str:
             return f"{low:.3g}{unit}" if same else f"{low:.3g} to {high:.3g}{unit}"
 
 
-def _claim(certificate: Certificate) -> Group:
+def claim_text(certificate: Certificate) -> Group:
     """What is claimed and, unless it holds, why not; indented below the name of the check."""
     lines = [Text(certificate.claim)]
-    if certificate.status in (Status.REFUTED, Status.UNDECIDED, Status.VACUOUS) or certificate.limitation:
+    if certificate.status not in (Status.PROVED, Status.EVIDENCE):
         lines.append(Text(certificate.explanation, style="italic"))
     if certificate.witness:
         lines.append(Text(f"Witness: {_place(certificate.witness)}", style="red"))

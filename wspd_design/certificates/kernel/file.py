@@ -17,6 +17,8 @@ from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.records import Certificate, Point, Status
 
 SCHEMA = "wspd-certificate/2"
+FOLDER = ".certificates"
+"""Ending of the folder of certificates beside a design."""
 PACKAGES = ("crival", "casadi", "cvxpy", "clarabel", "python-flint", "sympy")
 HEARSAY = ("findings", "made_by")
 """Entries of a file that no sentence of a certificate is compared with: one is decided about, the other is idle."""

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 BATCH = 512
+DENIED_BOXES = 2048  # that are looked at when a claim is known to be false
 SAMPLES = 2048  # of the first look at the box
 POLISH = 12  # rounds of narrowing around the best sample
 
@@ -41,7 +42,9 @@ class Outcome:
     tree: str  # split tree in preorder, empty if some box is undecided
 
 
-def extreme(claim: Claim, *, tolerance: float, backend: Backend | None = None) -> Outcome:
+def extreme(
+    claim: Claim, *, tolerance: float, denied: bool = False, backend: Backend | None = None
+) -> Outcome:
     """Enclose the supremum of a claim's expression, or the infimum for ``>=``; the bound does not matter.
 
     Parameters
@@ -50,6 +53,8 @@ def extreme(claim: Claim, *, tolerance: float, backend: Backend | None = None) -
         Expression, box and direction.
     tolerance : float
         Width of the enclosure, in the unit of the claim.
+    denied : bool
+        Whether to stop soon once a point denies the claim: the enclosure is wide then.
     backend : Backend, optional
         Interval arithmetic.
 
@@ -59,7 +64,7 @@ def extreme(claim: Claim, *, tolerance: float, backend: Backend | None = None) -
         When the budget is used up, the enclosure is wider and a share of the box undecided.
     """
     search = _Search(claim, backend or default_backend())
-    search.run(None, tolerance)
+    search.run(None, tolerance, _beyond(claim) if denied else inf)
     return search.outcome()
 
 
@@ -69,6 +74,12 @@ def prove(claim: Claim, *, backend: Backend | None = None) -> Outcome:
     low, high = enclosing(claim.bound)
     search.run(low if claim.relation == "<=" else -high, 0.0)
     return search.outcome()
+
+
+def _beyond(claim: Claim) -> float:
+    """Return the bound as an upper bound, rounded up: what exceeds it denies the claim."""
+    low, high = enclosing(claim.bound)
+    return high if claim.relation == "<=" else -low
 
 
 @dataclass(slots=True)
@@ -98,8 +109,11 @@ class _Search:
         self.tape = trace(self.claim, self.backend)
         self.sign = 1.0 if self.claim.relation == "<=" else -1.0
 
-    def run(self, bound: float | None, tolerance: float) -> None:
-        """Decide boxes against the bound, or against the best point plus the tolerance."""
+    def run(self, bound: float | None, tolerance: float, denying: float = inf) -> None:
+        """Decide boxes against the bound, or against the best point plus the tolerance.
+
+        A point beyond ``denying`` leaves only a few boxes to be looked at.
+        """
         import numpy as np
 
         allowed = budget().boxes
@@ -112,7 +126,8 @@ class _Search:
             threshold = self.best + tolerance if bound is None else bound
             # The box as a whole is looked at whatever the budget, so that some enclosure is known.
             self.cut = self.count > 0 and self.count >= allowed
-            if self.best > threshold or self.cut:
+            known = self.best > denying and self.count >= DENIED_BOXES
+            if self.best > threshold or self.cut or known:
                 break
             order = np.argsort(-waiting.upper)
             batch, rest = waiting.take(order[:BATCH]), waiting.take(order[BATCH:])

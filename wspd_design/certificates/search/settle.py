@@ -27,7 +27,7 @@ def settle(claim: Claim, *, tolerance: float) -> Stated:
     tolerance : float
         Width of the enclosure of the extreme value, in the unit of the claim.
     """
-    found = extreme(claim, tolerance=tolerance)
+    found = extreme(claim, tolerance=tolerance, denied=True)
     target = tightest(claim, found, tolerance)
     denied = found.low > claim.bound if claim.relation == "<=" else found.high < claim.bound
     enough = target.bound <= claim.bound if claim.relation == "<=" else target.bound >= claim.bound

@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import AXLE, QUANTITIES, STATE
 from wspd_design.certificates.records import Point, Problem
 from wspd_design.certificates.setting import axle
-from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH as KMH
 
@@ -100,11 +100,12 @@ def described(problem: Problem, names: Iterable[str] = BASIC, held: Iterable[str
     problem : Problem
         Domain.
     names : iterable of str
-        Quantities that vary.
+        Quantities that vary; those that are exactly known are left out.
     held : iterable of str
         Quantities with a range that the claim depends on and does not vary: they stand at their nominal values.
     """
-    text = ", ".join(_range_text(name, span(problem, name)) for name in names)
+    spans = {name: span(problem, name) for name in names}
+    text = ", ".join(_range_text(name, ends) for name, ends in spans.items() if name in STATE or _wide(ends))
     nominal = ", ".join(_range_text(name, 2 * (problem.nominal(name),)) for name in held)
     return f"{text}; held: {nominal}" if nominal else text
 

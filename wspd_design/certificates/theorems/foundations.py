@@ -6,15 +6,16 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.finding import Finding, above, below
 from wspd_design.certificates.kernel.obligation import Sign
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.certificates.theorems.scope import scope
+from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems.theorem import Theorem, all_of, hypothesis
-from wspd_design.certificates.theorems.whom import every_law
 from wspd_design.parameters.units import KMH
 
-SHOWN = {"m/s": (KMH, "km/h")}
-"""Scale and unit in which people read a quantity."""
-
 USED = ("speed", "wheelset inertia", "wheel radius")
+"""Quantities of the table that G depends on."""
+
+
+def _always(problem: Problem) -> str:  # noqa: ARG001 - the theorem speaks about every design
+    return ""
 
 
 def _factors(problem: Problem) -> tuple[Sign, ...]:
@@ -39,13 +40,13 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
     return Certificate(
         name="gain_positive",
         title="Sign of the input gain",
-        claim=f"G = R/(2 I v) > 0 {scope(problem, USED).text}.",
+        claim=f"G = R/(2 I v) > 0 on {domain.described(problem, USED)}.",
         status=status,
         explanation=(
             "A factor of G is zero or negative in the box, so that G has no sign there; correct the bounds."
             if smallest is None
             else "More torque means more slip wherever the train is. G is smallest at the highest "
-            f"speed and inertia and the smallest radius, {float(smallest) * 1e6:.4g} 1/s per MN m."
+            f"speed and inertia and the smallest wheel, {float(smallest) * 1e6:.4g} 1/s per MN m."
         ),
         method="exact rational arithmetic at the end points of the monotone quotient",
         margin=None
@@ -59,13 +60,13 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
         ),
         witness=tuple(_point(each) for each in wrong),
         hypotheses=tuple(hypothesis(each.text, findings[each.key]) for each in factors),
-        varied=scope(problem, USED).varied,
+        varied=USED[1:],
         reference="eq. (19); docs/theory.md#slip-equation",
     )
 
 
 def _point(factor: Sign) -> Point:
-    scale, unit = SHOWN.get(factor.unit, (1.0, factor.unit))
+    scale, unit = domain.SHOWN.get(factor.unit, (1.0, factor.unit))
     return Point(name=factor.quantity, value=float(factor.value) * scale, unit=unit)
 
 
@@ -73,7 +74,7 @@ GAIN_POSITIVE = Theorem(
     name="gain_positive",
     title="Sign of the input gain",
     claim="The input gain G of (19) is positive.",
-    speaks_about=every_law,
+    speaks_about=_always,
     obligations=_factors,
     tell=_tell_gain_positive,
 )

@@ -13,6 +13,7 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.arb import above, below, point
 from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.kernel.obligation import Condition, Inequality, Obligation
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import AXLE
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
@@ -23,7 +24,6 @@ from wspd_design.certificates.setting.model_error import (
     residual_over_ratio,
     variables,
 )
-from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.certificates.setting.plant import AXLE_PLANT, Values, place
 from wspd_design.certificates.theorems.edges import of_key, on_edges, together
 from wspd_design.certificates.theorems.scope import scope

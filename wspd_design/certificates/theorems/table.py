@@ -10,6 +10,7 @@ from wspd_design.certificates.theorems import (
     foundations,
     lyapunov_adaptive,
     lyapunov_surface,
+    recovery,
     signs,
     simulated_stop,
     sliding,
@@ -33,7 +34,10 @@ THEOREMS: Mapping[str, Theorem] = {
         lyapunov_adaptive.LYAPUNOV_REPAIRED,
         afsmc_energy.AFSMC_ENERGY,
         barbalat.BARBALAT,
+        valve.OPEN_LOOP_POLE,
         valve.NO_GO,
+        recovery.HARD_LIMITS,
+        valve.SAMPLING,
         simulated_stop.TRACKING,
         simulated_stop.CONSERVATION,
     )

@@ -6,9 +6,9 @@ from typing import TypeAlias
 
 from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.kernel.obligation import Obligation
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Hypothesis, Problem, Range, Status
 from wspd_design.certificates.setting.fingerprint import model_hash
-from wspd_design.certificates.setting.outside import OutsideModel
 
 Findings: TypeAlias = Mapping[str, Finding]
 """What is known about each obligation, by its key."""

@@ -8,27 +8,26 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from wspd_design.certificates.kernel.file import certificate_text, file_name
+from wspd_design.certificates.kernel.file import FOLDER, certificate_text, file_name
 from wspd_design.certificates.records import Certificate, Status
 from wspd_design.cli import options
 from wspd_design.cli.console import console, spaced, table
 from wspd_design.cli.output import check_folder, write_text
 from wspd_design.cli.verification import (
     exit_code,
+    folder_beside,
     margin_text,
     problem_of,
     run_checks,
     show_claims,
     show_counts,
+    show_not_varied,
     status_text,
+    stored_beside,
 )
 from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
-from wspd_design.design.own_controller import is_own_controller
 from wspd_design.parameters.errors import UserError
-
-FOLDER = ".certificates"
-"""Ending of the folder beside a design."""
 
 
 def certify(
@@ -53,41 +52,32 @@ def certify(
             show_default=False,
         ),
     ] = None,
-    search_time: options.SearchTimeOption = None,
+    effort: options.EffortOption = 1.0,
     force: options.ForceOption = False,
 ) -> None:
     """Prove what can be proved about a design and keep the proofs.
 
-    Each check with proofs becomes one JSON file, which wspd check decides about without the program that found it.
-    So does each check that is refuted, with its witness: wspd simulate DESIGN --from-witness FILE starts there.
-    Exit code 1 when a claim is refuted, else 3 when one is undecided, else 0.
+    Each check that speaks about the design becomes one JSON file, which wspd check decides about without the program
+    that found it. A refuted one has its witness: wspd simulate DESIGN --from-witness FILE starts there.
+    Exit code 1 when a claim is refuted or a limitation is proved, else 3 when one is undecided, else 0. With --only a
+    check that is not proved counts as undecided.
     """
     case = load_case(design, CaseOptions(vehicle=vehicle, rail=rail))
-    folder = output if output is not None else _beside(design)
+    folder = output if output is not None else folder_beside(design)
     check_folder(folder, force=force)
     problem = problem_of(case)
-    certificates = run_checks(problem, only, search_time)
+    certificates = run_checks(problem, only, effort, stored_beside(design))
     sizes = _write(certificates, folder, force=force)
     show_claims(problem, certificates)
     _show(certificates, sizes)
     show_counts(certificates)
+    show_not_varied(problem, certificates)
     if sizes:
         console().print(
-            Text(
-                f"\nWritten: {folder}/NAME.json for each of the {len(sizes)} checks with a proof or a witness"
-            )
+            Text(f"\nWritten: {folder}/NAME.json for each of the {len(sizes)} checks that speak about it")
         )
-        console().print(
-            Text(f"Check them: wspd check {folder}/*.json{_as_given(design, folder, vehicle, rail)}")
-        )
-    else:
-        console().print("\nNo check has a proof or a witness to keep.")
-    raise typer.Exit(exit_code(certificates))
-
-
-def _beside(design: str) -> Path:
-    """Return the folder for what is kept about a design, beside its file if it has one."""
-    return Path(design.rpartition(":")[0] if is_own_controller(design) else design).with_suffix(FOLDER)
+        console().print(Text(f"Check them: wspd check {folder}{_as_given(design, folder, vehicle, rail)}"))
+    raise typer.Exit(exit_code(certificates, asked=bool(only)))
 
 
 def _as_given(design: str, folder: Path, vehicle: str | None, rail: str | None) -> str:
@@ -98,8 +88,8 @@ def _as_given(design: str, folder: Path, vehicle: str | None, rail: str | None) 
 
 
 def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) -> dict[str, int]:
-    """Write what can be checked or simulated again; return the size of each file [byte] by the name of the check."""
-    kept = [each for each in certificates if each.proofs or each.status is Status.REFUTED]
+    """Write what speaks about the design; return the size of each file [byte] by the name of the check."""
+    kept = [each for each in certificates if each.status is not Status.NOT_APPLICABLE]
     if kept:
         try:
             folder.mkdir(exist_ok=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.checks.frame import certified
 from wspd_design.certificates.checks.region.outlines import outlines
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Point, Problem, Proof, Range, Series, Status
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.invariant_sets import document, escape
@@ -15,7 +16,6 @@ from wspd_design.certificates.search.invariant_sets.search import Found, holding
 from wspd_design.certificates.search.settle import engine
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.fingerprint import model_hash
-from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.invariant_sets import checker
 from wspd_design.controllers.protocol import Measurement

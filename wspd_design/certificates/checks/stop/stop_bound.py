@@ -1,6 +1,7 @@
 """No controller stops shorter than this, and how near to it the simulated stop comes."""
 
 from wspd_design.certificates.checks.frame import certified, series
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import (
     Certificate,
     Hypothesis,
@@ -15,7 +16,6 @@ from wspd_design.certificates.search import adhesion_peaks as peak_search
 from wspd_design.certificates.search.settle import versions
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.fingerprint import model_hash
-from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import INSTANTS, Limit, NoBound, require
 from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import CLAIM, rounded_down

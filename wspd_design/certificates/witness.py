@@ -1,15 +1,17 @@
 """The witness of a certificate file as a state that a stop can start from.
 
-Nothing in a file is believed: whatever is no finite number within what a railway vehicle can have is refused.
+Nothing in a file is believed: whatever is not a finite number within what a railway vehicle can have is refused.
 """
 
 import math
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from wspd_design.certificates.kernel.checker import Refused
-from wspd_design.certificates.kernel.file import certificate_content
+from wspd_design.certificates.kernel.file import read_certificate
+from wspd_design.certificates.quantities import TABLE
 from wspd_design.certificates.records import Problem, Status
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.parameters.errors import UserError
@@ -27,14 +29,18 @@ class _Allowed(NamedTuple):
     high: float
 
 
-_COORDINATES = {
-    "slip": _Allowed("-", 0.0, math.nextafter(1.0, 0.0)),  # locked wheels are no state to start from
+_STATE = {
+    "slip": _Allowed("-", 0.0, math.nextafter(1.0, 0.0)),  # locked wheels are not a state to start from
     "speed": _Allowed("km/h", 0.36, 500.0),  # below it the slip is not referred to the speed
+    "torque": _Allowed("N m", 0.0, 1e6),
+}
+_TIGHT = {
     "mass": _Allowed("kg", 1e3, 1e6),
     "wheelset inertia": _Allowed("kg m2", 10.0, 1e4),
     "mu0": _Allowed("-", 1e-3, 1.0),
-    "torque": _Allowed("N m", 0.0, 1e6),
 }
+_NUMBERS = {row.name: _Allowed(row.unit, 0.0, 1e15) for row in TABLE if row.record not in ("state", "axle")}
+_COORDINATES = {**_NUMBERS, **_TIGHT, **_STATE}
 _ANEW = "write it anew with wspd certify"
 
 
@@ -48,10 +54,8 @@ class Witness:
     model_hash: str  # of the problem that the certificate is about
     slip: float  # -
     speed: float  # m/s
-    mass: float | None  # kg
-    wheelset_inertia: float | None  # kg m2
-    mu0: float | None  # -
     torque: float | None  # N m per wheelset
+    numbers: Mapping[str, float]  # of vehicle and rail, by their names in the table [SI units]
 
 
 def read_witness(text: str, source: str) -> Witness:
@@ -70,7 +74,7 @@ def read_witness(text: str, source: str) -> Witness:
         If the text is no certificate, or its witness is no state that a stop can start from.
     """
     try:
-        content = certificate_content(text)
+        _, content = read_certificate(text)
     except Refused as refusal:
         raise UserError(
             f"{source} has no witness to start from: {refusal}; name a file that this version of wspd certify wrote"
@@ -97,10 +101,8 @@ def read_witness(text: str, source: str) -> Witness:
         model_hash=fingerprint if isinstance(fingerprint, str) else "",
         slip=values["slip"],
         speed=values["speed"] / KMH,
-        mass=values.get("mass"),
-        wheelset_inertia=values.get("wheelset inertia"),
-        mu0=values.get("mu0"),
         torque=values.get("torque"),
+        numbers={name: value for name, value in values.items() if name not in _STATE},
     )
 
 
@@ -115,16 +117,14 @@ def plant_at(problem: Problem, witness: Witness) -> tuple[Vehicle, Rail]:
         The point.
     """
     nominal = problem.vehicle
-    mass = nominal.mass if witness.mass is None else witness.mass
-    inertia = nominal.wheelset_inertia if witness.wheelset_inertia is None else witness.wheelset_inertia
-    mu0 = problem.rail.mu0 if witness.mu0 is None else witness.mu0
+    mass = witness.numbers.get("mass", nominal.mass)
     body_mass = nominal.body_mass + (mass - nominal.mass)  # the body takes up what the mass gains or loses
     if body_mass <= 0.0:
         raise UserError(
             f"{witness.source} has a witness with a mass of {mass:g} kg, which leaves none for the body of "
             f"{nominal.name}; name the vehicle that the certificate is about with --vehicle"
         )
-    vehicle, rail = plant_with(problem, {"mass": mass, "wheelset inertia": inertia, "mu0": mu0})
+    vehicle, rail = plant_with(problem, witness.numbers)
     return replace(vehicle, body_mass=body_mass), rail
 
 
@@ -184,7 +184,7 @@ def _number(name: str, value: Any, allowed: _Allowed, source: str) -> float:
         with suppress(OverflowError):
             number = float(value)
     if not math.isfinite(number):
-        raise UserError(f"{source} has a witness whose {name} is no finite number; {_ANEW}")
+        raise UserError(f"{source} has a witness whose {name} is not a finite number; {_ANEW}")
     if not allowed.low <= number <= allowed.high:
         unit = f" {allowed.unit}".removesuffix(" -")
         raise UserError(

@@ -1,4 +1,4 @@
-"""What to do where the model does not hold."""
+"""The error of a domain on which the model does not hold."""
 
 from wspd_design.parameters.errors import UserError
 
