@@ -10,8 +10,8 @@ from functools import partial
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Place
 from wspd_design.certificates.kernel.obligation import Inequality, Sampled, Special
+from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.certificates.setting.outside import OutsideModel
 from wspd_design.certificates.theorems.authority import out_of_reach
 from wspd_design.certificates.theorems.evidence import supported
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothesis
