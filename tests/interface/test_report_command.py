@@ -36,8 +36,12 @@ def test_report_of_a_design_file(wspd, smc_file, calls):
     assert "a.pdf" in outcome.out
     assert calls["design"].name == "smc-er24pc-polach-wet"
     options = calls["options"]
-    assert (options["vehicle_name"], options["rail_name"], options["seed"]) == ("er24pc", "polach-wet", 4)
-    assert options["initial_speed"] == pytest.approx(100.0 / 3.6)
+    assert (options["vehicle_name"], options["rail_name"], options["scenario"].seed) == (
+        "er24pc",
+        "polach-wet",
+        4,
+    )
+    assert options["scenario"].initial_speed == pytest.approx(100.0 / 3.6)
     assert options["baselines"] == ["afsmc", "smc", "torque-feedback", *INDUSTRY]
 
 

@@ -9,15 +9,15 @@ from rich.text import Text
 from wspd_design.cli.case import Case
 from wspd_design.cli.console import console, print_json, progress_bar, spaced, table
 from wspd_design.cli.exit_codes import INTERRUPTED
-from wspd_design.cli.from_witness import Origin
+from wspd_design.cli.from_witness import WitnessStart
 from wspd_design.cli.json_objects import campaign_object
 from wspd_design.cli.stop_figures import number
-from wspd_design.cli.stop_options import disturbances_of, rails_of
 from wspd_design.cli.summary import Summary, summarize
 from wspd_design.cli.tables import write_table
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.simulation.campaign import simulate_many
+from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Scenario
 
 _NAMES = {"distance_m": "distance [m]", "stopping_time_s": "time [s]", "lock_time_s": "wheels locked [s]"}
@@ -33,7 +33,7 @@ def simulate_campaign(
     output: Path | None,
     force: bool,
     as_json: bool,
-    origin: Origin | None,
+    start: WitnessStart | None,
 ) -> None:
     """Simulate many stops and say how they spread; an interrupt keeps what is done.
 
@@ -55,7 +55,7 @@ def simulate_campaign(
         Whether an existing file may be replaced.
     as_json : bool
         Print an object in place of the table.
-    origin : Origin or None
+    start : WitnessStart or None
         The witness that the stops start at.
     """
     bounds = () if nominal else _bounds(case, scenario)
@@ -69,7 +69,7 @@ def simulate_campaign(
         write_table(written, campaign.table, force=force)
     summary = summarize(campaign, wanted=runs)
     if as_json:
-        print_json(campaign_object(summary, case, scenario, origin))
+        print_json(campaign_object(summary, case, scenario, start))
     elif done:
         _show(summary, case, scenario)
         if written is not None:

@@ -53,7 +53,7 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
     """Return the report of a design, not yet rendered."""
     made = dossier.design
     version = dict(dossier.provenance.versions)["wspd-design"]
-    speed = numbers.quantity_in(dossier.initial_speed, "km/h")
+    speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
     record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
     return Document(
         title=f"Wheel slide protection: {made.name}",

@@ -60,7 +60,7 @@ def sample_evidence(**changes) -> Evidence:
                     distance=200.0 + 10.0 * place,
                     lag=1.2,
                     efficiency=0.98 - 0.05 * place,
-                    bound=180.0,
+                    ideal_stop=180.0,
                     slip_max=0.6 if wet else 0.25,
                     saturated_share=0.1,
                     vented_air=3.2,
@@ -106,7 +106,7 @@ def sample_evidence(**changes) -> Evidence:
             for rail in RAILS
         ),
         yardsticks=tuple(
-            Yardstick(rail=rail, bound=150.0, bound_time=9.0, bound_at_once=120.0, constant_slip=160.0)
+            Yardstick(rail=rail, ideal_stop=150.0, ideal_time=9.0, ideal_at_once=120.0, constant_slip=160.0)
             for rail in RAILS
         ),
         ideal_fill_time=0.01,
@@ -163,7 +163,7 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
             for name in CONTROLLERS
             for rail in RAILS
         ),
-        bound_changes=(0.01, -0.02, 0.03, 0.0),
+        ideal_changes=(0.01, -0.02, 0.03, 0.0),
         provenance=Provenance(
             command="wspd reproduce -o reports/paper",
             versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),

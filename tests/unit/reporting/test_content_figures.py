@@ -90,9 +90,9 @@ def test_distances_show_both_parts_and_the_paper():
     for index, (trial, lag) in enumerate(zip(DOSSIER.trials, DOSSIER.lag_distances, strict=True)):
         assert widths[2 * index] == pytest.approx(lag)
         assert widths[2 * index] + widths[2 * index + 1] == pytest.approx(trial.metrics.distance)
-    mark, bound = axes.get_lines()
+    mark, ideal = axes.get_lines()
     assert set(mark.get_xdata()) == {184.63}
-    assert set(bound.get_xdata()) == {174.25}
+    assert set(ideal.get_xdata()) == {174.25}
 
 
 @pytest.mark.parametrize("count", [2, 8])

@@ -32,7 +32,7 @@ def test_nominal_runs_are_the_single_stop(er24pc, make_controller, scenario):
     assert many.complete
     assert many.table["stopped"].all()
     np.testing.assert_allclose(many.table["distance_m"], single.totals.distance, rtol=1e-9)
-    np.testing.assert_allclose(many.table["torque_integral_kNms"], single.totals.torque / 1e3, rtol=1e-9)
+    np.testing.assert_allclose(many.table["torque_integral_Nms"], single.totals.torque, rtol=1e-9)
 
 
 def test_parameters_are_drawn_within_their_bounds_and_used(er24pc, make_controller, scenario, bounds):

@@ -7,11 +7,15 @@ from rich.text import Text
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, check_plant, resolve_all
 from wspd_design.cli.console import console, print_json, progress, spaced, table
-from wspd_design.cli.json_objects import comparison_object, stop_object
+from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.json_objects import comparison_object
 from wspd_design.cli.stop_figures import CHAOTIC, number
-from wspd_design.cli.stop_options import StopWords, disturbances_of, rails_of, scenario
+from wspd_design.cli.stop_options import scenario
 from wspd_design.design.catalog import CONTROLLERS
+from wspd_design.exchange.objects import stop_object
 from wspd_design.simulation.comparison import Trial, trial
+from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
 
@@ -34,7 +38,9 @@ _MORE_COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
 )
 
 
+@takes_stop_options
 def compare(
+    *,
     names: options.ControllersArgument = None,
     vehicle: options.VehicleOption = None,
     plant: options.PlantOption = options.PLANT,
@@ -43,14 +49,7 @@ def compare(
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
-    axle_rails: options.AxleRailsOption = None,
-    patch: options.PatchOption = None,
-    grade: options.GradeOption = None,
-    pad_vibration: options.PadVibrationOption = False,
-    speed_noise: options.SpeedNoiseOption = None,
-    pulses: options.PulsesOption = None,
-    reference_error: options.ReferenceErrorOption = None,
-    dead_time: options.DeadTimeOption = None,
+    disturbances: StopOptions,
     as_json: options.JsonOption = False,
 ) -> None:
     """Simulate the same stop with several controllers, side by side.
@@ -63,18 +62,9 @@ def compare(
     cases = resolve_all(names or list(CONTROLLERS), wishes)
     stop = scenario(
         cases[0].rail,
-        StopWords(
-            speed=speed,
-            seed=seed,
-            axle_rails=axle_rails,
-            patches=patch,
-            grade=grade,
-            pad_vibration=pad_vibration,
-            speed_noise=speed_noise,
-            pulses=pulses,
-            reference_error=reference_error,
-            dead_time=dead_time,
-        ),
+        disturbances,
+        speed=speed,
+        seed=seed,
     )
     trials: list[tuple[Trial, float]] = []
     with progress() as tell:
@@ -114,16 +104,18 @@ def _show(trials: list[Trial], scenario: Scenario) -> None:
             style="bold" if best else "",
         )
     out.print(spaced(shown))
-    bound = first.metrics.bound
-    known = f" (bound {bound:.1f} m)" if bound == bound else ""
+    ideal = first.metrics.ideal_stop
+    known = f" ({ideal:.1f} m, best slip held)" if ideal == ideal else ""
     more = (
         "; valve: changes of its state; air: brake cylinders vented; adh: adhesion used" if complete else ""
     )
     out.print(
-        f"d distance, t time, lag 2 d/v0 - t, eff efficiency: bound over distance{known}; slip above 10 km/h, "
+        f"d distance, t time, lag 2 d/v0 - t, eff efficiency: ideal stop{known} over distance; slip above 10 km/h, "
         f"rms about the reference; lock: how long the wheels were locked{more}.",
         style="dim",
     )
+    if first.metrics.ideal_ending is Ending.TIME_LIMIT:
+        out.print(f"No ideal stop: {NO_IDEAL_STOP}.", style="bold yellow")
     if len(stopped) < len(trials):
         out.print(f"* {Ending.TIME_LIMIT.value}.", style="yellow")
     spreads = [f"{made.run.controller} {made.check.spread:.2g} m" for made in trials if made.check.chaotic]

@@ -48,7 +48,7 @@ def linearize(
     points = [linearization.linearize(locomotive, friction, slip=reference, speed=v) for v in speeds]
     beyond = [point.slip_pole > 1.0 / point.time_constant for point in points]
     if as_json:
-        print_json(linearization_object(points, plant=plant, beyond_lag=beyond))
+        print_json(linearization_object(points, plant=plant))
     else:
         _show(points, beyond)
 

@@ -8,16 +8,20 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.case import Case, Wishes, check_plant, chosen, parse_speed, resolve
+from wspd_design.cli.case import Case, Wishes, check_plant, chosen, resolve
 from wspd_design.cli.console import console, progress
+from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.output import check_output
+from wspd_design.cli.stop_options import scenario
 from wspd_design.design.catalog import CONTROLLERS, named_design
 from wspd_design.design.laws import GAINS_OF, law_of
 from wspd_design.design.records import Design
 from wspd_design.parameters.errors import UserError
 
 
+@takes_stop_options
 def report(
+    *,
     name: options.ControllerArgument = None,
     controller: options.ControllerOption = None,
     vehicle: options.VehicleOption = None,
@@ -27,6 +31,7 @@ def report(
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
+    disturbances: StopOptions,
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Report to write, .html or .pdf.")
     ] = Path("report.html"),
@@ -46,17 +51,16 @@ def report(
     chosen_name = chosen(name, controller)
     case = resolve(chosen_name, Wishes(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
     made = _design(chosen_name, case)
-    initial_speed = parse_speed(speed)
+    stop = scenario(case.rail, disturbances, speed=speed, seed=seed)
     with progress() as tell:
         computed = dossier(
             made,
             vehicle_name=case.vehicle_name,
             rail_name=case.rail_name,
-            initial_speed=initial_speed,
+            scenario=stop,
             baselines=[other for other in CONTROLLERS if other != made.name],
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
-            seed=seed,
             progress=tell,
         )
         tell("typesetting")

@@ -52,7 +52,7 @@ def table10(made: Reproduction) -> tuple[Block, ...]:
         Paragraph(
             text=rich(
                 "The same controllers on the friction of Polach (2005), which the paper cites and which falls "
-                "with the sliding speed, and beside stops that no controller can beat."
+                "with the sliding speed, and beside ideal stops, simulations of a brake that holds the slip."
             )
         ),
         _ranking(made),
@@ -162,8 +162,8 @@ def _ranking(made: Reproduction) -> Table:
     ]
     for title, field in (
         ("slip held at the reference", "constant_slip"),
-        ("bound: adhesion peak", "bound"),
-        ("the same, full torque at once", "bound_at_once"),
+        ("ideal stop: adhesion peak held", "ideal_stop"),
+        ("the same, full torque at once", "ideal_at_once"),
     ):
         values = [getattr(evidence.yardstick(rail), field) for rail in RAILS]
         rows.append((title, *(numbers.decimals(value, 1) for value in values)))

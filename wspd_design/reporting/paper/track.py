@@ -24,7 +24,7 @@ def track(made: Reproduction) -> tuple[Block, ...]:
     ratios = [each.ratio for each in made.track]
     changes = made.disturbances
     calm, chaotic = (numbers.decimals(largest_change(changes, chaotic=which), 1) for which in (False, True))
-    bound = numbers.decimals(max(map(abs, made.bound_changes)), 2)
+    ideal = numbers.decimals(max(map(abs, made.ideal_changes)), 2)
     return (
         Heading(text="Table 9 and the track", anchor="track"),
         Equation(
@@ -74,8 +74,9 @@ def track(made: Reproduction) -> tuple[Block, ...]:
             text="The paper adds a vibration of the pads and an irregular track to its stops. How a wheel load "
             "follows the track depends on a suspension that the paper does not print. Here the load of each wheelset "
             "has the shape of the vertical profile, as each axle meets it, with an assumed standard deviation of "
-            f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. The bound "
-            f"changes by {bound} m at most: what the track costs a perfect brake. A real law switches at other "
+            f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. The ideal "
+            f"stop changes by {ideal} m at most: what the track costs a brake that holds the best slip. "
+            "A real law switches at other "
             f"moments than before, and its distance changes by up to {calm} m"
             + (f", that of a chaotic loop by up to {chaotic} m." if any(d.spread for d in changes) else ".")
         ),

@@ -15,9 +15,11 @@ from wspd_design.reporting.blocks import (
 )
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all, slips_alt
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
-from wspd_design.reporting.text import CodeSpan, Text
+from wspd_design.reporting.sections.checks import check_anchor
+from wspd_design.reporting.text import CodeSpan, Link, Text
+from wspd_design.reporting.yardsticks import ideal_distance, ideal_sentence, proved_bound
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.paper.published import PublishedStop, load_table10
 
@@ -38,11 +40,12 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
         Figure(
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
             caption="Stopping distances. Dark: initial speed times lag, what the brake build-up costs; "
-            f"light: the rest, at the plateau deceleration. Dashed: the bound of "
-            f"{numbers.decimals(trials[0].metrics.bound, 1)} m, which no controller can beat.{marked}",
+            f"light: the rest, at the plateau deceleration. Dashed: the ideal stop, "
+            f"{ideal_distance(trials[0].metrics)}, a simulation of a brake that holds the best slip.{marked}",
             alt=distances_alt(trials, dossier.lag_distances),
             anchor="distances",
         ),
+        Paragraph(text=_yardsticks(dossier)),
         Paragraph(text=_ranking(dossier)),
         _stops(trials),
         _efforts(trials),
@@ -65,11 +68,23 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
     return tuple(found)
 
 
+def _yardsticks(dossier: Dossier) -> Text:
+    """Set the simulated yardstick and the proved one side by side, each under its own name."""
+    ideal = ideal_sentence(dossier.trials[0].metrics)
+    proved = proved_bound(dossier.certificates)
+    if proved is None:
+        return f"{ideal} No bound on the distance is proved."
+    link = Link(anchor=check_anchor(proved.certificate), text=proved.certificate.name)
+    return (f"{ideal} Proved, in the check ", link, f": {proved.certificate.claim}")
+
+
 def _published(dossier: Dossier) -> dict[str, PublishedStop]:
-    """Return the paper's stops, if the rail is one that reproduces them and the stops start alike."""
+    """Return the paper's stops, if the rail is one that reproduces them, the stops start alike and undisturbed."""
     table10 = load_table10()
-    same_start = abs(dossier.initial_speed * KMH - table10.initial_speed_kmh) < 1e-6
-    return table10.on(dossier.trials[0].run.rail) if same_start else {}
+    same_start = abs(dossier.scenario.initial_speed * KMH - table10.initial_speed_kmh) < 1e-6
+    made = dossier.scenario
+    plain = made == Scenario(rail=made.rail, initial_speed=made.initial_speed, seed=made.seed)
+    return table10.on(dossier.trials[0].run.rail) if same_start and plain else {}
 
 
 def _ranking(dossier: Dossier) -> Text:
@@ -140,8 +155,8 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
             )
             for each in trials
         ),
-        caption=f"Stops of the {trials[0].run.plant} locomotive; this design first. The bound is "
-        f"{numbers.decimals(trials[0].metrics.bound, 1)} m, efficiency is bound over distance. Slip of all "
+        caption=f"Stops of the {trials[0].run.plant} locomotive; this design first. The ideal stop: "
+        f"{ideal_distance(trials[0].metrics)}; efficiency is ideal stop over distance. Slip of all "
         "wheelsets about its reference above 10 km/h; locked: the wheelset that is locked longest. Lag "
         "2 d/v0 − t and plateau v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
         anchor="stops-table",

@@ -12,6 +12,8 @@ from wspd_design.reporting.figures.series import lyapunov_functions, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.sections.checks import check_anchor
 from wspd_design.reporting.text import Inline, Link
+from wspd_design.reporting.yardsticks import ideal_sentence
+from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.studies.dossier import Dossier
 
@@ -30,12 +32,10 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"The {run.plant} locomotive from {start} km/h on {run.rail}, sampled every "
+            text=f"The {run.plant} locomotive from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
             f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
             f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
-            f"{numbers.decimals(figures.stopping_time, 2)} s. The bound is "
-            f"{numbers.decimals(figures.bound, 1)} m: what a brake with the same build-up needs that holds "
-            "every wheelset at the adhesion peak. Above "
+            f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
             f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
             f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
             f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "

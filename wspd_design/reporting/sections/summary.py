@@ -3,11 +3,14 @@
 from collections import Counter
 
 from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.sections.checks import check_anchor, status_of
 from wspd_design.reporting.text import Inline, Link, Text
+from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
+from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
@@ -90,7 +93,7 @@ def _stop(dossier: Dossier) -> tuple[str, bool]:
     run, figures = own.run, own.metrics
     start = (
         f"The simulated stop of the {run.plant} locomotive from "
-        f"{numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+        f"{numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
     )
     if run.ending is not Ending.STOPPED:
         return f"{start} does not end: {run.ending.value}.", False
@@ -113,7 +116,7 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
     stopped = run.ending is Ending.STOPPED
-    start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+    start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
     in_range = [
         point
         for point in dossier.linearizations
@@ -133,7 +136,7 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             label="Efficiency",
             value=numbers.decimals(100.0 * figures.efficiency, 1),
             unit="%",
-            note=f"of the bound, {numbers.decimals(figures.bound, 1)} m: no controller stops shorter",
+            note=_yardsticks(dossier),
         ),
         KeyNumber(
             label=f"Slip rms above {numbers.quantity_in(JUDGING_SPEED, 'km/h')}",
@@ -148,6 +151,17 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s",
         ),
     )
+
+
+def _yardsticks(dossier: Dossier) -> Text:
+    """Say what the efficiency is a share of, and what is proved, each under its own name."""
+    ideal = f"ideal stop, simulated: {ideal_distance(dossier.trials[0].metrics)}"
+    proved = proved_bound(dossier.certificates)
+    if proved is None:
+        return f"{ideal}; no bound is proved"
+    start = numbers.significant(dossier.design.specification.speeds[1] * KMH)
+    link = Link(anchor=check_anchor(proved.certificate), text="proved bound")
+    return (f"{ideal}; ", link, f" from {start} km/h: {adhesion_peaks.rounded_down(proved.distance)} m")
 
 
 def _checks(certificates: tuple[Certificate, ...]) -> Table:

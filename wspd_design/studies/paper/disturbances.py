@@ -133,8 +133,8 @@ def disturbance(
     )
 
 
-def bound_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity) -> float:
-    """Change of the bound by irregular wheel loads: what the track costs a perfect brake [m]."""
+def ideal_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity) -> float:
+    """Change of the ideal stop by irregular wheel loads: what the track costs a perfect brake [m]."""
     disturbed = ideal_stop(vehicle, replace(scenario, load_irregularity=load))
     return disturbed.distance - ideal_stop(vehicle, scenario).distance
 

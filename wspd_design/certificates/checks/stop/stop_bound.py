@@ -18,11 +18,13 @@ from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import INSTANTS, Limit, NoBound, require
 from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import CLAIM, rounded_down
-from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
+from wspd_design.simulation.ideal import NO_IDEAL_STOP, ideal_stop, peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario
 from wspd_design.simulation.stop import simulate
 
 NAME, TITLE = "stop_bound", "Shortest stop of any controller"
+DISTANCE = "bound on the distance"
+"""The point of the certificate that holds what is proved [m]."""
 ROUNDING = 1e-3  # m and s; a simulated stop ends a little above standstill
 
 
@@ -47,16 +49,23 @@ def check(problem: Problem) -> Certificate:
     stopped = run.ending is Ending.STOPPED
     room = distance - limit.distance
     kept = not stopped or (room >= -ROUNDING and time >= limit.time - ROUNDING)
-    consistent = ideal.distance >= limit.distance - ROUNDING
+    endless = ideal.ending is not Ending.STOPPED
+    consistent = endless or ideal.distance >= limit.distance - ROUNDING
     holds = kept and consistent
     where = (
-        Point(name="bound of the distance", value=limit.distance, unit="m"),
-        Point(name="bound of the time", value=limit.time, unit="s"),
+        Point(name=DISTANCE, value=limit.distance, unit="m"),
+        Point(name="bound on the time", value=limit.time, unit="s"),
         Point(name="distance of the simulated stop", value=distance, unit="m"),
         Point(name="time of the simulated stop", value=time, unit="s"),
-        Point(name="distance of the ideal stop", value=ideal.distance, unit="m"),
+        *(() if endless else (Point(name="distance of the ideal stop", value=ideal.distance, unit="m"),)),
     )
-    efficiency = f"; this stop has an efficiency of {limit.distance / distance:.1%}" if stopped else ""
+    share = f"; the bound is {limit.distance / distance:.1%} of that distance" if stopped else ""
+    simulated = (
+        f"There is no ideal stop: {NO_IDEAL_STOP}."
+        if endless
+        else f"An ideal brake that holds the adhesion peak takes {ideal.distance:.4g} m, "
+        f"{ideal.distance / limit.distance - 1.0:.2%} more than what is proved."
+    )
     return Certificate(
         name=NAME,
         title=TITLE,
@@ -65,9 +74,7 @@ def check(problem: Problem) -> Certificate:
         status=Status.PROVED if holds else Status.REFUTED,
         explanation=(
             f"Adhesion alone asks for {limit.adhesion_distance:.4g} m; until {limit.handover:.3g} s the filling "
-            f"brake is the limit. The simulated stop takes {distance:.4g} m and {time:.4g} s{efficiency}. An ideal "
-            f"brake that holds the adhesion peak takes {ideal.distance:.4g} m, "
-            f"{ideal.distance / limit.distance - 1.0:.2%} more than what is proved."
+            f"brake is the limit. The simulated stop takes {distance:.4g} m and {time:.4g} s{share}. {simulated}"
             if holds
             else f"A simulated stop is shorter than the bound: {distance:.4g} m and {time:.4g} s, ideally "
             f"{ideal.distance:.4g} m. Bound and simulation speak about different plants."
