@@ -5,8 +5,7 @@ import io
 import tokenize
 from pathlib import Path
 
-from wspd_design.certificates.kernel import checker, identity
-from wspd_design.certificates.kernel import enclosures
+from wspd_design.certificates.kernel import checker, enclosures, identity
 
 FILES = [Path(module.__file__) for module in (checker, enclosures, identity)]
 MOST_LINES = 300

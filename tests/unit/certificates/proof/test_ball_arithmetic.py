@@ -169,7 +169,7 @@ def test_slopes_contain_the_derivatives(name):
 
 
 def test_wrong_product_rule_is_seen(monkeypatch):
-    monkeypatch.setattr(balls, "_plus", lambda one, other: one or other)
+    monkeypatch.setattr(enclosures, "_plus", lambda one, other: one or other)
     with pytest.raises(AssertionError):
         test_slopes_contain_the_derivatives("product")
 

@@ -1,7 +1,7 @@
 """The checker as a whole with wrong arithmetic: whoever breaks an operation of it is seen by containment.
 
-The references are the same functions on 300-bit balls, without SymPy, without the checker's program and without its
-intervals. Wide boxes show wrong operations, thin ones those that round inwards.
+The references are the same functions on 300-bit enclosures, without SymPy, without the checker's program and without
+its intervals. Wide boxes show wrong operations, thin ones those that round inwards.
 """
 
 import random
@@ -148,13 +148,13 @@ WRONG = {
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_operation_is_seen(monkeypatch, name):
     function, mutant = WRONG[name]
-    monkeypatch.setattr(balls, function, mutant)
+    monkeypatch.setattr(enclosures, function, mutant)
     assert not (holds_on_boxes() and holds_at_points())
 
 
 @pytest.mark.parametrize("name", ["exp", "atan", "log"])
 def test_inward_rounding_is_seen_at_points_only(monkeypatch, name):
-    monkeypatch.setattr(balls, name, inwards(getattr(balls, name)))
+    monkeypatch.setattr(enclosures, name, inwards(getattr(enclosures, name)))
     assert holds_on_boxes()
     assert not holds_at_points()
 
