@@ -5,9 +5,10 @@ from collections import Counter
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumbers, Status, Table, Verdict
+from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.sections.checks import check_anchor, status_of
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
 from wspd_design.simulation.description import rails_of
@@ -165,23 +166,14 @@ def _yardsticks(dossier: Dossier) -> Text:
 
 
 def _checks(certificates: tuple[Certificate, ...]) -> Table:
-    rows: list[tuple[Text | Cell, ...]] = [
+    return build(
+        certificates,
         (
-            (Link(anchor=check_anchor(each), text=each.name),),
-            Cell(status=status_of(each)),
-            each.title,
-            numbers.margin(each.margin),
-        )
-        for each in certificates
-    ]
-    return Table(
-        columns=(
-            Column(title="Check"),
-            Column(title="Finding"),
-            Column(title="What is checked"),
-            Column(title="Margin", align="right"),
+            ColumnOf(title="Check", read=lambda each: (Link(anchor=check_anchor(each), text=each.name),)),
+            ColumnOf(title="Finding", read=lambda each: Cell(status=status_of(each))),
+            ColumnOf(title="What is checked", read=lambda each: each.title),
+            ColumnOf(title="Margin", flush_right=True, read=lambda each: numbers.margin(each.margin)),
         ),
-        rows=tuple(rows),
         caption="All checks. A margin is positive where the claim holds; ≤: sampling bounds it from above "
         "only.",
         anchor="checks",
