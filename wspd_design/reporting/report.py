@@ -42,7 +42,7 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
     Raises
     ------
     UserError
-        If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is no number of seconds.
+        If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is not a number of seconds.
     """
     document = report_document(dossier, report_time())
     for path in paths:

@@ -131,9 +131,9 @@ def test_a_limitation_that_is_proved_is_no_good_news():
 
     said = verdict(dossier(Status.PROVED))
     assert said.status is Shown.REFUTED
-    assert "1 of 2 checks refuted or proved to be a limit (" in plain(said.sentence)
-    assert "1 proved to be a limit and 1 proved" in plain(said.sentence)
+    assert "1 of 2 checks refuted or proved to be a limitation (" in plain(said.sentence)
+    assert "1 proved to be a limitation and 1 proved" in plain(said.sentence)
     (table,) = (block for block in summary(dossier(Status.PROVED)) if isinstance(block, Table))
     shown = [cell.status for row in table.rows for cell in row if isinstance(cell, Cell)]
-    assert shown == [Shown.PROVED, Shown.LIMIT]
+    assert shown == [Shown.PROVED, Shown.LIMITATION]
     assert verdict(dossier(Status.VACUOUS)).status is Shown.PROVED

@@ -1,40 +1,37 @@
 """``wspd compare``: the same stop with several controllers."""
 
-from collections.abc import Callable
-
-from rich.text import Text
-
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, check_plant, resolve_all
-from wspd_design.cli.console import console, print_json, progress, spaced, table
+from wspd_design.cli.console import console, print_json, progress, spaced
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.json_objects import comparison_object
-from wspd_design.cli.stop_figures import CHAOTIC, number
+from wspd_design.cli.stop_figures import CHAOTIC
 from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.catalog import CONTROLLERS
 from wspd_design.exchange.objects import stop_object
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
-from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
 
 _ALL_COLUMNS = 78
 """Columns of a terminal from which on the table shows everything."""
 
-_COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
-    ("d\n[m]", lambda figures: f"{figures.distance:.1f}"),
-    ("t\n[s]", lambda figures: f"{figures.stopping_time:.2f}"),
-    ("lag\n[s]", lambda figures: number(figures.lag, ".2f")),
-    ("eff\n[%]", lambda figures: number(100.0 * figures.efficiency, ".0f")),
-    ("slip\nrms", lambda figures: number(figures.slip_rms, ".3f")),
-    ("slip\nmax", lambda figures: number(figures.slip_max, ".3f")),
-    ("lock\n[s]", lambda figures: f"{figures.lock_time:.1f}"),
+_COLUMNS: tuple[ColumnOf[Trial], ...] = (
+    ColumnOf(title="d", unit="m", decimals=1, read=lambda made: made.metrics.distance),
+    ColumnOf(title="t", unit="s", decimals=2, read=lambda made: made.metrics.stopping_time),
+    ColumnOf(title="lag", unit="s", decimals=2, read=lambda made: made.metrics.lag),
+    ColumnOf(title="eff", unit="%", decimals=0, read=lambda made: 100.0 * made.metrics.efficiency),
+    ColumnOf(title="slip\nrms", decimals=3, read=lambda made: made.metrics.slip_rms),
+    ColumnOf(title="slip\nmax", decimals=3, read=lambda made: made.metrics.slip_max),
+    ColumnOf(title="lock", unit="s", decimals=1, read=lambda made: made.metrics.lock_time),
 )
-_MORE_COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
-    ("valve\n[-]", lambda figures: f"{figures.valve_switches}"),
-    ("air\n[-]", lambda figures: f"{figures.vented_air:.1f}"),
-    ("adh\n[%]", lambda figures: number(100.0 * figures.adhesion_utilization, ".0f")),
+_MORE_COLUMNS: tuple[ColumnOf[Trial], ...] = (
+    ColumnOf(title="valve", unit="-", decimals=0, read=lambda made: made.metrics.valve_switches),
+    ColumnOf(title="air", unit="-", decimals=1, read=lambda made: made.metrics.vented_air),
+    ColumnOf(title="adh", unit="%", decimals=0, read=lambda made: 100.0 * made.metrics.adhesion_utilization),
 )
 
 
@@ -91,19 +88,14 @@ def _show(trials: list[Trial], scenario: Scenario) -> None:
     if disturbances:
         out.print(f"With {disturbances}.", markup=False)
     complete = out.width >= _ALL_COLUMNS
-    columns = _COLUMNS + _MORE_COLUMNS * complete
-    headers = [header for header, _ in columns]
-    shown = table("Controller", *headers, numeric=tuple(headers))
     stopped = [made.metrics.distance for made in trials if made.run.ending is Ending.STOPPED]
-    for made in trials:
-        still_moving = made.run.ending is not Ending.STOPPED
-        best = bool(stopped) and not still_moving and made.metrics.distance == min(stopped)
-        shown.add_row(
-            Text(made.run.controller + " *" * still_moving + " ~" * made.check.chaotic),
-            *(cell(made.metrics) for _, cell in columns),
-            style="bold" if best else "",
-        )
-    out.print(spaced(shown))
+    shown = build(
+        trials,
+        (ColumnOf(title="Controller", read=_marked), *_COLUMNS, *(_MORE_COLUMNS * complete)),
+        caption="",
+    )
+    styles = ["bold" if stopped and _is_best(made, min(stopped)) else "" for made in trials]
+    out.print(spaced(terminal_table(shown, styles=styles)))
     ideal = first.metrics.ideal_stop
     known = f" ({ideal:.1f} m, best slip held)" if ideal == ideal else ""
     more = (
@@ -126,3 +118,12 @@ def _show(trials: list[Trial], scenario: Scenario) -> None:
             style="yellow",
             markup=False,
         )
+
+
+def _marked(made: Trial) -> str:
+    """Return the name of a controller with the marks of a stop that did not end and of one that is chaotic."""
+    return made.run.controller + " *" * (made.run.ending is not Ending.STOPPED) + " ~" * made.check.chaotic
+
+
+def _is_best(made: Trial, shortest: float) -> bool:
+    return made.run.ending is Ending.STOPPED and made.metrics.distance == shortest

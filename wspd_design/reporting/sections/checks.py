@@ -37,7 +37,7 @@ MAP_HEIGHT = 2.6  # in
 
 MEANINGS = {
     Status.REFUTED: Finding.REFUTED.value,
-    Status.LIMIT: f"{Finding.PROVED.value}, and says what the closed loop cannot do",
+    Status.LIMITATION: f"{Finding.PROVED.value}, and says what the closed loop cannot do",
     Status.UNDECIDED: Finding.UNDECIDED.value,
     Status.EVIDENCE: Finding.EVIDENCE.value,
     Status.PROVED: Finding.PROVED.value,
@@ -48,10 +48,15 @@ MEANINGS = {
 
 
 def status_of(certificate: Certificate) -> Status:
-    """Return the finding as the report shows it: a limitation that is proved is no good news."""
+    """Return the finding as the report shows it."""
     if certificate.limitation and certificate.status is Finding.PROVED:
-        return Status.LIMIT
+        return Status.LIMITATION
     return Status[certificate.status.name]
+
+
+def is_bad_news(certificate: Certificate) -> bool:
+    """Tell whether a verdict speaks against the closed loop: a claim refuted, or a limitation proved."""
+    return status_of(certificate) in (Status.REFUTED, Status.LIMITATION)
 
 
 def check_anchor(certificate: Certificate) -> str:

@@ -7,7 +7,7 @@ from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.sections.checks import check_anchor, status_of
+from wspd_design.reporting.sections.checks import check_anchor, is_bad_news, status_of
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
@@ -18,7 +18,7 @@ from wspd_design.studies.dossier import Dossier
 
 COUNTED = {
     Status.REFUTED: "refuted",
-    Status.LIMIT: "proved to be a limit",
+    Status.LIMITATION: "proved to be a limitation",
     Status.UNDECIDED: "undecided",
     Status.EVIDENCE: "sampled only",
     Status.PROVED: "proved",
@@ -35,9 +35,9 @@ def verdict(dossier: Dossier) -> Verdict:
     total = len(certificates)
     stop, stop_is_good = _stop(dossier)
     spoken: tuple[Inline, ...]
-    if named := _of(certificates, Status.REFUTED, Status.LIMIT):
+    if named := [each for each in certificates if is_bad_news(each)]:
         status = Status.REFUTED
-        limits = " or proved to be a limit" if counts[Status.LIMIT] else ""
+        limits = " or proved to be a limitation" if counts[Status.LIMITATION] else ""
         spoken = (
             f"Not fit as it stands: {len(named)} of {total} checks refuted{limits} (",
             *_links(named),
@@ -49,7 +49,7 @@ def verdict(dossier: Dossier) -> Verdict:
     elif named := _of(certificates, Status.UNDECIDED):
         status = Status.UNDECIDED
         spoken = (
-            f"Not decided: {len(named)} of {total} checks neither shown nor refuted (",
+            f"Not decided: {len(named)} of {total} checks neither proved nor refuted (",
             *_links(named),
             "). ",
         )
