@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from wspd_design.analysis.linearization import Linearization
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Series, Status
+from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.parameters.loading import load_entries, load_rail
@@ -35,7 +35,9 @@ def certificate(name: str, status: Status, **changes) -> Certificate:
         model_hash="0123456789abcdef" * 4,
         seconds=0.123,
         series=(
-            Series(name="V", x_label="time [s]", y_label="V [-]", x=(0.0, 1.0), y=(2.0, 1.0)),
+            Series(
+                name="V", x_label="time [s]", y_label="V [-]", x=(0.0, 1.0), y=(2.0, 1.0), role=Role.LYAPUNOV
+            ),
             Series(name="slip", x_label="time [s]", y_label="slip [-]", x=(0.0, 1.0), y=(0.0, 0.14)),
         ),
     )

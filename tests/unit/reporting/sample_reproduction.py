@@ -9,7 +9,7 @@ from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_track_spectrum, load_vehicle
 from wspd_design.studies.dossier import Provenance
 from wspd_design.studies.paper.conclusions import conclusions
-from wspd_design.studies.paper.disturbances import Disturbance, TrackChannel
+from wspd_design.studies.paper.disturbances import CHANNELS, Disturbance, TrackChannel
 from wspd_design.studies.paper.evidence import (
     CONTROLLERS,
     RAILS,
@@ -147,6 +147,7 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
         track=tuple(
             TrackChannel(
                 channel=channel,
+                kind=CHANNELS[channel],
                 sigma=1.6e-3,
                 found_sigma=1.5e-3,
                 ratio=1.01,
@@ -156,7 +157,7 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
                 distance=distance,
                 profile=1e-3 * np.sin(distance),
             )
-            for channel in ("lateral-high", "vertical-high", "cross-level-high")
+            for channel in CHANNELS
         ),
         disturbances=tuple(
             Disturbance(controller=name, rail=rail, spread=0.0, by_pads=1e-4, by_track=-0.62)

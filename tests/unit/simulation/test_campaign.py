@@ -78,3 +78,9 @@ def test_an_interrupt_keeps_what_is_done(er24pc, make_controller, scenario):
 def test_no_runs_are_refused(er24pc, make_controller, scenario):
     with pytest.raises(UserError, match="runs = 0 must be at least 1"):
         simulate_many(er24pc, make_controller("none", RAIL), scenario, runs=0)
+
+
+def test_a_drawn_mass_is_carried_by_the_body(er24pc):
+    heavy = campaign._vehicle_with(er24pc, {"mass": 1.1 * er24pc.mass})
+    assert heavy.body_mass == pytest.approx(er24pc.body_mass + 0.1 * er24pc.mass, rel=1e-12)
+    assert heavy.bogie_mass == er24pc.bogie_mass

@@ -10,7 +10,7 @@ from functools import wraps
 from math import inf, nextafter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from wspd_design.certificates.records import Certificate, Problem, Range, Series, Status
+from wspd_design.certificates.records import Certificate, Problem, Range, Role, Series, Status
 from wspd_design.parameters.errors import UserError
 
 if TYPE_CHECKING:
@@ -91,7 +91,12 @@ def enclosure(low: Fraction, high: Fraction, unit: str) -> Range:
 
 
 def series(
-    name: str, x_label: str, y_label: str, x: "NDArray[np.float64]", y: "NDArray[np.float64]"
+    name: str,
+    x_label: str,
+    y_label: str,
+    x: "NDArray[np.float64]",
+    y: "NDArray[np.float64]",
+    role: Role = Role.CURVE,
 ) -> Series:
     """Keep as many samples of a curve as a plot can show."""
     step = max(1, -(-len(x) // MOST_PLOT_POINTS))
@@ -102,6 +107,7 @@ def series(
         y_label=y_label,
         x=tuple(float(x[i]) for i in keep),
         y=tuple(float(y[i]) for i in keep),
+        role=role,
     )
 
 
@@ -110,5 +116,10 @@ def level(
 ) -> Series:
     """Return a horizontal line, the limit that a curve must respect."""
     return Series(
-        name=name, x_label=x_label, y_label=y_label, x=(float(x[0]), float(x[-1])), y=(value, value)
+        name=name,
+        x_label=x_label,
+        y_label=y_label,
+        x=(float(x[0]), float(x[-1])),
+        y=(value, value),
+        role=Role.LIMIT,
     )

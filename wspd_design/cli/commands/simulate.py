@@ -77,7 +77,7 @@ def simulate(
 ) -> None:
     """Simulate one stop and show its figures, or many with --runs and show their spread.
 
-    A train that does not stop is no error: the ending says so, and the exit code is 0.
+    A train that does not stop is not an error: the ending says so, and the exit code is 0.
     """
     if plant is None:
         plant = options.PLANT if from_witness is None else options.QUARTER

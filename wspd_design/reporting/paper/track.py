@@ -7,7 +7,7 @@ from functools import partial
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Equation, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO, picture
-from wspd_design.reporting.figures.track import is_angle, profiles, spectra
+from wspd_design.reporting.figures.track import milli_unit, profiles, spectra
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.paper.disturbances import LOAD_SPREAD, TrackChannel, largest_change
@@ -64,8 +64,7 @@ def track(made: Reproduction) -> tuple[Block, ...]:
             f"25 m, seed {made.provenance.seed}.",
             alt="Irregularity over distance: "
             + "; ".join(
-                f"{each.channel} within ±{abs(each.profile).max() * KILO:.1f} "
-                f"{'mrad' if is_angle(each.channel) else 'mm'}"
+                f"{each.channel} within ±{abs(each.profile).max() * KILO:.1f} {milli_unit(each)}"
                 for each in made.track
             )
             + ".",
@@ -96,9 +95,7 @@ def _coefficients(made: Reproduction) -> Table:
         return ColumnOf(
             title=title,
             flush_right=True,
-            read=lambda each: (
-                f"{numbers.decimals(read(each) * KILO, 2)} {'mrad' if is_angle(each.channel) else 'mm'}"
-            ),
+            read=lambda each: f"{numbers.decimals(read(each) * KILO, 2)} {milli_unit(each)}",
         )
 
     return build(

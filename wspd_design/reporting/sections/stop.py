@@ -8,17 +8,12 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
-from wspd_design.reporting.figures.series import lyapunov_functions, series_alt
+from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
-from wspd_design.reporting.sections.checks import check_anchor
-from wspd_design.reporting.text import Inline, Link
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.studies.dossier import Dossier
-
-LYAPUNOV = "lyapunov"
-"""Checks of a Lyapunov function have names that begin so; the function is their first series."""
 
 
 def stop(dossier: Dossier) -> tuple[Block, ...]:
@@ -69,23 +64,15 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
 
 
 def _lyapunov(certificates: tuple[Certificate, ...]) -> tuple[Block, ...]:
-    shown = [each for each in certificates if each.name.startswith(LYAPUNOV) and each.series]
-    silent = [each for each in certificates if each.name.startswith(LYAPUNOV) and not each.series]
-    left_out: list[Inline] = []
-    for each in silent:
-        link = Link(anchor=check_anchor(each), text=each.title)
-        left_out += [" Not drawn: ", link, f" ({each.status.value})."]
+    shown = [each for each in certificates if lyapunov_series(each)]
     if not shown:
         return ()
     return (
         Figure(
             svg=picture(partial(lyapunov_functions, certificates=shown), height=2.8),
-            caption=(
-                "Lyapunov functions over time, each in the setting of its proof, not in the stop above. "
-                "Each check says where its function must not rise.",
-                *left_out,
-            ),
-            alt=" ".join(series_alt(each.series[:1]) for each in shown),
+            caption="Lyapunov functions over time, each in the setting of its proof, not in the stop above. "
+            "Each check says where its function must not rise.",
+            alt=" ".join(series_alt(lyapunov_series(each)[:1]) for each in shown),
             anchor="lyapunov",
         ),
     )

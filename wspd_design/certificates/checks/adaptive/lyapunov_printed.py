@@ -19,7 +19,7 @@ from wspd_design.certificates.checks.ideal_run import (
 )
 from wspd_design.certificates.checks.sliding.reaching import reserve
 from wspd_design.certificates.kernel.arb import point
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
+from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Role, Status
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import exact_plant
@@ -132,7 +132,7 @@ def check(problem: Problem) -> Certificate:
         resolution=f"{len(run.time)} instants; a rise below {TOLERANCE:g} of the maximum counts as rounding",
         reference="eqs. (39)-(44); docs/theory.md#printed",
         series=(
-            series("V2 as printed", *axes, run.time, values),
+            series("V2 as printed", *axes, run.time, values, Role.LYAPUNOV),
             series("measured", "time [s]", "dV2/dt [1/s]", run.time, measured),
             series("claimed by (44)", "time [s]", "dV2/dt [1/s]", run.time, claimed),
             series("with the terms of G'", "time [s]", "dV2/dt [1/s]", run.time, true),

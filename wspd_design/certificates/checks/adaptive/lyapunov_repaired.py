@@ -20,7 +20,7 @@ from wspd_design.certificates.checks.ideal_run import (
     verdict,
 )
 from wspd_design.certificates.checks.sliding.reaching import reserve
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
+from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Role, Status
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import exact_plant
@@ -159,7 +159,7 @@ def check(problem: Problem) -> Certificate:
         resolution=f"{len(run.time)} instants; a rise below {TOLERANCE:g} of the maximum counts as rounding",
         reference="eqs. (39)-(44) repaired; docs/theory.md#energy",
         series=(
-            series("V repaired", "time [s]", "V [N m s]", run.time, values),
+            series("V repaired", "time [s]", "V [N m s]", run.time, values, Role.LYAPUNOV),
             series("slip", "time [s]", "slip [-]", run.time, run.slip),
         ),
     )

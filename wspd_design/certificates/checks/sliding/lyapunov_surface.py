@@ -23,7 +23,7 @@ from wspd_design.certificates.checks.ideal_run import (
     sliding_run,
     verdict,
 )
-from wspd_design.certificates.records import Certificate, Point, Problem, Range
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Role
 from wspd_design.certificates.setting import domain, laws
 from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.plant import Parameters, exact_plant
@@ -67,7 +67,9 @@ def check(problem: Problem) -> Certificate:
         if worst is None or rise > worst[0]:
             worst = rise, run, chosen, start, end
         if chosen == nominal:
-            curves.append(series(f"V from slip {slip:g}", "time [s]", "V [-]", run.time, values))
+            curves.append(
+                series(f"V from slip {slip:g}", "time [s]", "V [-]", run.time, values, Role.LYAPUNOV)
+            )
     assert worst is not None
     rise, run, (mass, inertia, mu0), start, end = worst
     rises = not rise <= TOLERANCE
