@@ -60,3 +60,11 @@ def test_an_existing_report_is_replaced_only_by_force(wspd, smc_file, tmp_path):
     assert (tmp_path / "report.html").read_text() == "old"
     assert wspd("report", smc_file.name, "--force").code == 0
     assert (tmp_path / "report.html").read_text() == "new"
+
+
+def test_a_report_takes_the_disturbances_of_every_stop(wspd, smc_file, calls):
+    options = ("--grade", "-5 permille", "--patch", "50 m polach-dry", "--dead-time", "40 ms")
+    assert wspd("report", smc_file.name, *options, "-o", "a.html").code == 0
+    scenario = calls["options"]["scenario"]
+    assert (scenario.grade, scenario.sensing.dead_time) == (-0.005, 0.04)
+    assert [(patch.start, patch.rail.name) for patch in scenario.patches] == [(50.0, "polach-dry")]

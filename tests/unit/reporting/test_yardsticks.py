@@ -10,12 +10,13 @@ from wspd_design.certificates.checks.stop import stop_bound
 from wspd_design.certificates.records import Point, Status
 from wspd_design.reporting.numbering import parts
 from wspd_design.reporting.sections.comparison import comparison
+from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary
 from wspd_design.reporting.text import plain
 from wspd_design.reporting.yardsticks import proved_bound
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.records import Ending, Sensing
 
 
 def proof(status=Status.PROVED):
@@ -64,3 +65,21 @@ def test_without_an_ideal_stop_words_stand_in_its_place(ending, said):
     assert said in told
     assert "nan" not in told
     assert plain(said)
+
+
+def test_limits_name_the_disturbances_of_the_stops():
+    def said(**changes):
+        dossier = sample_dossier()
+        made = replace(dossier, scenario=replace(dossier.scenario, **changes))
+        return [plain(item) for item in limits(made)[1].items]
+
+    calm = said()
+    assert "The track is straight, level and in one condition from end to end" in "".join(calm)
+    assert any("measured without error" in item and "known" in item for item in calm)
+    assert not any("disturbed" in item for item in calm)
+    disturbed = said(grade=0.005, sensing=Sensing(speed_noise=0.05, dead_time=0.04))
+    assert "The track is straight and in one condition from end to end" in "".join(disturbed)
+    assert not any("measured without error" in item or "dead times" in item for item in disturbed)
+    (told,) = (item for item in disturbed if "disturbed" in item)
+    assert "grade 5 permille, speed noise 0.05 m/s rms, dead time 40 ms" in told
+    assert "the checks know nothing of it" in told
