@@ -137,3 +137,19 @@ def test_a_limitation_that_is_proved_is_no_good_news():
     shown = [cell.status for row in table.rows for cell in row if isinstance(cell, Cell)]
     assert shown == [Shown.PROVED, Shown.LIMITATION]
     assert verdict(dossier(Status.VACUOUS)).status is Shown.PROVED
+
+
+def test_a_lag_that_is_not_one_stays_off_page_one():
+    """Where the friction falls during the stop the two-part model breaks; a negative build-up is nonsense."""
+
+    def note(lag):
+        own = trial("mine", lag=lag)
+        numbers = next(
+            block for block in summary(sample_dossier(trials=(own,))) if isinstance(block, KeyNumbers)
+        )
+        return plain(numbers.numbers[0].note)
+
+    assert "1.26 s of build-up, then 3.81 m/s²" in note(1.259)
+    for lag in (-1.51, math.nan):
+        assert "build-up" not in note(lag)
+        assert note(lag).endswith("in 10.00 s")

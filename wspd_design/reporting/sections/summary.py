@@ -1,5 +1,6 @@
 """Page one: the verdict in one sentence, four key numbers and the table of checks."""
 
+import math
 from collections import Counter
 
 from wspd_design.certificates.records import Certificate
@@ -13,6 +14,7 @@ from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
+from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
 
@@ -129,14 +131,12 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             label="Stopping distance" if stopped else "Distance, still moving",
             value=numbers.uncertain(figures.distance, own.check.spread, 1),
             unit="m",
-            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 2)} s: "
-            f"{numbers.decimals(figures.lag, 2)} s of build-up, then "
-            f"{numbers.decimals(figures.plateau, 2)} m/s²",
+            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 2)} s{_build_up(figures)}",
         ),
         KeyNumber(
             label="Efficiency",
             value=numbers.decimals(100.0 * figures.efficiency, 1),
-            unit="%",
+            unit="%" if math.isfinite(figures.efficiency) else "",
             note=_yardsticks(dossier),
         ),
         KeyNumber(
@@ -152,6 +152,14 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s",
         ),
     )
+
+
+def _build_up(figures: Metrics) -> str:
+    """Part a stop into build-up and plateau; where the deceleration falls so much that no lag is left, say nothing."""
+    if not figures.lag > 0.0:
+        return ""
+    lag, plateau = (numbers.decimals(value, 2) for value in (figures.lag, figures.plateau))
+    return f": {lag} s of build-up, then {plateau} m/s²"
 
 
 def _yardsticks(dossier: Dossier) -> Text:
