@@ -4,7 +4,7 @@ import math
 import re
 from dataclasses import replace
 
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
@@ -23,6 +23,7 @@ def _good(*statuses):
     return sample_dossier(statuses, trials=(trial("mine", **GOOD_STOP),))
 
 
+@settings(deadline=None)
 @given(STATUSES)
 def test_a_refuted_check_always_shows(statuses):
     for dossier in (_good(*statuses), sample_dossier(statuses)):
@@ -39,6 +40,7 @@ def test_a_refuted_check_always_shows(statuses):
             assert not re.search(r"checks refuted|[1-9] refuted", plain(said.sentence))
 
 
+@settings(deadline=None)
 @given(STATUSES)
 def test_every_check_is_counted(statuses):
     sentence = plain(verdict(_good(*statuses)).sentence)
@@ -49,6 +51,7 @@ def test_every_check_is_counted(statuses):
     assert proved == statuses.count(Status.PROVED)
 
 
+@settings(deadline=None)
 @given(STATUSES)
 def test_the_worst_finding_wins(statuses):
     order = (Status.REFUTED, Status.UNDECIDED, Status.EVIDENCE, Status.PROVED)
