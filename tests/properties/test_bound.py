@@ -1,4 +1,4 @@
-"""No controller stops shorter than the bound, whatever rail, mass, seed and noise."""
+"""No controller stops shorter than the ideal stop or the proved bound, whatever rail, mass, seed and noise."""
 
 from dataclasses import replace
 from unittest.mock import patch
@@ -41,14 +41,14 @@ rails = st.builds(
     noise=st.floats(0.0, 0.5),
     plant=st.sampled_from(("four-axle", "quarter")),
 )
-def test_no_controller_beats_the_bound(make_controller, rail, share, name, seed, noise, plant):
+def test_no_controller_beats_the_ideal_stop(make_controller, rail, share, name, seed, noise, plant):
     vehicle = load_vehicle("er24pc")
     mass = share * vehicle.mass
     vehicle = replace(vehicle, mass=mass, body_mass=mass - 2.0 * vehicle.bogie_mass)
     scenario = Scenario(rail=rail, initial_speed=70.0 / 3.6, seed=seed, sensing=Sensing(speed_noise=noise))
     run = simulate(vehicle, make_controller(name), scenario, plant=plant)
-    bound = ideal_stop(vehicle, replace(scenario, sensing=Sensing()), plant=plant)
-    assert run.totals.distance >= bound.distance * (1.0 - 1e-4)
+    ideal = ideal_stop(vehicle, replace(scenario, sensing=Sensing()), plant=plant)
+    assert run.totals.distance >= ideal.distance * (1.0 - 1e-4)
 
 
 @settings(max_examples=10, deadline=None)
@@ -69,7 +69,7 @@ def test_what_is_proved_lies_below_ideal_stops(make_controller, rail, share, kmh
 
 
 def test_a_brake_of_more_torque_would_beat_it(er24pc, make_controller):
-    """The bound knows the brake: with twice the torque a stop is shorter than the bound of the weaker brake."""
+    """The ideal stop knows the brake: with twice the torque a stop is shorter than that of the weaker brake."""
     strong = replace(er24pc, brake=replace(er24pc.brake, max_torque=2.0 * er24pc.brake.max_torque))
     scenario = Scenario(
         rail=load_rail("table10-dry"), initial_speed=70.0 / 3.6

@@ -54,6 +54,16 @@ class Hypothesis:
     status: Status
 
 
+class Role(Enum):
+    """What a series is in its plot."""
+
+    CURVE = "curve"
+    LIMIT = "limit that curves must respect, or reference"
+    OUTLINE = "edge of a region"
+    LYAPUNOV = "Lyapunov function over time"
+    LOOP_GAIN = "gain inside the boundary layer"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Series:
     """Samples of a quantity over another one, for the plot beside the verdict."""
@@ -63,6 +73,7 @@ class Series:
     y_label: str
     x: tuple[float, ...]
     y: tuple[float, ...]
+    role: Role = Role.CURVE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 STOPS_SIDE_BY_SIDE = 16
-FIGURES = ("distance_m", "stopping_time_s", "torque_integral_kNms", "slip_mean", "slip_max", "lock_time_s")
+FIGURES = ("distance_m", "stopping_time_s", "torque_integral_Nms", "slip_mean", "slip_max", "lock_time_s")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -214,7 +214,7 @@ def _figures(output: LoopOutput, count: int, scenario: Scenario) -> dict[str, An
     return {
         "distance_m": totals["distance"],
         "stopping_time_s": totals["time"],
-        "torque_integral_kNms": lanes["torque"].sum(axis=0) / 1e3,
+        "torque_integral_Nms": lanes["torque"].sum(axis=0),
         "slip_mean": lanes["slip"].mean(axis=0) / judged,
         "slip_max": np.maximum(lanes["slip_max"].max(axis=0), first_slip(scenario)),
         "lock_time_s": lanes["lock_time"].max(axis=0),

@@ -114,7 +114,7 @@ def _pressure(brake: Brake, start: Start) -> float:
 
 
 def first_slip(scenario: Scenario) -> float:
-    """Slip at the begin of a stop, as far as the figures count it [-]."""
+    """Slip at the start of a stop, as far as the figures count it [-]."""
     return scenario.start.slip if scenario.initial_speed > JUDGING_SPEED else 0.0
 
 

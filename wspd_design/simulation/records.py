@@ -47,7 +47,7 @@ class LoadIrregularity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
-    """State of all wheelsets at the begin of a stop; by default they roll and the brake is applied now.
+    """State of all wheelsets at the start of a stop; by default they roll and the brake is applied now.
 
     The supply (8), the vibration of the pads and the damping of the wheels are as far on as ``braking_time`` says.
     Load transfer begins with the stop.
@@ -58,7 +58,7 @@ class Start:
     braking_time: float = 0.0  # s, since the brake was applied
 
     def __post_init__(self) -> None:
-        """Refuse what is no state of a turning wheel."""
+        """Refuse what is not a state of a turning wheel."""
         if not 0.0 <= self.slip < 1.0:
             raise UserError(
                 f"slip = {self.slip:g} of the start must lie in [0, 1): 0 for rolling wheels; a stop cannot "
@@ -88,7 +88,7 @@ class Scenario:
     load_irregularity: LoadIrregularity | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no stop."""
+        """Refuse what is not a stop."""
         if not 0.0 < self.initial_speed < 150.0:
             raise UserError(
                 f"initial speed = {self.initial_speed:g} m/s must be above 0 and below 150 m/s (540 km/h); "

@@ -200,7 +200,7 @@ def test_when_the_slip_has_left_its_start(er24pc):
     assert math.isnan(leaving_time(runs[1.0], 1.0))
 
 
-def test_a_stop_from_a_state_has_neither_lag_nor_bound(er24pc, make_controller):
+def test_a_stop_from_a_state_has_neither_lag_nor_ideal_stop(er24pc, make_controller):
     figures = {
         name: metrics(simulate(er24pc, law, stop), er24pc, stop, slip_reference=0.14)
         for name, law, stop in (
@@ -208,7 +208,7 @@ def test_a_stop_from_a_state_has_neither_lag_nor_bound(er24pc, make_controller):
             ("rolling", make_controller("none"), scenario(Start())),
         )
     }
-    for name in ("lag", "plateau", "bound", "efficiency"):
+    for name in ("lag", "plateau", "ideal_stop", "efficiency"):
         assert math.isnan(getattr(figures["state"], name))
         assert math.isfinite(getattr(figures["rolling"], name))
     assert 0.0 < figures["state"].adhesion_utilization < 1.0

@@ -4,7 +4,7 @@ import shlex
 from functools import partial
 
 from wspd_design.certificates.kernel.file import certificate_text, file_name
-from wspd_design.certificates.records import Certificate, Map, Proof
+from wspd_design.certificates.records import Certificate, Map
 from wspd_design.certificates.records import Status as Finding
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
@@ -12,7 +12,6 @@ from wspd_design.reporting.blocks import (
     Block,
     Cell,
     Code,
-    Column,
     Definition,
     Definitions,
     Figure,
@@ -30,6 +29,7 @@ from wspd_design.reporting.figures.series import (
     series_alt,
     series_caption,
 )
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 
@@ -37,7 +37,7 @@ MAP_HEIGHT = 2.6  # in
 
 MEANINGS = {
     Status.REFUTED: Finding.REFUTED.value,
-    Status.LIMIT: f"{Finding.PROVED.value}, and says what the closed loop cannot do",
+    Status.LIMITATION: f"{Finding.PROVED.value}, and says what the closed loop cannot do",
     Status.UNDECIDED: Finding.UNDECIDED.value,
     Status.EVIDENCE: Finding.EVIDENCE.value,
     Status.PROVED: Finding.PROVED.value,
@@ -48,10 +48,15 @@ MEANINGS = {
 
 
 def status_of(certificate: Certificate) -> Status:
-    """Return the finding as the report shows it: a limitation that is proved is no good news."""
+    """Return the finding as the report shows it."""
     if certificate.limitation and certificate.status is Finding.PROVED:
-        return Status.LIMIT
+        return Status.LIMITATION
     return Status[certificate.status.name]
+
+
+def is_bad_news(certificate: Certificate) -> bool:
+    """Tell whether a verdict speaks against the closed loop: a claim refuted, or a limitation proved."""
+    return status_of(certificate) in (Status.REFUTED, Status.LIMITATION)
 
 
 def check_anchor(certificate: Certificate) -> str:
@@ -129,10 +134,11 @@ def _check(certificate: Certificate) -> list[Block]:
     ]
     if certificate.hypotheses:
         found.append(
-            Table(
-                columns=(Column(title="Hypothesis"), Column(title="Finding")),
-                rows=tuple(
-                    (each.text, Cell(status=Status[each.status.name])) for each in certificate.hypotheses
+            build(
+                certificate.hypotheses,
+                (
+                    ColumnOf(title="Hypothesis", read=lambda each: each.text),
+                    ColumnOf(title="Finding", read=lambda each: Cell(status=Status[each.status.name])),
                 ),
                 caption="What the claim needs.",
                 anchor=f"{anchor}-hypotheses",
@@ -177,22 +183,20 @@ def _map(shown: Map, anchor: str) -> Figure:
 
 def _proofs(certificate: Certificate) -> Table:
     """List what the checker accepted; times are left out, because they change from run to run."""
-    return Table(
-        columns=(
-            Column(title="Proved"),
-            Column(title="Boxes", align="right"),
-            Column(title="Size", unit="bytes", align="right"),
-            Column(title="SHA-256"),
+    return build(
+        certificate.proofs,
+        (
+            ColumnOf(title="Proved", read=lambda each: each.statement),
+            ColumnOf(title="Boxes", decimals=0, read=lambda each: each.leaves),
+            ColumnOf(
+                title="Size", unit="bytes", decimals=0, read=lambda each: len(each.certificate.encode())
+            ),
+            ColumnOf(title="SHA-256", read=lambda each: each.claim_hash[:16]),
         ),
-        rows=tuple(_proof(each) for each in certificate.proofs),
         caption="What the independent checker accepted; boxes that it decided, size of the proof and SHA-256 of "
         f"the claim. Attached as {file_name(certificate)}.",
         anchor=f"{check_anchor(certificate)}-proofs",
     )
-
-
-def _proof(proof: Proof) -> tuple[str, ...]:
-    return proof.statement, str(proof.leaves), str(len(proof.certificate.encode())), proof.claim_hash[:16]
 
 
 def _details(certificate: Certificate) -> tuple[Definition, ...]:

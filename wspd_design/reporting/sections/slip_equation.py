@@ -3,7 +3,8 @@
 from wspd_design.controllers.family import designed_family
 from wspd_design.parameters.equations import Equation as PaperEquation
 from wspd_design.parameters.equations import load_equations
-from wspd_design.reporting.blocks import Block, Cell, Column, Equation, Heading, Paragraph, Status, Table
+from wspd_design.reporting.blocks import Block, Cell, Equation, Heading, Paragraph, Status
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
 
@@ -48,21 +49,17 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
             "misprinted or true only under an assumption that the paper does not state. The program uses the "
             "corrected forms."
         ),
-        Table(
-            columns=(
-                Column(title="Eq."),
-                Column(title="Subject"),
-                Column(title="Verdict"),
-                Column(title="What is wrong, and what is assumed instead"),
-            ),
-            rows=tuple(
-                (
-                    each.number,
-                    each.title,
-                    Cell(status=TONES[each.verdict], text=each.verdict),
-                    _explained(each),
-                )
-                for each in faulty
+        build(
+            faulty,
+            (
+                ColumnOf(title="Eq.", read=lambda each: each.number),
+                ColumnOf(title="Subject", read=lambda each: each.title),
+                ColumnOf(
+                    title="Verdict", read=lambda each: Cell(status=TONES[each.verdict], text=each.verdict)
+                ),
+                ColumnOf(
+                    title="What is wrong, and what is assumed instead", read=lambda each: _explained(each)
+                ),
             ),
             caption="Misprints and gaps that matter for this design; wspd equations prints all equations.",
             anchor="misprints",

@@ -11,7 +11,7 @@ from wspd_design.certificates.checks.frame import Check, Figures, series
 from wspd_design.certificates.checks.ideal_run import ProofRun, adaptive_run, cut_short, numeric_rate
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.finding import Stated
-from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.records import Certificate, Problem, Role
 from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.plant import exact_plant
@@ -120,7 +120,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG
     time, rate = found.run.time, ("time [s]", "dV2/dt [1/s]")
     return Figures(
         series=(
-            series("V2 as printed", "time [s]", "V2 [-]", time, found.values),
+            series("V2 as printed", "time [s]", "V2 [-]", time, found.values, Role.LYAPUNOV),
             series("measured", *rate, time, found.measured),
             series("claimed by (44)", *rate, time, found.claimed),
             series("with the terms of G'", *rate, time, found.corrected),

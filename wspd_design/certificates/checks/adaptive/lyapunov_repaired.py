@@ -10,7 +10,7 @@ from wspd_design.certificates.checks.certain_rise import certain_rise
 from wspd_design.certificates.checks.frame import Check, Figures, series
 from wspd_design.certificates.checks.ideal_run import ProofRun, adaptive_run, cut_short, numeric_rate
 from wspd_design.certificates.kernel.finding import Stated
-from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.records import Certificate, Problem, Role
 from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.plant import exact_plant
@@ -108,7 +108,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG
     found = repaired_run(problem)
     return Figures(
         series=(
-            series("V repaired", "time [s]", "V [N m s]", found.run.time, found.values),
+            series("V repaired", "time [s]", "V [N m s]", found.run.time, found.values, Role.LYAPUNOV),
             series("slip", "time [s]", "slip [-]", found.run.time, found.run.slip),
         ),
         remark=cut_short([found.run]).strip(),

@@ -16,7 +16,7 @@ from wspd_design.certificates.checks.ideal_run import (
     sliding_run,
 )
 from wspd_design.certificates.kernel.finding import Stated
-from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.records import Certificate, Problem, Role
 from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.domain import PARAMETERS
 from wspd_design.certificates.setting.fingerprint import model_hash
@@ -127,7 +127,10 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG
     axes = ("time [s]", "V [-]")
     return Figures(
         series=(
-            *(series(f"V from slip {each.slip:g}", *axes, each.run.time, each.values) for each in nominal),
+            *(
+                series(f"V from slip {each.slip:g}", *axes, each.run.time, each.values, Role.LYAPUNOV)
+                for each in nominal
+            ),
             level("edge of the layer", *axes, runs[-1].run.time, edge),
         ),
         remark=cut_short([each.run for each in runs]).strip(),
