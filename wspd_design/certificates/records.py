@@ -126,6 +126,18 @@ class Certificate:
         return sum(each.effort.boxes for each in self.findings.values())
 
     @property
+    def proved(self) -> Mapping[str, "Finding"]:
+        """What a checker accepted a proof of, by the keys of the obligations."""
+        return {
+            key: each for key, each in self.findings.items() if each.shown and each.stated.proof is not None
+        }
+
+    @property
+    def undecided(self) -> float:
+        """Largest share of a box that a search left open."""
+        return max((each.effort.undecided for each in self.findings.values()), default=0.0)
+
+    @property
     def cut(self) -> bool:
         """Whether a search was ended by its budget."""
         return any(each.effort.cut for each in self.findings.values())

@@ -1,10 +1,12 @@
 """Records of a stop, a check, a design and a set of parameters as plain data, in the forms of the vocabulary."""
 
+import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.certificates.kernel.file import file_name
-from wspd_design.certificates.records import Certificate, Proof
+from wspd_design.certificates.kernel.finding import Finding
+from wspd_design.certificates.records import Certificate
 from wspd_design.design.records import Design
 from wspd_design.exchange.stop_forms import STOP
 from wspd_design.exchange.version import program_version
@@ -93,7 +95,6 @@ def check_object(certificate: Certificate) -> dict[str, Any]:
         "claim": certificate.claim,
         "status": certificate.status.name,
         "explanation": certificate.explanation,
-        "limitation": certificate.limitation,
         "margin": None if certificate.margin is None else asdict(certificate.margin),
         "worst_point": [asdict(point) for point in certificate.worst_point],
         "witness": [asdict(point) for point in certificate.witness],
@@ -103,31 +104,30 @@ def check_object(certificate: Certificate) -> dict[str, Any]:
         ],
         "assumptions": list(certificate.assumptions),
         "method": certificate.method,
-        "resolution": certificate.resolution,
         "reference": certificate.reference,
         "model_hash": certificate.model_hash,
         "undecided_share": certificate.undecided,
-        "engine": certificate.engine,
-        "proofs": [_proof(proof) | {"file": file_name(certificate)} for proof in certificate.proofs],
+        "varied": list(certificate.varied),
+        "held": list(certificate.held),
+        "searched_boxes": certificate.boxes,
+        "search_cut": certificate.cut,
+        "proofs": [
+            _proof(key, found) | {"file": file_name(certificate)} for key, found in certificate.proved.items()
+        ],
     }
 
 
 def timed_check_object(certificate: Certificate) -> dict[str, Any]:
     """Return a certificate with its computing times and, in place of files, the text of its proofs."""
     proofs = [
-        _proof(proof) | {"certificate": proof.certificate, "check_time_s": proof.seconds}
-        for proof in certificate.proofs
+        _proof(key, found) | {"certificate": json.dumps(found.stated.proof)}
+        for key, found in certificate.proved.items()
     ]
     return check_object(certificate) | {"proofs": proofs, "computing_time_s": certificate.seconds}
 
 
-def _proof(proof: Proof) -> dict[str, Any]:
-    return {
-        "claim": proof.claim,
-        "statement": proof.statement,
-        "claim_hash": proof.claim_hash,
-        "leaves": proof.leaves,
-    }
+def _proof(key: str, found: Finding) -> dict[str, Any]:
+    return {"obligation": key, "statement": found.shown, "leaves": found.leaves}
 
 
 def linearization_point_object(point: "Linearization") -> dict[str, Any]:

@@ -37,7 +37,7 @@ MAP_HEIGHT = 2.6  # in
 
 MEANINGS = {
     Status.REFUTED: Finding.REFUTED.value,
-    Status.LIMITATION: f"{Finding.PROVED.value}, and says what the closed loop cannot do",
+    Status.LIMITATION: Finding.LIMITATION.value,
     Status.UNDECIDED: Finding.UNDECIDED.value,
     Status.EVIDENCE: Finding.EVIDENCE.value,
     Status.PROVED: Finding.PROVED.value,
@@ -49,8 +49,6 @@ MEANINGS = {
 
 def status_of(certificate: Certificate) -> Status:
     """Return the finding as the report shows it."""
-    if certificate.limitation and certificate.status is Finding.PROVED:
-        return Status.LIMITATION
     return Status[certificate.status.name]
 
 
@@ -71,7 +69,7 @@ def certificate_files(dossier: Dossier) -> tuple[Attachment, ...]:
             name=file_name(certificate),
             media_type="application/json",
             content=certificate_text(certificate),
-            description=f"{'proofs' if certificate.proofs else 'witness'} of the check {certificate.name}",
+            description=f"certificate of the check {certificate.name}",
         )
         for certificate in _kept(dossier)
     )
@@ -79,7 +77,7 @@ def certificate_files(dossier: Dossier) -> tuple[Attachment, ...]:
 
 def _kept(dossier: Dossier) -> tuple[Certificate, ...]:
     """Return the certificates that have a file, as ``wspd certify`` writes them."""
-    return tuple(each for each in dossier.certificates if each.proofs or each.status is Finding.REFUTED)
+    return tuple(each for each in dossier.certificates if each.status is not Finding.NOT_APPLICABLE)
 
 
 def checks(dossier: Dossier) -> tuple[Block, ...]:
@@ -146,7 +144,7 @@ def _check(certificate: Certificate) -> list[Block]:
         )
     if certificate.status is not Finding.NOT_APPLICABLE:
         found.append(Definitions(rows=_details(certificate)))
-    if certificate.proofs:
+    if certificate.proved:
         found.append(_proofs(certificate))
     if certificate.status is not Finding.NOT_APPLICABLE:
         found += _figures(certificate, anchor)
@@ -184,17 +182,13 @@ def _map(shown: Map, anchor: str) -> Figure:
 def _proofs(certificate: Certificate) -> Table:
     """List what the checker accepted; times are left out, because they change from run to run."""
     return build(
-        certificate.proofs,
+        tuple(certificate.proved.values()),
         (
-            ColumnOf(title="Proved", read=lambda each: each.statement),
+            ColumnOf(title="Proved", read=lambda each: each.shown),
             ColumnOf(title="Boxes", decimals=0, read=lambda each: each.leaves),
-            ColumnOf(
-                title="Size", unit="bytes", decimals=0, read=lambda each: len(each.certificate.encode())
-            ),
-            ColumnOf(title="SHA-256", read=lambda each: each.claim_hash[:16]),
         ),
-        caption="What the independent checker accepted; boxes that it decided, size of the proof and SHA-256 of "
-        f"the claim. Attached as {file_name(certificate)}.",
+        caption="What the independent checker accepted, and the boxes that it decided. Attached as "
+        f"{file_name(certificate)}.",
         anchor=f"{check_anchor(certificate)}-proofs",
     )
 
@@ -206,10 +200,11 @@ def _details(certificate: Certificate) -> tuple[Definition, ...]:
         ("Tightest point", numbers.point(certificate.worst_point)),
         ("Witness", numbers.point(certificate.witness)),
         ("Assumptions", "; ".join(certificate.assumptions)),
-        ("Left open", open_share if certificate.proofs or certificate.undecided else ""),
+        ("Left open", open_share if certificate.undecided else ""),
+        ("Search", "ended by its budget" if certificate.cut else ""),
+        ("Samples", certificate.remark),
+        ("Held", ", ".join(certificate.held)),
         ("Method", certificate.method),
-        ("Engine", certificate.engine),
-        ("Resolution", certificate.resolution),
         ("Reference", certificate.reference),
         ("Name, model", f"{certificate.name}, {certificate.model_hash[:16]}"),
     )
