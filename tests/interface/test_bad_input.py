@@ -112,7 +112,7 @@ COMMAND_LINES = {
     "report as PDF exists": (("report", "-o", "new.html", "--pdf"), ("new.pdf", "--force")),
     "no terminal": ((), ("terminal", "wspd new --yes")),
     "no terminal for new": (("new",), ("terminal", "wspd new --yes")),
-    "not a draft": (("new", "--resume", "missing.toml.part"), ("missing.toml.part", "check the path")),
+    "no draft": (("new", "--resume", "missing.toml.part"), ("missing.toml.part", "check the path")),
     "draft of another kind": (("new", "--resume", "typo.toml"), (".part", "-o")),
     "draft that is none": (("new", "--resume", "other.toml.part"), ("not a draft", "wspd new")),
     "draft with a typo": (("new", "--yes", "--resume", "typo.toml.part", "-o", "a.toml"), ("slipp", "slip?")),
