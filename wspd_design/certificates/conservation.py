@@ -3,8 +3,9 @@
 from wspd_design.certificates.checking import OutsideModel, certified
 from wspd_design.certificates.domain import KMH
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.plants.names import PLANTS
 from wspd_design.simulation.metrics import energy_residual, momentum_residual
-from wspd_design.simulation.records import PLANTS, Scenario
+from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
 NAME, TITLE = "conservation", "Momentum and energy of the stop"

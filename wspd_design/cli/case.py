@@ -17,7 +17,7 @@ from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import parse_quantity
-from wspd_design.simulation.records import PLANTS
+from wspd_design.plants.names import PLANTS
 
 _CLOSE = 1e-9  # relative: the same number written in another unit
 

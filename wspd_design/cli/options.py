@@ -9,7 +9,7 @@ from wspd_design.design.catalog import BASELINES, CONTROLLERS
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import available
 from wspd_design.parameters.units import format_quantity
-from wspd_design.simulation.records import PLANTS
+from wspd_design.plants.names import PLANTS
 
 _PAPER = Specification()
 

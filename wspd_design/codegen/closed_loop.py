@@ -6,19 +6,18 @@ last axis.
 
 import ctypes
 import math
-from collections.abc import Hashable
 from dataclasses import dataclass
-from functools import lru_cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
-from wspd_design.codegen.kernels import PARAMETERS, closed_loop_kernels
+from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
+from wspd_design.codegen.laws import LawKernels, law_kernels
+from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
-from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.plants.four_axle import AXLES
+from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
     import numpy as np
@@ -83,6 +82,7 @@ class _Head(ctypes.Structure):
         ("trace_used", ctypes.c_long),
         ("quantum", ctypes.c_double),
         ("reference_factor", ctypes.c_double),
+        ("gains", _DOUBLES),
     )
 
 
@@ -126,9 +126,11 @@ class LoopOutput:
 class ClosedLoop:
     """A compiled loop of a number of stops side by side; without a controller it is driven from Python."""
 
-    def __init__(self, library: ctypes.CDLL, stops: int, states: int) -> None:
-        self.stops, self.states = stops, states
-        self._library = library
+    def __init__(self, library: ctypes.CDLL, kernels: Kernels, law: LawKernels, stops: int) -> None:
+        import numpy as np
+
+        self.stops, self.axles, self.states = stops, kernels.axles, law.states
+        self._library, self._gains = library, np.array(law.gains)
         for name in ("wspd_lane_totals", "wspd_stop_totals", "wspd_wheel_speeds", "wspd_bad_command"):
             getattr(library, name).restype = _DOUBLES
         for name in ("wspd_size", "wspd_steps", "wspd_samples"):
@@ -139,7 +141,7 @@ class ClosedLoop:
         import numpy as np
 
         buffer, trace, keep = self._begin(given)
-        samples = np.zeros((sample_rows, 1 + (self.states + 5) * AXLES * self.stops))
+        samples = np.zeros((sample_rows, 1 + (self.states + 5) * self.axles * self.stops))
         rows = ctypes.c_long(sample_rows)
         result = self._library.wspd_run(buffer, _pointer(samples) if sample_rows else None, rows)
         del keep
@@ -148,7 +150,7 @@ class ClosedLoop:
     def run_with(self, given: LoopInput, controller: Controller, *, sample_rows: int) -> LoopOutput:
         """Run a single stop with a controller that stays in Python."""
         buffer, trace, keep = self._begin(given)
-        result, samples = drive(_Plant(self._library, buffer), controller, sample_rows)
+        result, samples = drive(_Plant(self._library, buffer, self.axles), controller, sample_rows)
         del keep
         return self._output(buffer, result, trace, samples)
 
@@ -157,7 +159,7 @@ class ClosedLoop:
 
         buffer = _aligned(self._library.wspd_size())
         head = _Head.from_buffer(buffer)
-        trace = np.zeros((given.trace_rows, 3 + 5 * AXLES))
+        trace = np.zeros((given.trace_rows, 3 + 5 * self.axles))
         head.set = given.settings
         head.quantum, head.reference_factor = given.quantum, given.reference_factor
         head.trace_rows = given.trace_rows
@@ -167,6 +169,7 @@ class ClosedLoop:
             "patch_rail": given.patch_rails,
             "load_factor": given.load_factors,
             "hold": given.held_slips,
+            "gains": self._gains,
             "trace": trace if given.trace_rows else None,
         }
         keep = [np.ascontiguousarray(a, dtype=np.float64) for a in arrays.values() if a is not None]
@@ -189,7 +192,7 @@ class ClosedLoop:
     def _output(self, buffer: Any, result: int, trace: "Array", samples: "Array") -> LoopOutput:
         import numpy as np
 
-        library, lanes = self._library, AXLES * self.stops
+        library, lanes = self._library, self.axles * self.stops
 
         def block(name: str, rows: int, columns: int) -> "Array":
             return np.ctypeslib.as_array(getattr(library, name)(buffer), (rows, columns)).copy()
@@ -215,32 +218,33 @@ class ClosedLoop:
 class _Plant:
     """The compiled plant behind the interface of :class:`~wspd_design.codegen.sampled.SampledPlant`."""
 
-    def __init__(self, library: ctypes.CDLL, buffer: Any) -> None:
-        self._library, self._buffer = library, buffer
+    def __init__(self, library: ctypes.CDLL, buffer: Any, axles: int) -> None:
+        self._library, self._buffer, self._axles = library, buffer, axles
 
     def running(self) -> bool:
         return bool(self._library.wspd_running(self._buffer))
 
     def measure(self) -> list[Measurement]:
-        seen = (ctypes.c_double * (3 * AXLES))()
+        axles = self._axles
+        seen = (ctypes.c_double * (3 * axles))()
         self._library.wspd_measure(self._buffer, seen)
-        return [Measurement(*(seen[row * AXLES + axle] for row in range(3))) for axle in range(AXLES)]
+        return [Measurement(*(seen[row * axles + axle] for row in range(3))) for axle in range(axles)]
 
     def advance(self, commands: list[Command]) -> int:
-        fill = (ctypes.c_double * AXLES)(*(command.fill for command in commands))
-        vent = (ctypes.c_double * AXLES)(*(command.vent for command in commands))
+        fill = (ctypes.c_double * self._axles)(*(command.fill for command in commands))
+        vent = (ctypes.c_double * self._axles)(*(command.vent for command in commands))
         return int(self._library.wspd_sample(self._buffer, fill, vent))
 
 
 def load_closed_loop(
-    vehicle: Vehicle, rail: Rail, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
+    plant: Plant, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
 ) -> ClosedLoop:
-    """Trace, emit, compile and load the loop of a controller.
+    """Trace, emit, compile and load the loop of a controller with its present numbers.
 
     Parameters
     ----------
-    vehicle, rail : Vehicle, Rail
-        Of the kind to be simulated; their numbers are inputs of the loop.
+    plant : Plant
+        Of the kind to be simulated; its numbers are inputs of the loop.
     controller : Controller or None
         Law of every wheelset; None for a loop that is driven from Python.
     stops : int
@@ -255,29 +259,26 @@ def load_closed_loop(
     UntraceableError
         If ``step`` contains what CasADi cannot trace or the emitter cannot translate.
     """
-    if isinstance(controller, Hashable):
-        return _load_once(vehicle, rail, controller, stops, disturbed)
-    return _load(vehicle, rail, controller, stops, disturbed)
+    kernels, law = plant_kernels(plant, disturbed=disturbed), law_kernels(controller)
+    library = _libraries.get(
+        (kernels, law, stops),
+        type(plant),
+        lambda: load_library(closed_loop_source(kernels, law, stops=stops)),
+    )
+    return ClosedLoop(library, kernels, law, stops)
 
 
-def _load(
-    vehicle: Vehicle, rail: Rail, controller: Controller | None, stops: int, disturbed: bool
-) -> ClosedLoop:
-    source, states = closed_loop_source(vehicle, rail, controller, stops=stops, disturbed=disturbed)
-    return ClosedLoop(load_library(source), stops, states)
+_libraries: "Memory[ctypes.CDLL]" = Memory(32)
 
 
-_load_once = lru_cache(maxsize=32)(_load)
-
-
-def closed_loop_source(
-    vehicle: Vehicle, rail: Rail, controller: Controller | None, *, stops: int, disturbed: bool
-) -> tuple[str, int]:
-    """Return the C source of the loop and the number of controller states."""
-    kernels = closed_loop_kernels(vehicle, rail, controller, disturbed=disturbed)
+def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
+    """Return the C source of the loop."""
     places = {
         "STOPS": stops,
-        "STATES": kernels.states,
+        "AXLES": kernels.axles,
+        "AXLE_STATES": kernels.axle_states,
+        "TRANSFERS": kernels.transfers,
+        "STATES": law.states,
         "PARAMETERS": len(PARAMETERS),
         "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
@@ -289,15 +290,16 @@ def closed_loop_source(
     folder = files("wspd_design").joinpath("codegen", "templates")
     parts = [f"#define {name} {value}\n" for name, value in places.items()]
     parts.append(folder.joinpath("elementary.h").read_text())
-    lanes, twice = f"({AXLES} * STOPS)", f"(2 * {AXLES} * STOPS)"  # twice: middle and end of a step at once
+    lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
     groups = {
         "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
-        lanes: (kernels.lane_constants, kernels.condition, kernels.axle, kernels.start, kernels.step),
+        lanes: (kernels.lane_constants, kernels.condition, kernels.axle),
         twice: (kernels.window_constants, kernels.actuator),
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
+    parts += [emit(kernel, lanes, shared=kernel.n_in() - 1) for kernel in (law.start, law.step)]
     parts += [folder.joinpath(name).read_text() for name in ("motion.c", "closed_loop.c")]
-    return "".join(parts), kernels.states
+    return "".join(parts)
 
 
 def _aligned(size: int) -> Any:

@@ -42,9 +42,37 @@ def resistance(vehicle: Vehicle, speed: Number, grade_force: Number = 0.0) -> Nu
     )
 
 
+def wheels(vehicle: Vehicle) -> int:
+    """Return the number of wheels."""
+    return 2 * vehicle.wheelsets
+
+
 def static_wheel_load(vehicle: Vehicle) -> Number:
-    """Wheel load without weight transfer, m g / 8 [N]."""
-    return vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
+    """Wheel load without weight transfer, m g over the number of wheels [N]."""
+    return vehicle.mass * constants().gravity / wheels(vehicle)
+
+
+def train_acceleration(vehicle: Vehicle, creep_force: Number, resistance: Number) -> Number:
+    """Acceleration of the train under the mean creep force of its wheels, eq. (1) [m/s2].
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        Mass and number of wheels.
+    creep_force : number
+        Mean over all wheels [N].
+    resistance : number
+        Running resistance [N].
+    """
+    return motion.train_acceleration(
+        creep_force, _counted(vehicle, resistance), _counted(vehicle, vehicle.mass)
+    )
+
+
+def _counted(vehicle: Vehicle, whole: Number) -> Number:
+    """Return the part of a mass or force of the train that stands on as many wheels as eqs. (1), (19) count."""
+    counted = -motion.train_acceleration(1.0, 0.0, 1.0)
+    return whole if counted == wheels(vehicle) else whole * (counted / wheels(vehicle))
 
 
 class SlipDynamics(NamedTuple):
@@ -82,11 +110,12 @@ def slip_dynamics(
     force_slope = adhesion.creep_force_slip_derivative(slip, speed, load, rail, stiffness)
     resisting = resistance(vehicle, speed)
     inertia = vehicle.wheel_inertia
-    mechanics = (vehicle.mass, inertia, vehicle.wheel_radius, vehicle.wheel_damping)
+    carried = _counted(vehicle, resisting)
+    mechanics = (_counted(vehicle, vehicle.mass), inertia, vehicle.wheel_radius, vehicle.wheel_damping)
     return SlipDynamics(
-        drift=generated.slip_drift(slip, speed, force, resisting, *mechanics),
+        drift=generated.slip_drift(slip, speed, force, carried, *mechanics),
         gain=generated.slip_gain(speed, inertia, vehicle.wheel_radius),
-        pole=generated.slip_drift_slip_derivative(slip, speed, force, force_slope, resisting, *mechanics),
+        pole=generated.slip_drift_slip_derivative(slip, speed, force, force_slope, carried, *mechanics),
         creep_force=force,
-        deceleration=-motion.train_acceleration(force, resisting, vehicle.mass),
+        deceleration=-train_acceleration(vehicle, force, resisting),
     )

@@ -13,6 +13,8 @@ from wspd_design.codegen.sampled import GOOD
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import ParameterSet, Vehicle
+from wspd_design.plants.names import plant_of
+from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import first_slip, loop_input
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import run_loop
@@ -74,7 +76,7 @@ def simulate_many(
 
     if runs < 1:
         raise UserError(f"runs = {runs} must be at least 1")
-    cases, drawn, names = _cases(vehicle, scenario, runs, bounds)
+    cases, drawn, names = _cases(plant_of(plant, vehicle), scenario, runs, bounds)
     columns = [
         ("run", "i8"),
         ("seed", "i8"),
@@ -89,7 +91,7 @@ def simulate_many(
         table[name] = drawn[:, k]
     complete = True
     try:
-        for first, count, output in _outputs(cases, controller, plant):
+        for first, count, output in _outputs(cases, controller):
             rows = slice(first, first + count)
             for name, values in _figures(output, count, scenario).items():
                 table[name][rows] = values
@@ -103,8 +105,8 @@ def simulate_many(
 
 
 def _cases(
-    vehicle: Vehicle, scenario: Scenario, runs: int, bounds: Sequence[ParameterSet]
-) -> tuple[list[tuple[Vehicle, Scenario]], "NDArray[np.float64]", tuple[str, ...]]:
+    plant: Plant, scenario: Scenario, runs: int, bounds: Sequence[ParameterSet]
+) -> tuple[list[tuple[Plant, Scenario]], "NDArray[np.float64]", tuple[str, ...]]:
     """Draw the parameters of every stop; the same seed draws the same ones."""
     import numpy as np
 
@@ -128,7 +130,7 @@ def _cases(
         case = replace(
             scenario, rail=_with(scenario.rail, values["rail"]), axle_rails=rails, seed=scenario.seed + run
         )
-        cases.append((_vehicle_with(vehicle, values["vehicle"]), case))
+        cases.append((plant.on(_vehicle_with(plant.vehicle, values["vehicle"])), case))
     return cases, drawn, tuple(f"{kind}.{name}" for kind, name, _ in varied)
 
 
@@ -157,23 +159,22 @@ def _vehicle_with(vehicle: Vehicle, values: dict[str, float]) -> Vehicle:
 
 
 def _outputs(
-    cases: list[tuple[Vehicle, Scenario]], controller: Controller, plant: str
+    cases: list[tuple[Plant, Scenario]], controller: Controller
 ) -> Iterator[tuple[int, int, LoopOutput]]:
     """Run the stops in chunks on all cores; yields (first run, number, output) as chunks finish."""
-    vehicle, scenario = cases[0]
+    plant, scenario = cases[0]
     try:
-        loop = load_closed_loop(
-            vehicle, scenario.rail, controller, stops=STOPS_SIDE_BY_SIDE, disturbed=scenario.pad_vibration
-        )
+        loop = load_closed_loop(plant, controller, stops=STOPS_SIDE_BY_SIDE, disturbed=scenario.pad_vibration)
     except (NoCompilerError, UntraceableError):
         for run, case in enumerate(cases):
-            yield run, 1, run_loop(*_split(case, controller), loop_input([case], controller, plant=plant))[0]
+            each, stop = case
+            yield run, 1, run_loop(each, controller, stop, loop_input([case], controller))[0]
         return
 
     def work(first: int) -> tuple[int, int, LoopOutput]:
         chunk = cases[first : first + STOPS_SIDE_BY_SIDE]
         filled = chunk + chunk[-1:] * (STOPS_SIDE_BY_SIDE - len(chunk))
-        output = loop.run(loop_input(filled, controller, plant=plant))
+        output = loop.run(loop_input(filled, controller))
         if output.result != GOOD:
             raise UserError(
                 f"controller {controller.name} commanded no share of the sample time in runs {first} to "
@@ -197,10 +198,6 @@ def _outputs(
                 yield future.result()
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _split(case: tuple[Vehicle, Scenario], controller: Controller) -> tuple[Vehicle, Controller, Scenario]:
-    return case[0], controller, case[1]
 
 
 def _figures(output: LoopOutput, count: int, scenario: Scenario) -> dict[str, Any]:

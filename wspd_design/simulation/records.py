@@ -15,9 +15,6 @@ if TYPE_CHECKING:
 
     Trace = NDArray[np.float64]
 
-PLANTS = ("four-axle", "quarter")
-"""The four-axle plant transfers load; the quarter locomotive is its case without heights and with equal rails."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Patch:
@@ -80,7 +77,7 @@ class Scenario:
     initial_speed: float  # m/s
     start: Start = Start()
     seed: int = 0
-    axle_rails: tuple[Rail, Rail, Rail, Rail] | None = None  # front axle first, in place of ``rail``
+    axle_rails: tuple[Rail, ...] | None = None  # front axle first, in place of ``rail``
     patches: tuple[Patch, ...] = ()
     grade: float = 0.0  # -, rise over run, positive uphill
     pad_vibration: bool = False  # T_d of Section 7
@@ -169,7 +166,7 @@ class Run:
     wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
     axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset
     totals: Totals
-    final_wheel_speeds: tuple[float, ...]  # rad/s, of four wheelsets
+    final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
 
