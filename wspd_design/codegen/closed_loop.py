@@ -8,12 +8,12 @@ import ctypes
 import math
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
 from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
-from wspd_design.codegen.laws import LawKernels, law_kernels
+from wspd_design.codegen.laws import LawKernels, immutable, law_kernels
 from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
@@ -259,16 +259,33 @@ def load_closed_loop(
     UntraceableError
         If ``step`` contains what CasADi cannot trace or the emitter cannot translate.
     """
-    kernels, law = plant_kernels(plant, disturbed=disturbed), law_kernels(controller)
-    library = _libraries.get(
-        (kernels, law, stops),
-        type(plant),
-        lambda: load_library(closed_loop_source(kernels, law, stops=stops)),
-    )
+    known = immutable(controller)
+    if known is None:
+        kernels, law, library = _loaded(plant, controller, stops, disturbed)
+    else:
+        content, kinds = known
+        kernels, law, library = _loops.get(
+            (type(plant), plant.axles, content, stops, disturbed),
+            (type(plant), *kinds),
+            lambda: _loaded(plant, controller, stops, disturbed),
+        )
     return ClosedLoop(library, kernels, law, stops)
 
 
+_Loaded: TypeAlias = tuple[Kernels, LawKernels, ctypes.CDLL]
+_loops: "Memory[_Loaded]" = Memory(64)
 _libraries: "Memory[ctypes.CDLL]" = Memory(32)
+
+
+def _loaded(plant: Plant, controller: Controller | None, stops: int, disturbed: bool) -> _Loaded:
+    """Trace the law as it is now; its library is the one of all laws with the same kernels."""
+    kernels, law = plant_kernels(plant, disturbed=disturbed), law_kernels(controller)
+    library = _libraries.get(
+        (kernels, law, stops),
+        (type(plant),),
+        lambda: load_library(closed_loop_source(kernels, law, stops=stops)),
+    )
+    return kernels, law, library
 
 
 def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:

@@ -99,7 +99,7 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     """
     blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
     shape = plant.on(Vehicle(**{**blank, "wheelsets": plant.vehicle.wheelsets}))
-    return _memory.get((shape, disturbed), type(plant), lambda: _traced(shape, disturbed))
+    return _memory.get((shape, disturbed), (type(plant),), lambda: _traced(shape, disturbed))
 
 
 _memory: "Memory[Kernels]" = Memory(16)

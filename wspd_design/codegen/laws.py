@@ -1,8 +1,8 @@
 """The kernels of a law: its own ``start`` and ``step``, traced by CasADi at each call.
 
 A law may change between two calls in any way that Python knows: attributes, contents of lists and arrays, methods,
-closures. What runs is therefore what the trace says, never what a law with the same identity once was. A trace is
-only taken again from memory for an immutable law of this package, while nothing in the package has been replaced.
+closures. What runs is therefore what the trace says, never what a law with the same identity once was. Only an
+immutable law of this package has a key by which its trace may be remembered, while no code has been replaced.
 """
 
 import re
@@ -13,7 +13,6 @@ from typing import Any
 
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.gains import Gain, with_gains
-from wspd_design.codegen.memory import Memory
 from wspd_design.controllers.protocol import Controller, Measurement
 
 _PACKAGE = "wspd_design."
@@ -31,7 +30,9 @@ class LawKernels:
 
 
 def law_kernels(law: Controller | None) -> LawKernels:
-    """Trace a law; without one the kernels hold the valves.
+    """Trace a law with its floats as inputs, or as constants where it does not take them.
+
+    Without a law the kernels hold the valves.
 
     Raises
     ------
@@ -40,28 +41,6 @@ def law_kernels(law: Controller | None) -> LawKernels:
     """
     if law is None:
         return _closed_valves()
-    try:
-        key = _immutable(law)
-    except _MutableError:
-        return _traced(law)
-    return _memory.get(key, type(law), lambda: _traced(law))
-
-
-_memory: "Memory[LawKernels]" = Memory(64)
-
-
-@cache
-def _closed_valves() -> LawKernels:
-    import casadi as ca
-
-    m, none = ca.SX.sym("m", 3), ca.SX(0, 1)
-    start = ca.Function("start_kernel", [m, none], [none])
-    step = ca.Function("step_kernel", [none, m, none], [ca.SX.zeros(2)])
-    return LawKernels(start=start, step=step, states=0, gains=(), content="")
-
-
-def _traced(law: Controller) -> LawKernels:
-    """Trace a law with its floats as inputs, or with constants where it does not take them."""
     import casadi as ca
 
     values: list[float] = []
@@ -78,6 +57,16 @@ def _traced(law: Controller) -> LawKernels:
     except Exception:
         pass
     return _functions(law, ca.SX(0, 1), ())
+
+
+@cache
+def _closed_valves() -> LawKernels:
+    import casadi as ca
+
+    m, none = ca.SX.sym("m", 3), ca.SX(0, 1)
+    start = ca.Function("start_kernel", [m, none], [none])
+    step = ca.Function("step_kernel", [none, m, none], [ca.SX.zeros(2)])
+    return LawKernels(start=start, step=step, states=0, gains=(), content="")
 
 
 def _functions(law: Controller, symbols: Any, values: tuple[float, ...]) -> LawKernels:
@@ -108,18 +97,23 @@ def _vector(*elements: Any) -> Any:
     return ca.vertcat(ca.SX(0, 1), *elements)
 
 
+def immutable(law: Controller | None) -> tuple[Any, tuple[type, ...]] | None:
+    """Key of a law of this package by all that it holds, and the classes of that.
+
+    None for a law that may change without being replaced.
+    """
+    floats, kinds = array("d"), dict[type, None]()
+    try:
+        return (_shape(law, floats, kinds), floats.tobytes()), tuple(kinds)
+    except _MutableError:
+        return None
+
+
 class _MutableError(TypeError):
     """Something in a law may change without being replaced."""
 
 
-def _immutable(law: Any) -> Any:
-    """Key of a law of this package by all that it holds."""
-    floats = array("d")
-    shape = _shape(law, floats)
-    return shape, floats.tobytes()
-
-
-def _shape(value: Any, floats: "array[float]") -> Any:
+def _shape(value: Any, floats: "array[float]", kinds: dict[type, None]) -> Any:
     kind = type(value)
     if kind is float:
         floats.append(value)
@@ -127,8 +121,9 @@ def _shape(value: Any, floats: "array[float]") -> Any:
     if kind in (int, bool, str, type(None)):
         return kind, value
     if kind is tuple:
-        return tuple(_shape(element, floats) for element in value)
+        return tuple(_shape(element, floats, kinds) for element in value)
     ours = is_dataclass(value) and kind.__module__.startswith(_PACKAGE)
     if ours and kind.__dataclass_params__.frozen and not hasattr(value, "__dict__"):
-        return kind, *(_shape(getattr(value, each.name), floats) for each in fields(value))
+        kinds[kind] = None
+        return kind, *(_shape(getattr(value, each.name), floats, kinds) for each in fields(value))
     raise _MutableError

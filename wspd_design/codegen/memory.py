@@ -4,7 +4,7 @@ import sys
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from functools import cache
-from operator import is_
+from itertools import chain
 from typing import Any, Generic, TypeVar
 
 _Result = TypeVar("_Result")
@@ -20,20 +20,20 @@ class Memory(Generic[_Result]):
         self._size = size
         self._known: OrderedDict[Hashable, tuple[list[Any], _Result]] = OrderedDict()
 
-    def get(self, key: Hashable, kind: type, make: Callable[[], _Result]) -> _Result:
+    def get(self, key: Hashable, kinds: tuple[type, ...], make: Callable[[], _Result]) -> _Result:
         """Return what is remembered, or make it.
 
         Parameters
         ----------
         key : hashable
             All that the result depends on beside code.
-        kind : type
-            Class whose methods and module take part.
+        kinds : tuple of type
+            Classes that take part with their methods and modules.
         make : callable
             Makes the result.
         """
-        code, known = _code(kind), self._known.get(key)
-        if known is None or len(known[0]) != len(code) or not all(map(is_, known[0], code)):
+        code, known = _code(kinds), self._known.get(key)
+        if known is None or known[0] != code:
             known = code, make()
         self._known[key] = known
         self._known.move_to_end(key)
@@ -42,13 +42,13 @@ class Memory(Generic[_Result]):
         return known[1]
 
 
-def _code(kind: type) -> list[Any]:
-    """What these rooms, and a class with its own module, hold at present."""
-    spaces = [vars(module) for module in (*_modules(), sys.modules[kind.__module__])]
-    spaces += [dict(vars(base)) for base in kind.__mro__]
-    return [thing for space in spaces for thing in space.values()]
+def _code(kinds: tuple[type, ...]) -> list[Any]:
+    """What these rooms, and some classes with their modules, hold at present."""
+    spaces = [*_rooms(), *map(vars, dict.fromkeys(base for kind in kinds for base in kind.__mro__[:-1]))]
+    spaces += [vars(sys.modules[name]) for name in dict.fromkeys(kind.__module__ for kind in kinds)]
+    return list(chain.from_iterable(space.values() for space in spaces))
 
 
 @cache
-def _modules() -> tuple[Any, ...]:
-    return tuple(sys.modules[name] for name in sorted(sys.modules) if name.startswith(_ROOMS))
+def _rooms() -> tuple[dict[str, Any], ...]:
+    return tuple(vars(sys.modules[name]) for name in sorted(sys.modules) if name.startswith(_ROOMS))

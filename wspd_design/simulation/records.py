@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
@@ -113,8 +113,7 @@ class Ending(Enum):
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sample:
+class Sample(NamedTuple):
     """What one controller did at one sampling instant."""
 
     time: float  # s

@@ -123,7 +123,6 @@ def _run_record(
     wheel, slip, passed, load = (trace[:, 3 + k * axles : 3 + k * axles + columns] for k in range(4))
     states = (output.samples.shape[1] - 1) // axles - 5
     by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 5, axles)
-    times = output.samples[:, 0]
     return Run(
         controller=controller.name,
         vehicle=plant.vehicle.name,
@@ -140,17 +139,7 @@ def _run_record(
         torque=passed,
         wheel_load=load,
         axle_samples=tuple(
-            tuple(
-                Sample(
-                    time=t,
-                    fill=row[states],
-                    vent=row[states + 1],
-                    state=tuple(row[:states]),
-                    seen=Measurement(*row[states + 2 :]),
-                )
-                for t, row in zip(times.tolist(), by_axle[:, :, axle].tolist(), strict=True)
-            )
-            for axle in range(columns)
+            _samples(output.samples[:, 0], by_axle[:, :, axle], states) for axle in range(columns)
         ),
         totals=Totals(
             distance=stop["distance"],
@@ -171,6 +160,18 @@ def _run_record(
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),
         engine=engine,
     )
+
+
+def _samples(times: "NDArray[np.float64]", rows: "NDArray[np.float64]", states: int) -> tuple[Sample, ...]:
+    """Samples of one wheelset from rows of its states, fill, vent and what it saw."""
+    columns = (
+        times.tolist(),
+        rows[:, states].tolist(),
+        rows[:, states + 1].tolist(),
+        map(tuple, rows[:, :states].tolist()),
+        map(Measurement._make, rows[:, states + 2 :].tolist()),
+    )
+    return tuple(map(Sample._make, zip(*columns, strict=True)))
 
 
 def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray[np.float64]":

@@ -5,10 +5,11 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 import numpy as np
 import pytest
 
-from wspd_design.codegen import closed_loop, laws
+from wspd_design.codegen import closed_loop
 from wspd_design.codegen.closed_loop import load_closed_loop
-from wspd_design.codegen.laws import law_kernels
+from wspd_design.codegen.laws import immutable, law_kernels
 from wspd_design.controllers import sliding_mode
+from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.controllers.protocol import Command, Measurement
 from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.model.number import clip, exp, where
@@ -276,18 +277,46 @@ def test_a_law_of_the_package_whose_code_is_replaced_is_traced_anew(
     assert simulate(er24pc, law, scenario, plant="quarter").totals.distance == before
 
 
-def test_a_law_of_the_package_is_traced_once(make_controller, monkeypatch):
-    law, traced, true = make_controller("smc"), [], laws._traced
-    monkeypatch.setattr(laws, "_traced", lambda law: traced.append(law) or true(law))
+def test_a_law_of_the_package_is_traced_once(er24pc, make_controller, monkeypatch):
+    traced, true, plant = [], closed_loop.law_kernels, Quarter(er24pc)
+    monkeypatch.setattr(closed_loop, "law_kernels", lambda law: traced.append(law) or true(law))
     for _ in range(3):
-        kernels = law_kernels(make_controller("smc"))
+        law = make_controller("smc")
+        load_closed_loop(plant, law)
     assert len(traced) == 1
-    other = law_kernels(replace(law, gains=replace(law.gains, switching_gain=16.0)))
-    assert len(traced) == 2
-    assert (kernels == other, kernels.gains == other.gains) == (True, False)
     for zero in (0.0, -0.0):  # equal, and not the same number
-        law_kernels(replace(law, sample_time=zero))
+        load_closed_loop(plant, replace(law, sample_time=zero))
+    assert len(traced) == 3
+    load_closed_loop(Quarter(replace(er24pc, wheelsets=2)), law)
     assert len(traced) == 4
+
+
+def test_laws_are_compared_by_their_kernels(make_controller):
+    law = make_controller("smc")
+    kernels, other = (
+        law_kernels(law),
+        law_kernels(replace(law, gains=replace(law.gains, switching_gain=16.0))),
+    )
+    assert kernels == other
+    assert kernels.gains != other.gains
+    assert kernels != law_kernels(make_controller("torque-feedback"))
+
+
+@dataclass(frozen=True)
+class Frozen:
+    """A user's class: its code may change in ways that nobody can see."""
+
+    name: str = "frozen"
+    sample_time: float = 0.1
+
+
+@pytest.mark.parametrize(
+    ("law", "known"),
+    [(Unprotected(name="none", sample_time=0.1), True), (Frozen(), False), (None, True), (Own, False)],
+    ids=str,
+)
+def test_only_immutable_laws_of_the_package_are_remembered(law, known):
+    assert (immutable(law) is not None) is known
 
 
 class Awkward(Own):
