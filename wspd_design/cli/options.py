@@ -9,15 +9,16 @@ from wspd_design.design.catalog import BASELINES, CONTROLLERS
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import available
 from wspd_design.parameters.units import format_quantity
-from wspd_design.plants.names import PLANTS
+from wspd_design.plants.names import DEFAULT_PLANT, PLANTS
+from wspd_design.plants.quarter import Quarter
 
 _PAPER = Specification()
 
 VEHICLE = "er24pc"
 RAIL = "polach-wet"
 CONTROLLER = "afsmc"
-PLANT = PLANTS[0]
-QUARTER = "quarter"
+PLANT = DEFAULT_PLANT
+QUARTER = Quarter.name
 LAW = "afsmc"
 SPEED = format_quantity(_PAPER.speeds[1], "km/h")
 SPEEDS = f"{format_quantity(_PAPER.speeds[0], 'km/h')} to {SPEED}"

@@ -22,7 +22,7 @@ class Surroundings:
 
     grade_force: float = 0.0  # N, positive uphill
     axle_offset: float = 0.0  # m, behind the first axle
-    braking_time: float = 0.0  # s, from the application of the brake to the begin of the stop
+    braking_time: float = 0.0  # s, from the application of the brake to the start of the stop
 
 
 _RECORDS: tuple[tuple[str, type], ...] = (

@@ -5,6 +5,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from functools import cache
 from itertools import chain
+from operator import is_
 from typing import Any, Generic, TypeVar
 
 _Result = TypeVar("_Result")
@@ -33,7 +34,7 @@ class Memory(Generic[_Result]):
             Makes the result.
         """
         code, known = _code(kinds), self._known.get(key)
-        if known is None or known[0] != code:
+        if known is None or len(known[0]) != len(code) or not all(map(is_, known[0], code)):
             known = code, make()
         self._known[key] = known
         self._known.move_to_end(key)

@@ -14,6 +14,9 @@ _PLANTS: Final[dict[str, Callable[[Vehicle], Plant]]] = {kind.name: kind for kin
 PLANTS: Final = tuple(_PLANTS)
 """The first transfers load; the quarter locomotive is its case without heights and with equal rails."""
 
+DEFAULT_PLANT: Final = Planar.name
+"""The plant of a stop that names none."""
+
 
 def plant_of(name: str, vehicle: Vehicle) -> Plant:
     """Return the plant of a name with the numbers of a vehicle.

@@ -40,7 +40,7 @@ class Planar(RigidWheelsets):
     @property
     def bogies(self) -> int:
         """Number of bogies."""
-        return self.axles // _AXLES
+        return bogies(self.vehicle)
 
     @property
     def transfers(self) -> int:
@@ -60,9 +60,9 @@ class Planar(RigidWheelsets):
     def wheel_loads(self, transfers: tuple[Number, ...]) -> tuple[Number, ...]:
         """Vertical load of one wheel of each axle [N]."""
         static = slip_model.static_wheel_load(self.vehicle)
-        body, *bogies = transfers[: self.transfers]
+        body, *within_bogies = transfers[: self.transfers]
         loads: list[Number] = []
-        for share, bogie in zip(_body_shares(self.bogies), bogies, strict=True):
+        for share, bogie in zip(_body_shares(self.bogies), within_bogies, strict=True):
             mean, within = static + share * body / _WHEELS, bogie / _AXLES
             loads += [mean + within, mean - within]
         return tuple(loads)
@@ -95,9 +95,14 @@ class Planar(RigidWheelsets):
         )
 
 
-def _body_shares(bogies: int) -> tuple[float, ...]:
+def bogies(vehicle: Vehicle) -> int:
+    """Number of bogies of a vehicle that stands on nothing else."""
+    return vehicle.wheelsets // _AXLES
+
+
+def _body_shares(number: int) -> tuple[float, ...]:
     """Load of each bogie from a pitch moment of the body, over moment by spacing; 1 and -1 for two bogies."""
-    places = [0.5 * (bogies - 1) - bogie for bogie in range(bogies)]
+    places = [0.5 * (number - 1) - bogie for bogie in range(number)]
     squares = sum(place * place for place in places)
     return tuple(place / squares for place in places)
 

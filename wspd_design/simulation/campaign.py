@@ -13,7 +13,8 @@ from wspd_design.codegen.sampled import GOOD
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import ParameterSet, Vehicle
-from wspd_design.plants.names import plant_of
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
+from wspd_design.plants.planar import bogies
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import first_slip, loop_input
 from wspd_design.simulation.records import Scenario
@@ -45,7 +46,7 @@ def simulate_many(
     *,
     runs: int,
     bounds: Sequence[ParameterSet] = (),
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
     progress: Callable[[int], object] = abs,
 ) -> Campaign:
     """Simulate many stops that differ in their seed and in parameters drawn from their bounds.
@@ -154,7 +155,7 @@ def _vehicle_with(vehicle: Vehicle, values: dict[str, float]) -> Vehicle:
     }
     changed: Vehicle = replace(_with(vehicle, values), **parts)
     if "mass" in values:
-        changed = replace(changed, body_mass=changed.mass - 2.0 * changed.bogie_mass)
+        changed = replace(changed, body_mass=changed.mass - bogies(vehicle) * changed.bogie_mass)
     return changed
 
 

@@ -15,7 +15,7 @@ from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.plants.names import plant_of
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.stop import run_loop
@@ -48,7 +48,7 @@ def ideal_stop(
     *,
     slip: float | None = None,
     instantaneous: bool = False,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
 ) -> IdealStop:
     """Stop at the adhesion peak or at a constant slip.
 

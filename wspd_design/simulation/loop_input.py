@@ -10,6 +10,7 @@ from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Rail, Vehicle
+from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.start import available_torque
@@ -87,7 +88,7 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
         )
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
-        raise UserError('rails and loads of single axles need the plant "four-axle"')
+        raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
     tables = None if irregularity is None else irregularity.factors
     for what, one, several in (
         ("axle rails", "rail", scenario.axle_rails),
@@ -119,7 +120,7 @@ def _pressure(brake: Brake, start: Start) -> float:
 
 
 def first_slip(scenario: Scenario) -> float:
-    """Slip at the begin of a stop, as far as the figures count it [-]."""
+    """Slip at the start of a stop, as far as the figures count it [-]."""
     return scenario.start.slip if scenario.initial_speed > JUDGING_SPEED else 0.0
 
 

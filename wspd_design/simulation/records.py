@@ -44,7 +44,7 @@ class LoadIrregularity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
-    """State of all wheelsets at the begin of a stop; by default they roll and the brake is applied now.
+    """State of all wheelsets at the start of a stop; by default they roll and the brake is applied now.
 
     The supply (8), the vibration of the pads and the damping of the wheels are as far on as ``braking_time`` says.
     Load transfer begins with the stop.

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import Vehicle
-from wspd_design.plants.names import plant_of
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.simulation.stop import simulate_on
@@ -40,7 +40,7 @@ class StepCheck:
 
 
 def simulate_checked(
-    vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str = "four-axle"
+    vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str = DEFAULT_PLANT
 ) -> tuple[Run, StepCheck]:
     """Simulate a stop with steps that are short enough, as far as that is possible.
 

@@ -1,8 +1,8 @@
 """One stop: from the records to the numbers of the closed loop and back.
 
-The closed loop is compiled once for each controller and run by the machine. A controller that cannot be traced
-runs in Python on the compiled plant; without a C compiler plant and controller run in CasADi's virtual machine
-and in Python, slower, with the same numbers.
+The closed loop is compiled once for each law, whatever its gains are, and run by the machine. A controller that
+cannot be traced runs in Python on the compiled plant; without a C compiler plant and controller run in CasADi's
+virtual machine and in Python, slower, with the same numbers.
 """
 
 import math
@@ -23,7 +23,7 @@ from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
-from wspd_design.plants.names import plant_of
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import RECORD_INTERVAL, first_slip, loop_input, sample_rows
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
@@ -38,7 +38,7 @@ def simulate(
     controller: Controller,
     scenario: Scenario,
     *,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
     refinement: int = 1,
 ) -> Run:
     """Brake from the initial speed to standstill.
