@@ -19,10 +19,12 @@ _Binary = Callable[[Any, Any], Any]
 class Gain:
     """A float with the expression that stands for it in a kernel.
 
-    ``isinstance`` takes it for a float, so that a law treats it as its number; CasADi asks for the expression.
+    ``isinstance`` takes it for a float, so that a law treats it as its number; CasADi asks for the expression. It is
+    no key of a dictionary: a cache would keep the expression beyond its kernel.
     """
 
     __slots__ = ("_expression", "_value")
+    __hash__ = None  # type: ignore[assignment]
     __array_priority__ = 2000.0  # CasADi and NumPy leave the arithmetic to this class
 
     def __init__(self, value: float, expression: Any) -> None:
@@ -47,9 +49,6 @@ class Gain:
 
     def __float__(self) -> float:
         return self._value
-
-    def __hash__(self) -> int:
-        return hash(self._value)
 
     def exp(self) -> "Gain":
         """Exponential function."""
@@ -153,7 +152,7 @@ def with_gains(law: Any, gain: Callable[[float], Any]) -> Any:
     Parameters
     ----------
     law : object
-        Its floats are those among its attributes, in tuples, and in dataclasses within them.
+        Its floats are those among its attributes, in tuples of numbers, and in dataclasses within it.
     gain : callable
         Called with every float, in a fixed order.
     """
@@ -166,7 +165,7 @@ def with_gains(law: Any, gain: Callable[[float], Any]) -> Any:
 def _replaced(value: Any, gain: Callable[[float], Any]) -> Any:
     if isinstance(value, float):
         return gain(value)
-    if isinstance(value, tuple):
+    if isinstance(value, tuple) and all(isinstance(element, (int, float)) for element in value):
         elements = [_replaced(element, gain) for element in value]
         return type(value)._make(elements) if hasattr(value, "_make") else type(value)(elements)
     if is_dataclass(value) and not isinstance(value, type):

@@ -17,7 +17,8 @@ from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.axle import RigidWheelsets
 from wspd_design.plants.protocol import TrainMotion
 
-_AXLES, _WHEELS = 2, 4  # of one bogie
+_AXLES = 2  # of one bogie
+_WHEELS = 2 * _AXLES
 
 
 @dataclass(frozen=True, slots=True)

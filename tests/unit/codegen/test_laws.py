@@ -1,6 +1,7 @@
 """The compiled loop is that of the law at the moment of the call, whatever changed; new numbers compile nothing."""
 
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -42,11 +43,11 @@ def compilations(monkeypatch):
 
 
 def scaled(value, factor):
-    """The same record with every float a little changed."""
+    """The same record with every float a little changed; tables of tuples are rules of the law."""
     if isinstance(value, float):
         return value * factor
-    if isinstance(value, tuple):
-        return tuple(scaled(element, factor) for element in value)
+    if isinstance(value, tuple) and all(isinstance(element, float) for element in value):
+        return tuple(element * factor for element in value)
     if is_dataclass(value):
         return replace(value, **{f.name: scaled(getattr(value, f.name), factor) for f in fields(value)})
     return value
@@ -319,13 +320,28 @@ def test_only_immutable_laws_of_the_package_are_remembered(law, known):
     assert (immutable(law) is not None) is known
 
 
-class Awkward(Own):
-    """It takes its numbers out of arithmetic in every way that a law may think of."""
+class Bare(Own):
+    """Its commands are its numbers."""
 
-    factors = {0.5: 0.2, 0.75: 0.6}  # noqa: RUF012
+    def start(self, measurement):  # noqa: ARG002
+        return (self.duty,)
+
+    def step(self, state, measurement):  # noqa: ARG002
+        return (self.duty,), Command(fill=self.duty, vent=state[0])
+
+
+def test_a_law_may_return_its_numbers():
+    one, other = law_kernels(Bare(0.5)), law_kernels(Bare(0.25))
+    assert one == other
+    for kernels, duty in ((one, 0.5), (other, 0.25)):
+        np.testing.assert_array_equal(evaluated(kernels, (0.125,), (1.0, 1.0, 1.0)), (duty, duty, 0.125))
+
+
+class Awkward(Own):
+    """It takes its numbers out of arithmetic in many ways."""
 
     def step(self, state, measurement):
-        duty = self.factors.get(self.duty, 1.0)  # as a key
+        duty = 0.7 if isinstance(self.duty, float) else 0.2
         if self.duty > 0.6:  # in a branch
             duty = duty - 0.05
         duty = duty * round(self.duty, 2) + 0.01 * int(4.0 * self.duty)
@@ -351,6 +367,27 @@ class Refusing(Own):
         raise TypeError("not to be copied")
 
 
+class OfKeys(Own):
+    """It looks its number up."""
+
+    factors = {0.5: 0.2, 0.25: 0.6}  # noqa: RUF012
+
+    def step(self, state, measurement):
+        return state, fill(self.factors.get(self.duty, 1.0) + 0.0 * measurement.speed)
+
+
+@cache
+def doubled(number):
+    return 2.0 * number
+
+
+class Caching(Own):
+    """It keeps what it makes of its number."""
+
+    def step(self, state, measurement):
+        return state, fill(doubled(self.duty) + 0.0 * measurement.speed)
+
+
 class Power(Own):
     def step(self, state, measurement):
         import casadi as ca
@@ -359,10 +396,11 @@ class Power(Own):
         return state, fill(0.1 * (ca.power(low, self.duty) if isinstance(low, ca.SX) else low**self.duty))
 
 
-@pytest.mark.parametrize(("kind", "value"), [(Refusing, 0.5), (Power, 2.0)])
+@pytest.mark.parametrize(("kind", "value"), [(Refusing, 0.5), (Power, 2.0), (OfKeys, 0.5), (Caching, 0.25)])
 def test_a_law_that_takes_no_gains_has_constants(kind, value):
     kernels = law_kernels(kind(value))
     assert kernels.gains == ()
     seen = Measurement(29.0, 10.0, 0.0)
     np.testing.assert_allclose(evaluated(kernels, (), seen), kind(value).step((), seen)[1], rtol=1e-14)
     assert kernels != law_kernels(kind(0.5 * value))  # another value is another kernel
+    assert type(doubled(0.25)) is float
