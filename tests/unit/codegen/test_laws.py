@@ -85,14 +85,14 @@ def test_a_new_gain_compiles_nothing(er24pc, make_controller, scenario, compilat
     first = simulate(er24pc, law, scenario, plant="quarter")
     assert len(compilations) == 1
     distances = {first.totals.distance}
-    for factor in (1.001, 0.999, 1.002):
+    for factor in (0.999, 0.998, 0.997):
         changed = replace(scaled(law, factor), sample_time=law.sample_time)
         distances.add(simulate(er24pc, changed, scenario, plant="quarter").totals.distance)
     assert len(compilations) == 1
     assert len(distances) > 1  # and the gains count
 
 
-@pytest.mark.parametrize("factor", [1.0, 1.01])
+@pytest.mark.parametrize("factor", [1.0, 0.99])
 @pytest.mark.parametrize("name", LAWS)
 def test_compiled_and_driven_from_python_are_the_same(er24pc, make_controller, scenario, name, factor):
     law = replace(scaled(make_controller(name, "polach-wet"), factor), sample_time=0.1)
