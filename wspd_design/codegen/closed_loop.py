@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
-from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
+from wspd_design.codegen.kernels import PARAMETERS, Kernels, kinds_of, plant_kernels
 from wspd_design.codegen.laws import LawKernels, immutable, law_kernels
 from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.sampled import drive
@@ -266,7 +266,7 @@ def load_closed_loop(
         content, kinds = known
         kernels, law, library = _loops.get(
             (type(plant), plant.axles, content, stops, disturbed),
-            (type(plant), *kinds),
+            (*kinds_of(plant), *kinds),
             lambda: _loaded(plant, controller, stops, disturbed),
         )
     return ClosedLoop(library, kernels, law, stops)
@@ -282,7 +282,7 @@ def _loaded(plant: Plant, controller: Controller | None, stops: int, disturbed: 
     kernels, law = plant_kernels(plant, disturbed=disturbed), law_kernels(controller)
     library = _libraries.get(
         (kernels, law, stops),
-        (type(plant),),
+        kinds_of(plant),
         lambda: load_library(closed_loop_source(kernels, law, stops=stops)),
     )
     return kernels, law, library

@@ -99,7 +99,12 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     """
     blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
     shape = plant.on(Vehicle(**{**blank, "wheelsets": plant.vehicle.wheelsets}))
-    return _memory.get((shape, disturbed), (type(plant),), lambda: _traced(shape, disturbed))
+    return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
+
+
+def kinds_of(plant: Plant) -> tuple[type, ...]:
+    """Classes whose methods and properties make the kernels of a plant."""
+    return type(plant), *(kind for _, kind in _RECORDS)
 
 
 _memory: "Memory[Kernels]" = Memory(16)
