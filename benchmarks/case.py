@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from wspd_design.codegen.closed_loop import LoopInput, Settings
 from wspd_design.codegen.compiler import find_compiler
+from wspd_design.codegen.loop_numbers import LoopInput, Settings
 from wspd_design.design.catalog import controller
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import constants, load_rail, load_vehicle

@@ -6,7 +6,6 @@ last axis.
 
 import ctypes
 import math
-from dataclasses import dataclass
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -14,6 +13,7 @@ from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
 from wspd_design.codegen.kernels import PARAMETERS, Kernels, kinds_of, plant_kernels
 from wspd_design.codegen.laws import LawKernels, immutable, law_kernels
+from wspd_design.codegen.loop_numbers import DOUBLES, LANE_TOTALS, STOP_TOTALS, Head, LoopInput, LoopOutput
 from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
@@ -25,103 +25,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-LANE_TOTALS = (
-    "torque",
-    "damping_impulse",
-    "brake_work",
-    "sliding_work",
-    "damping_work",
-    "slip",
-    "slip_squared",
-    "lock_time",
-    "slip_max",
-    "vented_pressure",
-)
-STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
-RAIL_NUMBERS = 5
-_DOUBLES = ctypes.POINTER(ctypes.c_double)
-
-
-class Settings(ctypes.Structure):
-    """Numbers of the run that are the same for all stops, in SI units."""
-
-    _fields_ = tuple(
-        (name, ctypes.c_double)
-        for name in (
-            "sample_time",
-            "dead_time",
-            "longest_step",
-            "creep_rate",
-            "stop_speed",
-            "regularization_speed",
-            "time_limit",
-            "judging_speed",
-            "record_interval",
-        )
-    )
-
-
-class _Head(ctypes.Structure):
-    """What the caller sets in the C structure ``Loop``; its state follows."""
-
-    _fields_ = (
-        ("set", Settings),
-        ("measured", _DOUBLES),
-        ("patch_start", _DOUBLES),
-        ("patch_rail", _DOUBLES),
-        ("patches", ctypes.c_long),
-        ("load_factor", _DOUBLES),
-        ("load_points", ctypes.c_long),
-        ("load_spacing", ctypes.c_double),
-        ("hold", _DOUBLES),
-        ("hold_points", ctypes.c_long),
-        ("hold_first", ctypes.c_double),
-        ("hold_spacing", ctypes.c_double),
-        ("trace", _DOUBLES),
-        ("trace_rows", ctypes.c_long),
-        ("trace_used", ctypes.c_long),
-        ("quantum", ctypes.c_double),
-        ("reference_factor", ctypes.c_double),
-        ("gains", _DOUBLES),
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoopInput:
-    """Everything that the loop takes, as numbers."""
-
-    stop_parameters: "Array"  # (PARAMETERS, stops)
-    lane_parameters: "Array"  # (PARAMETERS, lanes)
-    speeds: "Array"  # (stops,), initial [m/s]
-    wheel_speeds: "Array"  # (lanes,), initial [rad/s]
-    pressures: "Array"  # (lanes,), of the cylinders, initial [Pa]
-    settings: Settings
-    patch_starts: "Array | None" = None  # (patches,) [m]
-    patch_rails: "Array | None" = None  # (patches, axles, RAIL_NUMBERS)
-    wheel_noise: "Array | None" = None  # (samples, lanes) [rad/s]
-    quantum: float = 0.0  # rad/s
-    reference_factor: float = 1.0
-    load_factors: "Array | None" = None  # (axles, points)
-    load_spacing: float = 1.0  # m
-    held_slips: "Array | None" = None  # (axles, points), what an ideal brake never exceeds
-    held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
-    trace_rows: int = 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoopOutput:
-    """What the loop gives back, as numbers."""
-
-    result: int
-    stopped: "NDArray[np.bool_]"  # (stops,)
-    lane_totals: dict[str, "Array"]  # (lanes,) each
-    stop_totals: dict[str, "Array"]  # (stops,) each
-    wheel_speeds: "Array"  # (lanes,)
-    trace: "Array"  # (rows, 3 + 5 axles), of the first stop
-    samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
-    bad_command: tuple[float, float, float]  # time, fill, vent
-    steps: int
-
 
 class ClosedLoop:
     """A compiled loop of a number of stops side by side; without a controller it is driven from Python."""
@@ -132,7 +35,7 @@ class ClosedLoop:
         self.stops, self.axles, self.states = stops, kernels.axles, law.states
         self._library, self._gains = library, np.array(law.gains)
         for name in ("wspd_lane_totals", "wspd_stop_totals", "wspd_wheel_speeds", "wspd_bad_command"):
-            getattr(library, name).restype = _DOUBLES
+            getattr(library, name).restype = DOUBLES
         for name in ("wspd_size", "wspd_steps", "wspd_samples"):
             getattr(library, name).restype = ctypes.c_long
 
@@ -158,7 +61,7 @@ class ClosedLoop:
         import numpy as np
 
         buffer = _aligned(self._library.wspd_size())
-        head = _Head.from_buffer(buffer)
+        head = Head.from_buffer(buffer)
         trace = np.zeros((given.trace_rows, 3 + 5 * self.axles))
         head.set = given.settings
         head.quantum, head.reference_factor = given.quantum, given.reference_factor
@@ -199,7 +102,7 @@ class ClosedLoop:
 
         lane = block("wspd_lane_totals", len(LANE_TOTALS), lanes)
         stop = block("wspd_stop_totals", len(STOP_TOTALS), self.stops)
-        settings = _Head.from_buffer(buffer)
+        settings = Head.from_buffer(buffer)
         totals = dict(zip(STOP_TOTALS, stop, strict=True))
         bad = block("wspd_bad_command", 1, 3)[0]
         return LoopOutput(
@@ -326,4 +229,4 @@ def _aligned(size: int) -> Any:
 
 
 def _pointer(array: "Array") -> Any:
-    return array.ctypes.data_as(_DOUBLES)
+    return array.ctypes.data_as(DOUBLES)

@@ -54,7 +54,7 @@ def law_kernels(law: Controller | None) -> LawKernels:
         steps = (made.step.instruction_id(k) for k in range(made.step.n_instructions()))
         if ca.OP_POW not in steps:
             return made
-    except Exception:
+    except Exception:  # the law does not take gains; whether it takes plain numbers is seen next
         pass
     return _functions(law, ca.SX(0, 1), ())
 

@@ -7,16 +7,10 @@ import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.codegen.closed_loop import (
-    LANE_TOTALS,
-    RAIL_NUMBERS,
-    STOP_TOTALS,
-    LoopInput,
-    LoopOutput,
-)
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
 from wspd_design.codegen.laws import law_kernels
+from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
 from wspd_design.codegen.virtual_step import INERTIA, RADIUS, StepFunctions, step_functions
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State

@@ -6,9 +6,10 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.codegen.closed_loop import LoopOutput, load_closed_loop
+from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.loop_numbers import LoopOutput
 from wspd_design.codegen.sampled import GOOD
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from wspd_design.codegen.closed_loop import LoopInput, Settings
 from wspd_design.codegen.kernels import Surroundings, parameter_values
+from wspd_design.codegen.loop_numbers import LoopInput, Settings
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants

@@ -10,13 +10,10 @@ import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from wspd_design.codegen.closed_loop import (
-    LoopInput,
-    LoopOutput,
-    load_closed_loop,
-)
+from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND
 from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.model.slip import static_wheel_load
