@@ -10,7 +10,7 @@ from typing import NamedTuple
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wspd_design.codegen.gains import Gain, plain, with_gains
@@ -29,6 +29,7 @@ def value_of(result, p, q=0.0, x=0.0):
 
 
 @pytest.mark.parametrize("operation", ARITHMETIC)
+@settings(max_examples=40, deadline=None)
 @given(p=FLOATS, q=FLOATS)
 def test_arithmetic_of_numbers_keeps_value_and_expression(operation, p, q):
     expected = operation(p, q)
@@ -39,6 +40,7 @@ def test_arithmetic_of_numbers_keeps_value_and_expression(operation, p, q):
 
 
 @pytest.mark.parametrize("operation", ARITHMETIC)
+@settings(max_examples=40, deadline=None)
 @given(p=FLOATS, x=FLOATS)
 def test_arithmetic_with_symbols_has_the_gain_as_an_input(operation, p, x):
     for result, expected in (
@@ -51,6 +53,7 @@ def test_arithmetic_with_symbols_has_the_gain_as_an_input(operation, p, x):
 
 
 @pytest.mark.parametrize("operation", COMPARISONS)
+@settings(max_examples=40, deadline=None)
 @given(p=FLOATS, q=FLOATS)
 def test_comparisons(operation, p, q):
     expected = operation(p, q)
@@ -69,6 +72,7 @@ def test_elementary_functions(name):
     assert ca.depends_on(result.__SX__(), P)
 
 
+@settings(max_examples=40, deadline=None)
 @given(p=FLOATS)
 def test_powers_take_the_exponent_as_it_is(p):
     # A symbolic exponent has no value for a negative base.
