@@ -10,13 +10,14 @@ from wspd_design.design.case import RAIL, VEHICLE
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import available
 from wspd_design.parameters.units import format_quantity
-from wspd_design.simulation.records import PLANTS
+from wspd_design.plants.names import DEFAULT_PLANT, PLANTS
+from wspd_design.plants.quarter import Quarter
 
 _PAPER = Specification()
 
 CONTROLLER = "afsmc"
-PLANT = PLANTS[0]
-QUARTER = "quarter"
+PLANT = DEFAULT_PLANT
+QUARTER = Quarter.name
 LAW = "afsmc"
 LAWS = " or ".join(family.name for family in designed())
 SPEED = format_quantity(_PAPER.speeds[1], "km/h")

@@ -8,7 +8,6 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
 from wspd_design.parameters.records import Rail
 from wspd_design.parameters.units import Dimension, parse_quantity
-from wspd_design.plants.four_axle import AXLES
 from wspd_design.simulation.records import Patch, Scenario, Sensing
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
@@ -49,15 +48,8 @@ def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) ->
     )
 
 
-def _axle_rails(text: str) -> tuple[Rail, Rail, Rail, Rail]:
-    names = [name.strip() for name in text.split(",")]
-    if len(names) != AXLES:
-        raise UserError(
-            f'--axle-rails "{text}" names {len(names)} rail{"s" * (len(names) != 1)}; name {AXLES} with commas '
-            'between them, front axle first: "polach-wet,polach-wet,polach-dry,polach-dry"'
-        )
-    first, second, third, fourth = map(load_rail, names)
-    return first, second, third, fourth
+def _axle_rails(text: str) -> tuple[Rail, ...]:
+    return tuple(load_rail(name.strip()) for name in text.split(","))
 
 
 def _patch(text: str) -> Patch:

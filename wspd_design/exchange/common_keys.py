@@ -2,7 +2,8 @@
 
 from wspd_design.certificates.records import Status
 from wspd_design.exchange.forms import Key
-from wspd_design.simulation.records import PLANTS, Ending
+from wspd_design.plants.names import PLANTS
+from wspd_design.simulation.records import Ending
 
 ANY, PAIR = (0, None), (2, 2)
 STATUSES = tuple(status.name for status in Status)

@@ -16,7 +16,7 @@ from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.plants.four_axle import AXLES
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.records import Ending, Scenario, Start
 from wspd_design.simulation.stop import run_loop
@@ -53,7 +53,7 @@ def ideal_stop(
     *,
     slip: float | None = None,
     instantaneous: bool = False,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
 ) -> IdealStop:
     """Stop at the adhesion peak or at a constant slip.
 
@@ -96,8 +96,9 @@ def ideal_stop(
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
     filling = Unprotected(name="ideal", sample_time=max(_SAMPLE_TIME, scenario.sensing.dead_time))
-    given = loop_input([(vehicle, scenario)], filling, plant=plant)
-    rails = scenario.axle_rails or (scenario.rail,) * AXLES
+    braked = plant_of(plant, vehicle)
+    given = loop_input([(braked, scenario)], filling)
+    rails = scenario.axle_rails or (scenario.rail,) * braked.axles
     speeds = _speeds(scenario.initial_speed)
     slips = {rail: _held_slips(vehicle, rail, speeds, slip) for rail in set(rails)}
     given = replace(
@@ -105,7 +106,7 @@ def ideal_stop(
         held_slips=np.array([slips[rail] for rail in rails]),
         held_speeds=(float(speeds[0]), float(speeds[1])),
     )
-    output, _ = run_loop(vehicle, filling, scenario, given)
+    output, _ = run_loop(braked, filling, scenario, given)
     what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
     build_up = "full torque at once" if instantaneous else "with brake build-up"
     stopped = bool(output.stopped[0])

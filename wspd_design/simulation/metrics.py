@@ -111,7 +111,8 @@ def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> floa
 def momentum_residual(run: Run, vehicle: Vehicle) -> float:
     """What is missing in the balance behind Table 10, relative to the initial momentum.
 
-    sum of the torque integrals = R m (v0 - v) + 8 I (omega0 - omega) - R int f_d dt - 8 int B omega dt.
+    sum of the torque integrals = R m (v0 - v) + n I (omega0 - omega) - R int f_d dt - n int B omega dt for n
+    wheels.
     """
     radius, inertia = vehicle.wheel_radius, vehicle.wheelset_inertia
     turning = float(run.wheel_speed[0, 0])  # all wheelsets start alike

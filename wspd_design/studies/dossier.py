@@ -21,6 +21,7 @@ from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
+from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
@@ -76,7 +77,7 @@ def dossier(
     scenario: Scenario,
     baselines: Sequence[str],
     command: str,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
     """Compute everything about a design.

@@ -11,10 +11,11 @@ from wspd_design.model.brake import torque_disturbance
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
+from wspd_design.plants.names import PLANTS
 from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.metrics import energy_residual, metrics, momentum_residual
-from wspd_design.simulation.records import PLANTS, Scenario, Start
+from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.start import available_torque, full_supply_time, holding_torque, leaving_time
 from wspd_design.simulation.stop import simulate
 

@@ -18,9 +18,10 @@ from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothe
 from wspd_design.certificates.theorems.whom import every_law, surface_of
 from wspd_design.controllers.offers import Surface
 from wspd_design.parameters.units import KMH
+from wspd_design.plants.names import PLANTS
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import energy_residual, metrics, momentum_residual
-from wspd_design.simulation.records import PLANTS, Ending, Run, Scenario
+from wspd_design.simulation.records import Ending, Run, Scenario
 from wspd_design.simulation.stop import simulate
 
 STOP_WORK = 2_000_000  # of a budget of operations: what a stop takes

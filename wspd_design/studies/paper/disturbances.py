@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import TrackSpectrum, Vehicle
+from wspd_design.plants.planar import Planar
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.ideal import ideal_stop
-from wspd_design.simulation.loop_input import axle_offsets
 from wspd_design.simulation.records import LoadIrregularity, Scenario
 from wspd_design.simulation.stop import simulate
 from wspd_design.simulation.track import (
@@ -123,7 +123,7 @@ def irregular_load(vehicle: Vehicle, vertical: Irregularity, *, sigma: float) ->
     import numpy as np
 
     # The profile fades in and the last axle begins behind the first one.
-    offsets = axle_offsets(vehicle, "four-axle")
+    offsets = Planar(vehicle).offsets
     distance = np.arange(0.0, vertical.period, SPACING)
     rows = (
         1.0 + LOAD_SPREAD / sigma * vertical.profile(np.maximum(distance - offset, 0.0)) for offset in offsets
