@@ -24,6 +24,7 @@ _rules = range(3)
 mu = [sp.Symbol(f"mu_{r}", positive=True) for r in _rules]
 b = [sp.Symbol(f"b_{r}", real=True) for r in _rules]
 basis = [m / sum(mu) for m in mu]
+mu_sum = sum(sp.Symbol("mu_A", positive=True) for _ in _rules)
 partition_residual = sp.simplify(sum(basis) - 1)
 output_residual = sp.simplify(
     sum(b[r] * mu[r] for r in _rules) / sum(mu) - sum(b[r] * basis[r] for r in _rules)
@@ -70,6 +71,8 @@ error_dynamics_residual_printed = sp.simplify(
 # What T_brake = u leaves out: with T = u + (T - u) in (19) the error moves by another G (u - T).
 torque = sp.Symbol("torque", real=True)
 torque_residual = sp.simplify((slip_d_rate - (F + G * torque) + K_I / K_P * e) - G * (ideal_torque - u))
+
+torque_residual_of_slip = sp.expand((F + G * torque) - (F + G * u))
 
 # --- (41), (42): adaptation -------------------------------------------------------------------------------
 w_r = sp.Symbol("w", real=True)
@@ -124,6 +127,7 @@ layer_excess = sp.factor(
     .expand()
     .subs(s**2, sp.Abs(s) ** 2)
 )
+layer_excess_at_edge = layer_excess.subs(s, 1)
 last_line_printed = -sp.Abs(s) * G * psi - sp.Abs(xi)
 last_line_corrected = -sp.Abs(s) * G * (psi - sp.Abs(xi))
 last_line_residual = sp.expand(last_line_printed - last_line_corrected)

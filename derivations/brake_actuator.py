@@ -24,6 +24,8 @@ u_EV, u_BV = sp.symbols("u_EV u_BV", real=True)
 pressure_rate_printed = u_EV * (-P / T_V) + (1 - u_BV) * ((P_in - P) / T_F)
 pressure_rate_residual = sp.simplify(pressure_rate_printed - pressure_rate.subs({fill: 1 - u_BV, vent: u_EV}))
 pressure_rate_on_hold = pressure_rate_printed.subs({u_EV: 0, u_BV: 1})
+pressure_rate_on_reduction = pressure_rate_printed.subs({u_EV: 1, u_BV: 1})
+pressure_rate_on_increase = pressure_rate_printed.subs({u_EV: 0, u_BV: 0})
 
 # --- (10): filling ----------------------------------------------------------------------------------------
 filled_printed = P0 + (P_in - P0) * (1 - sp.exp(-(t - t0) / T_F))

@@ -39,7 +39,8 @@ printed_contradiction = sp.simplify(slip_rate.subs(delta, 0).subs(u, equivalent_
 # --- (24), (25): reaching ---------------------------------------------------------------------------------
 lyapunov = s**2 / 2
 robust_term = W * sp.sign(s) / G
-robust_form = W * sp.Function("sat")(s / Phi) / G  # u_ht of (23)
+robust_size = W / G  # largest value of u_ht in (23)
+robust_form = sp.Symbol("sat(s/Φ)") * robust_size
 s_rate_controlled = sp.simplify(s_rate.subs(u, equivalent_derived + robust_term))
 lyapunov_rate = sp.expand(s * s_rate_controlled)
 lyapunov_rate_claimed = sp.expand(-K_P * s * delta - K_P * W * sp.Abs(s))
@@ -75,9 +76,10 @@ torque_rate = sp.Symbol("torque_rate", real=True)
 torque_of_duty = u - tau * torque_rate  # tau T' + T = T_max dc with dc = u/T_max
 torque_residual = sp.expand(torque_of_duty - u)
 unmodeled_rate = sp.expand((F + G * torque_of_duty + delta) - slip_rate)  # of the slip
+torque_rate_of_surface = sp.expand(-s * K_P * unmodeled_rate)  # of V = s^2/2
+ideal_torque_residual = -unmodeled_rate  # of e' + c e
 
 # --- (27), (28): ideal control ----------------------------------------------------------------------------
-ideal_torque_residual = sp.expand(unmodeled_rate)
 ideal_residual = sp.simplify(error_rate.subs(delta, 0).subs(u, equivalent_derived) + K_I / K_P * e)
 ideal_slip_rate = sp.simplify(slip_rate.subs(delta, 0).subs(u, equivalent_derived))
 ideal_residual_printed = sp.simplify(ideal_slip_rate + K_I / K_P * e)  # (28) prints lambda' for e'

@@ -32,13 +32,13 @@ def _over_stop(integrand: sp.Expr) -> sp.Integral:
 
 
 # The integrals of the rate and the change of momentum are equal; solve for the torque of the four wheelsets.
-_torque = sp.Symbol("torque_integral")
+torque_symbol = sp.Symbol("torque_integral")
 _integrated = sum(
     coefficient * _over_stop(part)
     for part in (f_t, f_d_t, B_W * omega_t)
     if (coefficient := momentum_rate.coeff(part)) != 0
 )
-torque_integral_derived = sp.solve(sp.Eq(_integrated - _torque, momentum_change), _torque)[0]
+torque_integral_derived = sp.solve(sp.Eq(_integrated - torque_symbol, momentum_change), torque_symbol)[0]
 torque_integral = R * m * v0 + 8 * inertia * omega0 - R * _over_stop(f_d_t) - 8 * _over_stop(B_W * omega_t)
 torque_coefficient = momentum_rate.coeff(T_t)  # -4: one torque per wheelset
 identity_residual = sp.simplify(torque_integral_derived - torque_integral)
@@ -65,7 +65,7 @@ def spread(column: int) -> sp.Rational:
 def wheelset_inertias() -> dict[tuple[str, str], float]:
     """Wheelset inertia that each row implies without running resistance, 2 I of the identity [kg m2]."""
     mass, radius, speed = sp.Rational(76841), sp.Rational("0.55"), sp.Rational(120) / sp.Rational("3.6")
-    per_wheel = sp.solve(sp.Eq(_torque, radius * mass * speed + 8 * inertia * speed / radius), inertia)[0]
+    per_wheel = sp.solve(sp.Eq(torque_symbol, radius * mass * speed + 8 * inertia * speed / radius), inertia)[0]
     return {
-        key: float(2 * per_wheel.subs(_torque, sp.Rational(row[1]) * 1000)) for key, row in TABLE_10.items()
+        key: float(2 * per_wheel.subs(torque_symbol, sp.Rational(row[1]) * 1000)) for key, row in TABLE_10.items()
     }

@@ -16,7 +16,7 @@ USED_BY = {
 }
 """Numbers of the equations that each law rests on."""
 
-TONES = {"holds": Status.GOOD, "definition": Status.NEUTRAL, "misprint": Status.BAD, "gap": Status.UNDECIDED}
+TONES = {"misprint": Status.BAD, "gap": Status.UNDECIDED}  # of the first verdict
 
 
 def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
@@ -24,7 +24,7 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
     equations = load_equations()
     slip = next(each for each in equations if each.number == "19")
     used = [each for each in equations if each.number in USED_BY[dossier.design.law]]
-    faulty = [each for each in used if each.verdict in ("misprint", "gap")]
+    faulty = [each for each in used if set(each.verdicts) & set(TONES)]
     return (
         Heading(text="The slip dynamics", anchor="slip-equation"),
         Paragraph(
@@ -64,7 +64,7 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
                 (
                     each.number,
                     each.title,
-                    Cell(status=TONES[each.verdict], text=each.verdict),
+                    Cell(status=TONES[each.verdicts[0]], text=each.verdict),
                     _explained(each),
                 )
                 for each in faulty
