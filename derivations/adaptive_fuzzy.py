@@ -37,15 +37,17 @@ ideal_control = ((-F + slip_d_rate + K_I / K_P * e) / G).subs(
 _force, _resistance = sp.Function("f")(slip_equation.v), sp.Function("f_d")(slip_equation.v)
 force_slope, resistance_slope = sp.symbols("force_slope resistance_slope", real=True)  # df/dv, df_d/dv
 _ideal_of_speed = ideal_control.subs({slip_equation.f: _force, slip_equation.f_d: _resistance})
-ideal_speed_dependence = sp.expand(  # at fixed slip and e, hence at fixed s; friction and resistance move with v
-    sp.diff(_ideal_of_speed, slip_equation.v)
-    .subs(
-        {
-            sp.diff(_force, slip_equation.v): force_slope,
-            sp.diff(_resistance, slip_equation.v): resistance_slope,
-        }
+ideal_speed_dependence = (
+    sp.expand(  # at fixed slip and e, hence at fixed s; friction and resistance move with v
+        sp.diff(_ideal_of_speed, slip_equation.v)
+        .subs(
+            {
+                sp.diff(_force, slip_equation.v): force_slope,
+                sp.diff(_resistance, slip_equation.v): resistance_slope,
+            }
+        )
+        .subs({_force: slip_equation.f, _resistance: slip_equation.f_d})
     )
-    .subs({_force: slip_equation.f, _resistance: slip_equation.f_d})
 )
 # u* has no negative power of v: it is bounded wherever slip, speed, f and f_d are.
 ideal_singular_part = sum(

@@ -65,7 +65,9 @@ def verdicts(claim: Claim) -> tuple[str, ...]:
     if claim.corrected_residual is not None and not vanishes(claim.corrected_residual):
         raise ValueError(f"({claim.number}): the corrected form leaves {claim.corrected_residual}")
     if bool(claim.assumption) != (claim.gap is not None):
-        raise ValueError(f"({claim.number}): an assumption needs what is left over without it, and the reverse")
+        raise ValueError(
+            f"({claim.number}): an assumption needs what is left over without it, and the reverse"
+        )
     if claim.gap is not None and vanishes(claim.gap):
         raise ValueError(f"({claim.number}) holds without the assumption {claim.assumption}")
     gap = ("gap",) if claim.gap is not None else ()
@@ -110,9 +112,7 @@ def equation(claim: Claim) -> Equation:
     checked = units(claim)
     zero = claim.residual is not None and vanishes(claim.residual)
     residual = "" if claim.residual is None else "0" if zero else plain(claim.residual)
-    solved = "".join(
-        f"; {plain(sp.Symbol(name))} in {unit}" for name, unit in checked.solved.items()
-    )
+    solved = "".join(f"; {plain(sp.Symbol(name))} in {unit}" for name, unit in checked.solved.items())
     corrected = claim.corrected or Form("")
     return Equation(
         number=claim.number,

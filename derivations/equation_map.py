@@ -4,9 +4,7 @@ from derivations.claim import equation
 from derivations.claims import brake, convergence, fuzzy, model, sliding, track
 from wspd_design.parameters.equations import Equation
 
-CLAIMS = tuple(
-    claim for part in (model, brake, sliding, fuzzy, convergence, track) for claim in part.CLAIMS
-)
+CLAIMS = tuple(claim for part in (model, brake, sliding, fuzzy, convergence, track) for claim in part.CLAIMS)
 
 
 def equations() -> tuple[Equation, ...]:

@@ -126,7 +126,7 @@ The certificates establish the hypotheses for the numbers of a design. Generated
 
 Notation: v train speed, e slip error, c = K_I/K_P, s/K_P = sbar = e + c int e dt, g = R/(2 I), G = g/v, Psi = v F,
 p = dF/d(slip) at fixed speed, a = -v', s_D = sbar - Phi sat(sbar/Phi), rho = I_hat/I; the rest is in the
-[nomenclature](nomenclature.md).
+[nomenclature](nomenclature.md). A prime is a derivative with respect to time, ^T transposes.
 """
 
 

@@ -176,7 +176,9 @@ def _auxiliary() -> dict[str, Quantity]:
         "q": q("-", "relative uncertainty of the gain", "q", "q"),
         "D": q("1/s", "bounds of Delta F and Delta G u_eq", "D", "D"),
         "W": q("1/s", "bound of the uncertainty", "W", "W"),
-        "torque_integral": q("N m s", "sum of the torque integrals of the wheelsets", "Σ∫T dt", "sum integral T dif t"),
+        "torque_integral": q(
+            "N m s", "sum of the torque integrals of the wheelsets", "Σ∫T dt", "sum integral T dif t"
+        ),
         "A_eff": q("m2", "effective area of the brake cylinders", "A_eff", 'A_"eff"'),
         "E_b": q("-", "magnification of the brake rigging", "E_b", "E_b"),
         "eta_b": q("-", "efficiency of the brake rigging", "η_b", "eta_b"),

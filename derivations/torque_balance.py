@@ -65,7 +65,10 @@ def spread(column: int) -> sp.Rational:
 def wheelset_inertias() -> dict[tuple[str, str], float]:
     """Wheelset inertia that each row implies without running resistance, 2 I of the identity [kg m2]."""
     mass, radius, speed = sp.Rational(76841), sp.Rational("0.55"), sp.Rational(120) / sp.Rational("3.6")
-    per_wheel = sp.solve(sp.Eq(torque_symbol, radius * mass * speed + 8 * inertia * speed / radius), inertia)[0]
+    per_wheel = sp.solve(sp.Eq(torque_symbol, radius * mass * speed + 8 * inertia * speed / radius), inertia)[
+        0
+    ]
     return {
-        key: float(2 * per_wheel.subs(torque_symbol, sp.Rational(row[1]) * 1000)) for key, row in TABLE_10.items()
+        key: float(2 * per_wheel.subs(torque_symbol, sp.Rational(row[1]) * 1000))
+        for key, row in TABLE_10.items()
     }

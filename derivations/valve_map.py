@@ -30,10 +30,10 @@ d = sp.Symbol("d", positive=True)
 _of_duty = sampled.subs({a: d, b: 1 - d})
 duty_effect = sp.diff(_of_duty, d)
 _kept = sp.exp(-(1 - d) * h / T_V)
-effect_residual = sp.simplify(duty_effect - h * _kept * ((T_in - filled.subs(a, d)) / T_F + filled.subs(a, d) / T_V))
-torque_effect_residual = sp.simplify(
-    sp.diff(_of_duty, T) - sp.exp(-d * h / T_F - (1 - d) * h / T_V)
+effect_residual = sp.simplify(
+    duty_effect - h * _kept * ((T_in - filled.subs(a, d)) / T_F + filled.subs(a, d) / T_V)
 )
+torque_effect_residual = sp.simplify(sp.diff(_of_duty, T) - sp.exp(-d * h / T_F - (1 - d) * h / T_V))
 
 # --- counterexample: feedback of the torque u = u* - K (T - T*)/T_in that is deadbeat for one lag of .3 s ----------
 _times = {h: sp.Rational("0.02"), T_in: 1}

@@ -178,7 +178,9 @@ CLAIMS = (
         derivation=baselines,
         test=f"{_BASELINES}::test_duty_of_the_levels",
         printed=Form(
-            "dc = " + ", ".join(f"{float(dc):g}" for dc in baselines.DUTY_OF_LEVEL.values()) + " for |u| = 0 to 3"
+            "dc = "
+            + ", ".join(f"{float(dc):g}" for dc in baselines.DUTY_OF_LEVEL.values())
+            + " for |u| = 0 to 3"
         ),
         domain="Table 4",
         sides=(sp.Symbol("duty_cycle"), sp.Integer(1)),

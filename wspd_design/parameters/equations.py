@@ -74,4 +74,6 @@ def load_equations() -> tuple[Equation, ...]:
 
 
 def _equation(entry: dict[str, Any]) -> Equation:
-    return Equation(**{key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()})
+    return Equation(
+        **{key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()}
+    )
