@@ -1,9 +1,9 @@
 """The valve with two time constants: bilinear on average, exact from sample to sample.
 
-Claims: under full supply a sample that fills for a h and vents for b h gives T_a = T_in - (T_in - T) exp(-a h/T_F) and
-T+ = T_a exp(-b h/T_V); on average T' = a (T_in - T)/T_F - b T/T_V, which is (14) only for T_F = T_V. The effect of the
-duty on T+ grows as either time constant falls: a loop that is stable for the slower one in both places may be
-unstable.
+Claims: under full supply a sample that fills for a h and vents for b h gives T_a = T_in - (T_in - T) exp(-a h/T_F)
+and T+ = T_a exp(-b h/T_V); on average T' = a (T_in - T)/T_F - b T/T_V, which is (14) only for T_F = T_V. The effect of
+the duty on T+ over a short sample grows as either time constant falls: a loop that is stable for the slower one in both
+places may be unstable.
 """
 
 import sympy as sp
@@ -33,6 +33,7 @@ _kept = sp.exp(-(1 - d) * h / T_V)
 effect_residual = sp.simplify(
     duty_effect - h * _kept * ((T_in - filled.subs(a, d)) / T_F + filled.subs(a, d) / T_V)
 )
+short_effect_residual = sp.simplify(sp.diff(duty_effect, h).subs(h, 0) - ((T_in - T) / T_F + T / T_V))
 torque_effect_residual = sp.simplify(sp.diff(_of_duty, T) - sp.exp(-d * h / T_F - (1 - d) * h / T_V))
 
 # --- counterexample: feedback of the torque u = u* - K (T - T*)/T_in that is deadbeat for one lag of .3 s ----------

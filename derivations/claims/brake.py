@@ -85,8 +85,8 @@ CLAIMS = (
         printed=form("braking_torque", _B.K * sp.Symbol("mu_brake") * _B.P),
         corrected=form("braking_torque", _B.torque_of_pressure),
         domain="P_c >= 0, v_rel > 0",
-        remark="The radius r_b of the pads is printed R, beside R_W of the wheel. Second form: constant pad friction, "
-        "as the model uses it.",
+        remark="The radius r_b of the pads is printed R, beside R_W of the wheel. Second form: constant pad "
+        "friction, as the model uses it.",
     ),
     Claim(
         number="13",
@@ -133,8 +133,8 @@ CLAIMS = (
         gap=_B.supply_residual_of_lag,
         assumption=f"{FULL_SUPPLY}, as in (14).",
         domain="0 <= dc <= 1, T_F = T_V = tau",
-        remark="Exact for the average over a period h of any length, and for the torque itself as h -> 0, as the paper "
-        "states. At half duty the torque ripples about it by T_max tanh(h/(4 tau)) peak to peak.",
+        remark="Exact for the average over a period h of any length, and for the torque itself as h -> 0, as the "
+        "paper states. At half duty the torque ripples about it by T_max tanh(h/(4 tau)) peak to peak.",
     ),
     Claim(
         number="16",
@@ -169,7 +169,8 @@ CLAIMS = (
         residual=sum(abs(jump) for jump in baselines.jumps),
         domain="v > 0, speeds in km/h",
         sides=(sp.Symbol("slide_limit"), *baselines.limits_with_unit),
-        remark="Continuous at 60 km/h. A slide does not exceed v, so that the regions II, III and IV cannot be reached "
+        remark="Continuous at 60 km/h. A slide does not exceed v, so that the regions II, III and IV cannot be "
+        "reached "
         f"below {', '.join(f'{float(v):.2f}' for v in baselines.regions_from)} km/h.",
     ),
     Claim(
@@ -226,9 +227,9 @@ CLAIMS = (
         certainty=("inferred", "scan"),
         domain="v > 0, omega >= 0",
         sides=(-_slide_rate, _R * sp.Symbol("wheel_speed_rate"), _deceleration),
-        remark="Residual: output level gained per row of growing slide; positive means more brake while sliding. That "
-        "settles the sign, not the variable: Figure 5 (b) is named after the deceleration of the wheelset, which is "
-        "dσ/dt + a, 3 to 4 m/s2 more. Under either sign (BZO, SPB) fills the brake at the largest slide, and a locked "
-        "wheel reads IS.",
+        remark="Residual: output level gained per row of growing slide; positive means more brake while sliding. "
+        "That settles the sign, not the variable: Figure 5 (b) is named after the deceleration of the wheelset, "
+        "which is dσ/dt + a, 3 to 4 m/s2 more. Under either sign (BZO, SPB) fills the brake at the largest slide, "
+        "and a locked wheel reads IS.",
     ),
 )

@@ -129,8 +129,8 @@ CLAIMS = (
         domain="any s, either sign",
         sides=(_U, symbol("bound_estimate")),
         remark="Left over: what sat(s) adds to V2' inside the layer. The layer is 1 in s, "
-        f"{plain(_A.layer_in_slip)} in slip with K_P = 1800: a relay. The second form leaves sgn(G) out, which is 1 by "
-        "(19).",
+        f"{plain(_A.layer_in_slip)} in slip with K_P = 1800: a relay. The second form leaves sgn(G) out, which is "
+        "1 by (19).",
     ),
     Claim(
         number="38",

@@ -64,8 +64,8 @@ CLAIMS = (
         printed=form("slip", slip_equation.slip_of_speeds),
         corrected_residual=slip_equation.round_trip_residual,
         domain="v > 0",
-        remark="Singular at v = 0: along R omega = k v the slip is 1 - k down to standstill. The model refers it to a "
-        "regularized speed there.",
+        remark="Singular at v = 0: along R omega = k v the slip is 1 - k down to standstill. The model refers it "
+        "to a regularized speed there.",
     ),
     Claim(
         number="4",
@@ -125,7 +125,7 @@ CLAIMS = (
         printed=Form("B = 0.6 s/m, μ0 = 0.55 (dry); μ0 = 0.3 (wet)"),
         domain="the two rail conditions of the table",
         sides=(1 / symbol("friction_decay"), symbol("sliding_speed")),
-        remark="The text at hand has lost A, kS, B of the wet rail and the headings; the values that are shipped come "
-        "from the source that the table cites.",
+        remark="The text at hand has lost A, kS, B of the wet rail and the headings; the values that are shipped "
+        "come from the source that the table cites.",
     ),
 )

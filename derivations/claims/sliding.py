@@ -30,8 +30,8 @@ CLAIMS = (
         corrected_residual=_F.drift_residual,
         domain=_DOMAIN,
         sides=(sp.Symbol("slip_rate"), _F.slip_rate_printed, _F.drift + _F.slip_gain * _F.T),
-        remark="Correct as printed. Second form: slip instead of wheel speed, F and G separated. G > 0 always. F(λ, t) "
-        "hides v: the equation is scalar only along a given v(t).",
+        remark="Correct as printed. Second form: slip instead of wheel speed, F and G separated. G > 0 always. "
+        "F(λ, t) hides v: the equation is scalar only along a given v(t).",
     ),
     Claim(
         number="20",

@@ -75,8 +75,8 @@ CLAIMS = (
         sides=(torque_balance.torque_symbol, torque_balance.torque_integral),
         remark=f"The eight integrals spread by {_spread:.2f} %, the stopping times by "
         f"{_spread_time:.0f} %. They "
-        f"imply {min(_inertias):.0f} to {max(_inertias):.0f} kg m2 per wheelset (no running resistance). A locked wheel "
-        "breaks the identity: the brake then holds with less than T.",
+        f"imply {min(_inertias):.0f} to {max(_inertias):.0f} kg m2 per wheelset (no running resistance). A locked "
+        "wheel breaks the identity: the brake then holds with less than T.",
     ),
     Claim(
         number="T_d",

@@ -74,6 +74,7 @@ def load_equations() -> tuple[Equation, ...]:
 
 
 def _equation(entry: dict[str, Any]) -> Equation:
-    return Equation(
-        **{key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()}
-    )
+    fields: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in entry.items()
+    }
+    return Equation(**fields)
