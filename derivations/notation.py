@@ -195,7 +195,7 @@ def _auxiliary() -> dict[str, Quantity]:
         "u_BV": q("-", "command of the fill valve", "u_BV", 'u_"BV"'),
         "mu_A": q("-", "degree of membership", "μ_A", "mu_(A^r)"),
         "spectral_density": q("m2/(rad/m)", "power spectral density", "S", "S"),
-        "cross_level_density": q("rad2/(rad/m)", "spectral density of the roll angle", "S", "S"),
+        "cross_level_density": q("m/rad", "spectral density of the roll angle, a pure number", "S", "S"),
         "slide": q("m/s", "absolute slide", "σ", "sigma"),
         "slide_rate": q("m/s2", "rate of the absolute slide", "σ'", "dot(sigma)"),
         "slide_limit": q("m/s", "limit of a slide region", "Δσ", "Delta sigma"),

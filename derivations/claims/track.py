@@ -39,7 +39,7 @@ CLAIMS = (
         unknown=("beta0", "beta2", "gamma0", "gamma2", "gamma4", "gamma6"),
         keep_angles=True,
         remark="The form of the ERRI B176 spectra; one-sided in the wavenumber. Units for gamma4 = 1, the rows of "
-        f"displacements; in the cross-level row, gamma6 = 1 and S in rad2/(rad/m), beta2 is in {_cross['beta2']}, "
+        f"displacements; in the cross-level row, gamma6 = 1 and S in m/rad, beta2 is in {_cross['beta2']}, "
         f"gamma0 in {_cross['gamma0']}, gamma2 in {_cross['gamma2']}, gamma4 in {_cross['gamma4']}.",
     ),
     Claim(
