@@ -213,7 +213,7 @@ CLAIMS = (
         printed=Form("lost in the text at hand, but for its symbols U3 to P3"),
         domain="four slide regions",
         lost=True,
-        remark="The rules that are shipped are assumed: see wspd sources knorr-bremse.",
+        remark="The rules that are shipped were not read there: see wspd sources knorr-bremse.",
     ),
     Claim(
         number="Table 5",

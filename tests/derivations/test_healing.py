@@ -36,7 +36,12 @@ def test_missing_and_broken_files_are_written_again(tmp_path):
             (tmp_path / path).unlink(missing_ok=True)
     environment = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
     made = subprocess.run(
-        [sys.executable, "-c", RUN], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", RUN],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert made.returncode == 0, made.stderr
     written = {path: (tmp_path / path).read_bytes() for path in FILES}
