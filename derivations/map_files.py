@@ -89,7 +89,7 @@ def readme(found: tuple[Equation, ...]) -> str:
 
 def _row(entry: Equation) -> str:
     units = f"**{entry.unit_fault}**" if entry.unit_fault else entry.unit
-    assumption = f"Assumes: {entry.assumption}" if entry.assumption else ""
+    assumption = f"Assumes: {entry.assumption.rstrip('.')}." if entry.assumption else ""
     file = entry.file.partition("/")[2]
     cells = (
         entry.number,
@@ -110,7 +110,7 @@ def nomenclature() -> str:
     """Return the nomenclature as a page."""
     rows = (
         f"| {entry.plain.replace('|', chr(92) + '|')} | `{name}` | {entry.meaning.replace('|', chr(92) + '|')} "
-        f"| {entry.unit or '-'} |"
+        f"| {entry.unit or 'see eq. (49)'} |"
         for name, entry in NOMENCLATURE.items()
     )
     table = "\n".join(rows)

@@ -175,7 +175,7 @@ def _auxiliary() -> dict[str, Quantity]:
         "resistance_slope": q("N s/m", "derivative of the running resistance in speed", "f_d'", "dot(f)_d"),
         "q": q("-", "relative uncertainty of the gain", "q", "q"),
         "D": q("1/s", "bounds of Delta F and Delta G u_eq", "D", "D"),
-        "W": q("1/s", "bound of the uncertainty", "W", "W"),
+        "W": q("1/s", "bound on the uncertainty", "W", "W"),
         "torque_integral": q(
             "N m s", "sum of the torque integrals of the wheelsets", "Σ∫T dt", "sum integral T dif t"
         ),

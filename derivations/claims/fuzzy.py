@@ -185,7 +185,9 @@ CLAIMS = (
         domain="constant b, G > 0",
         sides=(sp.Symbol("b_hat_rate"), _A.alpha1 * _A.s * _W),
         unknown=("weight_rate",),
-        remark="Read literally in the text at hand: b^' = -b^' leaves only b^' = 0. For G < 0 it would lack sgn(G).",
+        remark="Read literally in the text at hand: b^' = -b^' leaves only b^' = 0. For G < 0 it would lack "
+        "sgn(G). With a valve lag this adaptation makes the loop the quartic of adaptive_loop.py; the Routh "
+        "argument about a cubic is for frozen b^ and ψ^.",
     ),
     Claim(
         number="42",

@@ -10,8 +10,8 @@ from derivations.printing import Form, form
 _slide = slip_equation.v - slip_equation.R * slip_equation.omega
 _ROLLS = "v > 0, omega >= 0"
 _UNIQUE = (
-    "On v > 0, omega > 0 the right sides of (1) to (3) are differentiable, so that the motion exists and is unique "
-    "until it leaves; at v = omega = 0 neither follows, because the slip has no limit there."
+    "On v > 0, omega > 0 the right sides of (1) to (3) are locally Lipschitz, so that the motion exists and is "
+    "unique until it leaves; at v = omega = 0 neither follows, because the slip has no limit there."
 )
 _MOTION, _ADHESION, _SLIP = (f"test_equations_{name}.py" for name in ("motion", "adhesion", "slip"))
 

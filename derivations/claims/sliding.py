@@ -94,7 +94,7 @@ CLAIMS = (
         sides=(sp.Symbol("u_eq"), _S.equivalent_printed, _S.equivalent_corrected, _S.robust_size),
         remark=f"{_READS_E} and for lambda_d. Residual: what the printed law demands to be zero when inserted into "
         "(19). With a valve lag the loop inside the layer is the cubic tau q^3 + (1 - p tau) q^2 + (c + k) q + k c, "
-        "p = dF/dλ at fixed speed, k = W K_P/Phi.",
+        "p = dF/dλ at fixed speed, k = W K_P/Phi, c = K_I/K_P.",
     ),
     Claim(
         number="24",
