@@ -71,7 +71,6 @@ THEOREMS = (
             "train speed frozen",
             "T* > 0; the valve vents as in (9) with the time constant tau",
             "the law holds T* until its next sample",
-            "p >= dF/d(slip) everywhere within X of the reference",
         ),
         sketch="No command empties the cylinder faster than T* exp(-t/tau), and less torque means less slip. "
         "While the slip is within X, x' <= p x + g z with z = T/T* - 1. The combination w = x + g tau z/(1 + p "
