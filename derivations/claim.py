@@ -6,6 +6,7 @@ definition. Nothing to read: lost.
 """
 
 from dataclasses import dataclass
+from functools import cache
 from types import ModuleType
 
 import sympy as sp
@@ -49,6 +50,7 @@ class Claim:
     lost: bool = False
 
 
+@cache
 def vanishes(residual: sp.Expr) -> bool:
     """Return whether an expression is identically zero."""
     return bool(sp.simplify(residual) == 0)
