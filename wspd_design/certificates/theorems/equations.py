@@ -142,7 +142,7 @@ def misprints() -> str:
     listed = (
         f"{entry.number if entry.number[0].isalpha() else f'({entry.number})'}: {entry.residual}"
         for entry in load_equations()
-        if entry.verdict == "misprint"
+        if "misprint" in entry.verdicts
     )
     return f"Printed otherwise in the paper, with what the printed form leaves over: {'; '.join(listed)}."
 

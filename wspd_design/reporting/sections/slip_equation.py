@@ -11,7 +11,7 @@ from wspd_design.studies.dossier import Dossier
 PLANT = ("1", "2", "3", "5", "6", "7", "8", "9", "10", "13", "14", "15", "19", "B_W")
 """Numbers of the equations that every design rests on."""
 
-TONES = {"holds": Status.GOOD, "definition": Status.NEUTRAL, "misprint": Status.BAD, "gap": Status.UNDECIDED}
+TONES = {"misprint": Status.BAD, "gap": Status.UNDECIDED}  # of the first verdict
 
 
 def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
@@ -20,7 +20,7 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
     slip = next(each for each in equations if each.number == "19")
     numbers = (*PLANT, *designed_family(dossier.design.law).equations)
     used = [each for each in equations if each.number in numbers]
-    faulty = [each for each in used if each.verdict in ("misprint", "gap")]
+    faulty = [each for each in used if set(each.verdicts) & set(TONES)]
     return (
         Heading(text="The slip dynamics", anchor="slip-equation"),
         Paragraph(
@@ -55,7 +55,8 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
                 ColumnOf(title="Eq.", read=lambda each: each.number),
                 ColumnOf(title="Subject", read=lambda each: each.title),
                 ColumnOf(
-                    title="Verdict", read=lambda each: Cell(status=TONES[each.verdict], text=each.verdict)
+                    title="Verdict",
+                    read=lambda each: Cell(status=TONES[each.verdicts[0]], text=each.verdict),
                 ),
                 ColumnOf(
                     title="What is wrong, and what is assumed instead", read=lambda each: _explained(each)
