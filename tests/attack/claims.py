@@ -204,23 +204,25 @@ def _surface_hurwitz(case: Case, stated: Stated, names: tuple[str, ...]) -> list
 
 
 def _reaching(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
-    """Outside the layer v sbar' moves towards the surface at eta at least, for the law as it is."""
+    """Outside the layer, on both sides, v sbar' moves towards the surface at eta at least, for the law as it is."""
     eta = reserve(case, stated, names)
 
     def margin(x: Points) -> Any:
-        plant = plant_at(case, x)
-        side = np.where(x["side"] > 0.0, 1.0, -1.0)
-        error = case.slip - x["slip"]
-        integral = (2.0 * side * layer(case) - error) / surface_rate(case)
-        torque = sliding_torque(case, x["slip"], x["speed"], integral)
-        rate = -slip_rate(plant, x["slip"], x["speed"], torque) + surface_rate(case) * error
-        return -side * x["speed"] * rate - eta
+        plant, error = plant_at(case, x), case.slip - x["slip"]
+
+        def attraction(side: float) -> Any:
+            integral = (2.0 * side * layer(case) - error) / surface_rate(case)
+            torque = sliding_torque(case, x["slip"], x["speed"], integral)
+            rate = -slip_rate(plant, x["slip"], x["speed"], torque) + surface_rate(case) * error
+            return -side * x["speed"] * rate - eta
+
+        return np.minimum(attraction(1.0), attraction(-1.0))
 
     return [
         Attack(
             check=stated.check,
             statement=f"v sbar' points to the surface with at least eta = {eta:.4g} m/s2 outside the layer",
-            box=box(case, names, slip=case.slips, speed=case.speeds, side=(-1.0, 1.0)),
+            box=box(case, names, slip=case.slips, speed=case.speeds),
             margin=margin,
             unit="m/s2",
         )

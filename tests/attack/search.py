@@ -12,8 +12,9 @@ Points = Mapping[str, Any]
 Margin = Callable[[Points], Any]
 
 SHARE = 4  # of the evaluations: one part each for corners and scattered points, the rest for the evolution
-POPULATION = 24
+POPULATION = 40
 BATCH = 4096
+LEAST = 32  # points, however expensive they are
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,10 +69,11 @@ def assail(
     """
     from scipy.optimize import differential_evolution
 
-    budget = max(evaluations // attack.cost, 2 * POPULATION)
+    budget = max(evaluations // attack.cost, LEAST)
     names = list(attack.box)
     low, high = (np.array([attack.box[name][k] for name in names], float) for k in (0, 1))
     found, rng = Found(attack=attack), np.random.default_rng(seed)
+    best: list[tuple[float, Any]] = []  # of the first points: where the evolution starts
 
     def tried(points: Any) -> Any:
         """Return the margins of points, one per column; those that say nothing have none."""
@@ -102,21 +104,24 @@ def assail(
 
     try:
         part = budget // SHARE
-        for chunk in _chunks(_corners(len(names), part, rng)):
-            tried(scaled(chunk))
-        for chunk in _chunks(_scattered(len(names), part, seed)):
-            tried(scaled(chunk))
+        for points in (_corners(len(names), part, rng), _scattered(len(names), part, seed)):
+            for chunk in _chunks(points):
+                margins = tried(scaled(chunk))
+                order = np.argsort(margins, kind="stable")[: POPULATION // 2]
+                best += [(margins[k], chunk[:, k]) for k in order]
+        best.sort(key=lambda each: each[0])
         while True:
+            elite = np.array([point for _, point in best[: POPULATION // 2]]).reshape(-1, len(names))
+            others = rng.random((POPULATION - len(elite), len(names)))
             differential_evolution(
                 for_evolution,
                 [(0.0, 1.0)] * len(names),
                 vectorized=True,
                 updating="deferred",
-                popsize=max(POPULATION // len(names), 4),
                 maxiter=200,
                 tol=1e-8,
                 polish=False,
-                init="sobol",
+                init=np.concatenate([elite, others]),
                 rng=rng,
             )
     except Exhausted:

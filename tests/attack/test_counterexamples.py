@@ -38,7 +38,7 @@ from tests.attack.counterexamples import (
     torque_feedback,
 )
 from tests.attack.laws import layer, sliding_torque, surface, surface_rate
-from tests.attack.plant import holding_torque, load_shares, slip_pole, slip_rate
+from tests.attack.plant import deceleration, holding_torque, load_shares, slip_pole, slip_rate
 from tests.attack.search import Attack, assail
 
 ETA = 0.204  # m/s2, of the audited design
@@ -84,7 +84,7 @@ def required(case, names, **ranges):
         return -needed_gain(case, plant, x["slip"], x["speed"], ETA)
 
     attack = Attack(check="reaching", statement="W0", box=free | ranges, margin=margin)
-    return -assail(attack, evaluations=40_000, seed=1).margin
+    return -assail(attack, evaluations=30_000, seed=1).margin
 
 
 def test_another_rail_of_the_same_name_needs_more_gain():
@@ -103,8 +103,6 @@ def test_the_surface_repels_a_loaded_axle(share, rate):
     case = smc()
     slip, speed = REPELLED["slip"], REPELLED["speed"]
     equal = case.data.plant.with_numbers(REPELLED)
-    from tests.attack.plant import deceleration
-
     plant = equal.with_numbers({"load_share": share, "train_deceleration": deceleration(equal, slip, speed)})
     error, c = case.slip - slip, surface_rate(case)
     torque = sliding_torque(case, slip, speed, (2.0 * layer(case) - error) / c)
@@ -129,8 +127,8 @@ def test_starts_from_which_the_layer_is_not_reached_in_time(start):
         np.array([start.slip]),
         np.array([start.start_kmh / 3.6]),
         np.array([start.integral]),
-        time=3.0,
-        step=2e-4,
+        time=1.0,
+        step=2e-3,
     )
     for _, slip, speed, integral in path:
         if speed * 3.6 <= start.end_kmh or abs(surface(case, slip, integral)) <= layer(case):
@@ -207,10 +205,10 @@ def test_runs_of_the_adaptive_law_leave_the_slips_of_its_theorem(run, adaptive_c
         least_speed=1.0,
         constant=25e3,
         bound=20e3,
-        step=1e-3,
+        step=2e-3,
     )
     if "highest" in run:
         assert done.highest[0] > case.slips[1]
         assert done.highest[0] <= run["highest"] + 2e-3
     else:
-        assert done.lowest[0] < case.slips[0]
+        assert done.lowest[0] <= run["lowest"] < case.slips[0]

@@ -179,7 +179,7 @@ def test_the_sampled_map_is_the_derivative_of_the_pulses():
         return np.array([state.slip, state.torque]), duty
 
     point = np.array([[0.14], [3800.0]])
-    for _ in range(600):
+    for _ in range(150):
         point, duty = step(point)
     slip, torque = 1e-6, 1e-1
     ahead = [step(point + np.array([[slip], [0.0]]))[0], step(point + np.array([[0.0], [torque]]))[0]]
