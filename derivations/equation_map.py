@@ -10,7 +10,7 @@ from types import ModuleType
 import sympy as sp
 
 from derivations.printing import Form, plain
-from wspd_design.model.equations import Equation
+from wspd_design.parameters.equations import Equation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from derivations.notation import NOMENCLATURE
 from derivations.theorem import Theorem
 from derivations.theorems import THEOREMS
-from wspd_design.model.equations import Equation
+from wspd_design.parameters.equations import Equation
 
 _README = """# Derivations
 

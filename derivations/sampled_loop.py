@@ -9,7 +9,7 @@ import sympy as sp
 
 from derivations import slip_equation
 from derivations.notation import symbols, time
-from wspd_design.certificates import quadratic
+from wspd_design.certificates.theorems import quadratic
 
 p, tau, h, K, z = sp.symbols("p tau h K z", positive=True)
 alpha, beta = sp.symbols("alpha beta", positive=True)  # exp(p h), exp(-h/tau)

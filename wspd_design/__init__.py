@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from wspd_design.certificates.suite import verify
     from wspd_design.controllers.protocol import Command, Controller, Measurement
     from wspd_design.design.catalog import controller
-    from wspd_design.design.dossier import dossier
     from wspd_design.design.file import read_design, write_design
     from wspd_design.design.problem import stability_problem
     from wspd_design.design.records import Design, Specification
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from wspd_design.simulation.ideal import ideal_stop
     from wspd_design.simulation.records import Scenario, Start
     from wspd_design.simulation.stop import simulate
+    from wspd_design.studies.dossier import dossier
 
 _HOME = {
     "Certificate": "certificates.records",
@@ -42,7 +42,7 @@ _HOME = {
     "compare": "simulation.comparison",
     "controller": "design.catalog",
     "design_controller": "design.selection",
-    "dossier": "design.dossier",
+    "dossier": "studies.dossier",
     "ideal_stop": "simulation.ideal",
     "linearize": "analysis.linearization",
     "load_rail": "parameters.loading",

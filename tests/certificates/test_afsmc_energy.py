@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import afsmc_energy
-from wspd_design.certificates.domain import varied
-from wspd_design.certificates.proof_run import adaptive_run
+from wspd_design.certificates.checks.adaptive import afsmc_energy
+from wspd_design.certificates.checks.ideal_run import adaptive_run
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.setting.domain import varied
 from wspd_design.controllers.adaptive_fuzzy import firing_strengths
 from wspd_design.model.generated import adaptive_fuzzy as generated
 from wspd_design.model.number import saturation

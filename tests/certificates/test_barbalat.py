@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from wspd_design.certificates import barbalat
+from wspd_design.certificates.checks.adaptive import barbalat
 from wspd_design.certificates.records import Status
 from wspd_design.controllers import adaptive_fuzzy as law_module
 
@@ -38,7 +38,7 @@ def test_integral_under_wrong_adaptation_exceeds_its_bound(make_problem, make_co
         rates = right(gains, surface, speed)
         return rates._replace(weights=tuple(0.0 for _ in rates.weights), bound=0.0)
 
-    monkeypatch.setattr("wspd_design.certificates.proof_run.adaptation", wrong)
+    monkeypatch.setattr("wspd_design.certificates.checks.ideal_run.adaptation", wrong)
     _, _, integral, _ = barbalat.check(make_problem(make_controller("afsmc"))).hypotheses
     assert integral.status is Status.UNDECIDED
 

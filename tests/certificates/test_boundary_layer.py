@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import boundary_layer
-from wspd_design.certificates.domain import varied
-from wspd_design.certificates.laws import of_theorem
-from wspd_design.certificates.proof_run import sliding_run
+from wspd_design.certificates.checks.ideal_run import sliding_run
+from wspd_design.certificates.checks.sliding import boundary_layer
 from wspd_design.certificates.records import Hypothesis, Status
+from wspd_design.certificates.setting.domain import varied
+from wspd_design.certificates.setting.laws import of_theorem
 
 
 @pytest.fixture(scope="module")

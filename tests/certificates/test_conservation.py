@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from wspd_design.certificates import conservation
+from wspd_design.certificates.checks.foundations import conservation
 from wspd_design.certificates.records import Status
 from wspd_design.simulation.stop import simulate
 

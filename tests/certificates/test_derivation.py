@@ -4,12 +4,13 @@ import json
 
 import pytest
 
-from wspd_design.certificates import derivation, exact
-from wspd_design.certificates.certificate_file import certificate_text
+from wspd_design.certificates.checks.foundations import derivation
+from wspd_design.certificates.kernel import exact
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
-from wspd_design.model.equations import load_equations
 from wspd_design.model.generated import adaptive_fuzzy, brake, motion, sliding_surface, slip
+from wspd_design.parameters.equations import load_equations
 
 
 @pytest.fixture

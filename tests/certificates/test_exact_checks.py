@@ -7,8 +7,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from wspd_design.certificates import exact, gain_positive, surface_hurwitz
-from wspd_design.certificates.exact import Positive
+from wspd_design.certificates.checks.foundations import gain_positive, surface_hurwitz
+from wspd_design.certificates.kernel import exact
+from wspd_design.certificates.kernel.exact import Positive
 from wspd_design.certificates.records import Status
 from wspd_design.model.generated.slip import slip_gain
 

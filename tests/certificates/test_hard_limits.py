@@ -10,11 +10,13 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from wspd_design.certificates import domain, hard_limits, recovery, recovery_samples
-from wspd_design.certificates.certificate_file import certificate_text
-from wspd_design.certificates.domain import INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.checks.valve import hard_limits
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
+from wspd_design.certificates.search import recovery, recovery_samples
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
 from wspd_design.model.slip import slip_dynamics
 
 

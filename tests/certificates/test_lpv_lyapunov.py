@@ -9,10 +9,18 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from wspd_design.certificates import lpv_lyapunov, quadratic
-from wspd_design.certificates.balls import ball, point
-from wspd_design.certificates.quadratic import check_quadratic, contracts, decays, held, is_positive, loop_of
+from wspd_design.certificates.checks.region import lpv_lyapunov
+from wspd_design.certificates.kernel.arb import ball, point
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.theorems import quadratic
+from wspd_design.certificates.theorems.quadratic import (
+    check_quadratic,
+    contracts,
+    decays,
+    held,
+    is_positive,
+    loop_of,
+)
 from wspd_design.model.slip import slip_dynamics
 
 

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from wspd_design.certificates import lyapunov_printed, lyapunov_repaired, lyapunov_surface
-from wspd_design.certificates.adaptive_error import ideal, signals
-from wspd_design.certificates.certain_rise import exact_law
-from wspd_design.certificates.plant import exact_plant
-from wspd_design.certificates.proof_run import adaptive_flow, adaptive_run, sliding_flow
-from wspd_design.certificates.reaching import reserve
+from wspd_design.certificates.checks.adaptive import lyapunov_printed, lyapunov_repaired
+from wspd_design.certificates.checks.adaptive.adaptive_error import ideal, signals
+from wspd_design.certificates.checks.certain_rise import exact_law
+from wspd_design.certificates.checks.ideal_run import adaptive_flow, adaptive_run, sliding_flow
+from wspd_design.certificates.checks.sliding import lyapunov_surface
+from wspd_design.certificates.checks.sliding.reaching import reserve
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.setting.plant import exact_plant
 from wspd_design.controllers import adaptive_fuzzy as law_module
 from wspd_design.model.generated import adaptive_fuzzy as generated
 
@@ -74,7 +75,9 @@ def test_a_rise_that_only_floats_see_is_undecided(make_problem, make_controller,
     if module is lyapunov_repaired:
         monkeypatch.setattr(generated, "lyapunov_repaired", _without_speed)
     assert module.check(problem).status is Status.REFUTED
-    monkeypatch.setattr("wspd_design.certificates.certain_rise.exact_rate", lambda *_: flint.arb(0, 1e-9))
+    monkeypatch.setattr(
+        "wspd_design.certificates.checks.certain_rise.exact_rate", lambda *_: flint.arb(0, 1e-9)
+    )
     verdict = module.check(problem)
     assert verdict.status is Status.UNDECIDED
     assert not verdict.witness
@@ -182,7 +185,7 @@ def test_wrong_sign_of_the_adaptation_is_refuted(printed, monkeypatch):
         rates = right(gains, surface, speed)
         return rates._replace(weights=tuple(-rate for rate in rates.weights))
 
-    monkeypatch.setattr("wspd_design.certificates.proof_run.adaptation", wrong)
+    monkeypatch.setattr("wspd_design.certificates.checks.ideal_run.adaptation", wrong)
     assert lyapunov_repaired.check(printed).status is Status.REFUTED
 
 

@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import domain, open_loop_pole, reaching, sliding_exists, well_posed
-from wspd_design.certificates.margin_map import margin_map
-from wspd_design.certificates.plant import UNITS
+from wspd_design.certificates.checks.foundations import well_posed
+from wspd_design.certificates.checks.margin_map import margin_map
+from wspd_design.certificates.checks.sliding import reaching, sliding_exists
+from wspd_design.certificates.checks.valve import open_loop_pole
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.plant import UNITS
 
 ROUNDING = 1e-6
 

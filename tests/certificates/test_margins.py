@@ -7,9 +7,9 @@ import control
 import numpy as np
 import pytest
 
-from wspd_design.certificates import margins
-from wspd_design.certificates.linear_loop import feedback, loop_at, outermost, variables
+from wspd_design.certificates.checks.linear import margins
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.setting.linear_loop import feedback, loop_at, outermost, variables
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.model.slip import slip_dynamics
 

@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import domain, no_go, open_loop_pole
-from wspd_design.certificates.certificate_file import certificate_text
-from wspd_design.certificates.part import with_part
-from wspd_design.certificates.proof.engine import settle
+from wspd_design.certificates.checks.valve import no_go, open_loop_pole
+from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates.kernel.subdomain import with_part
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
+from wspd_design.certificates.search.settle import settle
+from wspd_design.certificates.setting import domain
 
 
 def test_pole_is_enclosed(make_problem, make_controller):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.signal import cont2discrete
 
-from wspd_design.certificates import open_loop_pole, sampling
-from wspd_design.certificates.proof import checker
+from wspd_design.certificates.checks.valve import open_loop_pole, sampling
+from wspd_design.certificates.checks.valve.slip_pole import pole_map
+from wspd_design.certificates.kernel import checker
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.slip_pole import pole_map
 from wspd_design.controllers.protocol import pulse_width
 from wspd_design.model.slip import slip_dynamics
 

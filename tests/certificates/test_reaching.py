@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import domain, reaching
-from wspd_design.certificates.domain import INERTIA, MASS, MU0, SLIP, SPEED
-from wspd_design.certificates.model_error import mismatch
-from wspd_design.certificates.proof.checker import check
+from wspd_design.certificates.checks.sliding import reaching
+from wspd_design.certificates.kernel.checker import check
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
+from wspd_design.certificates.setting.model_error import mismatch
 from wspd_design.controllers.sliding_mode import sliding_torque
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.errors import UserError

@@ -6,8 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import routh_lag
-from wspd_design.certificates.linear_loop import (
+from wspd_design.certificates.checks.linear import routh_lag
+from wspd_design.certificates.kernel.checker import check as check_proof
+from wspd_design.certificates.kernel.claim import number
+from wspd_design.certificates.records import Status
+from wspd_design.certificates.setting.linear_loop import (
     Feedback,
     cubic,
     feedback,
@@ -15,9 +18,6 @@ from wspd_design.certificates.linear_loop import (
     nominal,
     torque_per_surface,
 )
-from wspd_design.certificates.proof.checker import check as check_proof
-from wspd_design.certificates.proof.claim import number
-from wspd_design.certificates.records import Status
 from wspd_design.controllers.adaptive_fuzzy import torque_demand
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.slip import slip_dynamics
@@ -141,7 +141,7 @@ def test_laws_without_reference_claim_nothing(make_problem, make_controller):
 
 def test_no_gain_at_all_is_not_stable(make_problem, make_controller, monkeypatch):
     monkeypatch.setattr(
-        "wspd_design.certificates.linear_loop.feedback",
+        "wspd_design.certificates.setting.linear_loop.feedback",
         lambda *_, **__: Feedback(proportional=0.0, integral=0.0, torque=0.0),
     )
     assert routh_lag.check(make_problem(make_controller("afsmc"))).status is Status.REFUTED

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from wspd_design.certificates import routh_lag
-from wspd_design.certificates.linear_loop import nominal
+from wspd_design.certificates.checks.linear import routh_lag
+from wspd_design.certificates.setting.linear_loop import nominal
 from wspd_design.design.catalog import controller
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification

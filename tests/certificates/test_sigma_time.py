@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 import pytest
 
-from wspd_design.certificates import barbalat, sigma_time
-from wspd_design.certificates.domain import varied
-from wspd_design.certificates.proof.checker import check, value
-from wspd_design.certificates.proof_run import adaptive_run
+from wspd_design.certificates.checks.adaptive import barbalat, sigma_time
+from wspd_design.certificates.checks.ideal_run import adaptive_run
+from wspd_design.certificates.kernel.checker import check, value
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.setting.domain import varied
 from wspd_design.model.number import saturation
 from wspd_design.model.slip import slip_dynamics
 

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.certificates import domain, reaching, sliding_exists
-from wspd_design.certificates.certificate_file import certificate_text
-from wspd_design.certificates.domain import MU0, SLIP, SPEED
+from wspd_design.certificates.checks.sliding import reaching, sliding_exists
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.domain import MU0, SLIP, SPEED
 
 
 def _with_torque(vehicle, torque):

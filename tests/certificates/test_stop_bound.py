@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from wspd_design.certificates import adhesion_limit, adhesion_peaks, peak_search, stop_bound
-from wspd_design.certificates.checking import model_hash
+from wspd_design.certificates.checks.frame import model_hash
+from wspd_design.certificates.checks.stop import stop_bound
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.search import adhesion_peaks as peak_search
+from wspd_design.certificates.theorems.shortest_stop import adhesion_limit, adhesion_peaks
 from wspd_design.model import adhesion
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.loading import load_rail

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from wspd_design.certificates.proof.prover import Budget
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.search.prover import Budget
 from wspd_design.certificates.suite import NAMES, verify
 from wspd_design.parameters.errors import UserError
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from wspd_design.certificates import tracking
+from wspd_design.certificates.checks.stop import tracking
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.sliding_mode import SlidingMode

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from wspd_design.certificates import well_posed
+from wspd_design.certificates.checks.foundations import well_posed
 from wspd_design.certificates.records import Status
 
 

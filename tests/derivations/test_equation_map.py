@@ -10,7 +10,7 @@ import typst
 
 from derivations import equation_map, generate
 from derivations.claims import brake, sliding
-from wspd_design.model.equations import load_equations
+from wspd_design.parameters.equations import load_equations
 
 EQUATIONS = load_equations()
 

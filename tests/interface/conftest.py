@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from wspd_design.certificates.certificate_file import certificate_text
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Certificate, Point, Status
 from wspd_design.cli.app import run
 from wspd_design.design.file import design_text

@@ -2,8 +2,8 @@
 
 import pytest
 
-from wspd_design.design import dossier as dossier_module
 from wspd_design.reporting import report as report_module
+from wspd_design.studies import dossier as dossier_module
 
 INDUSTRY = ("trenitalia", "knorr-bremse", "mitsubishi", "none")
 

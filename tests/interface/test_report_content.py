@@ -10,12 +10,12 @@ import pytest
 
 from wspd_design.certificates.records import Status
 from wspd_design.design.catalog import named_design
-from wspd_design.design.dossier import dossier
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.reporting.report import write_report
 from wspd_design.reporting.sections.summary import verdict
 from wspd_design.reporting.text import plain
+from wspd_design.studies.dossier import dossier
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from wspd_design.model.equations import load_equations
+from wspd_design.parameters.equations import load_equations
 from wspd_design.parameters.loading import available, load_entries
 from wspd_design.parameters.schema import CONTROLLER_SCHEMAS
 

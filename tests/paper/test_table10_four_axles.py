@@ -8,12 +8,12 @@ from dataclasses import replace
 import pytest
 
 from wspd_design.design.catalog import controller
-from wspd_design.design.published import load_table10
 from wspd_design.design.records import Specification
-from wspd_design.design.table10 import largest, root_mean_square, table10_rows
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.records import Scenario
+from wspd_design.studies.paper.published import load_table10
+from wspd_design.studies.paper.table10 import largest, root_mean_square, table10_rows
 
 RMS, LARGEST = 0.015, 0.04
 

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wspd_design.certificates import adhesion_peaks, peak_search
+from wspd_design.certificates.search import adhesion_peaks as peak_search
+from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_rail, load_vehicle

@@ -7,12 +7,12 @@ import json
 import time
 from dataclasses import dataclass
 
-from wspd_design.certificates.certificate_file import Stated, read_certificate
-from wspd_design.certificates.denial import denials
-from wspd_design.certificates.obligation import Answer, Obligation
-from wspd_design.certificates.obligations import OBLIGATIONS, obligations
-from wspd_design.certificates.proof.balls import Refused
+from wspd_design.certificates.kernel.counterexample import denials
+from wspd_design.certificates.kernel.enclosures import Refused
+from wspd_design.certificates.kernel.file import Stated, read_certificate
+from wspd_design.certificates.kernel.obligation import Answer, Obligation
 from wspd_design.certificates.records import Problem, Status
+from wspd_design.certificates.theorems.obligations import OBLIGATIONS, obligations
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,35 +3,28 @@
 from collections.abc import Callable, Collection
 from difflib import get_close_matches
 
-from wspd_design.certificates import (
+from wspd_design.certificates.checks.adaptive import (
     afsmc_energy,
     barbalat,
-    boundary_layer,
+    lyapunov_printed,
+    lyapunov_repaired,
+)
+from wspd_design.certificates.checks.foundations import (
     conservation,
     derivation,
     gain_positive,
-    hard_limits,
-    lpv_lyapunov,
-    lyapunov_printed,
-    lyapunov_repaired,
-    lyapunov_surface,
-    margins,
-    no_go,
-    open_loop_pole,
-    reaching,
-    routh_lag,
-    sampling,
-    sliding_exists,
-    stop_bound,
     surface_hurwitz,
-    tracking,
     well_posed,
 )
-from wspd_design.certificates.invariance import certificate as sampled_invariance
-from wspd_design.certificates.linear_loop import LinearLaw
-from wspd_design.certificates.progress import Listener, listening
-from wspd_design.certificates.proof.prover import DEFAULT_BUDGET, Budget, within
+from wspd_design.certificates.checks.linear import margins, routh_lag
+from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance
+from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
+from wspd_design.certificates.checks.stop import stop_bound, tracking
+from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.search.progress import Listener, listening
+from wspd_design.certificates.search.prover import DEFAULT_BUDGET, Budget, within
+from wspd_design.certificates.setting.linear_loop import LinearLaw
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.parameters.errors import UserError
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from wspd_design.certificates.checking import model_hash
-from wspd_design.certificates.domain import KMH
-from wspd_design.certificates.witness_state import Witness, plant_at, read_witness, start_at
+from wspd_design.certificates.checks.frame import model_hash
+from wspd_design.certificates.checks.stop.witness_state import Witness, plant_at, read_witness, start_at
+from wspd_design.certificates.setting.domain import KMH
 from wspd_design.cli.case import Case
 from wspd_design.cli.console import console
 from wspd_design.cli.verification import problem_of

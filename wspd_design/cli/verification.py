@@ -53,7 +53,7 @@ def run_checks(
 ) -> tuple[Certificate, ...]:
     """Run the checks with their progress on standard error; ``search_time`` is what the user wrote."""
     from wspd_design.certificates import suite
-    from wspd_design.certificates.proof.prover import DEFAULT_BUDGET, Budget
+    from wspd_design.certificates.search.prover import DEFAULT_BUDGET, Budget
 
     budget = DEFAULT_BUDGET
     if search_time is not None:

@@ -6,7 +6,7 @@ that goes with a gain repeats it with its numbers.
 
 import math
 
-from wspd_design.certificates.reaching import required_gain, reserve
+from wspd_design.certificates.checks.sliding.reaching import required_gain, reserve
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Gain, Law, Specification, vehicle_hash

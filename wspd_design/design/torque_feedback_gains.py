@@ -13,19 +13,19 @@ torque by no more than its share of T_max over tau.
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from wspd_design.certificates import domain
-from wspd_design.certificates.balls import point
-from wspd_design.certificates.linear_loop import lag_of
-from wspd_design.certificates.quadratic import held, loop_of
+from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.search import maximize
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.linear_loop import lag_of
+from wspd_design.certificates.theorems.quadratic import held, loop_of
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
+from wspd_design.design.maximize import maximize
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Gain, Specification
 from wspd_design.parameters.records import Rail, Vehicle
 
 if TYPE_CHECKING:
-    from wspd_design.certificates.domain import Array
+    from wspd_design.certificates.setting.domain import Array
 
 VENTED_SHARE = 0.5  # of T_max: the largest torque error that venting from full brake lets out along the line
 POLES = 9  # values of q between the ends of its range

@@ -4,12 +4,12 @@ import math
 from dataclasses import asdict
 from typing import Any
 
-from wspd_design.certificates.certificate_file import file_name
+from wspd_design.certificates.kernel.file import file_name
 from wspd_design.certificates.records import Certificate
-from wspd_design.design.dossier import Dossier
 from wspd_design.design.records import Design
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.simulation.comparison import Trial
+from wspd_design.studies.dossier import Dossier
 
 SCHEMA = "wspd-report/1"
 

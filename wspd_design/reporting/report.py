@@ -5,7 +5,6 @@ import os
 from datetime import UTC, datetime
 from pathlib import Path
 
-from wspd_design.design.dossier import Dossier
 from wspd_design.design.file import design_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting import numbers
@@ -22,6 +21,7 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.studies.dossier import Dossier
 
 SECTIONS = (case, slip_equation, design, linearization, checks, stop, comparison, sources, limits)
 
@@ -35,7 +35,7 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
     Parameters
     ----------
     dossier : Dossier
-        What :func:`wspd_design.design.dossier.dossier` returned.
+        What :func:`wspd_design.studies.dossier.dossier` returned.
     *paths : str or Path
         One file for each format wanted.
 

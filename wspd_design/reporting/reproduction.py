@@ -4,7 +4,6 @@ from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
-from wspd_design.design.reproduction import Reproduction, reproduce
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Document, Heading
 from wspd_design.reporting.output import write_document
@@ -15,6 +14,7 @@ from wspd_design.reporting.paper.track import track
 from wspd_design.reporting.paper.verdicts import conclusions, summary, verdict
 from wspd_design.reporting.report import report_time
 from wspd_design.reporting.text import CodeSpan, rich
+from wspd_design.studies.paper.reproduction import Reproduction, reproduce
 
 NAME = "paper"
 SECTIONS = (conclusions, table10, parts, figures, track)

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from tests.certificates.invariance.loops import feedback_problem
-from wspd_design.certificates.invariance import document
-from wspd_design.certificates.invariance.search import search
+from wspd_design.certificates.search.invariant_sets import document
+from wspd_design.certificates.search.invariant_sets.search import search
 
 
 @pytest.fixture(scope="session")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from wspd_design.certificates.invariance.cells import CellSet, inside, largest_kept, touched
-from wspd_design.certificates.invariance.one_sample import Images, Window
+from wspd_design.certificates.search.invariant_sets.cells import CellSet, inside, largest_kept, touched
+from wspd_design.certificates.search.invariant_sets.one_sample import Images, Window
 
 GROWTH, LIMIT, DISTURBANCE = 1.25, 0.0625, 0.0225
 

@@ -8,12 +8,12 @@ from itertools import count
 import pytest
 
 from tests.certificates.invariance.loops import feedback_problem
-from wspd_design.certificates.certificate_file import certificate_text
-from wspd_design.certificates.invariance import certificate
-from wspd_design.certificates.invariance.checker import Verdict, check
-from wspd_design.certificates.invariance.outlines import OUTLINES
-from wspd_design.certificates.proof.prover import Budget, within
+from wspd_design.certificates.checks.region import sampled_invariance as certificate
+from wspd_design.certificates.checks.region.outlines import OUTLINES
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.search.prover import Budget, within
+from wspd_design.certificates.theorems.invariant_sets.checker import Verdict, check
 from wspd_design.controllers.protocol import Command
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from tests.certificates.invariance.loops import drawn, feedback_problem
-from wspd_design.certificates.checking import model_hash
-from wspd_design.certificates.invariance import document, one_sample, search
-from wspd_design.certificates.invariance.ball_plant import BallPlant
-from wspd_design.certificates.invariance.ball_slopes import law_slopes
-from wspd_design.certificates.invariance.checker import check
-from wspd_design.certificates.invariance.search import search as search_sets
+from wspd_design.certificates.checks.frame import model_hash
+from wspd_design.certificates.search.invariant_sets import document, one_sample, search
+from wspd_design.certificates.search.invariant_sets.search import search as search_sets
+from wspd_design.certificates.theorems.invariant_sets.ball_plant import BallPlant
+from wspd_design.certificates.theorems.invariant_sets.ball_slopes import law_slopes
+from wspd_design.certificates.theorems.invariant_sets.checker import check
 from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.model.number import atan, clip, exp

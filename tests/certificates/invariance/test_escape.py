@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tests.certificates.invariance.loops import feedback_problem, one_sample
-from wspd_design.certificates.invariance import escape
-from wspd_design.certificates.invariance.escape import described, escapes
+from wspd_design.certificates.search.invariant_sets import escape
+from wspd_design.certificates.search.invariant_sets.escape import described, escapes
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.certificates.invariance.loops import drawn, feedback_problem, one_sample
-from wspd_design.certificates.invariance import one_sample as module
-from wspd_design.certificates.invariance.duals import mean_value
-from wspd_design.certificates.invariance.one_sample import Window, images, slip_rate, torque_path
+from wspd_design.certificates.search.invariant_sets import one_sample as module
+from wspd_design.certificates.search.invariant_sets.duals import mean_value
+from wspd_design.certificates.search.invariant_sets.one_sample import Window, images, slip_rate, torque_path
 from wspd_design.model.number import atan, clip, exp
 from wspd_design.model.slip import slip_dynamics
 

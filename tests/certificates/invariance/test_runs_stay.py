@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.certificates.invariance.loops import drawn, feedback_problem, one_sample
-from wspd_design.certificates.invariance import document
-from wspd_design.certificates.invariance.checker import check
-from wspd_design.certificates.invariance.search import search
+from wspd_design.certificates.search.invariant_sets import document
+from wspd_design.certificates.search.invariant_sets.search import search
+from wspd_design.certificates.theorems.invariant_sets.checker import check
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 

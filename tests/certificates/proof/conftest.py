@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from wspd_design.certificates import reaching
-from wspd_design.certificates.proof.engine import settle
+from wspd_design.certificates.checks.sliding import reaching
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.search.settle import settle
 
 
 @pytest.fixture(scope="session")

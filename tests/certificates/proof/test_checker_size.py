@@ -5,9 +5,9 @@ import io
 import tokenize
 from pathlib import Path
 
-from wspd_design.certificates.proof import balls, checker, identity
+from wspd_design.certificates.kernel import checker, enclosures, identity
 
-FILES = [Path(module.__file__) for module in (checker, balls, identity)]
+FILES = [Path(module.__file__) for module in (checker, enclosures, identity)]
 MOST_LINES = 300
 ALLOWED = {
     "collections.abc",
@@ -19,9 +19,9 @@ ALLOWED = {
     "math",
     "time",
     "typing",
-    "wspd_design.certificates.proof.balls",
-    "wspd_design.certificates.proof.claim",
-    "wspd_design.certificates.proof.identity",
+    "wspd_design.certificates.kernel.enclosures",
+    "wspd_design.certificates.kernel.claim",
+    "wspd_design.certificates.kernel.identity",
 }
 LAYOUT = {
     tokenize.COMMENT,

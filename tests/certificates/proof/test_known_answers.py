@@ -9,13 +9,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from wspd_design.certificates import domain, reaching
-from wspd_design.certificates.model_error import mismatch
-from wspd_design.certificates.progress import listening
-from wspd_design.certificates.proof import engine, outward
-from wspd_design.certificates.proof.checker import check, value
-from wspd_design.certificates.proof.prover import Budget, extreme, prove, within
+from wspd_design.certificates.checks.sliding import reaching
+from wspd_design.certificates.kernel.checker import check, value
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.search import outward
+from wspd_design.certificates.search import settle as engine
+from wspd_design.certificates.search.progress import listening
+from wspd_design.certificates.search.prover import Budget, extreme, prove, within
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.model_error import mismatch
 
 TRUE_SUPREMUM = 24.79297  # m/s2, enclosed by 24.79296 and 24.79298
 
@@ -93,7 +95,7 @@ def test_progress_rises_to_one(reference_claim):
 def test_checker_needs_no_prover():
     """It loads neither CasADi nor NumPy nor interval arithmetic."""
     code = (
-        "import sys; import wspd_design.certificates.proof.checker; "
+        "import sys; import wspd_design.certificates.kernel.checker; "
         "print(sorted({'casadi', 'numpy', 'scipy', 'ival'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -6,9 +6,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from wspd_design.certificates.proof import prover
-from wspd_design.certificates.proof.checker import check
-from wspd_design.certificates.proof.tape import Tape
+from wspd_design.certificates.kernel.checker import check
+from wspd_design.certificates.search import prover
+from wspd_design.certificates.search.tape import Tape
 
 FALSE_BOUND = Fraction(24)  # the supremum is 25.094
 

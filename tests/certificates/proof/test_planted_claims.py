@@ -6,11 +6,12 @@ from fractions import Fraction
 
 import pytest
 
-from wspd_design.certificates import findings, reaching
-from wspd_design.certificates.proof.checker import check, value
-from wspd_design.certificates.proof.claim import Claim, variable
-from wspd_design.certificates.proof.engine import settle
+from wspd_design.certificates.checks import verdict
+from wspd_design.certificates.checks.sliding import reaching
+from wspd_design.certificates.kernel.checker import check, value
+from wspd_design.certificates.kernel.claim import Claim, variable
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.search.settle import settle
 
 
 @pytest.fixture
@@ -153,8 +154,8 @@ def test_theorem_needs_all_its_hypotheses(make_reference_problem):
     false = settle(replace(slowing, bound=Fraction(1)), tolerance=0.1)
     assert found.status is Status.PROVED
     assert false.status is Status.REFUTED
-    assert findings.status(found, false) is Status.REFUTED
-    assert findings.proofs(found, false) == (found.proof,)
+    assert verdict.status(found, false) is Status.REFUTED
+    assert verdict.proofs(found, false) == (found.proof,)
 
 
 def test_vanishing_function_is_not_positive_definite(forge):

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from wspd_design.certificates.proof.checker import check
-from wspd_design.certificates.proof.claim import Claim, variable
-from wspd_design.certificates.proof.prover import Budget, prove, within
+from wspd_design.certificates.kernel.checker import check
+from wspd_design.certificates.kernel.claim import Claim, variable
+from wspd_design.certificates.search.prover import Budget, prove, within
 from wspd_design.model.number import atan, exp
 
 BOX = {"x": (-1.0, 1.5), "y": (0.25, 2.0)}

@@ -6,9 +6,11 @@ from fractions import Fraction
 
 import pytest
 
-from wspd_design.certificates import open_loop_pole, reaching, well_posed
-from wspd_design.certificates.certificate_file import certificate_text
-from wspd_design.certificates.proof.checker import check
+from wspd_design.certificates.checks.foundations import well_posed
+from wspd_design.certificates.checks.sliding import reaching
+from wspd_design.certificates.checks.valve import open_loop_pole
+from wspd_design.certificates.kernel.checker import check
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 

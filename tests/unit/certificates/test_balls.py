@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from flint import arb
 
-from wspd_design.certificates.balls import above, ball, below, in_balls, point
+from wspd_design.certificates.kernel.arb import above, ball, below, in_balls, point
 
 THIRD = Fraction(1, 3)
 

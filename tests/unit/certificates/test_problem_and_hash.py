@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from wspd_design.certificates.checking import enclosure, model_hash
+from wspd_design.certificates.checks.frame import enclosure, model_hash
 from wspd_design.certificates.records import Problem
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail

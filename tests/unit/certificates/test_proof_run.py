@@ -6,9 +6,9 @@ import flint
 import numpy as np
 import pytest
 
-from wspd_design.certificates.adaptive_error import ideal, signals
-from wspd_design.certificates.certain_rise import exact_rate
-from wspd_design.certificates.proof_run import (
+from wspd_design.certificates.checks.adaptive.adaptive_error import ideal, signals
+from wspd_design.certificates.checks.certain_rise import exact_rate
+from wspd_design.certificates.checks.ideal_run import (
     ProofRun,
     adaptive_run,
     cut_short,

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from wspd_design.certificates.checks.stop.witness_state import plant_at, read_witness, start_at
 from wspd_design.certificates.records import Problem, Status
-from wspd_design.certificates.witness_state import plant_at, read_witness, start_at
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail

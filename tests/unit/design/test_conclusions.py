@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from tests.unit.reporting.sample_reproduction import sample_evidence
-from wspd_design.design.conclusions import conclusions
-from wspd_design.design.conclusions.records import Verdict
-from wspd_design.design.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS
-from wspd_design.design.published import load_table10
+from wspd_design.studies.paper.conclusions import conclusions
+from wspd_design.studies.paper.conclusions.records import Verdict
+from wspd_design.studies.paper.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS
+from wspd_design.studies.paper.published import load_table10
 
 GOOD = sample_evidence()
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from wspd_design.analysis.linearization import linearize
-from wspd_design.certificates import reaching
+from wspd_design.certificates.checks.sliding import reaching
 from wspd_design.certificates.records import Status
 from wspd_design.design.catalog import paper_design
 from wspd_design.design.laws import GAINS_OF

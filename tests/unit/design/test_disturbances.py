@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
-from wspd_design.design.disturbances import (
+from wspd_design.parameters.loading import load_rail, load_track_spectrum
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.track import standard_deviation, synthesize
+from wspd_design.studies.paper.disturbances import (
     LOAD_SPREAD,
     SPACING,
     Disturbance,
@@ -11,9 +14,6 @@ from wspd_design.design.disturbances import (
     irregular_load,
     largest_change,
 )
-from wspd_design.parameters.loading import load_rail, load_track_spectrum
-from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.track import standard_deviation, synthesize
 
 TRACK = load_track_spectrum("erri-b176")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.unit.reporting.sample_dossier import trial
-from wspd_design.design.slip_history import slip_history
+from wspd_design.studies.paper.slip_history import slip_history
 
 END = 10.0  # s, from 120 km/h at a constant deceleration
 JUDGED = END * (1.0 - 10.0 / 120.0)

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from wspd_design.certificates import lpv_lyapunov, routh_lag
+from wspd_design.certificates.checks.linear import routh_lag
+from wspd_design.certificates.checks.region import lpv_lyapunov
 from wspd_design.certificates.records import Status
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification

@@ -7,13 +7,13 @@ import numpy as np
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Series, Status
 from wspd_design.controllers.protocol import Measurement
-from wspd_design.design.dossier import Dossier, PhasePlane, Provenance
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.parameters.loading import load_entries
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Run, Sample, Totals
 from wspd_design.simulation.self_check import StepCheck
+from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
 
 INITIAL_SPEED = 120.0 / 3.6
 

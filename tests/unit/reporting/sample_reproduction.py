@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from tests.unit.reporting.sample_dossier import INITIAL_SPEED, trial
-from wspd_design.design.conclusions import conclusions
-from wspd_design.design.disturbances import Disturbance, TrackChannel
-from wspd_design.design.dossier import Provenance
-from wspd_design.design.evidence import (
+from wspd_design.design.records import Specification
+from wspd_design.parameters.loading import load_track_spectrum, load_vehicle
+from wspd_design.studies.dossier import Provenance
+from wspd_design.studies.paper.conclusions import conclusions
+from wspd_design.studies.paper.disturbances import Disturbance, TrackChannel
+from wspd_design.studies.paper.evidence import (
     CONTROLLERS,
     RAILS,
     UNPROTECTED,
@@ -17,12 +19,10 @@ from wspd_design.design.evidence import (
     StopFigures,
     Yardstick,
 )
-from wspd_design.design.published import load_table10
-from wspd_design.design.records import Specification
-from wspd_design.design.reproduction import FrictionCurve, Reproduction
-from wspd_design.design.slip_history import SlipHistory
-from wspd_design.design.table10 import Table10Row
-from wspd_design.parameters.loading import load_track_spectrum, load_vehicle
+from wspd_design.studies.paper.published import load_table10
+from wspd_design.studies.paper.reproduction import FrictionCurve, Reproduction
+from wspd_design.studies.paper.slip_history import SlipHistory
+from wspd_design.studies.paper.table10 import Table10Row
 
 HISTORY = SlipHistory(
     early_rms=0.1,

@@ -9,7 +9,6 @@ import pytest
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
 from wspd_design.certificates.records import Status
-from wspd_design.design.published import load_table10
 from wspd_design.design.records import Law
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting.blocks import Bullets, Figure, Heading, Paragraph, Table
@@ -19,6 +18,7 @@ from wspd_design.reporting.report import report_document, write_report
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.text import Link, plain
 from wspd_design.simulation.records import Ending
+from wspd_design.studies.paper.published import load_table10
 
 DATE = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
 

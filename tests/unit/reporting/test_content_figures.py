@@ -13,7 +13,6 @@ from matplotlib.text import Text
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
 from tests.unit.reporting.test_maps import SHOWN
 from wspd_design.certificates.records import Series, Status
-from wspd_design.design.published import load_table10
 from wspd_design.reporting.blocks import Figure
 from wspd_design.reporting.figure_style import INK, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
@@ -29,6 +28,7 @@ from wspd_design.reporting.figures.series import (
 )
 from wspd_design.reporting.figures.stop import LOCK_BAR, stop_traces
 from wspd_design.reporting.sections.checks import checks
+from wspd_design.studies.paper.published import load_table10
 
 DOSSIER = sample_dossier(rail="table10-dry")
 SPECIFICATION = DOSSIER.design.specification

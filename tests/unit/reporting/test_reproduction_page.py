@@ -7,8 +7,6 @@ from datetime import UTC, datetime
 import pytest
 
 from tests.unit.reporting.sample_reproduction import sample_evidence, sample_reproduction
-from wspd_design.design.conclusions import conclusions
-from wspd_design.design.published import load_table10
 from wspd_design.reporting.blocks import Cell, Figure, Heading, KeyNumbers, Status, Table
 from wspd_design.reporting.blocks import Verdict as Judgment
 from wspd_design.reporting.figure_style import figure_style, new_figure
@@ -17,6 +15,8 @@ from wspd_design.reporting.numbering import number
 from wspd_design.reporting.paper.verdicts import summary, verdict
 from wspd_design.reporting.reproduction import reproduction_document
 from wspd_design.reporting.text import plain
+from wspd_design.studies.paper.conclusions import conclusions
+from wspd_design.studies.paper.published import load_table10
 
 DATE = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
 

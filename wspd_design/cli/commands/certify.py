@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from wspd_design.certificates.certificate_file import certificate_text, file_name
+from wspd_design.certificates.kernel.file import certificate_text, file_name
 from wspd_design.certificates.records import Certificate, Status
 from wspd_design.cli import options
 from wspd_design.cli.case import Wishes, resolve

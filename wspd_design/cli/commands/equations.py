@@ -8,7 +8,7 @@ import typer
 from rich.text import Text
 
 from wspd_design.cli.console import console, spaced, table
-from wspd_design.model.equations import Equation, load_equations
+from wspd_design.parameters.equations import Equation, load_equations
 from wspd_design.parameters.errors import UserError
 
 _STYLES = {"holds": "green", "misprint": "red", "gap": "yellow", "definition": "cyan"}

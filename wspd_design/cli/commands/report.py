@@ -34,8 +34,8 @@ def report(
     force: options.ForceOption = False,
 ) -> None:
     """Write a report: design, poles, certificates, stops and sources."""
-    from wspd_design.design.dossier import dossier
     from wspd_design.reporting.report import write_report
+    from wspd_design.studies.dossier import dossier
 
     check_plant(plant)
     paths = list(dict.fromkeys([output, output.with_suffix(".pdf")] if pdf else [output]))

@@ -5,7 +5,6 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from wspd_design.design.published import PublishedStop
 from wspd_design.design.records import Specification
 from wspd_design.reporting import numbers
 from wspd_design.reporting.figure_style import INK, MUTED, SERIES
@@ -13,6 +12,7 @@ from wspd_design.reporting.figures.drawing import note
 from wspd_design.reporting.figures.stop import slip_panel
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
+from wspd_design.studies.paper.published import PublishedStop
 
 MOST = 320
 """Points of a curve: the panels are small and many."""

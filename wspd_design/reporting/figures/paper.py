@@ -7,13 +7,13 @@ one that of Polach (2005).
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from wspd_design.design.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS
-from wspd_design.design.reproduction import FrictionCurve
 from wspd_design.reporting.figure_style import INK, SERIES
 from wspd_design.reporting.figures.drawing import KILO, KMH, curve, note
 from wspd_design.reporting.figures.stop import TRAIN, name
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Run
+from wspd_design.studies.paper.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS
+from wspd_design.studies.paper.reproduction import FrictionCurve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

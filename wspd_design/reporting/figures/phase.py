@@ -2,12 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-from wspd_design.design.dossier import PhasePlane
 from wspd_design.design.records import Specification
 from wspd_design.reporting.figure_style import INK, SERIES
 from wspd_design.reporting.figures.drawing import KILO, curve
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
+from wspd_design.studies.dossier import PhasePlane
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

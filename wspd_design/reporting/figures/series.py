@@ -143,7 +143,7 @@ def _stacked(groups: dict[tuple[str, str], list[Series]]) -> bool:
 
 
 def _is_line(each: Series) -> bool:
-    """Whether a curve is the line of a limit, as :func:`wspd_design.certificates.checking.level` makes it."""
+    """Whether a curve is the line of a limit, as :func:`wspd_design.certificates.checks.frame.level` makes it."""
     return len(each.x) == 2 and (each.y[0] == each.y[1] or each.x[0] == each.x[1])
 
 

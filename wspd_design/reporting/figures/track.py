@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from wspd_design.design.disturbances import TrackChannel
 from wspd_design.reporting.figure_style import SERIES
 from wspd_design.reporting.figures.drawing import KILO, curve
+from wspd_design.studies.paper.disturbances import TrackChannel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -2,12 +2,12 @@
 
 from functools import partial
 
-from wspd_design.design.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS, StopFigures
-from wspd_design.design.reproduction import Reproduction
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures import paper
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
+from wspd_design.studies.paper.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS, StopFigures
+from wspd_design.studies.paper.reproduction import Reproduction
 
 SLIP_FIGURES = {"trenitalia": 9, "knorr-bremse": 11, "mitsubishi": 13, "afsmc": 15}
 """The paper's figure of the slip with each controller; that of the velocities follows."""

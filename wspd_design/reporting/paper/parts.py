@@ -1,9 +1,9 @@
 """What in the paper's law does the work: the law with its parts taken out."""
 
-from wspd_design.design.reproduction import Reproduction
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Column, Heading, Paragraph, Table
 from wspd_design.reporting.text import rich
+from wspd_design.studies.paper.reproduction import Reproduction
 
 
 def parts(made: Reproduction) -> tuple[Block, ...]:

@@ -1,12 +1,12 @@
 """Table 10 beside our stops, taken apart into build-up and plateau, and the same stops on other friction."""
 
-from wspd_design.design.evidence import CONTROLLERS, RAILS, UNPROTECTED, StopFigures
-from wspd_design.design.reproduction import Reproduction
-from wspd_design.design.table10 import Table10Row, largest, relative_range, root_mean_square
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Column, Equation, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO
 from wspd_design.reporting.text import Text, rich
+from wspd_design.studies.paper.evidence import CONTROLLERS, RAILS, UNPROTECTED, StopFigures
+from wspd_design.studies.paper.reproduction import Reproduction
+from wspd_design.studies.paper.table10 import Table10Row, largest, relative_range, root_mean_square
 
 
 def table10(made: Reproduction) -> tuple[Block, ...]:

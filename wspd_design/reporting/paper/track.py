@@ -2,14 +2,14 @@
 
 from functools import partial
 
-from wspd_design.design.disturbances import LOAD_SPREAD, largest_change
-from wspd_design.design.reproduction import Reproduction
 from wspd_design.parameters.records import SpectrumCoefficients
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Column, Equation, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO, picture
 from wspd_design.reporting.figures.track import is_angle, profiles, spectra
 from wspd_design.reporting.text import rich
+from wspd_design.studies.paper.disturbances import LOAD_SPREAD, largest_change
+from wspd_design.studies.paper.reproduction import Reproduction
 
 PRINTED = {
     "lateral-high": "Horizontal",

@@ -2,11 +2,6 @@
 
 from collections import Counter
 
-from wspd_design.design.conclusions.records import Conclusion
-from wspd_design.design.conclusions.records import Verdict as Finding
-from wspd_design.design.evidence import FALLING_RAILS
-from wspd_design.design.reproduction import Reproduction
-from wspd_design.design.table10 import largest, root_mean_square
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Block,
@@ -23,6 +18,11 @@ from wspd_design.reporting.blocks import (
     Verdict,
 )
 from wspd_design.reporting.text import Link
+from wspd_design.studies.paper.conclusions.records import Conclusion
+from wspd_design.studies.paper.conclusions.records import Verdict as Finding
+from wspd_design.studies.paper.evidence import FALLING_RAILS
+from wspd_design.studies.paper.reproduction import Reproduction
+from wspd_design.studies.paper.table10 import largest, root_mean_square
 
 COUNTED = {
     Finding.FAILS: ("does not hold", "do not hold"),

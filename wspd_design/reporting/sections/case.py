@@ -1,12 +1,12 @@
 """The vehicle, the rail and the controller in short."""
 
-from wspd_design.design.dossier import Dossier
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.text import Text, rich
+from wspd_design.studies.dossier import Dossier
 
 LAWS = {
     "afsmc": "Adaptive fuzzy sliding mode",

@@ -3,10 +3,9 @@
 import shlex
 from functools import partial
 
-from wspd_design.certificates.certificate_file import certificate_text, file_name
+from wspd_design.certificates.kernel.file import certificate_text, file_name
 from wspd_design.certificates.records import Certificate, Map, Proof
 from wspd_design.certificates.records import Status as Finding
-from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Attachment,
@@ -32,6 +31,7 @@ from wspd_design.reporting.figures.series import (
     series_caption,
 )
 from wspd_design.reporting.text import rich
+from wspd_design.studies.dossier import Dossier
 
 MAP_HEIGHT = 2.6  # in
 

@@ -2,8 +2,6 @@
 
 from functools import partial
 
-from wspd_design.design.dossier import Dossier
-from wspd_design.design.published import PublishedStop, load_table10
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Block,
@@ -20,6 +18,8 @@ from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.text import CodeSpan, Text
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
+from wspd_design.studies.dossier import Dossier
+from wspd_design.studies.paper.published import PublishedStop, load_table10
 
 BAR_HEIGHT, ROW_HEIGHT = 0.33, 1.55  # in
 

@@ -1,10 +1,10 @@
 """The design: every gain with its unit and its reason."""
 
-from wspd_design.design.dossier import Dossier
 from wspd_design.design.records import Design, GainValue
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Column, Heading, Paragraph, Table
 from wspd_design.reporting.text import rich
+from wspd_design.studies.dossier import Dossier
 
 
 def design(dossier: Dossier) -> tuple[Block, ...]:

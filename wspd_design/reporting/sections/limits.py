@@ -1,11 +1,11 @@
 """What the report does not show, and how to make it again."""
 
-from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
 from wspd_design.reporting.text import CodeSpan, Text, rich
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Run
+from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (
     "Level, straight track in one condition from end to end; no patches, no cleaning of the rail by the "

@@ -3,12 +3,12 @@
 from functools import partial
 
 from wspd_design.analysis.linearization import Linearization
-from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Column, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.text import rich
+from wspd_design.studies.dossier import Dossier
 
 TABLE_ROWS = 9
 MEGA = 1e6

@@ -1,10 +1,10 @@
 """Equation (19) and what became of the equations that the design rests on."""
 
-from wspd_design.design.dossier import Dossier
-from wspd_design.model.equations import Equation as PaperEquation
-from wspd_design.model.equations import load_equations
+from wspd_design.parameters.equations import Equation as PaperEquation
+from wspd_design.parameters.equations import load_equations
 from wspd_design.reporting.blocks import Block, Cell, Column, Equation, Heading, Paragraph, Status, Table
 from wspd_design.reporting.text import escape, rich
+from wspd_design.studies.dossier import Dossier
 
 PLANT = ("1", "2", "3", "5", "6", "7", "8", "9", "10", "13", "14", "15", "19", "B_W")
 SLIDING_MODE = ("20", "22", "23", "24", "25", "26", "27", "28")

@@ -1,11 +1,11 @@
 """Where every number comes from."""
 
-from wspd_design.design.dossier import Dossier
 from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Column, Definition, Definitions, Heading, Paragraph, Table
 from wspd_design.reporting.sections.design import gain_table
+from wspd_design.studies.dossier import Dossier
 
 WEAK = ("calibrated", "assumed")
 

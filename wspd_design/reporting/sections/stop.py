@@ -3,7 +3,6 @@
 from functools import partial
 
 from wspd_design.certificates.records import Certificate
-from wspd_design.design.dossier import Dossier
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
@@ -14,6 +13,7 @@ from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.sections.checks import check_anchor
 from wspd_design.reporting.text import Inline, Link
 from wspd_design.simulation.loop_input import JUDGING_SPEED
+from wspd_design.studies.dossier import Dossier
 
 LYAPUNOV = "lyapunov"
 """Checks of a Lyapunov function have names that begin so; the function is their first series."""

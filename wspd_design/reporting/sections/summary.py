@@ -3,7 +3,6 @@
 from collections import Counter
 
 from wspd_design.certificates.records import Certificate
-from wspd_design.design.dossier import Dossier
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
@@ -11,6 +10,7 @@ from wspd_design.reporting.sections.checks import check_anchor, status_of
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Ending
+from wspd_design.studies.dossier import Dossier
 
 COUNTED = {
     Status.REFUTED: "refuted",

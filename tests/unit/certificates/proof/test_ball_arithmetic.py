@@ -11,8 +11,8 @@ import flint
 import pytest
 import sympy
 
-from wspd_design.certificates.proof import balls
-from wspd_design.certificates.proof.claim import variable
+from wspd_design.certificates.kernel import enclosures
+from wspd_design.certificates.kernel.claim import variable
 
 WIDE, THIN = 300, 100  # numbers of intervals
 
@@ -28,18 +28,18 @@ def _contains(interval, exact):
 
 # Function of intervals, its reference on numbers, its number of operands, whether they must be positive.
 OPERATIONS = {
-    "add": (balls.add, lambda x, y: x + y, 2, False),
-    "magnitude": (balls.magnitude, abs, 1, False),
-    "mul": (balls.mul, lambda x, y: x * y, 2, False),
-    "sqr": (balls.sqr, lambda x: x * x, 1, False),
-    "inverse": (balls.inverse, lambda x: 1 / x, 1, True),
-    "cube": (lambda x: balls.power(x, Fraction(3)), lambda x: x**3, 1, False),
-    "fourth": (lambda x: balls.power(x, Fraction(4)), lambda x: x**4, 1, False),
-    "minus square": (lambda x: balls.power(x, Fraction(-2)), lambda x: 1 / x**2, 1, True),
-    "broken power": (lambda x: balls.power(x, Fraction(2, 3)), lambda x: x ** (flint.arb(2) / 3), 1, True),
-    "exp": (balls.exp, lambda x: x.exp(), 1, False),
-    "log": (balls.log, lambda x: x.log(), 1, True),
-    "atan": (balls.atan, lambda x: x.atan(), 1, False),
+    "add": (enclosures.add, lambda x, y: x + y, 2, False),
+    "magnitude": (enclosures.magnitude, abs, 1, False),
+    "mul": (enclosures.mul, lambda x, y: x * y, 2, False),
+    "sqr": (enclosures.sqr, lambda x: x * x, 1, False),
+    "inverse": (enclosures.inverse, lambda x: 1 / x, 1, True),
+    "cube": (lambda x: enclosures.power(x, Fraction(3)), lambda x: x**3, 1, False),
+    "fourth": (lambda x: enclosures.power(x, Fraction(4)), lambda x: x**4, 1, False),
+    "minus square": (lambda x: enclosures.power(x, Fraction(-2)), lambda x: 1 / x**2, 1, True),
+    "broken power": (lambda x: enclosures.power(x, Fraction(2, 3)), lambda x: x ** (flint.arb(2) / 3), 1, True),
+    "exp": (enclosures.exp, lambda x: x.exp(), 1, False),
+    "log": (enclosures.log, lambda x: x.log(), 1, True),
+    "atan": (enclosures.atan, lambda x: x.atan(), 1, False),
 }
 
 
@@ -100,11 +100,11 @@ def _inwards(function):
 MUTANTS = {
     "add": lambda x, y: (x[0] + y[1], x[1] + y[0]),
     "magnitude": lambda x: (abs(x[0]), abs(x[1])),
-    "minus square": lambda x: balls.inverse((x[1] ** 2, x[0] ** 2)),
+    "minus square": lambda x: enclosures.inverse((x[1] ** 2, x[0] ** 2)),
     "mul": lambda x, y: (x[0] * y[0], x[1] * y[1]),
     "sqr": lambda x: (x[0] * x[0], x[1] * x[1]),
     "inverse": lambda x: (1 / x[0], 1 / x[1]),
-    "cube": lambda x: balls.power(x, Fraction(2)),
+    "cube": lambda x: enclosures.power(x, Fraction(2)),
     "fourth": lambda x: (x[0] ** 4, x[1] ** 4),
     "exp": lambda x: (x[0].exp(), (x[0].exp() + x[1].exp()) / 2),
     "log": lambda x: (x[0].log() + 0.01, x[1].log()),
@@ -128,14 +128,14 @@ def test_inward_rounding_is_seen_by_thin_intervals_only(name):
 
 def test_what_is_not_defined_is_no_number():
     across = (flint.arb(-1), flint.arb(2))
-    for found in (balls.inverse(across), balls.log(across), balls.power(across, Fraction(1, 2))):
-        assert not balls.finite(found)
+    for found in (enclosures.inverse(across), enclosures.log(across), enclosures.power(across, Fraction(1, 2))):
+        assert not enclosures.finite(found)
         assert not found[1] <= 1e300
-    for function in (balls.add, balls.mul):
-        assert not balls.finite(function(balls.inverse(across), across))
-    assert not balls.finite(balls.sqr(balls.inverse(across)))
-    assert not balls.finite(balls.magnitude(balls.inverse(across)))
-    assert not balls.finite(balls.power(balls.inverse(across), Fraction(0)))
+    for function in (enclosures.add, enclosures.mul):
+        assert not enclosures.finite(function(enclosures.inverse(across), across))
+    assert not enclosures.finite(enclosures.sqr(enclosures.inverse(across)))
+    assert not enclosures.finite(enclosures.magnitude(enclosures.inverse(across)))
+    assert not enclosures.finite(enclosures.power(enclosures.inverse(across), Fraction(0)))
 
 
 x, y = sympy.symbols("x y", real=True)
@@ -150,7 +150,7 @@ FORMULAS = {
 
 
 def _program(formula):
-    return balls.Program(formula, (variable("x", (0.5, 3.0), "-"), variable("y", (0.5, 3.0), "-")))
+    return enclosures.Program(formula, (variable("x", (0.5, 3.0), "-"), variable("y", (0.5, 3.0), "-")))
 
 
 @pytest.mark.parametrize("name", FORMULAS)
@@ -163,13 +163,13 @@ def test_slopes_contain_the_derivatives(name):
         box = [_numbers(rng, True), _numbers(rng, True)]
         found, slopes = program.run([_ends(*ends) for ends in box], derivatives=True)
         point = [rng.uniform(*ends) for ends in box]
-        assert balls.finite(found)
+        assert enclosures.finite(found)
         for slope, derivative in zip(slopes, exact[0](*point), strict=True):
             assert _contains(slope, flint.arb(float(derivative), 1e-13 * (1.0 + abs(float(derivative)))))
 
 
 def test_wrong_product_rule_is_seen(monkeypatch):
-    monkeypatch.setattr(balls, "_plus", lambda one, other: one or other)
+    monkeypatch.setattr(enclosures, "_plus", lambda one, other: one or other)
     with pytest.raises(AssertionError):
         test_slopes_contain_the_derivatives("product")
 
@@ -177,7 +177,7 @@ def test_wrong_product_rule_is_seen(monkeypatch):
 def test_program_shares_parts_and_does_known_ones_once():
     fixed = variable("k", 2.0, "-")
     k = sympy.Symbol("k")
-    program = balls.Program(sympy.exp(k) * x + sympy.exp(k) * x**2, (variable("x", (0.0, 1.0), "-"), fixed))
+    program = enclosures.Program(sympy.exp(k) * x + sympy.exp(k) * x**2, (variable("x", (0.0, 1.0), "-"), fixed))
     assert sum(step[1] == "exp" for step in program.steps) == 0
     assert sum(step[1] == "Symbol" for step in program.steps) == 1
 

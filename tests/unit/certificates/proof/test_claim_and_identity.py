@@ -6,8 +6,8 @@ from fractions import Fraction
 import pytest
 import sympy
 
-from wspd_design.certificates.proof.claim import Claim, Variable, model_text, number, text, variable
-from wspd_design.certificates.proof.identity import same
+from wspd_design.certificates.kernel.claim import Claim, Variable, model_text, number, text, variable
+from wspd_design.certificates.kernel.identity import same
 
 x, y = sympy.symbols("x y", positive=True)
 

@@ -7,7 +7,7 @@ import ival
 import numpy as np
 import pytest
 
-from wspd_design.certificates.proof import intervals, outward
+from wspd_design.certificates.search import intervals, outward
 
 BACKENDS = {"ival": ival, "outward": outward}
 FUNCTIONS = {

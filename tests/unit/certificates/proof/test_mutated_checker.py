@@ -1,7 +1,7 @@
 """The checker as a whole with wrong arithmetic: whoever breaks an operation of it is seen by containment.
 
-The references are the same functions on 300-bit balls, without SymPy, without the checker's program and without its
-intervals. Wide boxes show wrong operations, thin ones those that round inwards.
+The references are the same functions on 300-bit enclosures, without SymPy, without the checker's program and without
+its intervals. Wide boxes show wrong operations, thin ones those that round inwards.
 """
 
 import random
@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wspd_design.certificates.proof import balls
-from wspd_design.certificates.proof.checker import PRECISION, value
-from wspd_design.certificates.proof.claim import Claim, variable
+from wspd_design.certificates.kernel import enclosures
+from wspd_design.certificates.kernel.checker import PRECISION, value
+from wspd_design.certificates.kernel.claim import Claim, variable
 from wspd_design.model.number import atan, exp
 
 FUNCTIONS = {
@@ -56,7 +56,7 @@ def rational(rng):
 def run(name, ends):
     claim = claim_of(name)
     with flint.ctx.workprec(PRECISION):
-        program = balls.Program(claim.definition(), claim.variables)
+        program = enclosures.Program(claim.definition(), claim.variables)
         box = [tuple(flint.arb(flint.fmpq(x.numerator, x.denominator)) for x in pair) for pair in ends]
         return program.run(box, derivatives=True)
 
@@ -137,7 +137,7 @@ WRONG = {
     "sqr that is symmetric": ("sqr", lambda x: (-x[1] * x[1], x[1] * x[1])),
     "inverse without swap": ("inverse", lambda x: (1 / x[0], 1 / x[1])),
     "magnitude of ends": ("magnitude", lambda x: (abs(x[0]), abs(x[1]))),
-    "power by one less": ("power", lambda x, n, right=balls.power: right(x, n - 1 if n > 2 else n)),
+    "power by one less": ("power", lambda x, n, right=enclosures.power: right(x, n - 1 if n > 2 else n)),
     "exp of the middle": ("exp", lambda x: ((x[0] + x[1]) / 2,) * 2),
     "atan falls": ("atan", lambda x: (x[1].atan(), x[0].atan())),
     "slopes of one factor": ("_plus", lambda x, y: x or y),
@@ -148,13 +148,13 @@ WRONG = {
 @pytest.mark.parametrize("name", WRONG)
 def test_wrong_operation_is_seen(monkeypatch, name):
     function, mutant = WRONG[name]
-    monkeypatch.setattr(balls, function, mutant)
+    monkeypatch.setattr(enclosures, function, mutant)
     assert not (holds_on_boxes() and holds_at_points())
 
 
 @pytest.mark.parametrize("name", ["exp", "atan", "log"])
 def test_inward_rounding_is_seen_at_points_only(monkeypatch, name):
-    monkeypatch.setattr(balls, name, inwards(getattr(balls, name)))
+    monkeypatch.setattr(enclosures, name, inwards(getattr(enclosures, name)))
     assert holds_on_boxes()
     assert not holds_at_points()
 
@@ -168,7 +168,7 @@ spans = st.tuples(share, share).map(lambda pair: tuple(LOW + (HIGH - LOW) * each
 def test_a_sampled_value_is_inside(name, ends, shares):
     found, _ = run(name, ends)
     point = [low + part * (high - low) for (low, high), part in zip(ends, shares, strict=True)]
-    assert balls.finite(found)
+    assert enclosures.finite(found)
     assert inside(found, exact(name, point))
 
 

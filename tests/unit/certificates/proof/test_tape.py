@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from wspd_design.certificates.proof import outward
-from wspd_design.certificates.proof.checker import value
-from wspd_design.certificates.proof.claim import Claim, variable
-from wspd_design.certificates.proof.engine import settle
-from wspd_design.certificates.proof.tape import trace
+from wspd_design.certificates.kernel.checker import value
+from wspd_design.certificates.kernel.claim import Claim, variable
+from wspd_design.certificates.search import outward
+from wspd_design.certificates.search.settle import settle
+from wspd_design.certificates.search.tape import trace
 from wspd_design.model.number import atan, exp
 from wspd_design.parameters.loading import load_rail, load_vehicle
 

@@ -1,0 +1,1 @@
+"""Checks of the adaptive fuzzy law: Lyapunov functions and Barbalat's lemma."""

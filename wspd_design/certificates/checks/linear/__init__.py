@@ -1,0 +1,1 @@
+"""Checks of the loop near its reference: Routh's conditions and margins."""

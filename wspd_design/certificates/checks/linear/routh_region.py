@@ -1,0 +1,99 @@
+"""Region of (c, k) in which the loop inside the layer is stable with the valve lag, for the plot beside the verdict.
+
+k = W K_P/Phi for the sliding mode, whose equivalent torque cancels the slip pole of its model; k = G K_P du/ds for
+the adaptive law, which leaves the pole as it is.
+"""
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from wspd_design.certificates.checks.frame import level, series
+from wspd_design.certificates.records import Series
+from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.setting.laws import SlipLaw, surface_rate
+from wspd_design.certificates.setting.linear_loop import Plant, feedback
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
+from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.loading import load_paper_gains
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.setting.domain import Array
+
+PLOT_RATES = 401
+LEAST_POINTS = 3  # of a border that can be drawn
+HIGHEST_RATE = 2.0  # of the plot, in multiples of the law's c or of 1/tau
+MARGIN = 5.0  # of the plot above and below the gains
+
+
+def region(law: SlipLaw, lag: float, speeds: "Array", plant: Plant) -> list[Series]:
+    """Draw the border where the slip pole is largest and smallest, the law over speed, and the paper's gains.
+
+    Parameters
+    ----------
+    law : SlidingMode or AdaptiveFuzzy
+        Law with a surface.
+    lag : float
+        Time constant of the valve [s].
+    speeds : ndarray
+        Of the train [m/s].
+    plant : Plant
+        Nominal pole [1/s] and gain at these speeds.
+    """
+    import numpy as np
+
+    printed = _printed(law)
+    rate, paper_rate = surface_rate(law), surface_rate(printed)
+    own = (
+        law.gains.switching_gain / law.gains.boundary_layer / speeds
+        if isinstance(law, SlidingMode)
+        else plant.gain * feedback(law, speeds).proportional
+    )
+    paper = plant.gain * feedback(printed, speeds).proportional
+    rates = np.linspace(0.0, HIGHEST_RATE * max(rate, 1.0 / lag), PLOT_RATES)[1:]
+    shown = np.concatenate([own, paper])
+    bottom, top = float(shown.min()) / MARGIN, float(shown.max()) * MARGIN
+    axes = ("c = K_I/K_P [1/s]", "k [1/s]")
+    curves = [series("the law over speed", *axes, np.full(len(speeds), rate), own)]
+    if (rate, *own[:1]) != (paper_rate, *paper[:1]):
+        curves.append(series("the paper's gains over speed", *axes, np.full(len(speeds), paper_rate), paper))
+    for index in (int(plant.pole.argmax()), int(plant.pole.argmin())):
+        pole, at = float(plant.pole[index]), f"{speeds[index] * KMH:.3g} km/h"
+        side, border = _border(law, pole, lag, rates)
+        drawn = (border > 0.0) & np.isfinite(border)
+        if drawn.sum() < LEAST_POINTS:
+            curves.append(level(f"{side} at {at}, p tau = {pole * lag:.3g}", *axes, rates, bottom))
+        else:
+            line = np.clip(border[drawn], bottom, top)
+            curves.append(series(f"stable {side} this at {at}", *axes, rates[drawn], line))
+    return curves
+
+
+def _border(law: SlipLaw, pole: float, lag: float, rates: "Array") -> tuple[str, "Array"]:
+    """Return where in k the determinant vanishes over c, and on which side of it the loop is stable."""
+    import numpy as np
+
+    room = 1.0 - pole * lag
+    if room <= 0.0:
+        return "nothing is stable", np.zeros(len(rates))
+    with np.errstate(divide="ignore"):
+        if isinstance(law, SlidingMode):  # room (c + k) > tau k c
+            excess = lag * rates - room
+            return "below", np.where(excess > 0.0, room * rates / excess, np.inf)
+        excess = room - lag * rates  # room (k - p) > tau k c
+        border = room * pole / excess
+    return ("above", border) if pole > 0.0 else ("below", np.where(excess < 0.0, border, np.inf))
+
+
+def _printed(law: SlipLaw) -> AdaptiveFuzzy:
+    """Return the adaptive law with the gains that the paper prints, on the brake of a law."""
+    gains = AdaptiveFuzzyGains(
+        slip_reference=law.gains.slip_reference,
+        dead_zone=False,
+        hold_when_saturated=False,
+        scheduled_rates=False,
+        **asdict(load_paper_gains()),
+    )
+    brake = law.vehicle.brake.max_torque if isinstance(law, SlidingMode) else law.max_torque
+    return AdaptiveFuzzy(
+        name="printed", sample_time=law.sample_time, wheel_radius=1.0, max_torque=brake, gains=gains
+    )

@@ -1,0 +1,1 @@
+"""Checks of the sliding surface: existence, reaching, boundary layer."""

@@ -1,0 +1,1 @@
+"""Checks of whole stops: tracking and the shortest stop."""

@@ -1,0 +1,194 @@
+"""The witness of a certificate file as a state that a stop can start from.
+
+Nothing in a file is believed: whatever is no finite number within what a railway vehicle can have is refused.
+"""
+
+import math
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from wspd_design.certificates.kernel.enclosures import Refused
+from wspd_design.certificates.kernel.file import certificate_content
+from wspd_design.certificates.records import Problem, Status
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.domain import KMH
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.simulation.records import Start
+from wspd_design.simulation.start import full_supply_time, holding_torque
+
+
+class _Allowed(NamedTuple):
+    """Unit and range of a coordinate."""
+
+    unit: str
+    low: float
+    high: float
+
+
+_COORDINATES = {
+    "slip": _Allowed("-", 0.0, math.nextafter(1.0, 0.0)),  # locked wheels are no state to start from
+    "speed": _Allowed("km/h", 0.36, 500.0),  # below it the slip is not referred to the speed
+    "mass": _Allowed("kg", 1e3, 1e6),
+    "wheelset inertia": _Allowed("kg m2", 10.0, 1e4),
+    "mu0": _Allowed("-", 1e-3, 1.0),
+    "torque": _Allowed("N m", 0.0, 1e6),
+}
+_ANEW = "write it anew with wspd certify"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Witness:
+    """A point where a claim fails; None for what it does not name."""
+
+    source: str  # file
+    check: str  # name
+    status: Status
+    model_hash: str  # of the problem that the certificate is about
+    slip: float  # -
+    speed: float  # m/s
+    mass: float | None  # kg
+    wheelset_inertia: float | None  # kg m2
+    mu0: float | None  # -
+    torque: float | None  # N m per wheelset
+
+
+def read_witness(text: str, source: str) -> Witness:
+    """Read the witness of a certificate.
+
+    Parameters
+    ----------
+    text : str
+        The file; it may be anything.
+    source : str
+        Its name, for the sentences to the user.
+
+    Raises
+    ------
+    UserError
+        If the text is no certificate, or its witness is no state that a stop can start from.
+    """
+    try:
+        content = certificate_content(text)
+    except Refused as refusal:
+        raise UserError(
+            f"{source} has no witness to start from: {refusal}; name a file that this version of wspd certify wrote"
+        ) from None
+    check, status, points = content["check"], content["status"], content.get("witness")
+    if not isinstance(points, list) or not points:
+        refuted = status == Status.REFUTED.name
+        reason = "but it states no point" if refuted else "and only REFUTED ones carry one"
+        raise UserError(
+            f"{source} has no witness to start from: {check} is {status}, {reason}; choose another certificate"
+        )
+    values = _values(points, source)
+    for name in ("slip", "speed"):
+        if name not in values:
+            raise UserError(
+                f"{source} has a witness without {name}: {check} does not fail at a state of the wheels, so that "
+                "no stop can start there; choose the certificate of another check"
+            )
+    fingerprint = content.get("model_sha256")
+    return Witness(
+        source=source,
+        check=check,
+        status=Status[status],
+        model_hash=fingerprint if isinstance(fingerprint, str) else "",
+        slip=values["slip"],
+        speed=values["speed"] / KMH,
+        mass=values.get("mass"),
+        wheelset_inertia=values.get("wheelset inertia"),
+        mu0=values.get("mu0"),
+        torque=values.get("torque"),
+    )
+
+
+def plant_at(problem: Problem, witness: Witness) -> tuple[Vehicle, Rail]:
+    """Return the vehicle and the rail with the numbers of the witness.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop; its numbers hold for what the witness does not name.
+    witness : Witness
+        The point.
+    """
+    nominal = problem.vehicle
+    mass = nominal.mass if witness.mass is None else witness.mass
+    inertia = nominal.wheelset_inertia if witness.wheelset_inertia is None else witness.wheelset_inertia
+    mu0 = problem.rail.mu0 if witness.mu0 is None else witness.mu0
+    body_mass = nominal.body_mass + (mass - nominal.mass)  # the body takes up what the mass gains or loses
+    if body_mass <= 0.0:
+        raise UserError(
+            f"{witness.source} has a witness with a mass of {mass:g} kg, which leaves none for the body of "
+            f"{nominal.name}; name the vehicle that the certificate is about with --vehicle"
+        )
+    vehicle, rail = domain.varied(problem, mass, inertia, mu0)
+    return replace(vehicle, body_mass=body_mass), rail
+
+
+def start_at(witness: Witness, vehicle: Vehicle, rail: Rail, *, grade: float = 0.0) -> tuple[Start, float]:
+    """Return the state of the wheels at the witness, and the torque that holds its slip.
+
+    Parameters
+    ----------
+    witness : Witness
+        The point.
+    vehicle, rail : Vehicle, Rail
+        As :func:`plant_at` returns them.
+    grade : float
+        Rise over run, positive uphill [-].
+
+    Returns
+    -------
+    start : Start
+        With full supply and, unless the witness names a torque, the holding torque as far as the brake has it.
+    holding : float
+        Torque per wheelset that holds the slip, whether the brake has it or not [N m].
+    """
+    time, most = full_supply_time(vehicle.brake), vehicle.brake.max_torque
+    holding = holding_torque(
+        vehicle, rail, slip=witness.slip, speed=witness.speed, braking_time=time, grade=grade
+    )
+    if witness.torque is not None and witness.torque > most:
+        raise UserError(
+            f"{witness.source} has a witness with a torque of {witness.torque:g} N m, more than the {most:g} N m "
+            f"of {vehicle.name}; name the vehicle that the certificate is about with --vehicle"
+        )
+    torque = min(max(holding, 0.0), most) if witness.torque is None else witness.torque
+    return Start(slip=witness.slip, torque=torque, braking_time=time), holding
+
+
+def _values(points: list[Any], source: str) -> dict[str, float]:
+    """Return the coordinates that belong to a state; others are left aside."""
+    values: dict[str, float] = {}
+    for point in points:
+        name = point.get("name") if isinstance(point, dict) else None
+        allowed = _COORDINATES.get(name) if isinstance(name, str) else None
+        if name is None or allowed is None:
+            continue
+        if name in values:
+            raise UserError(f"{source} has a witness that names {name} twice; {_ANEW}")
+        if point.get("unit") != allowed.unit:
+            raise UserError(
+                f'{source} has a witness whose {name} is not in its unit, "{allowed.unit}"; {_ANEW}'
+            )
+        values[name] = _number(name, point.get("value"), allowed, source)
+    return values
+
+
+def _number(name: str, value: Any, allowed: _Allowed, source: str) -> float:
+    number = math.nan
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        with suppress(OverflowError):
+            number = float(value)
+    if not math.isfinite(number):
+        raise UserError(f"{source} has a witness whose {name} is no finite number; {_ANEW}")
+    if not allowed.low <= number <= allowed.high:
+        unit = f" {allowed.unit}".removesuffix(" -")
+        raise UserError(
+            f"{source} has a witness with {name} {number:g}{unit}, which must lie between {allowed.low:g} and "
+            f"{allowed.high:g}{unit} for a stop to start there; {_ANEW}"
+        )
+    return number

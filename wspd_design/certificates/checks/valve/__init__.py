@@ -1,0 +1,1 @@
+"""Checks of what the valve leaves possible: poles, limits, sampling."""

@@ -1,0 +1,1 @@
+"""The untrusted searches: branch and bound, linear matrix inequalities, sampled sets."""

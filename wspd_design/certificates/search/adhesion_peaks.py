@@ -1,0 +1,83 @@
+"""Searches the adhesion peaks and the cuts of the slip that let the checker of ``adhesion_peaks.py`` see them.
+
+Nobody has to trust this: a peak that is too low, or cuts that are too coarse, are refused.
+"""
+
+import json
+from collections.abc import Iterable
+from fractions import Fraction
+
+from wspd_design.certificates.checks.frame import model_hash
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import (
+    CLAIM,
+    FORMAT,
+    MOST_CUTS,
+    PartTest,
+    part_test,
+)
+from wspd_design.model import adhesion
+from wspd_design.model.slip import static_wheel_load
+from wspd_design.parameters.loading import constants
+
+SPEEDS, CROWDING = 200, 1.25  # intervals of the speed, closer together at low speed
+SAMPLES = 2000  # of the slip, for a peak
+MARGIN = 5e-5  # -, of a peak above its samples
+DECIMALS = 6
+LEAST_SLIP = 1e-6  # that is sampled
+FIRST, WIDER, NARROWER, LEAST_STEP = 0.5, 1.5, 0.6, 1e-4  # relative steps from cut to cut
+
+
+def search(problem: Problem) -> str:
+    """Return a certificate of the adhesion peaks from standstill to the initial speed of a problem."""
+    speeds = tuple(_decimal(problem.speeds[1] * (k / SPEEDS) ** CROWDING) for k in range(SPEEDS))
+    tops = peaks(problem, speeds)
+    cuts = tuple(
+        _cuts(part_test(problem.vehicle, problem.rail, speed), top)
+        for speed, top in zip(speeds, tops, strict=True)
+    )
+    content = {
+        "format": FORMAT,
+        "claim": CLAIM,
+        "claim_sha256": model_hash(problem),
+        "speeds": _written(speeds),
+        "peaks": _written(tops),
+        "cuts": [_written(each) for each in cuts],
+    }
+    return json.dumps(content, indent=1)
+
+
+def peaks(problem: Problem, speeds: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+    """Sample f/Q over the slip at each speed [m/s] and add a margin to its largest value."""
+    import numpy as np
+
+    load = float(static_wheel_load(problem.vehicle))
+    stiffness = adhesion.contact_stiffness(problem.vehicle.contact, load)
+    slips = np.geomspace(LEAST_SLIP, 1.0, SAMPLES)
+    referred = np.maximum([float(speed) for speed in speeds], constants().slip_regularization_speed)
+    sliding = referred[:, np.newaxis] * slips
+    forces = adhesion.creep_force(slips, sliding, load, problem.rail, stiffness)
+    return tuple(_decimal(float(top) / load + MARGIN) for top in forces.max(axis=1))
+
+
+def _cuts(holds: PartTest, top: Fraction) -> tuple[Fraction, ...]:
+    """Go from cut to cut as far as the test of a part allows; give up where it allows next to nothing."""
+    cuts: list[Fraction] = []
+    low, step = Fraction(0), 1.0
+    while len(cuts) < MOST_CUTS and step > LEAST_STEP and not holds(low, Fraction(1), top):
+        high = _decimal(float(low) * (1.0 + step) if low else step)
+        if low < high < 1 and holds(low, high, top):
+            cuts.append(high)
+            low, step = high, step * WIDER if len(cuts) > 1 else FIRST
+        else:
+            step *= NARROWER
+    return tuple(cuts)
+
+
+def _decimal(number: float) -> Fraction:
+    return Fraction(round(number * 10**DECIMALS), 10**DECIMALS)
+
+
+def _written(decimals: Iterable[Fraction]) -> str:
+    """Write decimals without loss."""
+    return " ".join(f"{float(each):.{DECIMALS}f}".rstrip("0").rstrip(".") for each in decimals)

@@ -1,0 +1,1 @@
+"""Search for invariant sets of slip and torque."""

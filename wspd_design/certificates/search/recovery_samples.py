@@ -1,0 +1,105 @@
+"""How large a deviation of the slip full venting brings back, sampled over speed and the bounds of the parameters.
+
+Samples choose what is proved and where a witness is looked for, and are what the plot shows.
+"""
+
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING
+
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.search.recovery import per_deviation, recoverable
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.setting.domain import Array
+
+SPEEDS, SLIPS = 121, 33
+HALVINGS = 40  # of the range of a parameter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Samples:
+    """What is recoverable at sampled speeds, found by integration, and what the condition guarantees [-]."""
+
+    speeds: "Array"  # m/s
+    nominal: "Array"
+    worst: "Array"  # smallest over the corners of the parameters and the ends of T* = T_max between them
+    tightest: "Array"  # points where it is smallest
+    guaranteed: "Array"  # by the condition, smallest over corners and slips
+    growth: "Array"  # largest within a sample, over corners and slips
+
+
+def sample(problem: Problem) -> Samples:
+    """Integrate and evaluate the condition at many speeds and all corners of the parameters.
+
+    Up to T* = T_max the torque that has to be vented grows with load and friction. Beyond it grows no more, and a
+    wheel that the full torque cannot hold at its reference comes back the easier. So the worst may lie between corners.
+    """
+    import numpy as np
+
+    speeds = np.geomspace(*problem.speeds, SPEEDS)
+    vehicle = problem.vehicle
+    nominal = (vehicle.mass, vehicle.wheelset_inertia, problem.rail.mu0)
+    slips = np.linspace(problem.slip, problem.slips[1], SLIPS)
+
+    def at(corner: tuple[float, ...], slip: float) -> "Array":
+        points = np.empty((SPEEDS, 5))
+        points[:, SPEED], points[:, SLIP] = speeds, slip
+        points[:, MASS], points[:, INERTIA], points[:, MU0] = corner
+        return points
+
+    corners = list(product(problem.mass_bounds, problem.inertia_bounds, problem.mu0_bounds))
+    held = [at(corner, problem.slip) for corner in corners]
+    # Each edge of the box once, from the corners at the lower end of its mass or mu0.
+    edges = [*((MASS, each) for each in held[:4]), *((MU0, each) for each in held[::2])]
+    tried = np.array([*held, *(just_held(problem, each, column) for column, each in edges)])
+    exact = np.array([recoverable(problem, each) for each in tried])
+    shares, poles = [], []
+    for corner in corners:
+        fall = -domain.dynamics(problem, at(corner, problem.slip)).drift
+        for slip in slips:
+            pole = domain.dynamics(problem, at(corner, float(slip))).pole
+            shares.append(per_deviation(problem, pole, pole / fall))
+            poles.append(pole)
+    smallest = exact.argmin(axis=0)
+    return Samples(
+        speeds=speeds,
+        nominal=recoverable(problem, at(nominal, problem.slip)),
+        worst=exact.min(axis=0),
+        tightest=tried[smallest, np.arange(SPEEDS)],
+        guaranteed=1.0 / np.max(shares, axis=0),
+        growth=np.exp(problem.sample_time * np.max(poles, axis=0)),
+    )
+
+
+def just_held(problem: Problem, points: "Array", column: int) -> "Array":
+    """Move points along one parameter to where T_max just holds the reference, or as near as its range allows.
+
+    Parameters
+    ----------
+    problem : Problem
+        Plant and ranges.
+    points : ndarray
+        Points of the domain at the reference slip.
+    column : int
+        Of a parameter with which T* grows.
+    """
+    import numpy as np
+
+    def lacking(value: "Array") -> "Array":
+        moved[:, column] = value
+        plant = domain.dynamics(problem, moved)
+        found: Array = -plant.drift / plant.gain - problem.vehicle.brake.max_torque
+        return found
+
+    moved = points.copy()
+    low, high = (np.full(len(points), end[column]) for end in domain.box(problem))
+    low = np.where(lacking(high) <= 0.0, high, low)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        beyond = lacking(middle) > 0.0
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    moved[:, column] = low
+    return moved

@@ -1,0 +1,1 @@
+"""What each check has to show, made from the design alone."""

@@ -1,0 +1,1 @@
+"""The shortest stop of any controller, from the peaks of adhesion."""

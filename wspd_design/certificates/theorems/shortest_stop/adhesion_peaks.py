@@ -1,0 +1,208 @@
+"""Upper bounds of the adhesion peak over the speed: a certificate of them and its checker, which searches nothing.
+
+f = (2/pi) Q m S(eps), m the friction at the sliding speed and eps = stiffness slip/(m Q), grows with m: its
+derivative is (2/pi) Q (S - eps S') with S - eps S' = 2 x^3/(1 + x^2)^2 + atan y - y/(1 + y^2) >= 0 for x = kA eps,
+y = kS eps. Friction falls with the sliding speed, so that f falls with v at a fixed slip: a bound of the peak at one
+speed holds at all higher ones. A certificate names speeds, a bound for each, and cuts of the slip from 0 to 1. On a
+part of the slip the bound is shown in one of two ways:
+
+* the friction is largest at the lower end, x/(1 + x^2) has its maximum 1/2 at x = 1, and atan rises;
+* the mean value form, with the slope of f enclosed on the part.
+
+The last speed is the initial one, which comes from the problem. From the bounds ``adhesion_limit.py`` computes the
+shortest stop.
+"""
+
+import json
+import math
+import re
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from wspd_design.certificates.checks.frame import model_hash
+from wspd_design.certificates.kernel.arb import Ball, ball, in_balls, point
+from wspd_design.certificates.kernel.enclosures import Refused
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.domain import KMH
+from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import Limit, NoBound, require, stop_limit
+from wspd_design.model import adhesion
+from wspd_design.model.generated import adhesion as generated
+from wspd_design.parameters.loading import constants
+from wspd_design.parameters.records import Rail, Vehicle
+
+FORMAT = "wspd-adhesion-peaks/1"
+CLAIM = "shortest stop"
+MOST_BYTES = 1_000_000
+MOST_SPEEDS, MOST_CUTS = 1000, 1000
+NUMBER = re.compile(
+    r"[0-9]{1,4}(\.[0-9]{1,12})?"
+)  # no exponent, which could stand for a number that fills the memory
+
+PartTest = Callable[[Fraction, Fraction, Fraction], bool]
+"""Whether f/Q is at most the third number on the part of the slip between the first two."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Peaks:
+    """What a certificate says, in exact numbers."""
+
+    speeds: tuple[Fraction, ...]  # m/s, rising from 0
+    tops: tuple[Fraction, ...]  # -, bound of f/Q from each speed on
+    cuts: tuple[tuple[Fraction, ...], ...]  # -, of the slip between 0 and 1, for each speed
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verdict:
+    """Answer of the checker, with the bounds that it computed itself."""
+
+    accepted: bool
+    statement: str  # that was shown
+    reason: str
+    leaves: int  # parts of the slip, over all speeds
+    seconds: float
+    limit: Limit | None
+
+
+def check(problem: Problem, text: str) -> Verdict:
+    """Decide what a certificate of adhesion peaks shows about every stop of a vehicle.
+
+    Parameters
+    ----------
+    problem : Problem
+        Vehicle, rail and initial speed come from here.
+    text : str
+        The certificate, JSON; it may be anything.
+    """
+    started = time.perf_counter()
+    limit, leaves, statement, reason = None, 0, "", "every part of the slip keeps its bound"
+    try:
+        limit, leaves = _decide(problem, text)
+        statement = (
+            f"no stop from {problem.speeds[1] * KMH:.4g} km/h is shorter than {rounded_down(limit.distance)} m or "
+            f"{rounded_down(limit.time)} s"
+        )
+    except (Refused, NoBound) as refusal:
+        reason = str(refusal)
+    return Verdict(
+        accepted=limit is not None,
+        statement=statement,
+        reason=reason,
+        leaves=leaves,
+        seconds=time.perf_counter() - started,
+        limit=limit,
+    )
+
+
+def rounded_down(bound: float) -> str:
+    """Write a lower bound so that what stands there is still one."""
+    return f"{math.floor(100.0 * bound) / 100.0:.2f}"
+
+
+def part_test(vehicle: Vehicle, rail: Rail, speed: Fraction) -> PartTest:
+    """Return the test of a bound of f/Q on a part of the slip at one train speed, under the static load.
+
+    Parameters
+    ----------
+    vehicle, rail : Vehicle, Rail
+        With the signs that :func:`require` asks for.
+    speed : Fraction
+        Of the train [m/s].
+    """
+    vehicle, rail = in_balls(vehicle), in_balls(rail)
+    load = vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
+    stiffness = adhesion.contact_stiffness(vehicle.contact, load)
+    # Below the regularization speed the slip is referred to that speed, and sliding is no faster than there.
+    referred = point(max(speed, Fraction(constants().slip_regularization_speed)))
+
+    def ends(low: Ball, high: Ball) -> Ball:
+        """Bound f/Q on a part by what is monotone."""
+        friction = generated.friction_coefficient(
+            low * referred, rail.mu0, rail.friction_ratio, rail.friction_decay
+        )
+        gradients = [stiffness * slip / (friction * load) for slip in (low, high)]
+        first, second = (rail.adhesion_reduction * gradient for gradient in gradients)
+        if second < 1:
+            hump = second / (1 + second * second)
+        elif first > 1:
+            hump = first / (1 + first * first)
+        else:
+            hump = point(0.5)
+        return 2 * friction / point(math.pi) * (hump + (rail.slip_reduction * gradients[1]).atan())
+
+    def mean_value(part: Ball, middle: Ball) -> Ball:
+        """Enclose f/Q on a part by its value in the middle and its slope."""
+        reached = adhesion.creep_force(middle, middle * referred, load, rail, stiffness)
+        slope = adhesion.creep_force_slip_derivative(part, referred, load, rail, stiffness)
+        return (reached + slope * (part - middle)) / load
+
+    def holds(low: Fraction, high: Fraction, top: Fraction) -> bool:
+        bound = point(top)
+        if ends(point(low), point(high)) <= bound:
+            return True
+        return bool(mean_value(ball(low, high), point((low + high) / 2)) <= bound)
+
+    return holds
+
+
+def read(problem: Problem, text: str) -> Peaks:
+    """Read a certificate.
+
+    Raises
+    ------
+    Refused
+        If it is none, belongs to another problem, or its numbers do not rise as they have to.
+    """
+    if len(text) > MOST_BYTES:
+        raise Refused("the certificate is too long")
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError):
+        raise Refused("the certificate is no JSON") from None
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise Refused(f"the certificate does not have the format {FORMAT}")
+    if content.get("claim_sha256") != model_hash(problem):
+        raise Refused("the certificate belongs to another claim")
+    speeds, tops = (_numbers(content.get(key), key, MOST_SPEEDS) for key in ("speeds", "peaks"))
+    written = content.get("cuts")
+    if not isinstance(written, list) or not len(written) == len(speeds) == len(tops):
+        raise Refused("the certificate does not have one peak and one list of cuts for each speed")
+    cuts = tuple(_numbers(each, "cuts", MOST_CUTS) for each in written)
+    if speeds[:1] != (Fraction(0),) or not _rise((*speeds, Fraction(problem.speeds[1]))):
+        raise Refused("the speeds do not rise from 0 to the initial speed")
+    if not all(_rise((Fraction(0), *each, Fraction(1))) for each in cuts):
+        raise Refused("the cuts do not rise between 0 and 1")
+    return Peaks(speeds=speeds, tops=tops, cuts=cuts)
+
+
+def _decide(problem: Problem, text: str) -> tuple[Limit, int]:
+    """Return what the certificate shows, with the number of parts that were tried; or refuse."""
+    vehicle, rail, start = problem.vehicle, problem.rail, problem.speeds[1]
+    found = read(problem, text)
+    require(vehicle, rail, start)
+    parts = 0
+    for speed, top, cuts in zip(found.speeds, found.tops, found.cuts, strict=True):
+        holds = part_test(vehicle, rail, speed)
+        for low, high in pairwise((Fraction(0), *cuts, Fraction(1))):
+            if not holds(low, high, top):
+                raise Refused(
+                    f"the peak {float(top):g} at {float(speed):g} m/s is not shown for slips from "
+                    f"{float(low):g} to {float(high):g}"
+                )
+            parts += 1
+    return stop_limit(vehicle, (*found.speeds, Fraction(start)), found.tops), parts
+
+
+def _numbers(written: Any, name: str, most: int) -> tuple[Fraction, ...]:
+    """Read decimals that stand in one text."""
+    words = written.split() if isinstance(written, str) else None
+    if words is None or len(words) > most or not all(NUMBER.fullmatch(each) for each in words):
+        raise Refused(f"the certificate states no {name}")
+    return tuple(Fraction(each) for each in words)
+
+
+def _rise(numbers: tuple[Fraction, ...]) -> bool:
+    return all(a < b for a, b in pairwise(numbers))

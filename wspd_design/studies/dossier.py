@@ -1,0 +1,205 @@
+"""Everything that a report shows about a design, computed once."""
+
+import hashlib
+import platform
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+
+from wspd_design.analysis.linearization import Linearization, linearize
+from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.setting import laws
+from wspd_design.certificates.suite import verify
+from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.torque_feedback import TorqueFeedback
+from wspd_design.design.catalog import controller, is_design_file, named_design
+from wspd_design.design.file import design_text, read_design
+from wspd_design.design.laws import law_of
+from wspd_design.design.problem import stability_problem
+from wspd_design.design.records import Design, Specification
+from wspd_design.parameters.files import available, load_entries
+from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
+from wspd_design.parameters.schema import PRESETS
+from wspd_design.simulation.comparison import Trial, compare
+from wspd_design.simulation.loop_input import JUDGING_SPEED
+from wspd_design.simulation.records import Run, Scenario
+
+POLE_SPEEDS = 60  # points of the pole map
+PRESET = "calibrated"  # of the baselines, as the catalog builds them
+PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Provenance:
+    """How to compute a report again."""
+
+    command: str
+    versions: tuple[tuple[str, str], ...]
+    seed: int
+    input_hash: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PhasePlane:
+    """What the law of the first wheelset saw above the judging speed, and its surface e + c int e."""
+
+    integral: tuple[float, ...]  # s, of the slip error, as the law remembers it
+    error: tuple[float, ...]  # -, slip reference minus slip
+    surface_rate: float  # 1/s, c
+    layer: float  # -, boundary layer in slip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dossier:
+    """A design, the numbers it rests on, its linearizations, certificates and simulated stops."""
+
+    design: Design
+    vehicle: ParameterSet
+    rail: ParameterSet
+    other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
+    compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
+    linearizations: tuple[Linearization, ...]  # over speed, at the slip reference
+    certificates: tuple[Certificate, ...]
+    trials: tuple[Trial, ...]  # the design's own stop first
+    lag_distances: tuple[float, ...]  # m, of each trial: the part of the distance that the build-up costs
+    phase_plane: PhasePlane | None  # of laws with a sliding surface
+    initial_speed: float  # m/s
+    provenance: Provenance
+
+
+def dossier(
+    made: Design,
+    *,
+    vehicle_name: str,
+    rail_name: str,
+    initial_speed: float,
+    baselines: Sequence[str],
+    command: str,
+    plant: str = "four-axle",
+    seed: int = 0,
+    progress: Callable[[str], None] = lambda _stage: None,
+) -> Dossier:
+    """Compute everything about a design.
+
+    Parameters
+    ----------
+    made : Design
+        The design.
+    vehicle_name, rail_name : str
+        Names or paths of the vehicle and of the rail of the stops.
+    initial_speed : float
+        Of the stops [m/s].
+    baselines : sequence of str
+        Controllers to compare with.
+    command : str
+        The command line, for the record.
+    plant : {"four-axle", "quarter"}
+        Of the stops; the certificates speak about the quarter locomotive.
+    seed : int
+        Of the sampled checks.
+    progress : callable, optional
+        Told each stage before it starts.
+
+    Returns
+    -------
+    Dossier
+        Records only.
+    """
+    import numpy as np
+
+    vehicle, rail = load_vehicle(vehicle_name), load_rail(rail_name)
+    own = made.build(vehicle, _design_rail(made, rail))
+    specification = made.specification
+    progress("linearization")
+    speeds = np.geomspace(1.0, max(specification.speeds[1], initial_speed), POLE_SPEEDS)
+    linearizations = tuple(linearize(vehicle, rail, slip=specification.slip, speed=float(v)) for v in speeds)
+    problem = stability_problem(vehicle, rail, own, specification, seed=seed)
+    certificates = verify(problem, progress=progress)
+    others = [_baseline(name, vehicle, rail, specification) for name in baselines]
+    scenario = Scenario(rail=rail, initial_speed=initial_speed, seed=seed)
+    controllers = [own, *(law for law, _ in others)]
+    trials = compare(
+        vehicle,
+        controllers,
+        scenario,
+        slip_reference=specification.slip,
+        plant=plant,
+        progress=progress,
+    )
+    inputs = "\n".join((design_text(made), repr(vehicle), repr(rail), repr(scenario), plant))
+    return Dossier(
+        design=made,
+        vehicle=load_entries("vehicle", vehicle_name),
+        rail=load_entries("rail", rail_name),
+        other_parameters=_other_parameters(made, rail, baselines),
+        compared_designs=tuple(design for _, design in others if design is not None),
+        linearizations=linearizations,
+        certificates=certificates,
+        trials=trials,
+        lag_distances=tuple(initial_speed * each.metrics.lag for each in trials),
+        phase_plane=None
+        if isinstance(own, TorqueFeedback)
+        else phase_plane(trials[0].run, own, slip_reference=specification.slip),
+        initial_speed=initial_speed,
+        provenance=Provenance(
+            command=command,
+            versions=versions(),
+            seed=seed,
+            input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
+        ),
+    )
+
+
+def versions() -> tuple[tuple[str, str], ...]:
+    """Return the versions of Python and of the packages that numbers depend on."""
+    return (("Python", platform.python_version()), *((name, version(name)) for name in PACKAGES))
+
+
+def phase_plane(run: Run, law: laws.SlipLaw, *, slip_reference: float) -> PhasePlane:
+    """Return the path of a stop in the plane of the slip error and its integral."""
+    import numpy as np
+
+    times = [sample.time for sample in run.samples]
+    judged = np.interp(times, run.time, run.speed) > JUDGING_SPEED
+    errors = slip_reference - np.interp(times, run.time, run.slip[:, 0])
+    # A sample remembers the state after its step; the law decided by the integral before it.
+    integrals = np.array([0.0, *(sample.state[0] for sample in run.samples[:-1])])
+    return PhasePlane(
+        integral=tuple(integrals[judged].tolist()),
+        error=tuple(errors[judged].tolist()),
+        surface_rate=laws.surface_rate(law),
+        layer=laws.layer(law),
+    )
+
+
+def _baseline(
+    name: str, vehicle: Vehicle, rail: Rail, specification: Specification
+) -> tuple[Controller, Design | None]:
+    """Build a controller to compare with, and return the design behind it if it has one."""
+    law = law_of(name)
+    if is_design_file(name):
+        found = read_design(name)
+    elif law is not None:
+        found = named_design(law, vehicle, rail, specification)
+    else:
+        return controller(name, vehicle, rail, specification), None
+    return found.build(vehicle, _design_rail(found, rail)), found
+
+
+def _design_rail(made: Design, rail: Rail) -> Rail:
+    """Return the design rail; it may be the file of a user, which only its path can load."""
+    return rail if rail.name == made.rail else load_rail(made.rail)
+
+
+def _other_parameters(made: Design, rail: Rail, baselines: Sequence[str]) -> tuple[ParameterSet, ...]:
+    found = [load_entries("constants", "constants")]
+    if made.rail != rail.name:
+        found.append(load_entries("rail", made.rail))
+    unused = tuple(f"{preset}." for preset in PRESETS if preset != PRESET)
+    for name in baselines:
+        if name in available("controller"):
+            parameters = load_entries("controller", name)
+            used = {key: entry for key, entry in parameters.entries.items() if not key.startswith(unused)}
+            found.append(replace(parameters, entries=used))
+    return tuple(found)
