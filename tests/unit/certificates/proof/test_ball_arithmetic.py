@@ -36,7 +36,12 @@ OPERATIONS = {
     "cube": (lambda x: enclosures.power(x, Fraction(3)), lambda x: x**3, 1, False),
     "fourth": (lambda x: enclosures.power(x, Fraction(4)), lambda x: x**4, 1, False),
     "minus square": (lambda x: enclosures.power(x, Fraction(-2)), lambda x: 1 / x**2, 1, True),
-    "broken power": (lambda x: enclosures.power(x, Fraction(2, 3)), lambda x: x ** (flint.arb(2) / 3), 1, True),
+    "broken power": (
+        lambda x: enclosures.power(x, Fraction(2, 3)),
+        lambda x: x ** (flint.arb(2) / 3),
+        1,
+        True,
+    ),
     "exp": (enclosures.exp, lambda x: x.exp(), 1, False),
     "log": (enclosures.log, lambda x: x.log(), 1, True),
     "atan": (enclosures.atan, lambda x: x.atan(), 1, False),
@@ -128,7 +133,11 @@ def test_inward_rounding_is_seen_by_thin_intervals_only(name):
 
 def test_what_is_not_defined_is_no_number():
     across = (flint.arb(-1), flint.arb(2))
-    for found in (enclosures.inverse(across), enclosures.log(across), enclosures.power(across, Fraction(1, 2))):
+    for found in (
+        enclosures.inverse(across),
+        enclosures.log(across),
+        enclosures.power(across, Fraction(1, 2)),
+    ):
         assert not enclosures.finite(found)
         assert not found[1] <= 1e300
     for function in (enclosures.add, enclosures.mul):
@@ -177,7 +186,9 @@ def test_wrong_product_rule_is_seen(monkeypatch):
 def test_program_shares_parts_and_does_known_ones_once():
     fixed = variable("k", 2.0, "-")
     k = sympy.Symbol("k")
-    program = enclosures.Program(sympy.exp(k) * x + sympy.exp(k) * x**2, (variable("x", (0.0, 1.0), "-"), fixed))
+    program = enclosures.Program(
+        sympy.exp(k) * x + sympy.exp(k) * x**2, (variable("x", (0.0, 1.0), "-"), fixed)
+    )
     assert sum(step[1] == "exp" for step in program.steps) == 0
     assert sum(step[1] == "Symbol" for step in program.steps) == 1
 
