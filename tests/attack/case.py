@@ -194,6 +194,7 @@ class Stated:
     inequalities: tuple[Inequality, ...]
     points: Mapping[str, float]  # numbers that the file states beside the margin
     quadratics: tuple[Mapping[str, Any], ...]  # proofs with a matrix of V
+    sets: tuple[Any, ...] = ()  # windows of invariant sets, one list per proof
 
 
 def read_stated(path: Path) -> Stated:
@@ -216,6 +217,7 @@ def read_stated(path: Path) -> Stated:
         ),
         points={each["name"]: each["value"] for each in content.get("worst_point", ())},
         quadratics=tuple(each for each in proofs if "sampled" in each),
+        sets=tuple(each["windows"] for each in proofs if "windows" in each),
     )
 
 

@@ -16,7 +16,8 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from tests.attack.mutators import KINDS, Files
+from tests.attack.json_mutators import Files
+from tests.attack.mutators import KINDS
 
 MOST_SECONDS = 60.0  # of CPU per file
 ATTEMPTS = 40  # to find a file that a kind can change

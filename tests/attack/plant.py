@@ -94,6 +94,25 @@ def slip_rate(plant: Plant, slip: Any, speed: Any, torque: Any) -> Any:
     return -radius / speed * torques / plant.wheelset_inertia - (1.0 - slip) * slowing / speed
 
 
+def axle_rates(plant: Plant, shares: Any, slips: Any, speed: Any, torques: Any) -> tuple[Any, Any]:
+    """Rates of the slips of all axles, and the deceleration that they have in common, eqs. (1) to (3).
+
+    Axles along the first axis; ``shares`` are their loads over the static one, with a mean of 1.
+    """
+    load = static_load(plant)
+    forces = [
+        creep_force(plant, slip, speed, load * share) for slip, share in zip(slips, shares, strict=True)
+    ]
+    slowing = (resistance(plant, speed) + 2.0 * sum(forces)) / plant.mass
+    rates = [
+        slip_rate(
+            plant.with_numbers({"load_share": share, "train_deceleration": slowing}), slip, speed, torque
+        )
+        for share, slip, torque in zip(shares, slips, torques, strict=True)
+    ]
+    return np.array(rates), slowing
+
+
 def drift(plant: Plant, slip: Any, speed: Any) -> Any:
     """F of eq. (19) [1/s]."""
     return slip_rate(plant, slip, speed, 0.0)

@@ -8,9 +8,11 @@ import pytest
 from tests.attack import linear
 from tests.attack.__main__ import assault, chosen, main
 from tests.attack.case import Inequality, Stated, read_case, read_stated
-from tests.attack.claims import attacks, needed_gain, sampled_fall
+from tests.attack.claims import attacks
 from tests.attack.counterexamples import coach, smc, torque_feedback
+from tests.attack.sampled_claims import sampled_fall
 from tests.attack.search import Attack, assail
+from tests.attack.statements import needed_gain
 
 EVALUATIONS = 6000
 BOX = ("mass", "wheelset_inertia", "mu0")

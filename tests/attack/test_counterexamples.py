@@ -7,7 +7,6 @@ import pytest
 
 from tests.attack import linear, motion
 from tests.attack.case import read_data
-from tests.attack.claims import needed_gain
 from tests.attack.counterexamples import (
     CALM_SPEED,
     DEPARTURES,
@@ -40,6 +39,7 @@ from tests.attack.counterexamples import (
 from tests.attack.laws import layer, sliding_torque, surface, surface_rate
 from tests.attack.plant import deceleration, holding_torque, load_shares, slip_pole, slip_rate
 from tests.attack.search import Attack, assail
+from tests.attack.statements import needed_gain
 
 ETA = 0.204  # m/s2, of the audited design
 BOX = ("mass", "wheelset_inertia", "mu0")

@@ -10,12 +10,15 @@ from tests.attack.counterexamples import coach, torque_feedback
 from tests.attack.laws import adaptation, feedback_duty, fuzzy_torque, sampled_duty
 from tests.attack.plant import (
     adhesion_peak,
+    axle_rates,
     creep_force,
     deceleration,
     drift,
     filled,
     filling_duty,
     gain,
+    load_shares,
+    resistance,
     slip_pole,
     slip_rate,
     static_load,
@@ -89,6 +92,22 @@ def test_the_slip_rate_is_that_of_the_package(wet):
         assert at.drift + at.gain * torque == pytest.approx(slip_rate(plant, slip, speed, torque), rel=1e-10)
         assert at.deceleration == pytest.approx(deceleration(plant, slip, speed), rel=1e-12)
         assert at.pole == pytest.approx(slip_pole(plant, slip, speed), rel=1e-8, abs=1e-9)
+
+
+def test_axles_share_one_deceleration(wet):
+    """Equal axles move like one; with load transfer the momentum of train and wheels still balances."""
+    slips, torques, speed = [0.1, 0.14, 0.2, 0.05], [2e4, 3e4, 4e4, 1e4], 15.0
+    plant = wet.plant.with_numbers({"wheel_damping": 0.0})
+    rates, slowing = axle_rates(plant, [1.0] * 4, [0.14] * 4, speed, [3e4] * 4)
+    assert rates == pytest.approx(slip_rate(plant, 0.14, speed, 3e4))
+    assert slowing == pytest.approx(deceleration(plant, 0.14, speed))
+    rates, slowing = axle_rates(plant, load_shares(plant, wet.body, 0.2), slips, speed, torques)
+    spins = [
+        -(rate * speed + (1.0 - slip) * slowing) / plant.wheel_radius
+        for rate, slip in zip(rates, slips, strict=True)
+    ]
+    momentum = -plant.mass * slowing * plant.wheel_radius + plant.wheelset_inertia * sum(spins)
+    assert momentum == pytest.approx(-resistance(plant, speed) * plant.wheel_radius - sum(torques))
 
 
 @pytest.mark.parametrize("name", ["smc", "feedback-wet", "adaptive"])

@@ -17,7 +17,8 @@ from tests.attack.forge import (
     read_files,
     says,
 )
-from tests.attack.mutators import KINDS, text_of
+from tests.attack.json_mutators import text_of
+from tests.attack.mutators import KINDS
 
 CHECKS = ("gain_positive", "well_posed", "sliding_exists", "no_go", "sampling", "surface_hurwitz")
 INSIDE = ("layout", "bound in a proof", "steps of a proof", "part of the domain")
