@@ -72,6 +72,7 @@ def test_no_counterexample_to_what_is_proved(name, design, certified):
 def test_the_command_prints_what_it_tried_and_counts_it(design, certified, capsys):
     folder = certified("smc", CHECKS["smc"])
     words = [str(design("smc")), str(folder), "--only", "gain_positive", "--evaluations", "500", "--varied"]
+    capsys.readouterr()
     assert main([*words, "stated"]) == 0
     first = capsys.readouterr().out
     assert "held     gain_positive: G > 0" in first
