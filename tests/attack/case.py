@@ -87,6 +87,9 @@ class Case:
     sample_time: float  # s
     model: Plant  # of the law
     data: Data  # of the plant
+    exact_torque: bool = (
+        False  # whether claims speak about a law that knows the torque that holds the reference
+    )
 
     @cached_property
     def varied(self) -> tuple[str, ...]:
@@ -210,7 +213,7 @@ def read_stated(path: Path) -> Stated:
                 quantity=each["claim"],
                 relation=each["relation"],
                 bound=float(Fraction(each["bound"])),
-                over=tuple(name.replace(" ", "_") for name in each.get("variables", ())),
+                over=tuple(name.replace(" ", "_").split(".")[-1] for name in each.get("variables", ())),
             )
             for each in proofs
             if "relation" in each and "part" not in each

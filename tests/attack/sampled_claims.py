@@ -8,7 +8,7 @@ import numpy as np
 from tests.attack import linear, motion
 from tests.attack.case import Case, Stated
 from tests.attack.laws import feedback_duty
-from tests.attack.plant import holding_torque
+from tests.attack.plant import Plant, holding_torque
 from tests.attack.search import Attack, Points
 from tests.attack.statements import box, plant_at
 
@@ -54,40 +54,45 @@ def _equilibrium(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
     )
 
 
+def _resting_point(case: Case, plant: Plant, speed: Any, *, sampled: bool) -> tuple[Any, Any, Any]:
+    """Slip and duty at rest, and where there are none; a law that knows its torque rests at the reference.
+
+    Where the brake cannot hold the reference such a law saturates, and nothing is said: not a number.
+    """
+    if not case.exact_torque:
+        slip, duty = linear.equilibrium(case, plant, speed, sampled=sampled)
+        lost = np.isnan(slip)
+        return np.where(lost, case.slip, slip), np.where(lost, 0.5, duty), lost
+    slip = np.full(np.shape(speed), case.slip)
+    share = holding_torque(plant, slip, speed) / plant.max_torque
+    share = np.where((share > 0.0) & (share < 1.0), share, np.nan)
+    duty = linear.duty_of(plant, share, case.sample_time)
+    return slip, np.where(np.isnan(share), np.nan, duty), np.zeros(np.shape(speed), bool)
+
+
 def lpv_lyapunov(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
     """V of the file falls over a sample by its factor, about the equilibrium that the plant has."""
-    found = [_equilibrium(case, stated, names)]
+    found = []
     for proof in stated.quadratics:
         p = tuple(float(Fraction(each)) for each in proof["sampled"])
-        factor = float(Fraction(proof["contraction"]))
-        found.append(sampled_fall(case, stated, names, p, factor))
-    found.append(_settles(case, stated, names))
-    return found
+        found.append(sampled_fall(case, stated, names, p, float(Fraction(proof["contraction"]))))
+    if case.exact_torque:
+        return found
+    return [_equilibrium(case, stated, names), *found, _settles(case, stated, names)]
 
 
 def sampled_fall(
-    case: Case,
-    stated: Stated,
-    names: tuple[str, ...],
-    p: tuple[float, ...],
-    factor: float,
-    *,
-    knows_torque: bool = False,
+    case: Case, stated: Stated, names: tuple[str, ...], p: tuple[float, ...], factor: float
 ) -> Attack:
-    """V falls by a factor squared per sample with true pulses; ``knows_torque`` holds the reference exactly."""
+    """V falls by a factor squared per sample with true pulses."""
 
     def margin(x: Points) -> Any:
         plant = plant_at(case, x)
-        if knows_torque:
-            slip = np.full(np.shape(x["speed"]), case.slip)
-            share = np.clip(holding_torque(plant, slip, x["speed"]) / plant.max_torque, 1e-6, 1.0 - 1e-6)
-            duty = linear.duty_of(plant, share, case.sample_time)
-        else:
-            slip, duty = linear.equilibrium(case, plant, x["speed"])
-        lost = np.isnan(slip)
-        slip, duty = np.where(lost, case.slip, slip), np.where(lost, 0.5, duty)
-        found = linear.contraction(linear.sampled_map(case, plant, slip, x["speed"], duty), p)
-        return np.where(lost, NEVER, factor - found)
+        slip, duty, lost = _resting_point(case, plant, x["speed"], sampled=True)
+        silent = np.isnan(duty)
+        matrix = linear.sampled_map(case, plant, slip, x["speed"], np.where(silent, 0.5, duty))
+        fall = factor - linear.contraction(matrix, p)
+        return np.where(lost, NEVER, np.where(silent, np.nan, fall))
 
     return Attack(
         check=stated.check,
@@ -127,11 +132,8 @@ def routh_lag(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack
 
         def margin(x: Points) -> Any:
             plant = plant_at(case, x)
-            slip, _ = linear.equilibrium(case, plant, x["speed"], sampled=False)
-            lost = np.isnan(slip)
-            matrix = linear.continuous_rates(
-                case, plant, np.where(lost, case.slip, slip), x["speed"], frozen=True
-            )
+            slip, _, lost = _resting_point(case, plant, x["speed"], sampled=False)
+            matrix = linear.continuous_rates(case, plant, slip, x["speed"], frozen=True)
             return np.where(lost, NEVER, -linear.abscissa(matrix))
 
     else:
@@ -147,7 +149,8 @@ def routh_lag(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack
         unit="1/s",
         cost=20,
     )
-    return [found, *([_equilibrium(case, stated, names)] if case.law == "torque-feedback" else [])]
+    moves = case.law == "torque-feedback" and not case.exact_torque
+    return [found, *([_equilibrium(case, stated, names)] if moves else [])]
 
 
 def sampled_invariance(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:

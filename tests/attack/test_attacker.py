@@ -124,6 +124,13 @@ def test_another_vent_time_than_the_one_that_was_proved_is_broken():
     assert broken(coach(0.3), of("lpv_lyapunov"), ()) == []
 
 
+def test_a_law_that_knows_its_torque_rests_at_the_reference():
+    stated = of("routh_lag")
+    moving = broken(torque_feedback(), stated)
+    assert moving == ["the loop has an equilibrium within 0.05 of slip 0.14"]
+    assert broken(replace(torque_feedback(), exact_torque=True), stated) == []
+
+
 def test_what_is_refuted_is_broken_when_it_is_said_to_be_proved():
     assert broken(smc(), of("sliding_exists", REACHING)) == ["u* >= eta/g"]
     lag = Inequality(quantity="slip pole", relation="<=", bound=1.0 / 0.6, over=("speed", *BOX))
