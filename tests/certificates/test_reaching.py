@@ -102,6 +102,24 @@ def test_mismatch_is_what_the_plant_does_under_the_law(make_problem, make_contro
             assert row[SPEED] * surface_rate == pytest.approx(residual - switching, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize(("rail", "speeds"), [("polach-wet", (2.8, 33.3)), ("polach-dry", (5.0, 20.0))])
+def test_the_reserve_brings_a_rolling_wheel_to_its_surface_in_time(
+    make_problem, make_controller, rail, speeds
+):
+    """In steps of sigma = int dt/v, with the hardest deceleration that a train can have, by numbers of its own."""
+    problem = make_problem(make_controller("smc", rail), rail=rail, speeds=speeds)
+    vehicle = problem.vehicle
+    drag = vehicle.resistance_constant + vehicle.resistance_linear * speeds[1]
+    drag += vehicle.resistance_quadratic * speeds[1] ** 2
+    hardest = 9.81 * problem.mu0_bounds[1] + drag / problem.mass_bounds[0]
+    eta, distance, speed, step = reaching.reserve(problem), problem.slip, speeds[1], 1e-5
+    while distance > 0.0:
+        speed -= hardest * speed * step
+        distance -= eta * step
+    assert speed >= speeds[0] * (1.0 - 1e-3)
+    assert speed <= speeds[0] * (1.0 + 1e-3)  # a larger reserve asks for more gain than the surface needs
+
+
 def test_unknown_inertia_asks_for_more_gain(make_problem, make_controller):
     law = make_controller("smc")
     known = make_problem(law, bounds={"wheelset inertia": (law.vehicle.wheelset_inertia,) * 2})

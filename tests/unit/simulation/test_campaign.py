@@ -55,6 +55,18 @@ def test_parameters_are_drawn_within_their_bounds_and_used(er24pc, make_controll
     assert simulate(vehicle, controller, own).totals.distance == pytest.approx(row["distance_m"], rel=1e-6)
 
 
+@pytest.mark.parametrize("mass", [61473.0, 92209.0])
+def test_the_body_takes_up_what_a_drawn_mass_adds(er24pc, make_controller, scenario, mass):
+    """The parts weigh what the whole does; the load transfer, and with it the distance, is that of the heavy body."""
+    changed = campaign._vehicle_with(er24pc, {"mass": mass})
+    assert changed.mass == mass
+    assert changed.body_mass + 2.0 * changed.bogie_mass == pytest.approx(mass)
+    light = replace(changed, body_mass=er24pc.body_mass)
+    controller = make_controller("trenitalia", RAIL)
+    heavy, kept = (simulate(each, controller, scenario).totals.distance for each in (changed, light))
+    assert heavy != pytest.approx(kept, rel=1e-6)
+
+
 def test_same_seed_same_table(er24pc, make_controller, scenario, bounds):
     noisy = replace(scenario, sensing=Sensing(speed_noise=0.1))
     controller = make_controller("trenitalia", RAIL)
