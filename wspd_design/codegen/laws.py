@@ -56,6 +56,19 @@ def law_kernels(law: Controller | None) -> LawKernels:
             return made
     except Exception:  # the law does not take gains; whether it takes plain numbers is seen next
         pass
+    return law_constants(law)
+
+
+def law_constants(law: Controller) -> LawKernels:
+    """Trace a law with its numbers as constants of the functions.
+
+    Raises
+    ------
+    UntraceableError
+        Whatever goes wrong in ``start`` and ``step``.
+    """
+    import casadi as ca
+
     return _functions(law, ca.SX(0, 1), ())
 
 

@@ -4,12 +4,12 @@ import math
 from fractions import Fraction
 
 import pytest
-
-from wspd_design.certificates.kernel.claim import Claim, variable
 from wspd_design.certificates.kernel.counterexample import denials
 from wspd_design.certificates.kernel.enclosures import Refused
-from wspd_design.certificates.kernel.obligation import inequality
 from wspd_design.certificates.kernel.subdomain import stated_part
+
+from wspd_design.certificates.kernel.claim import Claim, variable
+from wspd_design.certificates.kernel.obligation import inequality
 from wspd_design.certificates.records import Point
 
 WITHIN = (2.5, 30.0)
