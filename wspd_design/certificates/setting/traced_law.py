@@ -75,7 +75,7 @@ def trace(law: Controller) -> TracedLaw | str:
         made = law_constants(law)
     except UntraceableError as reason:
         return f"the step of {law.name} cannot be traced ({reason})"
-    x, m, none = ca.SX.sym("x", made.states), ca.SX.sym("m", len(MEASURED)), ca.SX(0, 1)
+    x, m, none = ca.SX.sym("x", made.states), ca.SX.sym("m", len(Measurement._fields)), ca.SX(0, 1)
     return TracedLaw(
         name=law.name,
         start=ca.Function("start", [m], [made.start(m, none)]),
