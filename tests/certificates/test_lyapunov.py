@@ -186,7 +186,9 @@ def test_wrong_sign_of_the_adaptation_is_refuted(printed, monkeypatch, weights, 
 
     def wrong(gains, surface, speed):
         rates = right(gains, surface, speed)
-        return rates._replace(weights=tuple(weights * rate for rate in rates.weights), bound=bound * rates.bound)
+        return rates._replace(
+            weights=tuple(weights * rate for rate in rates.weights), bound=bound * rates.bound
+        )
 
     monkeypatch.setattr("wspd_design.certificates.theorems.ideal_loop.adaptation", wrong)
     assert lyapunov_repaired.CHECK.run(printed).status is Status.REFUTED
