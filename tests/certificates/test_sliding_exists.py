@@ -12,12 +12,15 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.plant import complete, plant_dynamics
 from wspd_design.certificates.theorems.sliding import reserve
+from wspd_design.parameters.bounds import Bounds
 
 
 def _with_torque(vehicle, torque):
     return replace(
         vehicle,
-        brake=replace(vehicle.brake, max_torque=torque, bounds={"max_torque": (0.9 * torque, 1.1 * torque)}),
+        brake=replace(
+            vehicle.brake, max_torque=torque, bounds=Bounds.of({"max_torque": (0.9 * torque, 1.1 * torque)})
+        ),
     )
 
 

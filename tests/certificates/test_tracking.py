@@ -9,6 +9,7 @@ from wspd_design.certificates.checks.stop import tracking
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.bounds import EXACT
 
 
 class NeverVents(SlidingMode):
@@ -83,7 +84,7 @@ def test_laws_without_reference_claim_nothing(make_problem, make_controller):
 
 def test_brake_that_never_reaches_the_reference_says_so(make_problem, make_controller, er24pc):
     """A coach that uses half of the adhesion: the slip stays near zero, far below the reference."""
-    coach = replace(er24pc, brake=replace(er24pc.brake, max_torque=6.6e3, bounds={}))
+    coach = replace(er24pc, brake=replace(er24pc.brake, max_torque=6.6e3, bounds=EXACT))
     law = replace(make_controller("afsmc", "polach-wet"), max_torque=6.6e3)
     kept = keep(tracking.CHECK, make_problem(law, rail="polach-wet", vehicle=coach))
     assert kept.certificate.status is Status.VACUOUS

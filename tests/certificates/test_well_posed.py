@@ -7,6 +7,7 @@ import pytest
 from tests.certificates.round_trip import keep, no_proof_can_be_missed, no_word_can_be_changed
 from wspd_design.certificates.checks.foundations import well_posed
 from wspd_design.certificates.records import Status
+from wspd_design.parameters.bounds import EXACT
 
 
 @pytest.mark.parametrize("rail", ["polach-dry", "polach-wet", "table10-dry"])
@@ -24,7 +25,7 @@ def test_signs_hold_on_level_track(make_problem, make_controller, rail):
 
 
 def test_train_that_is_pushed_is_refuted(make_problem, make_controller, er24pc):
-    pushed = replace(er24pc, resistance_constant=-700e3, bounds={})
+    pushed = replace(er24pc, resistance_constant=-700e3, bounds=EXACT)
     kept = keep(well_posed.CHECK, make_problem(make_controller("none"), vehicle=pushed))
     assert kept.certificate.status is Status.REFUTED
     assert [(h.text.split()[0], h.status) for h in kept.certificate.hypotheses] == [
