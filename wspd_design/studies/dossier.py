@@ -5,6 +5,7 @@ import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
+from pathlib import Path
 
 from wspd_design.analysis.linearization import Linearization, linearize
 from wspd_design.certificates.records import Certificate
