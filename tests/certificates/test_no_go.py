@@ -12,8 +12,8 @@ from tests.attack.case import read_data
 from tests.attack.plant import gain, slip_pole
 from tests.certificates.own_laws import BOUND, NOT_BOUND, EvilSliding
 from tests.certificates.round_trip import keep, no_proof_can_be_missed, no_word_can_be_changed, refused
-from wspd_design.certificates.checks.valve import no_go
 from wspd_design.certificates.checks.frame import accepted
+from wspd_design.certificates.checks.valve import no_go
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Status
@@ -172,7 +172,7 @@ def test_no_sampled_law_with_an_integral_of_the_slip_is_stable(pole):
     transition, entry = sampled(pole)
     numerator = np.poly(transition - entry @ np.array([[1.0, 0.0]])) - np.poly(transition)
     c = -np.roots(numerator[1:])[0].real
-    assert 0.0 < c
+    assert c > 0.0
     assert np.abs(np.polyval(np.poly(transition), -c)) >= (1.0 + c) ** 2 * (1.0 - 1e-12)
     rng = np.random.default_rng(3)
     for _ in range(2000):

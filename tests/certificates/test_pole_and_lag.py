@@ -21,7 +21,6 @@ from wspd_design.certificates.checks.valve.slip_pole import pole_map
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.theorems import valve
 from wspd_design.certificates.theorems.table import THEOREMS
-from wspd_design.model.slip import slip_dynamics
 
 KNOWN = {  # nominal pole at slip 0.14 and 33.3, 20, 10, 5 m/s on the calibrated vehicle [1/s]
     "polach-dry": (1.00, 3.01, 6.79, 9.92),
