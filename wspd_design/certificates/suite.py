@@ -4,13 +4,27 @@ from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
-from wspd_design.certificates.checks.foundations import gain_positive
+from wspd_design.certificates.checks.adaptive import (
+    afsmc_energy,
+    barbalat,
+    lyapunov_printed,
+    lyapunov_repaired,
+)
+from wspd_design.certificates.checks.foundations import (
+    conservation,
+    derivation,
+    gain_positive,
+    surface_hurwitz,
+    well_posed,
+)
 from wspd_design.certificates.checks.frame import Check, illustrated
-from wspd_design.certificates.checks.sliding import reaching
+from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
+from wspd_design.certificates.checks.stop import tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
+from wspd_design.certificates.search.memory import remembering
 from wspd_design.certificates.search.progress import Listener, listening
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.controllers.offers import Linear
@@ -19,12 +33,24 @@ from wspd_design.parameters.errors import UserError
 CHECKS: Mapping[str, Check] = {
     each.name: each
     for each in (
+        derivation.CHECK,
+        surface_hurwitz.CHECK,
         gain_positive.CHECK,
+        well_posed.CHECK,
+        sliding_exists.CHECK,
         reaching.CHECK,
+        boundary_layer.CHECK,
+        lyapunov_surface.CHECK,
+        lyapunov_printed.CHECK,
+        lyapunov_repaired.CHECK,
+        afsmc_energy.CHECK,
+        barbalat.CHECK,
         open_loop_pole.CHECK,
         no_go.CHECK,
         hard_limits.CHECK,
         sampling.CHECK,
+        tracking.CHECK,
+        conservation.CHECK,
     )
 }
 NAMES = tuple(THEOREMS)
@@ -73,11 +99,9 @@ def verify(
     if isinstance(problem.controller, Linear):
         _agree("slip reference", problem.slip, problem.controller.slip_reference)
         _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
-    certificates = []
-    for name in NAMES:
-        if only is None or name in only:
-            certificates.append(_run(CHECKS[name], problem, progress, budget, stored))
-    return tuple(certificates)
+    wanted = [CHECKS[name] for name in NAMES if only is None or name in only]
+    with remembering():
+        return tuple(_run(check, problem, progress, budget, stored) for check in wanted)
 
 
 def _run(

@@ -89,7 +89,7 @@ def test_a_genuine_file_holds(alone, kept):
     lines = done.stdout.decode("ascii").splitlines()
     assert len(lines) == 2
     assert "'gain': holds, " in lines[0]
-    assert "(abs(r) + eta)/rho <= 25.09" in lines[0]
+    assert "(r + eta)/rho <= 25.09" in lines[0]
     assert lines[0].endswith(
         "for all slip 0.02 to 0.6, speed 2 to 33.4, mass 61472.8 to 92209.2, mu0 0.2 to 0.6"
     )

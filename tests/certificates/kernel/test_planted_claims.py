@@ -23,7 +23,7 @@ def test_true_claim_is_accepted(proved, proved_claim, refusal, tree):
     assert shown.leaves == proved.leaves > 100
     assert checker.MOST_WORK - work.left < checker.MOST_WORK / 50
     assert len(json.dumps(proved.stated.proof)) < 20_000
-    assert shown.statement.startswith("(abs(r) + eta)/rho <= 25.1")
+    assert shown.statement.startswith("(r + eta)/rho <= 25.1")
     assert "for all slip 0.02 to 0.6, speed 2 to 33.4" in shown.statement
 
 

@@ -65,8 +65,7 @@ def test_verdict_near_the_supremum(reference_claim, settled, distance):
     )
     assert (above.status, below.status) == (Status.PROVED, Status.REFUTED)
     assert 0.0 <= above.margin.low <= above.margin.high
-    assert below.margin.high < 0.0
-    assert below.margin.low is None or below.margin.low <= below.margin.high
+    assert below.margin.low <= below.margin.high < 0.0
     place = {name: Fraction(at) for name, at in below.place.items()}
     low, _ = value(reference_claim.statement(), place, Work())
     assert low > Fraction(supremum.low - distance)

@@ -4,12 +4,14 @@ The controller does not matter but for its sample time: a deviation is seen up t
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
 
 from wspd_design.certificates.checks.frame import Check, Figures, level, series
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.records import Certificate, Problem
-from wspd_design.certificates.search.prover import extreme
+from wspd_design.certificates.search.prover import prove
 from wspd_design.certificates.search.recovery_samples import Samples, sample
 from wspd_design.certificates.search.settle import enclose, settle
 from wspd_design.certificates.setting.domain import BASIC
@@ -29,7 +31,7 @@ TIGHT = 0.95  # share up to which a proof is tried: it costs the more the closer
 SPARED, LEAST_TOLERANCE = 0.75, 0.04  # of the enclosed share: part of its distance from 1, and least
 GROWTH_TOLERANCE, TORQUE_TOLERANCE = 0.05, 100.0  # -, N m
 TRIALS = 12  # of a counterexample
-SPEEDS = 24  # at which the lowest one of a proof is sought
+SPEEDS = 12  # at which the lowest one of a proof is sought
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:
@@ -59,10 +61,9 @@ def lowest_speed(problem: Problem) -> tuple[float | None, float, int]:
 
     lowest, most, boxes = None, 0.0, 0
     for speed in np.geomspace(*problem.speeds, SPEEDS)[::-1]:
-        claim = share_claim(problem, DEVIATION, speed=float(speed))
-        found = extreme(claim, tolerance=LEAST_TOLERANCE, denied=True)
+        found = prove(replace(share_claim(problem, DEVIATION, speed=float(speed)), bound=Fraction(TIGHT)))
         boxes += found.boxes
-        if not found.high < TIGHT:
+        if not found.tree:
             break
         lowest, most = max(float(speed), problem.speeds[0]), max(most, found.low)
     return lowest, most, boxes
