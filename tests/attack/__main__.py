@@ -84,7 +84,7 @@ def main(arguments: list[str]) -> int:
         cpu_seconds=given.cpu_seconds,
     )
     for each in found:
-        verdict = "BROKEN  " if each.broken else "held    "
+        verdict = "BROKEN  " if each.broken else "held    " if each.evaluations else "no time "
         print(
             f"{verdict} {each.attack.check}: {each.attack.statement}: least margin {each.margin:.6g} "
             f"{each.attack.unit} in {each.evaluations} points"

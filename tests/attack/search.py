@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import count, product
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ SHARE = 4  # of the evaluations: one part each for corners and scattered points,
 POPULATION = 40
 BATCH = 4096
 LEAST = 32  # points, however expensive they are
+MOST_AT_ONCE = 4096  # corners or scattered points between two evolutions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +74,6 @@ def assail(
     names = list(attack.box)
     low, high = (np.array([attack.box[name][k] for name in names], float) for k in (0, 1))
     found, rng = Found(attack=attack), np.random.default_rng(seed)
-    best: list[tuple[float, Any]] = []  # of the first points: where the evolution starts
 
     def tried(points: Any) -> Any:
         """Return the margins of points, one per column; those that say nothing have none."""
@@ -102,15 +102,16 @@ def assail(
         filled[: len(margins)] = margins
         return np.where(np.isinf(filled), 1e30, filled)
 
+    part = min(budget // SHARE, MOST_AT_ONCE)
     try:
-        part = budget // SHARE
-        for points in (_corners(len(names), part, rng), _scattered(len(names), part, seed)):
-            for chunk in _chunks(points):
-                margins = tried(scaled(chunk))
-                order = np.argsort(margins, kind="stable")[: POPULATION // 2]
-                best += [(margins[k], chunk[:, k]) for k in order]
-        best.sort(key=lambda each: each[0])
-        while True:
+        for turn in count():
+            best: list[tuple[float, Any]] = []  # of the first points: where the evolution starts
+            for points in (_corners(len(names), part, rng), _scattered(len(names), part, seed + 1000 * turn)):
+                for chunk in _chunks(points):
+                    margins = tried(scaled(chunk))
+                    order = np.argsort(margins, kind="stable")[: POPULATION // 2]
+                    best += [(margins[k], chunk[:, k]) for k in order]
+            best.sort(key=lambda each: each[0])
             elite = np.array([point for _, point in best[: POPULATION // 2]]).reshape(-1, len(names))
             others = rng.random((POPULATION - len(elite), len(names)))
             differential_evolution(
@@ -129,18 +130,18 @@ def assail(
     return found
 
 
-def _scattered(count: int, most: int, seed: int) -> Any:
+def _scattered(dimension: int, most: int, seed: int) -> Any:
     """Sobol's points in the unit box; columns."""
     from scipy.stats import qmc
 
-    return qmc.Sobol(count, seed=seed).random_base2(max(most - 1, 1).bit_length())[:most].T
+    return qmc.Sobol(dimension, seed=seed).random_base2(max(most - 1, 1).bit_length())[:most].T
 
 
-def _corners(count: int, most: int, rng: Any) -> Any:
+def _corners(dimension: int, most: int, rng: Any) -> Any:
     """Corners of the unit box, all of them if they are few; columns."""
-    if 2**count <= most:
-        return np.array(list(product((0.0, 1.0), repeat=count))).T
-    return rng.integers(0, 2, (count, max(most, 1))).astype(float)
+    if 2**dimension <= most:
+        return np.array(list(product((0.0, 1.0), repeat=dimension))).T
+    return rng.integers(0, 2, (dimension, max(most, 1))).astype(float)
 
 
 def _chunks(points: Any) -> list[Any]:

@@ -5,6 +5,7 @@ import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
+from pathlib import Path
 
 from wspd_design.analysis.linearization import Linearization, linearize
 from wspd_design.certificates.records import Certificate
@@ -78,6 +79,7 @@ def dossier(
     baselines: Sequence[str],
     command: str,
     plant: str = DEFAULT_PLANT,
+    stored: Path | None = None,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
     """Compute everything about a design.
@@ -96,6 +98,8 @@ def dossier(
         The command line, for the record.
     plant : {"four-axle", "quarter"}
         Of the stops; the certificates speak about the quarter locomotive.
+    stored : Path, optional
+        Folder of certificate files; what the checkers accept of it for this design is not searched again.
     progress : callable, optional
         Told each stage before it starts.
 
@@ -113,7 +117,7 @@ def dossier(
     speeds = np.geomspace(1.0, max(specification.speeds[1], scenario.initial_speed), POLE_SPEEDS)
     linearizations = tuple(linearize(vehicle, rail, slip=specification.slip, speed=float(v)) for v in speeds)
     problem = stability_problem(vehicle, rail, own, specification, seed=scenario.seed)
-    certificates = verify(problem, progress=progress)
+    certificates = verify(problem, progress=progress, stored=stored)
     others = [_baseline(name, vehicle, rail, specification) for name in baselines]
     controllers = [own, *(law for law, _ in others)]
     trials = compare(

@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from wspd_design.plants.four_axle import Pitch, train_motion, wheel_loads
 
 from wspd_design.certificates.kernel.arb import above, below
 from wspd_design.certificates.outside import OutsideModel
@@ -13,7 +14,6 @@ from wspd_design.certificates.setting import axle
 from wspd_design.certificates.setting.axle import Pitching
 from wspd_design.model.slip import resistance, static_wheel_load
 from wspd_design.parameters.bounds import Bounds
-from wspd_design.plants.planar import Planar
 
 GRAVITY = 9.81
 
@@ -80,16 +80,27 @@ def test_undamped_pitch_has_no_bound(problem):
 
 def static_shares(vehicle, adhesions, speed):
     """Loads over the static load, and deceleration, with the pitch at rest where each axle uses some adhesion."""
-    plant = Planar(vehicle)
-    static, loads = static_wheel_load(vehicle), np.full(plant.axles, static_wheel_load(vehicle))
-    pitches = (vehicle.body_pitch_frequency, *[vehicle.bogie_pitch_frequency] * plant.bogies)
-    rest = (0.0,) * (2 * plant.transfers)
+    static, loads = static_wheel_load(vehicle), np.full(4, static_wheel_load(vehicle))
     for _ in range(100):
-        motion = plant.train_motion(speed=speed, creep_forces=tuple(adhesions * loads), transfers=rest)
+        forces = tuple(adhesions * loads)
         # With no pitch yet the second derivative over the squared frequency is the static transfer.
-        second = motion.transfer_rates[plant.transfers :]
-        transfers = [rate / (2.0 * math.pi * each) ** 2 for rate, each in zip(second, pitches, strict=True)]
-        loads = np.array(plant.wheel_loads((*transfers, *rest[plant.transfers :])))
+        motion = train_motion(vehicle, speed=speed, creep_forces=forces, pitch=Pitch(*[0.0] * 6))
+        body = (2.0 * math.pi * vehicle.body_pitch_frequency) ** 2
+        bogie = (2.0 * math.pi * vehicle.bogie_pitch_frequency) ** 2
+        rates = motion.pitch
+        loads = np.array(
+            wheel_loads(
+                vehicle,
+                Pitch(
+                    rates.body_rate / body,
+                    rates.front_bogie_rate / bogie,
+                    rates.rear_bogie_rate / bogie,
+                    0.0,
+                    0.0,
+                    0.0,
+                ),
+            )
+        )
     return loads / static, -motion.acceleration
 
 

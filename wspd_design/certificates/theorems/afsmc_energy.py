@@ -131,14 +131,15 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         title="Energy of the adaptive law",
         claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} and the speed above "
         f"{problem.speeds[0] * KMH:.3g} km/h, and with T = u inside the limits of the brake, u* stays inside them by "
-        f"eta/g, eta/g <= u* <= T_max - eta/g with T_max at least {limit / 1e3:g} kN m. Therefore, from a slip below the "
-        f"reference at {problem.speeds[1] * KMH:.3g} km/h on, without an integral of the error yet, {numbers}; "
+        f"eta/g, eta/g <= u* <= T_max - eta/g with T_max at least {limit / 1e3:g} kN m. Therefore, from a slip below "
+        f"the reference at {problem.speeds[1] * KMH:.3g} km/h on, without an integral of the error yet, {numbers}; "
         f"{said.text}.",
         status=status,
         explanation=f"{meaning} "
         + (f"Not shown: {'; '.join(open_ones)}. " if open_ones else "")
         + ("Every hypothesis is proved. " if status is Status.PROVED else "")
-        + f"A stop begins with slip 0: nothing is said before the slip is in its range, from {problem.slips[0]:g} on.",
+        + f"A stop begins with slip 0: nothing is said before the slip is in its range, from {problem.slips[0]:g} "
+        "on.",
         margin=smallest_margin(low, high),
         worst_point=where,
         witness=limit_witness(findings, said.names) if status is Status.REFUTED else (),

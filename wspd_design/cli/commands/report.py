@@ -13,6 +13,7 @@ from wspd_design.cli.console import console, progress
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.output import check_output
 from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.verification import stored_beside
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.records import Design
@@ -62,6 +63,7 @@ def report(
             baselines=[other for other in FAMILIES if other != made.name],
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
+            stored=stored_beside(chosen_name),
             progress=tell,
         )
         tell("typesetting")
