@@ -143,7 +143,7 @@ def make_adaptive_problem(er24pc, make_problem):
     designed = design_controller(er24pc, rail, Specification()).build(er24pc, rail)
 
     def make(**changes):
-        law = replace(designed, gains=replace(designed.gains, **changes))
+        law = replace(designed, gains=replace(designed.gains, **{"initial_bound": 12.0, **changes}))
         domain = {
             name: (low, high) for name, (low, high) in stated_bounds(er24pc, rail).items() if name in KEPT
         }
