@@ -54,11 +54,9 @@ def decide(problem: Any, text: str) -> Decision:
 
 def load_problem(design: Path, *, vehicle: str | None = None, rail: str | None = None) -> Any:
     """Load the closed loop that the files speak about."""
-    from wspd_design.cli.case import Wishes, resolve
+    from wspd_design.design.certification import problem_of
 
-    from wspd_design.cli.verification import problem_of
-
-    return problem_of(resolve(str(design), Wishes(vehicle=vehicle, rail=rail)))
+    return problem_of(design, vehicle=vehicle, rail=rail)
 
 
 # --- what a file says
