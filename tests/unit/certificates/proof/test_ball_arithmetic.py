@@ -36,7 +36,7 @@ OPERATIONS = {
     "cube": (lambda x: enclosures.power(x, Fraction(3)), lambda x: x**3, 1, False),
     "fourth": (lambda x: enclosures.power(x, Fraction(4)), lambda x: x**4, 1, False),
     "minus square": (lambda x: enclosures.power(x, Fraction(-2)), lambda x: 1 / x**2, 1, True),
-    "broken power": (
+    "fractional power": (
         lambda x: enclosures.power(x, Fraction(2, 3)),
         lambda x: x ** (flint.arb(2) / 3),
         1,

@@ -24,7 +24,7 @@ FUNCTIONS = {
     "fourth power": lambda x, y: (x - y) ** 4 - x,
     "cube": lambda x, y: (x - 1.3) ** 3 * y,
     "quotient": lambda x, y: (x - y) / (x * y + 0.1),
-    "broken power": lambda x, y: x ** (2.0 / 3.0) - y ** (-1.0 / 3.0),
+    "fractional power": lambda x, y: x ** (2.0 / 3.0) - y ** (-1.0 / 3.0),
     "exponential": lambda x, y: exp(-0.6 * x * y),
     "inverse tangent": lambda x, y: atan(3.0 * (x - y)) * y,
     "magnitude": lambda x, y: abs(x - y) - y,
