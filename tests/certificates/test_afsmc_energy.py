@@ -165,7 +165,7 @@ def test_a_law_that_is_not_a_number_is_not_judged(make_small, changes):
     assert afsmc_energy.CHECK.run(make_small(**changes)).status is Status.NOT_APPLICABLE
 
 
-def test_train_that_accelerates_is_seen(make_small, er24pc):
+def test_train_that_accelerates_is_seen(make_small):
     problem = make_small({"resistance constant": (-150e3, -150e3)})
     verdict = afsmc_energy.CHECK.run(problem)
     assert verdict.status is not Status.PROVED

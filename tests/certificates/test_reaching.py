@@ -220,7 +220,7 @@ class AlwaysFills(SlidingMode):
 
     __slots__ = ()
 
-    def step(self, state, measurement):
+    def step(self, state, measurement):  # noqa: ARG002 - it measures nothing
         return state, Command(fill=1.0, vent=0.0)
 
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.arb import above
 from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.kernel.finding import Finding
-from wspd_design.certificates.kernel.obligation import Obligation
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.adhesion_edges import Ranges
@@ -39,7 +39,7 @@ from wspd_design.parameters.units import KMH
 CONTINUOUS = "T = u inside the limits of the brake: no valve lag, no sampling, continuous adaptation"
 
 
-def braking_obligations(problem: Problem) -> tuple[Obligation, ...]:
+def braking_obligations(problem: Problem) -> tuple[Inequality, ...]:
     """Return the claim that a train with wheels at static load decelerates, a >= 0."""
 
     def claimed(ranges: Ranges) -> Claim:
@@ -119,7 +119,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             Point(name="psi", value=found.bound, unit="N m"),
         )
         layer = gains.boundary_layer / gains.proportional_gain
-        meaning = f"abs(s_D) exceeds one layer width, {layer:.3g}, for at most {rounded_up(integral / layer)} s in total."
+        seconds = rounded_up(integral / layer)
+        meaning = f"abs(s_D) exceeds one layer width, {layer:.3g}, for at most {seconds} s in total."
     open_ones = [each.asked for each in (findings[c.key] for c in conditions) if not each.proved]
     if status is Status.REFUTED:
         meaning = (
@@ -131,14 +132,15 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         title="Energy of the adaptive law",
         claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} and the speed above "
         f"{problem.speeds[0] * KMH:.3g} km/h, and with T = u inside the limits of the brake, u* stays inside them by "
-        f"eta/g, eta/g <= u* <= T_max - eta/g with T_max at least {limit / 1e3:g} kN m. Therefore, from a slip below the "
-        f"reference at {problem.speeds[1] * KMH:.3g} km/h on, without an integral of the error yet, {numbers}; "
+        f"eta/g, eta/g <= u* <= T_max - eta/g with T_max at least {limit / 1e3:g} kN m. Therefore, from a slip below "
+        f"the reference at {problem.speeds[1] * KMH:.3g} km/h on, without an integral of the error yet, {numbers}; "
         f"{said.text}.",
         status=status,
         explanation=f"{meaning} "
         + (f"Not shown: {'; '.join(open_ones)}. " if open_ones else "")
         + ("Every hypothesis is proved. " if status is Status.PROVED else "")
-        + f"A stop begins with slip 0: nothing is said before the slip is in its range, from {problem.slips[0]:g} on.",
+        + f"A stop begins with slip 0: nothing is said before the slip is in its range, from {problem.slips[0]:g} "
+        "on.",
         margin=smallest_margin(low, high),
         worst_point=where,
         witness=limit_witness(findings, said.names) if status is Status.REFUTED else (),

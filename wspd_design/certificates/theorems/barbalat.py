@@ -130,9 +130,9 @@ def _convergence(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         name="barbalat",
         title="Convergence after Barbalat",
-        claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} down to standstill, and with "
-        "T = u inside the limits of the brake, u* stays inside them by eta/g, eta/g <= u* <= T_max - eta/g with T_max "
-        f"at least {limit / 1e3:g} kN m. Therefore s_D tends to zero as the train comes to a standstill from "
+        claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} down to standstill, and "
+        "with T = u inside the limits of the brake, u* stays inside them by eta/g, eta/g <= u* <= T_max - eta/g with "
+        f"T_max at least {limit / 1e3:g} kN m. Therefore s_D tends to zero as the train comes to a standstill from "
         f"{problem.speeds[1] * KMH:.3g} km/h: in sigma = integral of dt/v the run has no end, the integral of abs(s_D) "
         f"is finite and s_D uniformly continuous; {said.text}, all speeds down to standstill.",
         status=status,

@@ -343,11 +343,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     elif lowest is None:
         reached = "The recovery is proved from no speed on."
     else:
-        between = (
-            f"is at most {few_digits(lowest * KMH, up=True)}"
-            if fast is None
-            else f"lies between {few_digits(fast, up=False)} and {few_digits(lowest * KMH, up=True)}"
-        )
+        slow = few_digits(lowest * KMH, up=True)
+        between = f"lies between {fast} and {slow}" if refuted else f"is at most {slow}"
         reached = f"The lowest controllable speed {between} km/h; from there on the recovery is proved."
     held = tuple(name for name in HELD if problem.span(name)[0] < problem.span(name)[1])
     described = domain.described(problem, ("speed", *USED), held)
@@ -368,7 +365,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"{problem.slips[1]:g}; {STATIC}, on {described}. Where it is not, "
         "no law can do it: venting is all that a brake can do.",
         status=status,
-        explanation=" ".join(f"{passing}{growing} {reached}".split()),
+        explanation=" ".join(f"{passing} {growing} {reached}".split()),
         method="interval branch and bound of a sufficient condition, replayed by the independent checker; a "
         "counterexample is integrated in balls",
         margin=Range(low=known - DEVIATION, high=None, unit="-"),

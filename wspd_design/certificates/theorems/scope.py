@@ -40,7 +40,7 @@ def scope(problem: Problem, uses: Sequence[str], hold: Iterable[str] = ()) -> Sc
     held = tuple(name for name in wide if name in kept)
     state = tuple(name for name in STATE if name in uses)
     who = (
-        "for every axle, "
+        "for every axle, with a load transfer that follows the deceleration without delay, "
         if set(AXLE) <= set(uses)
         else "for the axle at static load, "
         if "mu0" in uses
