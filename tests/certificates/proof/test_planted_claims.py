@@ -53,7 +53,7 @@ PLANTED = {
     "heavier": lambda claim: _with(claim, "mass", high=95_000),
     "other sign": lambda claim: replace(claim, relation=">="),
     "another plant": lambda claim: _with(claim, "adhesion_reduction", low=0.9, high=0.9),
-    "another radius": lambda claim: _with(claim, "wheel_radius", low=0.6, high=0.6),
+    "another radius": lambda claim: _with(claim, "wheel radius", low=0.6, high=0.6),
     "another design model": lambda claim: _with(claim, "model mu0", low=0.3, high=0.3),
     "another expression": lambda claim: replace(
         claim,

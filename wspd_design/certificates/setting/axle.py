@@ -18,6 +18,7 @@ lies in [0, U (1 + exp(-pi zeta / sqrt(1 - zeta^2)))]. Neither depends on the fr
 import math
 from dataclasses import replace
 from enum import Enum
+from itertools import pairwise, product
 
 from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
 from wspd_design.certificates.outside import OutsideModel
@@ -26,6 +27,9 @@ from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
+
+PIECES = 8
+"""Of a range that stands in parts of opposite sign."""
 
 
 class Pitching(Enum):
@@ -74,27 +78,26 @@ def load_share(problem: Problem, pitching: Pitching = Pitching.STATIC) -> Ends:
         return up * low + down * high, up * high + down * low
 
     slowest, fastest = _deceleration(problem)
-    gravity = point(constants().gravity)
-    pull = (fastest / gravity).union(slowest / gravity)
+    pull = (fastest / point(constants().gravity)).union(slowest / point(constants().gravity))
     used = ball(0.0, problem.span("mu0")[1]) * grip(problem)
-    body_height, bogie_height, rod = (
-        _range(vehicle, name) for name in ("body_height", "bogie_height", "traction_rod_height")
-    )
-    bogie_share = _range(vehicle, "bogie_mass") / ball(*problem.span("mass"))
-    spare = vehicle.body_mass + 2.0 * vehicle.bogie_mass - vehicle.mass  # what the file rounds
-    body_share = 1 - 2 * bogie_share + point(spare) / ball(*problem.span("mass"))
-    wheelbase = _range(vehicle, "wheelbase")
-    body_static = 2 * body_share * pull * (body_height - rod) / _range(vehicle, "bogie_spacing")
-    own = 4 * bogie_share * pull * (bogie_height - rod) / wheelbase
-    by_rod = 2 * used * rod / wheelbase
-
+    spacing, wheelbase = _range(vehicle, "bogie_spacing"), _range(vehicle, "wheelbase")
+    spare = (
+        point(vehicle.body_mass) + 2 * point(vehicle.bogie_mass) - point(vehicle.mass)
+    )  # what the file rounds
     shares: list[Ball] = []
-    # Every share is affine in the transfer by the body or bends outwards, so that its extremes lie at the ends.
-    for body in response(point(below(body_static)), point(above(body_static))):
-        for load in (1 + body, 1 - body):
-            static = own + by_rod * load
-            low, high = response(point(below(static)), point(above(static)))
-            shares += [load + low, load + high, load - low, load - high]
+    # The height of the rod and the mass act in opposite ways on parts of the transfer: they are taken in pieces.
+    for rod, mass in product(_pieces(_ends(vehicle, "traction_rod_height")), _pieces(problem.span("mass"))):
+        bogie_share = _range(vehicle, "bogie_mass") / mass
+        body_share = 1 - 2 * bogie_share + spare / mass
+        body_static = 2 * body_share * pull * (_range(vehicle, "body_height") - rod) / spacing
+        own = 4 * bogie_share * pull * (_range(vehicle, "bogie_height") - rod) / wheelbase
+        by_rod = 2 * used * rod / wheelbase
+        # Every share bends outwards in the transfer by the body, so that its extremes lie at the ends.
+        for body in response(point(below(body_static)), point(above(body_static))):
+            for load in (1 + body, 1 - body):
+                static = own + by_rod * load
+                low, high = response(point(below(static)), point(above(static)))
+                shares += [load + low, load + high, load - low, load - high]
     least, most = min(map(below, shares)), max(map(above, shares))
     if not (least > 0.0 and math.isfinite(most)):
         raise OutsideModel(
@@ -141,5 +144,16 @@ def _gains(vehicle: Vehicle, pitching: Pitching) -> tuple[Ball, Ball]:
     return (1 + most) / 2, (1 - most) / 2
 
 
+def _ends(vehicle: Vehicle, name: str) -> Ends:
+    return vehicle.bounds.around(name, getattr(vehicle, name))
+
+
 def _range(vehicle: Vehicle, name: str) -> Ball:
-    return ball(*vehicle.bounds.around(name, getattr(vehicle, name)))
+    return ball(*_ends(vehicle, name))
+
+
+def _pieces(ends: Ends) -> list[Ball]:
+    """Balls that cover a range."""
+    low, high = ends
+    edges = [low + (high - low) * k / PIECES for k in range(PIECES)] + [high]
+    return [ball(*pair) for pair in pairwise(edges)]

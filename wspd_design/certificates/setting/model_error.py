@@ -4,13 +4,14 @@ With Psi = v F and rho = (inertia of the design model) / (true inertia) the law 
 v sbar' = r - rho W0 sat(sbar / layer), r = (1 - rho) v c e - Psi + rho Psi_hat at a constant reference.
 """
 
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.claim import Variable
+from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.domain import INERTIA, SLIP, SPEED
+from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.plant import (
-    OTHERS,
     Values,
     dynamics_at,
     model_forces,
@@ -36,20 +37,24 @@ class Mismatch(NamedTuple):
     inertia_ratio: "Array"  # -, rho
 
 
-def mismatch(problem: Problem, law: SlidingMode, points: "Array") -> Mismatch:
-    """Evaluate r and rho at points of the domain."""
-    slip, speed = points[:, SLIP], points[:, SPEED]
-    plant = dynamics_at(problem, points)
+def mismatch(
+    problem: Problem, law: SlidingMode, points: "Array", names: Sequence[str] = domain.BASIC
+) -> Mismatch:
+    """Evaluate r and rho at points of the domain, columns as in ``names``."""
+    slip, speed, inertia = (points[:, names.index(name)] for name in ("slip", "speed", "wheelset inertia"))
+    plant = dynamics_at(problem, points, names)
     model = slip_dynamics(law.vehicle, law.rail, slip, speed)
-    ratio = law.vehicle.wheelset_inertia / points[:, INERTIA]
+    ratio = law.vehicle.wheelset_inertia / inertia
     error = sliding_surface.slip_error(law.gains.slip_reference, slip)
     closing = (1.0 - ratio) * speed * law.gains.surface_rate * error
     return Mismatch(residual=closing - speed * plant.drift + ratio * speed * model.drift, inertia_ratio=ratio)
 
 
-def variables(problem: Problem, law: SlidingMode) -> tuple[Variable, ...]:
-    """Return the quantities of plant and design model."""
-    return plant_variables(problem, hold=OTHERS) + model_variables(law.vehicle, law.rail)
+def variables(
+    problem: Problem, law: SlidingMode, *, uses: Sequence[str] = PLANT, hold: Iterable[str] = ()
+) -> tuple[Variable, ...]:
+    """Return the quantities of plant and design model; ``uses`` and ``hold`` as in :func:`plant_variables`."""
+    return plant_variables(problem, uses=uses, hold=hold) + model_variables(law.vehicle, law.rail)
 
 
 def inertia_ratio(x: Values) -> Number:

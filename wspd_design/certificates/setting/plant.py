@@ -246,12 +246,13 @@ def forces(
     stiffness = generated.contact_stiffness(
         contact.shear_modulus, contact.semi_axis_rolling, contact.semi_axis_lateral, contact.kalker_c11
     )
-    falling = rail.mu0 * (1.0 - rail.friction_ratio) * exp(-rail.friction_decay * (slip * speed))
-    friction = rail.mu0 * rail.friction_ratio + falling
+    fading = (1.0 - rail.friction_ratio) * exp(-rail.friction_decay * (slip * speed))
+    friction = rail.mu0 * (rail.friction_ratio + fading)
     gradient = stiffness * per_load * slip / friction
     weak, slow = rail.adhesion_reduction * gradient, rail.slip_reduction * gradient
+    # 1/(x + 1/x) is x/(1 + x^2), tighter on intervals, and the sign of its slope is that of 1/x^2 - 1.
+    used = friction * (1.0 / (weak + 1.0 / weak) + atan(slow)) * 2.0 / pi
     adhesion, sliding = weak**2 + 1.0, slow**2 + 1.0
-    used = friction * (weak / adhesion + atan(slow)) * 2.0 / pi
     # The slope of force over load and speed: by the creep itself, and by the friction that falls with sliding.
     by_creep = (
         stiffness
@@ -259,7 +260,7 @@ def forces(
         * (rail.adhesion_reduction * (2.0 - adhesion) / adhesion**2 + rail.slip_reduction / sliding)
     )
     shape = weak**3 * 2.0 / adhesion**2 + atan(slow) - slow / sliding
-    slope = (by_creep / speed - rail.friction_decay * falling * shape) * (2.0 / pi)
+    slope = (by_creep / speed - rail.friction_decay * rail.mu0 * fading * shape) * (2.0 / pi)
     inertia = vehicle.wheel_inertia
     per_slope = load * vehicle.wheel_radius**2 / inertia
     if deceleration is None:
