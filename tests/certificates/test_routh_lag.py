@@ -11,13 +11,12 @@ from wspd_design.certificates.kernel.checker import check as check_proof
 from wspd_design.certificates.kernel.claim import number
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting.linear_loop import (
-    Feedback,
     cubic,
     lag_of,
     nominal,
-    torque_per_surface,
 )
-from wspd_design.controllers.adaptive_fuzzy import torque_demand
+from wspd_design.controllers.adaptive_fuzzy import torque_demand, torque_per_surface
+from wspd_design.controllers.offers import Feedback
 from wspd_design.model.generated import sliding_surface
 from wspd_design.model.slip import slip_dynamics
 
@@ -145,7 +144,7 @@ def test_laws_without_reference_claim_nothing(make_problem, make_controller):
 
 def test_no_gain_at_all_is_not_stable(make_problem, make_controller, monkeypatch):
     monkeypatch.setattr(
-        "wspd_design.controllers.adaptive_fuzzy.AdaptiveFuzzy.linear_form",
+        "wspd_design.certificates.setting.linear_loop.on_brake",
         lambda *_, **__: Feedback(proportional=0.0, integral=0.0, torque=0.0),
     )
     assert routh_lag.check(make_problem(make_controller("afsmc"))).status is Status.REFUTED

@@ -47,7 +47,7 @@ ready = any_options()
 
 # What is wrong -> (text in place of another, what the sentence says)
 FAULTS = {
-    "no Python": (("def start", "dev start"), "own.py, line 13, is no Python"),
+    "no Python": (("def start", "dev start"), "own.py, line 13, is not Python"),
     "fails when it is loaded": (
         ("\ndef by_name", "\n1 / 0\ndef by_name"),
         "own.py, line 27: ZeroDivisionError",
@@ -183,7 +183,7 @@ def test_one_sentence_about_a_fault(fault, wspd, own):
         ("own.py", "own.py:NAME"),
         ("missing.py:Threshold", "check the path"),
         ("own.py:by_name", "lacks"),
-        ("own.py:dataclass", "makes no controller"),
+        ("own.py:dataclass", "does not make a controller"),
         ("own.py:__name__", "neither a controller nor"),
     ],
 )

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from wspd_design.certificates.checks.foundations import gain_positive
 from wspd_design.certificates.checks.frame import Check, illustrated
-from wspd_design.certificates.checks.sliding import reaching
-from wspd_design.certificates.checks.valve import no_go, open_loop_pole, sampling
+from wspd_design.certificates.checks.sliding import boundary_layer, reaching, sliding_exists
+from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
+from wspd_design.certificates.search.memory import remembering
 from wspd_design.certificates.search.progress import Listener, listening
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.controllers.offers import Linear
@@ -20,9 +21,12 @@ CHECKS: Mapping[str, Check] = {
     each.name: each
     for each in (
         gain_positive.CHECK,
+        sliding_exists.CHECK,
         reaching.CHECK,
+        boundary_layer.CHECK,
         open_loop_pole.CHECK,
         no_go.CHECK,
+        hard_limits.CHECK,
         sampling.CHECK,
     )
 }
@@ -72,11 +76,9 @@ def verify(
     if isinstance(problem.controller, Linear):
         _agree("slip reference", problem.slip, problem.controller.slip_reference)
         _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
-    certificates = []
-    for name in NAMES:
-        if only is None or name in only:
-            certificates.append(_run(CHECKS[name], problem, progress, budget, stored))
-    return tuple(certificates)
+    wanted = [CHECKS[name] for name in NAMES if only is None or name in only]
+    with remembering():
+        return tuple(_run(check, problem, progress, budget, stored) for check in wanted)
 
 
 def _run(

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.catalog import controller as build_controller
 from wspd_design.design.catalog import controller_of, is_design_file
@@ -109,6 +110,7 @@ def load_case(name: str, options: CaseOptions, base: Specification | None = None
     wanted = specification(options, base)
     if is_own_controller(name):
         controller = _own_controller(name, vehicle, rail, wanted, options)
+        wanted = _specification_of(controller, options, base)
     else:
         controller = build_controller(name, vehicle, rail, wanted)
     return Case(
@@ -212,7 +214,19 @@ def _own_controller(
             f"--sample-time {wanted.sample_time:g} contradicts {name}, which has {made.sample_time:g} (SI units); "
             "leave --sample-time out or let it take sample_time"
         )
+    held = slip_reference_of(made)
+    if options.slip is not None and held is not None and not _same(wanted.slip, held):
+        raise UserError(
+            f"--slip {wanted.slip:g} contradicts {name}, which holds {held:g}; leave --slip out or let it take slip"
+        )
     return made
+
+
+def _specification_of(made: Controller, options: CaseOptions, base: Specification | None) -> Specification:
+    """Return the specification with the slip that a law holds, if it says which, and its sample time."""
+    held = slip_reference_of(made)
+    slip = options.slip if held is None else repr(held)
+    return replace(specification(replace(options, slip=slip), base), sample_time=made.sample_time)
 
 
 def _shipped(kind: str, name: str, path: str) -> str:

@@ -1,8 +1,8 @@
 """Fingerprints: the SHA-256 of everything that a result rests on.
 
-Numbers count to their last bit, records by their fields, and an object of a user's class by its attributes and the
-source of its class. What has no certain content is refused: a fingerprint that misses something would let an old
-verdict stand for a new law.
+Numbers count to their last bit, records by their fields, and an object of a user's class by its attributes and by
+what Python made of its methods. What has no certain content is refused: a fingerprint that misses something would
+let an old verdict stand for a new law.
 """
 
 import hashlib
@@ -157,7 +157,7 @@ def _function(value: Any, inside: Any) -> str:
         return f"function:{value.__module__}.{value.__qualname__}"
     parts = (value.__defaults__, value.__kwdefaults__, [_cell(cell) for cell in value.__closure__ or ()])
     used = {name: value.__globals__[name] for name in _names(value.__code__) if name in value.__globals__}
-    return f"function({_source(value)},{','.join(map(inside, parts))},{inside(used)})"
+    return f"function({_code(value.__code__, inside)},{','.join(map(inside, parts))},{inside(used)})"
 
 
 def _cell(cell: Any) -> Any:
@@ -191,14 +191,9 @@ def _file(module: ModuleType) -> str:
         ) from None
 
 
-def _source(function: FunctionType) -> str:
-    """Text of a function as its author wrote it; of one without a file what Python made of it."""
-    try:
-        return inspect.getsource(function)
-    except (OSError, TypeError):
-        return _code(function.__code__)
-
-
-def _code(code: CodeType) -> str:
-    inner = [_code(each) if isinstance(each, CodeType) else repr(each) for each in code.co_consts]
-    return f"code({code.co_code.hex()},{inner},{code.co_names},{code.co_varnames})"
+def _code(code: CodeType, inside: Any) -> str:
+    """What Python made of a function: unlike its source always there, and another one for two in the same line."""
+    constants = ",".join(
+        _code(each, inside) if isinstance(each, CodeType) else inside(each) for each in code.co_consts
+    )
+    return f"code({code.co_code.hex()},{constants},{code.co_names},{code.co_varnames})"

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.metrics import Metrics, metrics
@@ -52,7 +53,7 @@ def compare(
     scenario : Scenario
         Rail and initial speed.
     slip_reference : float
-        Reference of ``slip_rms`` for all of them [-].
+        Reference of ``slip_rms`` for the laws that hold none of their own [-].
     plant : {"four-axle", "quarter"}
         With or without load transfer.
     progress : callable, optional
@@ -66,5 +67,7 @@ def compare(
     trials = []
     for controller in controllers:
         progress(controller.name)
-        trials.append(trial(vehicle, controller, scenario, slip_reference=slip_reference, plant=plant))
+        held = slip_reference_of(controller)
+        reference = slip_reference if held is None else held
+        trials.append(trial(vehicle, controller, scenario, slip_reference=reference, plant=plant))
     return tuple(trials)

@@ -4,10 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from wspd_design.certificates.kernel.identity import same
 
 from wspd_design.certificates.checks.sliding import reaching
 from wspd_design.certificates.kernel.claim import Claim
-from wspd_design.certificates.kernel.identity import same
 from wspd_design.certificates.search.prover import extreme
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.model_error import (

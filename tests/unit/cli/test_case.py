@@ -140,3 +140,31 @@ def test_presets_select_the_tables(base, load):
 def test_what_is_no_preset(name):
     with pytest.raises(UserError, match=name.partition(":")[0]):
         load_case(name, CaseOptions())
+
+
+BAND = """
+from dataclasses import dataclass
+from wspd_design.controllers.protocol import Command
+
+@dataclass(frozen=True)
+class Band:
+    slip: float = 0.08
+    sample_time: float = 0.02
+    name: str = "band"
+    def start(self, seen): return ()
+    def step(self, state, seen): return state, Command(fill=0.5, vent=0.5)
+
+fixed = Band()
+"""
+
+
+def test_a_law_of_a_user_is_judged_about_the_slip_that_it_holds(tmp_path):
+    path = tmp_path / "band.py"
+    path.write_text(BAND)
+    own = load_case(f"{path}:Band", CaseOptions())
+    assert (own.controller.slip, own.specification.slip, own.specification.sample_time) == (0.08, 0.08, 0.02)
+    asked = load_case(f"{path}:Band", CaseOptions(slip="0.7"))
+    assert asked.controller.slip == asked.specification.slip == 0.7
+    assert asked.specification.slips[1] > 0.7
+    with pytest.raises(UserError, match=r"--slip 0.1 contradicts .*, which holds 0.08"):
+        load_case(f"{path}:fixed", CaseOptions(slip="0.1"))

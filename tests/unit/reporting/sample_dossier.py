@@ -140,6 +140,7 @@ def sample_dossier(
             law="afsmc",
             vehicle="er24pc",
             vehicle_hash="abc",
+            rail_hash="def",
             rail=rail,
             specification=Specification(),
             gains=(

@@ -2,13 +2,14 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Finding, Stated
-from wspd_design.certificates.kernel.obligation import Obligation
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation
 from wspd_design.certificates.records import Certificate, Map, Problem, Series
+from wspd_design.certificates.search.memory import recall, remembering
 from wspd_design.certificates.theorems.theorem import Theorem, silent, told
 
 if TYPE_CHECKING:
@@ -49,25 +50,39 @@ class Check:
         started = time.perf_counter()
         made = silent(self.theorem, problem)
         if made is None:
-            made = told(
-                self.theorem, problem, accepted(self.theorem.obligations(problem), self.search(problem))
-            )
-            made = illustrated(self, problem, made)
+            with remembering():
+                found = accepted(self.theorem.obligations(problem), self.search(problem))
+                made = illustrated(self, problem, told(self.theorem, problem, found))
         return replace(made, seconds=time.perf_counter() - started)
 
 
 def accepted(wanted: Sequence[Obligation], stated: Mapping[str, Stated]) -> dict[str, Finding]:
-    """Let the checkers decide about what a search states; a proof that they refuse is left out."""
+    """Let the checkers decide about what a search states; a proof that they refuse is left out.
+
+    What they decided about the same inequality before, in the same verification, is not decided again.
+    """
     work = Work()
 
-    def decide(obligation: Obligation) -> Finding:
-        given = stated.get(obligation.key, Stated())
+    def decide(obligation: Obligation, given: Stated) -> Finding:
         try:
             return obligation.decide(given, work)
         except Refused:
             return obligation.decide(replace(given, proof=None), work)
 
-    return {each.key: decide(each) for each in wanted}
+    def known(obligation: Obligation) -> Finding:
+        given = stated.get(obligation.key, Stated())
+        if not isinstance(obligation, Inequality):
+            return decide(obligation, given)
+        asked = [
+            obligation.claim.statement(),
+            obligation.text,
+            given.proof,
+            given.place,
+            asdict(given.effort),
+        ]
+        return recall(["decide", *asked], lambda: decide(obligation, given))
+
+    return {each.key: known(each) for each in wanted}
 
 
 def illustrated(check: Check, problem: Problem, certificate: Certificate) -> Certificate:

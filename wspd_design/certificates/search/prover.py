@@ -125,8 +125,9 @@ class _Search:
         while waiting.upper.size:
             threshold = self.best + tolerance if bound is None else bound
             # The box as a whole is looked at whatever the budget, so that some enclosure is known.
-            self.cut = self.count > 0 and self.count >= (DENIED_BOXES if self.best > denying else allowed)
-            if self.best > threshold or self.cut:
+            self.cut = self.count > 0 and self.count >= allowed
+            known = self.best > denying and self.count >= DENIED_BOXES
+            if self.best > threshold or self.cut or known:
                 break
             order = np.argsort(-waiting.upper)
             batch, rest = waiting.take(order[:BATCH]), waiting.take(order[BATCH:])

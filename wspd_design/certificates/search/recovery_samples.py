@@ -3,20 +3,22 @@
 Samples choose what is proved and where a witness is looked for, and are what the plot shows.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.search.recovery import per_deviation, recoverable
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
 from wspd_design.certificates.setting.plant import dynamics_at
+from wspd_design.certificates.theorems.recovery import per_deviation, reach
 
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
 
 SPEEDS, SLIPS = 121, 33
+VENT_STEPS, HOLD_STEPS = 80, 24  # of the integration
 HALVINGS = 40  # of the range of a parameter
 
 
@@ -62,7 +64,7 @@ def sample(problem: Problem) -> Samples:
         fall = -dynamics_at(problem, at(corner, problem.slip)).drift
         for slip in slips:
             pole = dynamics_at(problem, at(corner, float(slip))).pole
-            shares.append(per_deviation(problem, pole, pole / fall))
+            shares.append(per_deviation(problem, vehicle.brake.vent_time, pole, pole / fall))
             poles.append(pole)
     smallest = exact.argmin(axis=0)
     return Samples(
@@ -104,3 +106,52 @@ def just_held(problem: Problem, points: "Array", column: int) -> "Array":
         low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
     moved[:, column] = low
     return moved
+
+
+def recoverable(problem: Problem, points: "Array") -> "Array":
+    """Integrate how large a deviation may be that full venting, one sample late, keeps below slip_max [-].
+
+    The path that just touches slip_max is followed backwards, from where its slip stands still to where it began.
+
+    Parameters
+    ----------
+    problem : Problem
+        Plant and sample time.
+    points : ndarray
+        Points of the domain, in the order of its columns; their slip does not matter.
+    """
+    import numpy as np
+
+    brake, room = problem.vehicle.brake, reach(problem)
+    at = points.copy()
+
+    def dynamics(slip: "float | Array") -> tuple["Array", "Array"]:
+        at[:, SLIP] = slip
+        plant = dynamics_at(problem, at)
+        return plant.drift, plant.gain
+
+    def back(x: "Array", torque: Callable[[float], "Array"], step: "float | Array", count: int) -> "Array":
+        """Follow the deviation backwards through steps of Runge and Kutta; the torque takes the count of steps."""
+
+        def rate(k: float, x: "Array") -> "Array":
+            drift, gain = dynamics(problem.slip + x)
+            found: Array = -(drift + gain * torque(k))
+            return found
+
+        for k in range(count):
+            one = rate(k, x)
+            two = rate(k + 0.5, x + 0.5 * step * one)
+            three = rate(k + 0.5, x + 0.5 * step * two)
+            four = rate(k + 1, x + step * three)
+            x = np.clip(x + step * (one + 2.0 * two + 2.0 * three + four) / 6.0, 0.0, room)
+        return x
+
+    drift, gain = dynamics(problem.slip)
+    start = np.minimum(-drift / gain, brake.max_torque)
+    drift, gain = dynamics(problem.slips[1])
+    touching = np.clip(-drift / gain, 1e-9 * start, start)
+    step = brake.vent_time * np.log(start / touching) / VENT_STEPS
+    seen = back(
+        np.full(len(points), room), lambda k: touching * np.exp(k * step / brake.vent_time), step, VENT_STEPS
+    )
+    return back(seen, lambda _: start, problem.sample_time / HOLD_STEPS, HOLD_STEPS)

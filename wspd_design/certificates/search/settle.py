@@ -34,7 +34,7 @@ def settle(claim: Claim, *, tolerance: float) -> Stated:
     if not denied and not enough:
         # The bound lies within the tolerance of the extreme value, or the budget was used up.
         target, found = claim, prove(claim)
-    return _stated(target, found)
+    return stated_of(target, found)
 
 
 def enclose(claim: Claim, *, tolerance: float) -> Stated:
@@ -48,7 +48,7 @@ def enclose(claim: Claim, *, tolerance: float) -> Stated:
         Width of the enclosure of the extreme value, in the unit of the claim.
     """
     found = extreme(claim, tolerance=tolerance)
-    return _stated(tightest(claim, found, tolerance), found)
+    return stated_of(tightest(claim, found, tolerance), found)
 
 
 def settle_all(obligations: Mapping[str, Obligation], tolerances: Mapping[str, float]) -> dict[str, Stated]:
@@ -88,7 +88,7 @@ def tightest(claim: Claim, found: Outcome, tolerance: float) -> Claim:
     return replace(claim, bound=Fraction(bound))
 
 
-def _stated(claim: Claim, found: Outcome) -> Stated:
+def stated_of(claim: Claim, found: Outcome) -> Stated:
     """Write what the prover found; a proof that the checker would refuse is left out, and the claim stays open."""
     place = {v.name: _inside(found.point[v.name], v.low, v.high) for v in claim.free}
     effort = Effort(boxes=found.boxes, undecided=found.undecided, cut=found.cut)

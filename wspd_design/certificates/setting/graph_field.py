@@ -10,16 +10,19 @@ A comparison becomes an element b that stands for 0 or 1: ``not b`` is 1 - b, ``
 there, so that "different" means "not shown to be the same".
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import cache
 from hashlib import sha256
 from math import isfinite
 from typing import Any
 
+from wspd_design.parameters.errors import WspdError
+
 PRIME = 2**255 - 19
 
 
-class UndecidedError(ValueError):
+class UndecidedError(WspdError, ValueError):
     """The graph has no value in the field: a division by zero, or a constant that is not a finite number."""
 
 
@@ -93,7 +96,7 @@ def _apply(name: str, x: list[int], boolean: list[bool]) -> tuple[int, bool]:
     return element(name, *x), False
 
 
-_RATIONAL = {
+_RATIONAL: dict[str, Callable[..., int]] = {
     "OP_ASSIGN": lambda a: a,
     "OP_ADD": lambda a, b: a + b,
     "OP_SUB": lambda a, b: a - b,
@@ -102,7 +105,7 @@ _RATIONAL = {
     "OP_SQ": lambda a: a * a,
     "OP_TWICE": lambda a: 2 * a,
 }
-_LOGICAL = {
+_LOGICAL: dict[str, Callable[..., int]] = {
     "OP_NOT": lambda a: 1 - a,
     "OP_AND": lambda a, b: a * b,
     "OP_OR": lambda a, b: a + b - a * b,
@@ -131,6 +134,7 @@ def _residue(number: float) -> int:
     return exact.numerator * pow(exact.denominator, -1, PRIME) % PRIME
 
 
+@cache
 def _names() -> dict[int, str]:
     import casadi as ca
 

@@ -1,16 +1,9 @@
-"""What the checks need to know of a law: its surface, its layer, and what it feeds back."""
+"""What the checks need to know of a law: what it feeds back, and whom a claim does not speak about."""
 
 from collections.abc import Iterable
 
 from wspd_design.certificates.records import Certificate, Hypothesis, Problem, Status
-from wspd_design.controllers.offers import Surface
-from wspd_design.controllers.protocol import Command, Controller, Measurement
-
-PROBE_SPEEDS = (3.0, 10.0, 20.0, 33.0)  # m/s
-PROBE_SLIPS = (0.02, 0.08, 0.14, 0.25, 0.5)
-PROBE_TORQUES = (0.0, 10e3, 40e3)  # N m
-PROBE_WHEEL_CHANGES = (0.8, 0.95, 1.05, 1.2)  # earlier over present wheel speed
-
+from wspd_design.certificates.setting.traced_law import memory
 
 _WEAKNESS = (Status.UNDECIDED, Status.VACUOUS, Status.EVIDENCE, Status.PROVED)
 """From the weakest support of a theorem to the strongest."""
@@ -19,8 +12,8 @@ _WEAKNESS = (Status.UNDECIDED, Status.VACUOUS, Status.EVIDENCE, Status.PROVED)
 def of_theorem(hypotheses: Iterable[Hypothesis]) -> Status:
     """Status of what follows from hypotheses: that of the weakest.
 
-    A hypothesis that is refuted takes the ground from the argument, not the truth from its conclusion: the theorem
-    is undecided then.
+    A hypothesis that is refuted invalidates the argument, not necessarily the conclusion: the theorem is undecided
+    then.
     """
     found = [each.status for each in hypotheses]
     return min((s if s in _WEAKNESS else Status.UNDECIDED for s in found), key=_WEAKNESS.index)
@@ -45,31 +38,24 @@ def no_surface(problem: Problem, name: str, claim: str) -> Certificate:
 
 
 def slip_feedback_only(problem: Problem) -> Hypothesis:
-    """Examine whether a law feeds back neither torque nor wheel acceleration.
+    """Decide on the graph of the law whether it feeds back the slip and the speed alone.
 
-    The memory of the laws with a sliding surface holds integrals alone. Of any other law a command that
-    depends on an earlier wheel speed may be feedback of acceleration.
+    It does if its command does not depend on the torque and its memory holds integrals alone: an earlier wheel speed
+    in the memory would be feedback of acceleration, a model of the valve or a filter in it feedback of what the no-go
+    theorem leaves out.
     """
     law = problem.controller
-    radius = problem.vehicle.wheel_radius
-    text = f"{law.name} feeds back neither torque nor wheel acceleration"
-    memory = not isinstance(law, Surface)
-    for speed in PROBE_SPEEDS:
-        for slip in PROBE_SLIPS:
-            wheel = speed * (1.0 - slip) / radius
-            plain = _command_after(law, speed, wheel, wheel, 0.0)
-            others = [_command_after(law, speed, wheel, wheel, torque) for torque in PROBE_TORQUES]
-            if memory:
-                earlier = [share * wheel for share in PROBE_WHEEL_CHANGES]
-                others += [_command_after(law, speed, before, wheel, 0.0) for before in earlier]
-            if any(other != plain for other in others):
-                return Hypothesis(text=text, status=Status.REFUTED)
-    return Hypothesis(text=text, status=Status.EVIDENCE)
-
-
-def _command_after(law: Controller, speed: float, earlier: float, present: float, torque: float) -> Command:
-    """Command at the second of two samples."""
-    first = Measurement(speed=speed, wheel_speed=earlier, torque=torque)
-    state, _ = law.step(law.start(first), first)
-    _, command = law.step(state, Measurement(speed=speed, wheel_speed=present, torque=torque))
-    return command
+    text = (
+        f"{law.name} feeds back neither torque nor wheel acceleration, and its memory holds integrals alone"
+    )
+    found = memory(law)
+    if isinstance(found, str):
+        return Hypothesis(text=f"{text}: undecided, since {found}", status=Status.UNDECIDED)
+    faults = []
+    if found.command_reads_torque or found.memory_reads_torque:
+        faults.append("it reads the torque")
+    if not found.integrals_alone:
+        faults.append(f"its memory has dynamics of its own in: {', '.join(found.own_dynamics)}")
+    if faults:
+        return Hypothesis(text=f"{text}: false, since {' and '.join(faults)}", status=Status.REFUTED)
+    return Hypothesis(text=text, status=Status.PROVED)

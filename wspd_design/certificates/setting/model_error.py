@@ -4,16 +4,16 @@ With Psi = v F and rho = (inertia of the design model) / (true inertia) the law 
 v sbar' = r - rho W0 sat(sbar / layer), r = (1 - rho) v c e - Psi + rho Psi_hat at a constant reference.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.claim import Variable
-from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.adhesion_edges import Ranges
+from wspd_design.certificates.setting.domain import BASIC, INERTIA, SLIP, SPEED
 from wspd_design.certificates.setting.plant import (
     Values,
-    dynamics_at,
+    complete,
     model_forces,
     model_variables,
     plant_dynamics,
@@ -38,23 +38,37 @@ class Mismatch(NamedTuple):
 
 
 def mismatch(
-    problem: Problem, law: SlidingMode, points: "Array", names: Sequence[str] = domain.BASIC
+    problem: Problem, law: SlidingMode, points: "Array", others: Mapping[str, float] | None = None
 ) -> Mismatch:
-    """Evaluate r and rho at points of the domain, columns as in ``names``."""
-    slip, speed, inertia = (points[:, names.index(name)] for name in ("slip", "speed", "wheelset inertia"))
-    plant = dynamics_at(problem, points, names)
+    """Evaluate r and rho at points of the domain.
+
+    Parameters
+    ----------
+    problem : Problem
+        The closed loop.
+    law : SlidingMode
+        With its design model.
+    points : ndarray
+        Columns as in ``domain.BASIC``.
+    others : mapping, optional
+        Further numbers of the plant that are not nominal, by their names in the table.
+    """
+    slip, speed = points[:, SLIP], points[:, SPEED]
+    columns = {name: points[:, k] for k, name in enumerate(BASIC)}
+    plant = plant_dynamics(problem, complete(problem, {**(others or {}), **columns}))
     model = slip_dynamics(law.vehicle, law.rail, slip, speed)
-    ratio = law.vehicle.wheelset_inertia / inertia
+    ratio = law.vehicle.wheelset_inertia / points[:, INERTIA]
     error = sliding_surface.slip_error(law.gains.slip_reference, slip)
     closing = (1.0 - ratio) * speed * law.gains.surface_rate * error
     return Mismatch(residual=closing - speed * plant.drift + ratio * speed * model.drift, inertia_ratio=ratio)
 
 
 def variables(
-    problem: Problem, law: SlidingMode, *, uses: Sequence[str] = PLANT, hold: Iterable[str] = ()
+    problem: Problem, law: SlidingMode, *, uses: Sequence[str], hold: Iterable[str], ranges: Ranges
 ) -> tuple[Variable, ...]:
-    """Return the quantities of plant and design model; ``uses`` and ``hold`` as in :func:`plant_variables`."""
-    return plant_variables(problem, uses=uses, hold=hold) + model_variables(law.vehicle, law.rail)
+    """Return the quantities of plant and design model, as in :func:`plant_variables`."""
+    plant = plant_variables(problem, uses=uses, hold=hold, ranges=ranges)
+    return plant + model_variables(law.vehicle, law.rail)
 
 
 def inertia_ratio(x: Values) -> Number:

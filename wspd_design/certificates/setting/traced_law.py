@@ -10,18 +10,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.graph_field import UndecidedError, element, values
+from wspd_design.certificates.setting.graph_field import PRIME, UndecidedError, element, values
 from wspd_design.certificates.setting.written_laws import WRITTEN, WrittenLaw
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.kernels import controller_kernels
 from wspd_design.controllers import offers
 from wspd_design.controllers.family import FAMILIES
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.parameters.fingerprint import fingerprint
 
 POINTS = 3  # of the field at which two graphs are compared
-TORQUE = 2  # place of the torque in a measurement
-MEASURED = ("speed", "wheel speed", "torque")
+DOUBLES = 40  # points at which they are compared in doubles
+DIGITS = 1e-9  # relative and absolute difference that rounding may make
+TORQUE = Measurement._fields.index("torque")
+FASTEST, STRONGEST = 40.0, 60e3  # train speed [m/s] and torque [N m] of these points
+LARGEST_RATIO = 2.5  # of wheel speed over train speed [rad/m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,17 +77,23 @@ def trace(law: Controller) -> TracedLaw | str:
 
 
 def same_function(one: TracedLaw, other: TracedLaw) -> bool:
-    """Whether two laws are the same function of state and measurement; False where that cannot be decided."""
+    """Whether two laws are the same function of state and measurement; False where that cannot be decided.
+
+    As functions of real numbers, by their values in a prime field. A graph can still lose digits on purpose, so that
+    both are also compared in doubles at a number of points.
+    """
     if one.states != other.states:
         return False
+    pairs = ((one.start, other.start), (one.step, other.step))
     try:
-        return all(
+        same = all(
             values(a, _point(a, number)) == values(b, _point(b, number))
-            for a, b in ((one.start, other.start), (one.step, other.step))
+            for a, b in pairs
             for number in range(POINTS)
         )
     except UndecidedError:
         return False
+    return same and all(_agree_in_doubles(a, b) for a, b in pairs)
 
 
 def law_of_theorem(problem: Problem, family: str) -> str | None:
@@ -147,7 +156,7 @@ def memory(law: Controller) -> LawMemory | str:
     if isinstance(traced, str):
         return traced
     states, step = traced.states, traced.step
-    x, m = ca.SX.sym("x", states), ca.SX.sym("m", len(MEASURED))
+    x, m = ca.SX.sym("x", states), ca.SX.sym("m", len(Measurement._fields))
     slopes = ca.densify(ca.jacobian(step(x, m)[:states], x)) if states else ca.SX(0, 0)
     jacobian = ca.Function("memory_slopes", [x, m], [slopes])
     try:
@@ -174,6 +183,26 @@ def _point(function: Any, number: int) -> list[list[int]]:
         [element("input", place, index, number) for index in range(function.nnz_in(place))]
         for place in range(function.n_in())
     ]
+
+
+def _agree_in_doubles(one: Any, other: Any) -> bool:
+    import numpy as np
+
+    for number in range(DOUBLES):
+        speed, wheel, torque = (_share(number, name) for name in ("speed", "wheel", "torque"))
+        measured = [FASTEST * speed, LARGEST_RATIO * wheel * FASTEST * speed, STRONGEST * torque]
+        sizes = one.nnz_in(0) if one.n_in() > 1 else 0
+        state = [(2.0 * _share(number, k) - 1.0) * 10.0 ** (number % 5 - 3) for k in range(sizes)]
+        point = [state, measured] if one.n_in() > 1 else [measured]
+        found, wanted = (np.array(each.call(point)[0]).ravel() for each in (one, other))
+        if not np.allclose(found, wanted, rtol=DIGITS, atol=DIGITS):
+            return False
+    return True
+
+
+def _share(*content: object) -> float:
+    """Pseudo-random number between 0 and 1."""
+    return element("double", *content) / PRIME
 
 
 def _with_other_torque(step: Any, number: int) -> tuple[list[int], list[int]]:

@@ -10,8 +10,8 @@ from wspd_design.certificates.checks.linear import routh_lag
 from wspd_design.certificates.checks.sliding import reaching, sliding_exists
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.kernel.arb import below
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.claim import Claim
-from wspd_design.certificates.kernel.enclosures import Refused
 from wspd_design.certificates.kernel.obligation import (
     Answer,
     Obligation,
@@ -28,7 +28,6 @@ from wspd_design.certificates.kernel.subdomain import Ends
 from wspd_design.certificates.records import Problem, Status
 from wspd_design.certificates.search import recovery
 from wspd_design.certificates.setting import laws
-from wspd_design.certificates.setting.domain import KMH
 from wspd_design.certificates.setting.linear_loop import outermost
 from wspd_design.certificates.theorems import quadratic
 from wspd_design.certificates.theorems.invariant_sets import checker as invariance
@@ -37,6 +36,7 @@ from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.controllers.offers import Linear, Surface
 from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.parameters.units import KMH
 
 BOTH = (Status.PROVED, Status.VACUOUS)
 
@@ -119,8 +119,8 @@ def _sliding_exists(problem: Problem) -> tuple[Obligation, ...]:
 
     return (
         inequality(sliding_exists.torque_claim(problem, law, ">=", 0.0), needed=BOTH),
-        inequality(enough(problem.mu0_bounds), needed=()),
-        on_part(enough, "mu0", problem.mu0_bounds, "", needed=(), longer=False),
+        inequality(enough(problem.span("mu0")), needed=()),
+        on_part(enough, "mu0", problem.span("mu0"), "", needed=(), longer=False),
         inequality(sliding_exists.least_demand(problem, law), needed=(Status.VACUOUS,)),
     )
 

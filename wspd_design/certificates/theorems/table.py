@@ -2,16 +2,19 @@
 
 from collections.abc import Mapping
 
-from wspd_design.certificates.theorems import foundations, sliding, valve
+from wspd_design.certificates.theorems import authority, foundations, recovery, sliding, valve
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
     each.name: each
     for each in (
         foundations.GAIN_POSITIVE,
+        authority.SLIDING_EXISTS,
         sliding.REACHING,
+        sliding.BOUNDARY_LAYER,
         valve.OPEN_LOOP_POLE,
         valve.NO_GO,
+        recovery.HARD_LIMITS,
         valve.SAMPLING,
     )
 }

@@ -298,8 +298,8 @@ def _tell_sampling(problem: Problem, findings: Findings) -> Certificate:
         title="Slip pole against sampling and valve",
         claim=f"At every frozen speed the slip pole at slip {problem.slip:g} stays below p_max, the largest that "
         f"proportional feedback of the slip, sampled every {problem.sample_time * 1e3:g} ms, stabilizes through a "
-        f"valve that fills and vents with one time constant of {times}; p_max = {limit:.3g} 1/s at {lag:g} s; {STATIC}, on "
-        f"{domain.described(problem, USED)}.",
+        f"valve that fills and vents with one time constant of {times}; p_max = {limit:.3g} 1/s at {lag:g} s; "
+        f"{STATIC}, on {domain.described(problem, USED)}.",
         status=status,
         explanation=f"{meaning} At the tightest point a deviation of the slip grows by a factor of {growth:.4g} within "
         "one sample.",

@@ -87,10 +87,10 @@ def compare(
     if as_json:
         print_json(comparison_object([stop_object(made, stop, slip_reference=ref) for made, ref in trials]))
         return
-    _show([made for made, _ in trials], stop)
+    _show([made for made, _ in trials], stop, [reference for _, reference in trials])
 
 
-def _show(trials: list[Trial], scenario: Scenario) -> None:
+def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> None:
     out, first = console(), trials[0]
     out.print(
         f"{first.run.vehicle} ({first.run.plant}) on {rails_of(scenario)}, "
@@ -122,7 +122,7 @@ def _show(trials: list[Trial], scenario: Scenario) -> None:
     )
     out.print(
         f"d distance, t time, lag 2 d/v0 - t, eff efficiency: bound over distance{known}; slip above 10 km/h, "
-        f"rms about the reference; lock: how long the wheels were locked{more}.",
+        f"rms about {_references(trials, references)}; lock: how long the wheels were locked{more}.",
         style="dim",
     )
     if len(stopped) < len(trials):
@@ -135,3 +135,11 @@ def _show(trials: list[Trial], scenario: Scenario) -> None:
             style="yellow",
             markup=False,
         )
+
+
+def _references(trials: list[Trial], references: list[float]) -> str:
+    """Say about which slip the rms of each law is: one for all, or the law's own."""
+    if len(set(references)) == 1:
+        return f"{references[0]:g}"
+    own = (f"{made.run.controller} {slip:g}" for made, slip in zip(trials, references, strict=True))
+    return f"the slip that each law holds ({', '.join(own)})"

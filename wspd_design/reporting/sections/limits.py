@@ -68,4 +68,5 @@ def provenance(dossier: Dossier) -> tuple[Definition, ...]:
         Definition(term="Seed", text=str(made.seed)),
         Definition(term="Inputs, sha256", text=made.input_hash),
         Definition(term="Vehicle, fingerprint in the design", text=dossier.design.vehicle_hash),
+        Definition(term="Design rail, fingerprint in the design", text=dossier.design.rail_hash),
     )

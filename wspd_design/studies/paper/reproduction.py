@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy
 from wspd_design.design.catalog import controller
@@ -104,8 +104,7 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
     ablations = []
     for rail, scenario in scenarios.items():
         progress(f"parts of the adaptive fuzzy law on {rail}")
-        law = controller("afsmc", vehicle, scenario.rail, specification)
-        assert isinstance(law, AdaptiveFuzzy)
+        law = cast(AdaptiveFuzzy, controller("afsmc", vehicle, scenario.rail, specification))
         ablations.append(ablation(vehicle, law, scenario))
     progress("track irregularities")
     spectra = load_track_spectrum("erri-b176")

@@ -3,7 +3,7 @@
 from wspd_design.certificates.checks.frame import certified
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.parameters.units import KMH
+from wspd_design.certificates.setting.domain import KMH
 from wspd_design.simulation.metrics import energy_residual, momentum_residual
 from wspd_design.simulation.records import PLANTS, Scenario
 from wspd_design.simulation.stop import simulate
