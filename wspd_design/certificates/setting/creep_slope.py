@@ -26,7 +26,7 @@ from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
-STEEPNESS, RATIO, SLIDING = "steepness", "kS/kA", "sliding speed"
+STEEPNESS, RATIO, SLIDING, NORMAL_MASS = "steepness", "kS/kA", "sliding speed", "normal mass"
 USED = (
     "speed",
     "mass",
@@ -63,6 +63,7 @@ def slope_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fracti
             variable(RATIO, _doubles(_quotient(problem, "slip reduction", "adhesion reduction")), "-"),
             variable("friction ratio", problem.span("friction ratio"), "-"),
             variable("friction decay", problem.span("friction decay"), "s/m"),
+            variable(NORMAL_MASS, 1.0, "kg"),
             variable(SLIDING, _doubles(mul(_wide(slips), _span(problem, "speed"))), "m/s"),
         ),
         expression=expression,
@@ -86,7 +87,8 @@ def poles(problem: Problem, slips: Ends, least: float, most: float) -> Ends:
 
 def _normal(problem: Problem, x: Values) -> tuple[Vehicle, Rail]:
     """Wheel with N = 1 at slip 1, kA = mu0 = 1 and its steepness in place of the shear modulus."""
-    vehicle, load = problem.vehicle, _load(problem)
+    vehicle = replace(problem.vehicle, mass=x[NORMAL_MASS])
+    load = static_wheel_load(vehicle)
     contact = replace(
         vehicle.contact,
         shear_modulus=x[STEEPNESS],
@@ -97,7 +99,6 @@ def _normal(problem: Problem, x: Values) -> tuple[Vehicle, Rail]:
     )
     normal = replace(
         vehicle,
-        mass=1.0,
         wheelset_inertia=2.0 * load,
         wheel_radius=1.0,
         wheel_damping=0.0,
@@ -114,16 +115,11 @@ def _normal(problem: Problem, x: Values) -> tuple[Vehicle, Rail]:
     return normal, rail
 
 
-def _load(problem: Problem) -> float:
-    """Wheel load of 1 kg [N]."""
-    return static_wheel_load(replace(problem.vehicle, mass=1.0))  # type: ignore[no-any-return]
-
-
 def _steepness(problem: Problem, slips: Ends) -> Balls:
     """Range of the shear modulus that gives the normal wheel the steepness z = kA C slip / mu0."""
     share, power_of_load = _gravity(problem), Fraction(EXPONENT)
     load, reference = mul(_span(problem, "mass"), share), _span(problem, "reference load")
-    found = mul(_wide(slips), _one(_load(problem)))
+    found = mul(_wide(slips), share)
     for name in ("shear modulus", "semi axis rolling", "semi axis lateral", "kalker c11"):
         found = mul(found, _span(problem, name))
     if problem.contact_grows_with_load:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from wspd_design.certificates.theorems import authority, foundations, recovery, sliding, valve
+from wspd_design.certificates.theorems import authority, foundations, recovery, region, sliding, valve
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
@@ -16,6 +16,7 @@ THEOREMS: Mapping[str, Theorem] = {
         valve.NO_GO,
         recovery.HARD_LIMITS,
         valve.SAMPLING,
+        region.LPV_LYAPUNOV,
     )
 }
 """By name; a check without a row here does not exist."""
