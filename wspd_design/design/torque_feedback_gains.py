@@ -131,7 +131,7 @@ def _acceleration(problem: Problem) -> float:
 
 
 def _poles(problem: Problem) -> Poles:
-    """Search the ends of q on the domain, at the reference."""
+    """Search the ends of q on the domain, at slips within the tolerance of the reference."""
     names = ("slip", *USED)
 
     def pole(points: "Array") -> "Array":
@@ -139,7 +139,8 @@ def _poles(problem: Problem) -> Poles:
         found: Array = at.pole - at.deceleration / points[:, names.index("speed")]
         return found
 
-    low, high = domain.slip_held(problem, names)
+    low, high = domain.box(problem, names)
+    low[0], high[0] = problem.near
     largest = maximize(pole, low, high, seed=problem.seed)
     smallest = maximize(lambda points: -pole(points), low, high, seed=problem.seed)
     varied = [k for k in range(len(names)) if low[k] < high[k]]

@@ -16,11 +16,12 @@ from typing import Any
 from wspd_design.certificates.kernel.arb import ball, below, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.claim import Claim, Relation
-from wspd_design.certificates.kernel.finding import Finding, Place
+from wspd_design.certificates.kernel.finding import Place
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
 from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Problem, Status
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.creep_slope import HELD
 from wspd_design.certificates.setting.plant import (
     Values,
     complete,
@@ -88,7 +89,7 @@ def explained(problem: Problem, findings: Findings) -> str:
 
 def free(problem: Problem) -> Mapping[str, tuple[float, float]]:
     """Ranges of the quantities that a place of no equilibrium names."""
-    names = [name for name in USED if name != "slip"]
+    names = [name for name in USED if name not in ("slip", *HELD)]
     ranges = {name: domain.span(problem, name) for name in names}
     return {name: (low, high) for name, (low, high) in ranges.items() if low < high}
 
@@ -110,7 +111,7 @@ def rate_claim(problem: Problem, slip: float, relation: Relation) -> Claim:
     return Claim(
         name=f"rate of the torque that holds slip {slip:.6g}",
         variables=(
-            *plant_variables(problem, uses=USED, ranges={"slip": slip}),
+            *plant_variables(problem, uses=USED, hold=HELD, ranges={"slip": slip}),
             *model_variables(law.vehicle, law.rail),
         ),
         expression=expression,
@@ -161,7 +162,3 @@ def _rate(problem: Problem, x: Values, held: Number, model_held: Number) -> Numb
     duty = (abs(demand) - abs(demand - 1.0) + 1.0) * 0.5  # limited to 0 and 1
     return duty * (1.0 - share) / x["fill time"] - (1.0 - duty) * share / x["vent time"]
 
-
-def finding_of(findings: Findings) -> Finding:
-    """Return the finding that tells most."""
-    return findings[NOWHERE] if findings[NOWHERE].status is Status.REFUTED else findings[ABOVE]

@@ -170,7 +170,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             f"the deviation, measured by the root of the function, falls at least as "
             f"exp(-{function.numbers['decay']:.3g} t) in continuous time and by a factor of {contraction:.3g} per sample"
         )
-    varied = tuple(name for name in (*creep_slope.USED, *NUMBERS) if name != "speed")
+    uncertain = domain.uncertain(problem)
+    varied = tuple(name for name in (*creep_slope.USED, *NUMBERS) if name in uncertain)
+    held = tuple(name for name in (*creep_slope.HELD, "supply rate") if name in uncertain)
     return Certificate(
         name="lpv_lyapunov",
         title="Quadratic function for all speeds",
@@ -179,7 +181,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"sampled every {problem.sample_time * 1e3:g} ms with its pulses, whatever the course of speed from {high:.3g} "
         f"to {low:.3g} km/h; and for all numbers of the domain an equilibrium lies within "
         f"{problem.slip_tolerance:g} of slip {problem.slip:g}. {STATIC.capitalize()}; domain: "
-        f"{domain.described(problem, (*varied,))}.",
+        f"{domain.described(problem, varied, held)}.",
         status=status,
         explanation=f"{polytope}; {falling[functions]}. {equilibrium.explained(problem, findings)}.",
         margin=margin,
@@ -208,7 +210,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             STATIC,
         ),
         varied=varied,
-        held=("supply rate",) if domain.span(problem, "supply rate")[0] < domain.span(problem, "supply rate")[1] else (),
+        held=held,
         method="functions by a search over their form; exact LDL' of rational matrices at the corners; interval branch "
         "and bound of the slope and of the equilibrium, replayed by the independent checker",
         reference="eqs. (9), (14), (19); docs/theory.md#lpv",
