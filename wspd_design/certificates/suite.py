@@ -6,6 +6,7 @@ from pathlib import Path
 
 from wspd_design.certificates.checks.foundations import gain_positive
 from wspd_design.certificates.checks.frame import Check, illustrated
+from wspd_design.certificates.checks.linear import margins, routh_lag
 from wspd_design.certificates.checks.region import lpv_lyapunov
 from wspd_design.certificates.checks.sliding import boundary_layer, reaching, sliding_exists
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
@@ -29,6 +30,8 @@ CHECKS: Mapping[str, Check] = {
         no_go.CHECK,
         hard_limits.CHECK,
         sampling.CHECK,
+        routh_lag.CHECK,
+        margins.CHECK,
         lpv_lyapunov.CHECK,
     )
 }

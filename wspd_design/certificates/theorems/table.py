@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from wspd_design.certificates.theorems import authority, foundations, recovery, region, sliding, valve
+from wspd_design.certificates.theorems import authority, foundations, linear, recovery, region, sliding, valve
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
@@ -16,6 +16,8 @@ THEOREMS: Mapping[str, Theorem] = {
         valve.NO_GO,
         recovery.HARD_LIMITS,
         valve.SAMPLING,
+        linear.ROUTH_LAG,
+        linear.MARGINS_THEOREM,
         region.LPV_LYAPUNOV,
     )
 }

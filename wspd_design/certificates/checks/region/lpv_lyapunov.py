@@ -35,7 +35,7 @@ from wspd_design.parameters.units import KMH
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
 
-SLACKS = (1.0, 4.0)  # 1/s, between what p - a/v attains and the bound that is proved; the first that succeeds
+SLACKS = (0.5, 2.0, 8.0)  # 1/s, between what p - a/v attains and the bound that is proved; the first that succeeds
 FIRST_LOOK = 0.02  # of the effort, to find what is attained
 SPEEDS = 25
 
