@@ -7,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from wspd_design.codegen.closed_loop import LoopInput, Settings
 from wspd_design.codegen.compiler import find_compiler
+from wspd_design.codegen.loop_numbers import LoopInput, Settings
 from wspd_design.design.catalog import controller
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import constants, load_rail, load_vehicle
+from wspd_design.plants.planar import Planar
 from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.records import Scenario
 
@@ -25,8 +26,8 @@ SCALAR_FLAGS = ("-O3", "-march=native", "-fPIC", "-shared", "-std=gnu11")
 
 def given(*, stops: int = 1, refinement: int = 1, **changes: float) -> LoopInput:
     """Input of the compiled loop, with changes to its settings."""
-    case = (VEHICLE, Scenario(rail=RAIL, initial_speed=SPEED))
-    loop = loop_input([case] * stops, LAW, plant="four-axle", refinement=refinement)
+    case = (Planar(VEHICLE), Scenario(rail=RAIL, initial_speed=SPEED))
+    loop = loop_input([case] * stops, LAW, refinement=refinement)
     settings = Settings.from_buffer_copy(loop.settings)
     for name, value in changes.items():
         setattr(settings, name, value)

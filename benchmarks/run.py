@@ -18,11 +18,12 @@ from datetime import date
 from pathlib import Path
 
 import references
-from case import LAW, RAIL, SAMPLE_TIME, VEHICLE, Scalar, given
+from case import LAW, SAMPLE_TIME, VEHICLE, Scalar, given
 
 from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import FLAGS, find_compiler
 from wspd_design.codegen.virtual_machine import run_virtual
+from wspd_design.plants.planar import Planar
 
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
 ROUNDS = 5
@@ -96,8 +97,8 @@ def process_cpu(*command: str, **environment: str) -> float:
 
 def measure_stops(scalar: Scalar) -> list[Row]:
     """One stop and the campaign, each against the ways that are usual."""
-    single = load_closed_loop(VEHICLE, RAIL, LAW)
-    several = load_closed_loop(VEHICLE, RAIL, LAW, stops=SIDE_BY_SIDE)
+    single = load_closed_loop(Planar(VEHICLE), LAW)
+    several = load_closed_loop(Planar(VEHICLE), LAW, stops=SIDE_BY_SIDE)
     one, many = given(), given(stops=SIDE_BY_SIDE)
     longer, short = given(longest_step=5e-3), given(time_limit=SHORT - 0.5 * SAMPLE_TIME)
     distance = distance_of(single.run(given(refinement=4)))
@@ -106,7 +107,7 @@ def measure_stops(scalar: Scalar) -> list[Row]:
         return f"{abs(value / distance - 1.0):.0e}"
 
     def virtual() -> object:
-        return run_virtual(VEHICLE, RAIL, LAW, one, sample_rows=70_000, disturbed=False)
+        return run_virtual(Planar(VEHICLE), LAW, one, sample_rows=70_000, disturbed=False)
 
     virtual()  # builds its functions
     ways: dict[str, Callable[[], object]] = {
@@ -191,7 +192,7 @@ def distance_of(output: object) -> float:
 
 def measure_threads() -> Row:
     """A campaign on two threads against one, in wall time."""
-    loop, many = load_closed_loop(VEHICLE, RAIL, LAW, stops=SIDE_BY_SIDE), given(stops=SIDE_BY_SIDE)
+    loop, many = load_closed_loop(Planar(VEHICLE), LAW, stops=SIDE_BY_SIDE), given(stops=SIDE_BY_SIDE)
     chunks = -(-CAMPAIGN // SIDE_BY_SIDE)
 
     def campaign(threads: int) -> tuple[float, float]:

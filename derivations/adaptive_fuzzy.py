@@ -24,6 +24,7 @@ _rules = range(3)
 mu = [sp.Symbol(f"mu_{r}", positive=True) for r in _rules]
 b = [sp.Symbol(f"b_{r}", real=True) for r in _rules]
 basis = [m / sum(mu) for m in mu]
+mu_sum = sum(sp.Symbol("mu_A", positive=True) for _ in _rules)
 partition_residual = sp.simplify(sum(basis) - 1)
 output_residual = sp.simplify(
     sum(b[r] * mu[r] for r in _rules) / sum(mu) - sum(b[r] * basis[r] for r in _rules)
@@ -33,7 +34,28 @@ output_residual = sp.simplify(
 ideal_control = ((-F + slip_d_rate + K_I / K_P * e) / G).subs(
     {F: slip_equation.drift, G: slip_equation.slip_gain}
 )
-ideal_speed_dependence = sp.simplify(sp.diff(ideal_control, slip_equation.v))  # at fixed e, hence at fixed s
+_force, _resistance = sp.Function("f")(slip_equation.v), sp.Function("f_d")(slip_equation.v)
+force_slope, resistance_slope = sp.symbols("force_slope resistance_slope", real=True)  # df/dv, df_d/dv
+_ideal_of_speed = ideal_control.subs({slip_equation.f: _force, slip_equation.f_d: _resistance})
+ideal_speed_dependence = (
+    sp.expand(  # at fixed slip and e, hence at fixed s; friction and resistance move with v
+        sp.diff(_ideal_of_speed, slip_equation.v)
+        .subs(
+            {
+                sp.diff(_force, slip_equation.v): force_slope,
+                sp.diff(_resistance, slip_equation.v): resistance_slope,
+            }
+        )
+        .subs({_force: slip_equation.f, _resistance: slip_equation.f_d})
+    )
+)
+# u* has no negative power of v: it is bounded wherever slip, speed, f and f_d are.
+ideal_singular_part = sum(
+    term
+    for term in sp.Add.make_args(sp.expand(ideal_control))
+    if sp.degree(sp.denom(sp.together(term)), slip_equation.v) > 0
+)
+
 # --- (37): sat(s) has a layer of 1 in s, which is 1/K_P in slip -------------------------------------------
 layer_in_slip = sp.Rational(1, 1800)
 
@@ -48,6 +70,12 @@ error_dynamics_residual_printed = sp.simplify(
     error_dynamics_left_printed.subs(slip_rate, F + G * u) - G * (ideal_torque - u)
 )
 
+# What T_brake = u leaves out: with T = u + (T - u) in (19) the error moves by another G (u - T).
+torque = sp.Symbol("torque", real=True)
+torque_residual = sp.simplify((slip_d_rate - (F + G * torque) + K_I / K_P * e) - G * (ideal_torque - u))
+
+torque_residual_of_slip = sp.expand((F + G * torque) - (F + G * u))
+
 # --- (41), (42): adaptation -------------------------------------------------------------------------------
 w_r = sp.Symbol("w", real=True)
 b_hat_rate = sp.Symbol("b_hat_rate", real=True)
@@ -56,8 +84,9 @@ adaptation_corrected = alpha1 * s * w_r
 adaptation_residual = adaptation_printed - adaptation_corrected
 sgn_G = sp.Symbol("sgn_G", real=True)
 bound_rate_printed = alpha2 * sp.Abs(s) * sgn_G
-bound_rate_corrected = alpha2 * sp.Abs(s)
-bound_rate_residual = bound_rate_printed.subs(sgn_G, -1) - bound_rate_corrected
+bound_rate = alpha2 * sp.Abs(s)
+sign_of_gain = sp.sign(slip_equation.slip_gain)  # 1 by (19)
+bound_rate_residual = bound_rate_printed.subs(sgn_G, sign_of_gain) - bound_rate
 
 
 # --- (43), (44): V2 as printed ----------------------------------------------------------------------------
@@ -90,12 +119,17 @@ gain_growth = sp.simplify(
     .subs(v_t, v)
     / slip_equation.slip_gain
 )
-# With sat(s) in place of sgn(s), a second term is left inside the layer |s| < 1 (here s > 0): never negative.
+# With sat(s) in place of sgn(s), a second term is left inside the layer |s| < 1: G psi_hat |s| (1 - |s|).
 rate_with_sat = sp.expand(_rate(lyapunov_printed, {**_closed_loop, s: K_P * G * (b_w + xi - psi_hat * s)}))
 layer_excess = sp.factor(
-    rate_with_sat.subs(sgn, 1).subs(psi_error, psi - psi_hat)
-    - rate_true.subs(sp.Abs(s), s).subs(psi_error, psi - psi_hat)
+    (
+        rate_with_sat.subs(s * sgn, sp.Abs(s)).subs(psi_error, psi - psi_hat)
+        - rate_true.subs(psi_error, psi - psi_hat)
+    )
+    .expand()
+    .subs(s**2, sp.Abs(s) ** 2)
 )
+layer_excess_at_edge = layer_excess.subs(s, 1)
 last_line_printed = -sp.Abs(s) * G * psi - sp.Abs(xi)
 last_line_corrected = -sp.Abs(s) * G * (psi - sp.Abs(xi))
 last_line_residual = sp.expand(last_line_printed - last_line_corrected)
@@ -113,6 +147,34 @@ repaired_rate_derived = sp.expand(
     sp.expand(_rate(lyapunov_repaired, repaired_loop).subs(_signed)).subs(s_D * sgn, sp.Abs(s_D))
 )
 repaired_rate_residual = sp.simplify(repaired_rate_derived - repaired_rate)
+# Without the dead zone it is V2/(G K_P), with the rates alpha K_P in V2.
+repaired_scale_residual = sp.simplify(
+    (lyapunov_printed / (G * K_P)).subs({alpha1: alpha1 / K_P, alpha2: alpha2 / K_P})
+    - lyapunov_repaired.subs({s_D: s / K_P, g: G * v})
+)
+# Adaptation held at a limit of the brake: V' = s_D (u* - T) - a s_D^2/(2 g) for any torque T.
+held_rate = s_D * (u_ideal - torque) - a * s_D**2 / (2 * g)
+held_rate_residual = sp.simplify(
+    _rate(lyapunov_repaired, {s_D: g / v * (u_ideal - torque), v: -a}) - held_rate
+)
+held_margin = sp.Symbol("eta", positive=True)
+_full = sp.Symbol("T_max", positive=True)
+held_full_residual = sp.expand(  # s_D > 0, T = T_max, u* = T_max - eta
+    held_rate.subs({torque: _full, u_ideal: _full - held_margin}) + s_D * held_margin + a * s_D**2 / (2 * g)
+)
+held_empty_residual = sp.expand(  # s_D < 0, T = 0, u* = eta
+    held_rate.subs({torque: 0, u_ideal: held_margin}) - s_D * held_margin + a * s_D**2 / (2 * g)
+)
+# u* of 65 kN m against a brake of 60: V rises at s_D = .05, g of R .55 m and I 331 kg m2, a 3 m/s2.
+held_counterexample = held_rate.subs(
+    {
+        s_D: sp.Rational(1, 20),
+        u_ideal: 65_000,
+        torque: 60_000,
+        a: 3,
+        g: sp.Rational("0.55") / (2 * 331),
+    }
+)
 
 _KEEPS = "Holds for the law (36), (37) with sgn(s) and the adaptation (41), (42)."
 FUNCTIONS = (

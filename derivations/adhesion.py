@@ -40,6 +40,12 @@ slope_at_zero = sp.simplify(
 )
 kalker_slope = G_s * a * b * c11
 coulomb_limit = sp.limit(force_of_gradient, gradient, sp.oo)
+force_parity = sp.simplify(force_of_gradient + force_of_gradient.subs(gradient, -gradient))  # odd in the slip
+force_residual = (
+    sp.Abs(coulomb_limit - Q * mu)
+    + sp.Abs(sp.simplify(slope_at_zero.subs({kA: 1, kS: 1}) - kalker_slope))
+    + sp.Abs(force_parity)
+)
 
 # --- exact derivatives along sliding speed = speed * slip -------------------------------------------------
 # Written with the parts that occur in the force itself: short, and tight in interval arithmetic.

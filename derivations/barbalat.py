@@ -38,6 +38,14 @@ gain_rate_at_standstill = sp.limit(gain_rate, slip_equation.v, 0, "+")
 # --- strictness: (34) allows psi = |xi| -------------------------------------------------------------------
 gamma_without_margin = gamma.subs(psi, sp.Abs(xi))
 
+# --- s -> 0 gives e -> 0: e is s/K_P through q/(q + c), whose step response exp(-c t) dies out ----------------
+_c = sp.Symbol("c", positive=True)
+error_after_step = sp.limit(sp.exp(-_c * time), time, sp.oo)
+_step = sp.exp(-_c * time)
+filter_residual = sp.simplify(
+    sp.diff(_step, time) + _c * _step
+)  # e' + c e = s'/K_P, zero after the step of s
+
 # --- (47): "<= infinity" holds even for Gamma = 1, which does not converge to zero ------------------------
 integral_of_one = sp.limit(sp.integrate(1, (time, 0, v0)), v0, sp.oo)
 vacuous_limit_holds = bool(integral_of_one <= sp.oo)

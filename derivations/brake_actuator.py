@@ -2,7 +2,8 @@
 
 Claims: (10) solves (9) for a constant supply only, the exact filling law with (8) has a second exponential;
 (13) drops a product-rule term; the right side of (14) is a misprint and needs full supply pressure and T_F
-= T_V; (15) is an average, with a ripple of T_max tanh(h/(4 tau)) peak to peak at half duty.
+= T_V; (15) is exact for the average over a period, about which the torque ripples by T_max tanh(h/(4 tau))
+peak to peak at half duty.
 """
 
 import sympy as sp
@@ -23,6 +24,8 @@ u_EV, u_BV = sp.symbols("u_EV u_BV", real=True)
 pressure_rate_printed = u_EV * (-P / T_V) + (1 - u_BV) * ((P_in - P) / T_F)
 pressure_rate_residual = sp.simplify(pressure_rate_printed - pressure_rate.subs({fill: 1 - u_BV, vent: u_EV}))
 pressure_rate_on_hold = pressure_rate_printed.subs({u_EV: 0, u_BV: 1})
+pressure_rate_on_reduction = pressure_rate_printed.subs({u_EV: 1, u_BV: 1})
+pressure_rate_on_increase = pressure_rate_printed.subs({u_EV: 0, u_BV: 0})
 
 # --- (10): filling ----------------------------------------------------------------------------------------
 filled_printed = P0 + (P_in - P0) * (1 - sp.exp(-(t - t0) / T_F))
@@ -49,7 +52,9 @@ vented = P0 * sp.exp(-elapsed / T_V)
 vented_residual = sp.simplify(sp.diff(vented, elapsed) + vented / T_V)
 
 # --- (12), (13): torque of the cylinder, with a pad friction that depends on the relative speed -----------
-K = sp.Symbol("K_b", positive=True)  # 2 A_eff E_b eta_b R
+# The paper prints R for the radius r_b at which the pads act, its letter for the wheel too, and K_b without a word.
+A_eff, E_b, eta_b, r_b = sp.symbols("A_eff E_b eta_b r_b", positive=True)
+K = 2 * A_eff * E_b * eta_b * r_b
 mu_pad = sp.Function("mu_brake", positive=True)(time)
 P_t = sp.Function("P_c", real=True)(time)
 torque_rate_derived = sp.diff(K * mu_pad * P_t, time)
@@ -65,13 +70,28 @@ lag_derived = sp.expand(  # tau T' + T, from (9) and (12), for equal time consta
     tau * T_max / P_max * bracket_13.subs({T_F: tau, T_V: tau, P: pressure_of_torque}) + T
 )
 lag_right_side = lag_derived.subs(P_in, P_max)  # = T_max u
+supply_residual_of_lag = sp.simplify(lag_derived - lag_right_side)  # zero only under full supply
+supply_share = (supply / P_max).subs(t, 1 / rate)  # of the full pressure, one time constant after the start
 command_rate = sp.Symbol("command_rate", real=True)
 lag_right_side_printed = T * command_rate
 lag_residual = sp.simplify(lag_right_side_printed - lag_right_side)
 bilinear_coefficient = sp.simplify(sp.diff(bracket_13, u, P))  # of u P: zero only for T_F = T_V
 torque_rate = (T_max * u - T) / tau
 
-# --- (15): periodic solution of (14) under a square wave of half duty -------------------------------------
+# --- (15): average over a period h of any solution of (14); N and M are integrals of T and u ----------------
+_N = sp.Function("N", real=True)(time)
+_M = (tau * sp.diff(_N, time) + _N) / T_max  # the integral of (14)
+
+
+def _average(integral: sp.Expr) -> sp.Expr:
+    return (integral - integral.subs(time, time - h)) / h
+
+
+average_residual = sp.simplify(
+    (tau * sp.diff(_average(_N), time) + _average(_N) - T_max * _average(_M)).doit()
+)
+
+# --- ripple about it: periodic solution of (14) under a square wave of half duty ----------------------------
 high, low = sp.symbols("T_high T_low", real=True)
 half = sp.exp(-h / (2 * tau))
 orbit = sp.solve([T_max + (low - T_max) * half - high, high * half - low], [high, low], dict=True)[0]

@@ -127,6 +127,7 @@ def _table() -> dict[str, Quantity]:
         "gain_times_speed": q("m/(N m s2)", "g = G v = R / (2 I)", "g", "g", positive),
         # track, eq. (49)
         "wavenumber": q("rad/m", "wavenumber of the irregularity", "Ω", "Omega", positive),
+        # Their units depend on the row of Table 9: unit_check.py solves eq. (49) for them.
         "beta0": q("", "coefficient of the numerator", "β0", "beta_0"),
         "beta2": q("", "coefficient of the numerator", "β2", "beta_2"),
         "gamma0": q("", "coefficient of the denominator", "γ0", "gamma_0"),
@@ -137,6 +138,82 @@ def _table() -> dict[str, Quantity]:
 
 
 NOMENCLATURE = _table()
+
+
+def _auxiliary() -> dict[str, Quantity]:
+    q = Quantity
+    return {
+        "slip_rate": q("1/s", "rate of the slip", "λ'", "dot(lambda)"),
+        "error_rate": q("1/s", "rate of the slip error", "e'", "dot(e)"),
+        "speed_rate": q("m/s2", "acceleration of the train", "v'", "dot(v)"),
+        "wheel_speed_rate": q("rad/s2", "angular acceleration of the wheelset", "ω'", "dot(omega)"),
+        "torque_rate": q("N m/s", "rate of the braking torque", "T'", "dot(T)"),
+        "pressure_rate": q("Pa/s", "rate of the cylinder pressure", "P_c'", "dot(P)_c"),
+        "command_rate": q("1/s", "rate of the valve command", "ū'", "dot(overline(u))"),
+        "b_hat_rate": q("N m/s", "rate of an estimated weight", "b^'", "dot(hat(b))"),
+        "psi_hat_rate": q("N m/s", "rate of the estimated bound", "ψ^'", "dot(hat(psi))"),
+        "lyapunov": q("", "a Lyapunov function", "V", "V"),
+        "lyapunov_rate": q("1/s", "rate of the Lyapunov function of the surface", "V'", "dot(V)"),
+        "lyapunov2": q("-", "Lyapunov function V2 of the adaptive law", "V2", "V_2"),
+        "lyapunov2_rate": q("1/s", "rate of V2", "V2'", "dot(V)_2"),
+        "gamma": q("1/s", "Gamma of eq. (45)", "Γ", "Gamma"),
+        "u": q("N m", "control input, a torque", "u", "u"),
+        "u_ideal": q("N m", "ideal control", "u*", "u^*"),
+        "u_eq": q("N m", "equivalent control", "u_eq", 'u_"eq"'),
+        "u_ht": q("N m", "robust control", "u_ht", 'u_"ht"'),
+        "duty_cycle": q("-", "duty of the valves", "dc", "d c"),
+        "rho": q("-", "assumed over true inertia", "ρ", "rho"),
+        "sgn_G": q("-", "sign of G", "sgn(G)", 'op("sgn") (G)'),
+        "sgn_s": q("-", "sign of s", "sgn(s)", 'op("sgn") (s)'),
+        "b_error_times_w": q("N m", "error of the weights times the basis", "b~ᵀw", "tilde(b)^top w"),
+        "weight": q("N m", "weight of a rule", "b", "b"),
+        "basis": q("-", "fuzzy basis function", "w", "w"),
+        "v_0": q("m/s", "speed at the start", "v0", "v_0"),
+        "omega_0": q("rad/s", "wheel speed at the start", "ω0", "omega_0"),
+        "t_stop": q("s", "stopping time", "t_stop", 't_"stop"'),
+        "force_slope": q("N s/m", "derivative of the creep force in speed at fixed slip", "∂f/∂v", "f_v"),
+        "resistance_slope": q("N s/m", "derivative of the running resistance in speed", "f_d'", "dot(f)_d"),
+        "q": q("-", "relative uncertainty of the gain", "q", "q"),
+        "D": q("1/s", "bounds of Delta F and Delta G u_eq", "D", "D"),
+        "W": q("1/s", "bound on the uncertainty", "W", "W"),
+        "torque_integral": q(
+            "N m s", "sum of the torque integrals of the wheelsets", "Σ∫T dt", "sum integral T dif t"
+        ),
+        "A_eff": q("m2", "effective area of the brake cylinders", "A_eff", 'A_"eff"'),
+        "E_b": q("-", "magnification of the brake rigging", "E_b", "E_b"),
+        "eta_b": q("-", "efficiency of the brake rigging", "η_b", "eta_b"),
+        "r_b": q("m", "radius at which the pads act, printed R", "r_b", "r_b"),
+        "mu_brake": q("-", "friction coefficient of the pads", "μ_b", "mu_b"),
+        "P_c": q("Pa", "pressure of the brake cylinder over time", "P_c", "P_c"),
+        "f": q("N", "creep force of one wheel over time", "f", "f"),
+        "f_d": q("N", "running resistance over time", "f_d", "f_d"),
+        "T": q("N m", "braking torque over time", "T", "T"),
+        "v": q("m/s", "train speed over time", "v", "v"),
+        "omega": q("rad/s", "wheel speed over time", "ω", "omega"),
+        "B_W": q("N m s", "damping over time", "B_W", "B_W"),
+        "u_EV": q("-", "command of the vent valve", "u_EV", 'u_"EV"'),
+        "u_BV": q("-", "command of the fill valve", "u_BV", 'u_"BV"'),
+        "mu_A": q("-", "degree of membership", "μ_A", "mu_(A^r)"),
+        "spectral_density": q("m2/(rad/m)", "power spectral density", "S", "S"),
+        "cross_level_density": q("m/rad", "spectral density of the roll angle, a pure number", "S", "S"),
+        "slide": q("m/s", "absolute slide", "σ", "sigma"),
+        "slide_rate": q("m/s2", "rate of the absolute slide", "σ'", "dot(sigma)"),
+        "slide_limit": q("m/s", "limit of a slide region", "Δσ", "Delta sigma"),
+        "kmh": q("m/s", "one kilometre per hour", "km/h", '"km/h"'),
+        "disturbing_torque": q("N m", "disturbing torque of the pads", "T_d", "T_d"),
+        "disturbance_gain": q("-", "disturbing torque over braking torque", "k_d", "k_d"),
+        "disturbance_decay": q("1/s", "decay of the disturbance", "δ_d", "delta_d"),
+        "disturbance_frequency": q("rad/s", "frequency of the disturbance", "ω_d", "omega_d"),
+    }
+
+
+AUXILIARY = _auxiliary()
+"""Symbols that occur in derivations only: rates, integrals, functions of time."""
+
+
+def quantity(name: str) -> Quantity | None:
+    """Return what a symbol of a derivation stands for, or None where the tables do not name it."""
+    return NOMENCLATURE.get(name) or AUXILIARY.get(name)
 
 
 def symbol(name: str) -> sp.Symbol:

@@ -6,54 +6,14 @@ import sympy as sp
 from sympy.printing.printer import Printer
 from sympy.printing.str import StrPrinter
 
-from derivations.notation import NOMENCLATURE
-
-_OTHER = {  # symbols that occur in derivations only: plain text, Typst
-    "slip_rate": ("λ'", "dot(lambda)"),
-    "error_rate": ("e'", "dot(e)"),
-    "speed_rate": ("v'", "dot(v)"),
-    "wheel_speed_rate": ("ω'", "dot(omega)"),
-    "torque_rate": ("T'", "dot(T)"),
-    "pressure_rate": ("P_c'", "dot(P)_c"),
-    "command_rate": ("ū'", "dot(overline(u))"),
-    "b_hat_rate": ("b^'", "dot(hat(b))"),
-    "psi_hat_rate": ("ψ^'", "dot(hat(psi))"),
-    "lyapunov": ("V", "V"),
-    "lyapunov_rate": ("V'", "dot(V)"),
-    "lyapunov2": ("V2", "V_2"),
-    "lyapunov2_rate": ("V2'", "dot(V)_2"),
-    "gamma": ("Γ", "Gamma"),
-    "u": ("u", "u"),
-    "u_ideal": ("u*", "u^*"),
-    "u_eq": ("u_eq", 'u_"eq"'),
-    "rho": ("ρ", "rho"),
-    "sgn_G": ("sgn(G)", 'op("sgn") (G)'),
-    "b_error_times_w": ("b~'w", "tilde(b)^top w"),
-    "v_0": ("v0", "v_0"),
-    "omega_0": ("ω0", "omega_0"),
-    "t_stop": ("t_stop", 't_"stop"'),
-    "torque_integral": ("Σ∫T dt", "sum integral T dif t"),
-    "K_b": ("K_b", "K_b"),
-    "mu_brake": ("μ_b", "mu_b"),
-    "P_c": ("P_c", "P_c"),
-    "f_d": ("f_d", "f_d"),
-    "u_EV": ("u_EV", 'u_"EV"'),
-    "u_BV": ("u_BV", 'u_"BV"'),
-    "omega": ("ω", "omega"),
-    "mu_A": ("μ_A", "mu_(A^r)"),
-    "spectral_density": ("S", "S"),
-    "ripple": ("ΔT", "Delta T"),
-    "slide": ("σ", "sigma"),
-}
+from derivations.notation import quantity
 
 
 def _name(name: str, column: int) -> str:
-    if name in NOMENCLATURE:
-        quantity = NOMENCLATURE[name]
-        return quantity.typst if column else quantity.plain
-    if name in _OTHER:
-        return _OTHER[name][column]
-    return name
+    found = quantity(name)
+    if found is None:
+        return name
+    return found.typst if column else found.plain
 
 
 class PlainPrinter(StrPrinter):  # type: ignore[misc]
@@ -146,6 +106,9 @@ class TypstPrinter(Printer):  # type: ignore[misc]
     def _print_sign(self, expression: sp.sign) -> str:
         return f'op("sgn")({self._print(expression.args[0])})'
 
+    def _print_sin(self, expression: sp.sin) -> str:
+        return f"sin({self._print(expression.args[0])})"
+
     def _print_tanh(self, expression: sp.tanh) -> str:
         return f"tanh({self._print(expression.args[0])})"
 
@@ -177,14 +140,20 @@ def typst(expression: sp.Expr) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """An equation or inequality as it is shown: plain text and Typst math."""
+    """An equation or inequality as it is shown: plain text and Typst math.
+
+    ``sides`` are the expressions that must have the same unit.
+    """
 
     plain: str
     typst: str = ""
+    sides: tuple[sp.Expr, ...] = ()
 
 
 def form(left: str | sp.Expr, right: sp.Expr, relation: str = "=") -> Form:
     """Show ``left relation right``; a left side in words is the name of a symbol."""
     left = sp.Symbol(left) if isinstance(left, str) else left
     sign = {"<=": "≤", ">=": "≥"}.get(relation, relation)
-    return Form(f"{plain(left)} {sign} {plain(right)}", f"{typst(left)} {relation} {typst(right)}")
+    return Form(
+        f"{plain(left)} {sign} {plain(right)}", f"{typst(left)} {relation} {typst(right)}", (left, right)
+    )

@@ -9,7 +9,6 @@ import sympy as sp
 
 from derivations import slip_equation
 from derivations.notation import symbols, time
-from wspd_design.certificates.theorems import quadratic
 
 p, tau, h, K, z = sp.symbols("p tau h K z", positive=True)
 alpha, beta = sp.symbols("alpha beta", positive=True)  # exp(p h), exp(-h/tau)
@@ -38,39 +37,44 @@ _error_rate = p * (y / v) - R * T_max / (I_w * v) * t  # of e = y/v, from (19) n
 sliding_residual = sp.simplify(
     (v * _error_rate - a * (y / v)) - (q * y - gamma * t).subs({q: p - a / v, gamma: R * T_max / I_w})
 )
-_loop = quadratic.Loop(gamma=(gamma, gamma), lag=tau, sliding_gain=kappa, torque_gain=back, sample_time=h)
-_rates = sp.Matrix(quadratic.rates(_loop, q, gamma))
 _valve = (kappa * y - back * t - t) / tau  # tau T' + T = T_max u, eq. (14), u = kappa y - K t
-loop_residual = sp.expand((_rates * sp.Matrix([y, t]))[1] - _valve)
-_entries = sp.symbols("P_11 P_12 P_22", real=True)
-_P = sp.Matrix([_entries[:2], _entries[1:]])
+rates = sp.Matrix([[q, -gamma], [kappa / tau, -(1 + back) / tau]])
+loop_residual = sp.expand((rates * sp.Matrix([y, t]))[1] - _valve)
+entries = sp.symbols("P_11 P_12 P_22", real=True)
+_P = sp.Matrix([entries[:2], entries[1:]])
+any_matrix = sp.Matrix(2, 2, sp.symbols("A_11 A_12 A_21 A_22", real=True))
+_a11, _a12, _a21, _a22 = any_matrix
+_p11, _p12, _p22 = entries
 
 
-def _upper(matrix: sp.Matrix) -> tuple[sp.Expr, ...]:
-    return matrix[0, 0], matrix[0, 1], matrix[1, 1]
-
-
-def _difference(coded: tuple[sp.Expr, ...], matrix: sp.Matrix) -> sp.Expr:
-    """Sum of squares of what differs: zero only if every entry agrees."""
+def _difference(written: tuple[sp.Expr, ...], matrix: sp.Matrix) -> sp.Expr:
+    """Sum of squares of what differs from the entries 11, 12, 22: zero only if every entry agrees."""
+    upper = matrix[0, 0], matrix[0, 1], matrix[1, 1]
     return sp.expand(
-        sum(sp.expand(one - other) ** 2 for one, other in zip(coded, _upper(matrix), strict=True))
+        sum(sp.expand(one - other) ** 2 for one, other in zip(written, upper, strict=True))
+        + sp.expand(matrix[0, 1] - matrix[1, 0]) ** 2
     )
 
 
-decrease_residual = _difference(
-    quadratic.decays(_entries, _rates.tolist(), decay), -(_rates.T * _P + _P * _rates) - 2 * decay * _P
+# The entries 11, 12, 22 as a program evaluates them; tests compare the checker's functions with these.
+decrease = (
+    -2 * (_p11 * _a11 + _p12 * _a21) - 2 * decay * _p11,
+    -(_p11 * _a12 + _p12 * (_a11 + _a22) + _p22 * _a21) - 2 * decay * _p12,
+    -2 * (_p12 * _a12 + _p22 * _a22) - 2 * decay * _p22,
 )
+decrease_residual = _difference(decrease, -(any_matrix.T * _P + _P * any_matrix) - 2 * decay * _P)
+contraction = (
+    kept**2 * _p11 - (_p11 * _a11**2 + 2 * _p12 * _a11 * _a21 + _p22 * _a21**2),
+    kept**2 * _p12 - (_p11 * _a11 * _a12 + _p12 * (_a11 * _a22 + _a12 * _a21) + _p22 * _a21 * _a22),
+    kept**2 * _p22 - (_p11 * _a12**2 + 2 * _p12 * _a12 * _a22 + _p22 * _a22**2),
+)
+contraction_residual = _difference(contraction, kept**2 * _P - any_matrix.T * _P * any_matrix)
 affine_residual = sp.expand(
-    sum(entry.diff(*twice) ** 2 for entry in _rates for twice in ((q, q), (gamma, gamma), (q, gamma)))
+    sum(entry.diff(*twice) ** 2 for entry in rates for twice in ((q, q), (gamma, gamma), (q, gamma)))
 )
-_any = sp.Matrix(2, 2, sp.symbols("A_11 A_12 A_21 A_22", real=True))
-contraction_residual = _difference(
-    quadratic.contracts(_entries, _any.tolist(), kept), kept**2 * _P - _any.T * _P * _any
-)
-_pivot = _entries[2] - _entries[1] ** 2 / _entries[0]
+_pivot = _p22 - _p12**2 / _p11
 pivots_residual = sp.simplify(
-    (sp.Matrix([[y, t]]) * _P * sp.Matrix([y, t]))[0]
-    - (_entries[0] * (y + _entries[1] / _entries[0] * t) ** 2 + _pivot * t**2)
+    (sp.Matrix([[y, t]]) * _P * sp.Matrix([y, t]))[0] - (_p11 * (y + _p12 / _p11 * t) ** 2 + _pivot * t**2)
 )
 _theta = sp.Symbol("theta", positive=True)
 _one, _two = sp.Matrix(sp.symbols("a_1 a_2", real=True)), sp.Matrix(sp.symbols("b_1 b_2", real=True))

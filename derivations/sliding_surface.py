@@ -39,6 +39,8 @@ printed_contradiction = sp.simplify(slip_rate.subs(delta, 0).subs(u, equivalent_
 # --- (24), (25): reaching ---------------------------------------------------------------------------------
 lyapunov = s**2 / 2
 robust_term = W * sp.sign(s) / G
+robust_size = W / G  # largest value of u_ht in (23)
+robust_form = sp.Symbol("sat(s/Φ)") * robust_size
 s_rate_controlled = sp.simplify(s_rate.subs(u, equivalent_derived + robust_term))
 lyapunov_rate = sp.expand(s * s_rate_controlled)
 lyapunov_rate_claimed = sp.expand(-K_P * s * delta - K_P * W * sp.Abs(s))
@@ -54,8 +56,28 @@ worst_case_rate = sp.simplify(
 layer_error_bound = Phi / K_P * (1 + sp.integrate(c * sp.exp(-c * time), (time, 0, sp.oo)))
 
 # --- (26): unit of u --------------------------------------------------------------------------------------
-# The printed law starts with |b| <= 1 and psi = 1, so |u| <= 2: the duty if u is in N m (T_max 60 kN m).
-duty_of_printed_gains = sp.Rational(1 + 1, 60_000)
+# The printed law starts with |b| <= 1 and psi = 1 and adapts both with alpha_1 + alpha_2 = 10.85 times |s|. While
+# the slip is not negative s <= K_P .14 + K_I .14 t, so that u never exceeds u_most; a lag only delays it.
+u_start, duty_at_start = 2, sp.Rational(2, 60_000)
+u_most = u_start + (10 + sp.Rational("0.85")) * sp.integrate(
+    (1800 + 550 * time) * sp.Rational("0.14"), (time, 0, time)
+)
+# If u is in N m: speed by (1), (2) of a train that rolls, without running resistance; mass and speed as printed.
+_rolling_mass = 76841 + 8 * 331 / sp.Rational("0.55") ** 2
+speed_in_newton_metres = sp.Rational(120) / sp.Rational("3.6") - 4 / (
+    sp.Rational("0.55") * _rolling_mass
+) * sp.integrate(u_most, (time, 0, time))
+_stop = next(root for root in sp.Poly(speed_in_newton_metres, time).nroots() if root.is_real and root > 0)
+distance_in_newton_metres = float(sp.integrate(speed_in_newton_metres, (time, 0, _stop)))  # m, at least
+printed_distance = 184.03  # m, Table 10, AFSMC, dry
+
+# --- T_brake = u: (23) sets the torque, (26) makes a duty of it; by (15) the torque lags behind ---------------
+torque_rate = sp.Symbol("torque_rate", real=True)
+torque_of_duty = u - tau * torque_rate  # tau T' + T = T_max dc with dc = u/T_max
+torque_residual = sp.expand(torque_of_duty - u)
+unmodeled_rate = sp.expand((F + G * torque_of_duty + delta) - slip_rate)  # of the slip
+torque_rate_of_surface = sp.expand(-s * K_P * unmodeled_rate)  # of V = s^2/2
+ideal_torque_residual = -unmodeled_rate  # of e' + c e
 
 # --- (27), (28): ideal control ----------------------------------------------------------------------------
 ideal_residual = sp.simplify(error_rate.subs(delta, 0).subs(u, equivalent_derived) + K_I / K_P * e)

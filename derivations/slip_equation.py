@@ -21,6 +21,10 @@ wheel_speed_of_slip = (1 - slip) * v / R
 round_trip_residual = sp.simplify(slip_of_speeds.subs(omega, wheel_speed_of_slip) - slip)
 turning = sp.Symbol("omega", positive=True)
 slip_at_standstill = sp.limit(slip_of_speeds.subs(omega, turning), v, 0, "+")  # minus infinity: singular
+# Along R omega = k v the slip is 1 - k down to v = omega = 0: it has no limit there, and (1), (2) no right side.
+_ratio = sp.Symbol("k", positive=True)
+slip_along_ray = sp.simplify(slip_of_speeds.subs(omega, _ratio * v / R))
+slip_speed_slope = sp.diff(slip_of_speeds, v)  # unbounded: not Lipschitz near v = 0
 
 # --- (19): differentiate (3) in time and insert (1), (2) --------------------------------------------------
 v_t, omega_t = sp.Function("v", positive=True)(time), sp.Function("omega", real=True)(time)
@@ -41,6 +45,9 @@ drift_derived = sp.expand(slip_rate_derived.subs(T, 0).subs(omega, wheel_speed_o
 drift = -((R**2 * f / inertia + (1 - slip) * (f_d + 8 * f) / m) / v) + B_W * (1 - slip) / inertia
 drift_residual = sp.simplify(drift_derived - drift)
 
+# F(slip, t) hides v: (19) is scalar only along a given v(t).
+drift_speed_slope = sp.simplify(sp.diff(drift, v))  # even at fixed f and f_d
+
 # --- slope at fixed speed: f depends on slip, f_d on speed only -------------------------------------------
 force_of_slip = sp.Function("f", real=True)(slip)
 drift_slope_derived = sp.diff(drift.subs(f, force_of_slip), slip).subs(
@@ -56,6 +63,11 @@ inertia_ratio = sp.Symbol("rho", positive=True)  # assumed / true inertia
 gain_uncertainty = sp.simplify(slip_gain.subs(inertia, inertia / inertia_ratio) - slip_gain)
 uncertainty_at_standstill = sp.limit(sp.Abs((gain_uncertainty * T).subs({inertia_ratio: 2, T: 1})), v, 0, "+")
 uncertainty_times_speed = sp.simplify(gain_uncertainty * T * v)  # bounded: W = W0 / v is possible
+# With T = u = u_eq + W/G, delta contains W: W >= |Delta F| + q (G |u_eq| + W), q = |Delta G|/G, asks for q < 1.
+_share, _apart, W = sp.symbols("q D W", positive=True)  # D = |Delta F| + q G |u_eq|
+smallest_bound = sp.solve(sp.Eq(W, _apart + _share * W), W)[0]
+circular_residual = sp.simplify(smallest_bound - _apart)  # what the bound grows by, without end as q -> 1
+circular_limit = sp.limit(smallest_bound.subs(_apart, 1), _share, 1, "-")
 
 FUNCTIONS = (
     Generated(

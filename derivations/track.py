@@ -12,6 +12,8 @@ from derivations.notation import Generated, symbol, symbols
 W, b0, b2, g0, g2, g4, g6 = symbols("wavenumber beta0 beta2 gamma0 gamma2 gamma4 gamma6")
 spectrum = (b0 + b2 * W**2) / (g0 + g2 * W**2 + g4 * W**4 + g6 * W**6)
 
+cross_spectrum = b2 * W**2 / (g0 + g2 * W**2 + g4 * W**4 + W**6)  # the third row
+
 # --- ERRI B176, level "high": wavenumbers in rad/m, amplitudes in m2 rad/m --------------------------------
 W_c, W_r, W_s = sp.Rational("0.8246"), sp.Rational("0.0206"), sp.Rational("0.4380")
 half_gauge = sp.Rational("0.75")  # m, half distance of the running circles

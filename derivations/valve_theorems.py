@@ -2,18 +2,19 @@
 
 import sympy as sp
 
-from derivations import recovery, sampled_loop, sliding_surface, stop_limit
+from derivations import (
+    adaptive_loop,
+    recovery,
+    sampled_loop,
+    sliding_surface,
+    stop_limit,
+    valve_limit,
+    valve_map,
+)
 from derivations.notation import symbols
 from derivations.theorem import Identity, Theorem
 
 p, tau, c, k, G = symbols("pole time_constant surface_rate layer_rate gain")
-
-# --- no-go: the trace of the Jacobian does not depend on the law ------------------------------------------
-_u_slip, _u_memory, _memory_slip = sp.symbols("u_slip u_memory h_slip", real=True)
-_jacobian = sp.Matrix(  # slip, torque, one memory state that is driven by the slip alone
-    [[p, G, 0], [_u_slip / tau, -1 / tau, _u_memory / tau], [_memory_slip, 0, 0]]
-)
-trace_residual = sp.simplify(_jacobian.trace() - (p - 1 / tau))
 
 # --- Routh: e' = p e - G (T - T_0), tau T' + T = u for a law that is linear near its reference ---------------
 _P, _I, _K, _q = sp.symbols("P I K q", real=True)
@@ -24,25 +25,46 @@ linear_residual = sp.expand(tau * (_q * sp.eye(3) - _linear).det() - _characteri
 THEOREMS = (
     Theorem(
         anchor="no-go",
-        title="No law without torque or acceleration feedback beats the valve",
-        statement="Let a law command the valve from slip and speed, with a memory that the slip drives. Every "
-        "equilibrium with an open-loop slip pole p > 1/tau is unstable, whatever the gains.",
+        title="A law whose memory only integrates, without feedback of torque or acceleration, does not beat the "
+        "valve",
+        statement="If a law does not read the torque (du/dT = 0) and its memory holds nothing but integrals of "
+        "slip and speed, every equilibrium at which the open-loop slip pole exceeds 1/tau is unstable, whatever "
+        "the gains. In general the poles of the loop with the valve add up to p - 1/tau + (du/dT)/tau + "
+        "trace(A_c), A_c the dynamics of the law's own memory.",
         hypotheses=(
             "train speed frozen",
-            "valve a first-order lag tau, eq. (14)",
-            "no feedback of pressure, torque or wheel acceleration",
+            "valve a first-order lag tau, eq. (14), that is not saturated at the equilibrium",
+            "no feedback of pressure, torque or wheel acceleration: du/dT = 0",
+            "memory without dynamics of its own: its rates depend on slip and speed only, so that trace(A_c) = 0",
         ),
-        sketch="The divergence of the closed loop, the trace of its Jacobian, is p - 1/tau: the law fills in only "
-        "entries off the diagonal. A positive trace has an eigenvalue with positive real part.",
-        not_said="That the motion is unbounded: it settles on a limit cycle. Nor that p < 1/tau suffices.",
-        identities=(Identity("trace of the Jacobian = p - 1/tau", trace_residual),),
+        sketch="The sum of the poles is the trace of the Jacobian, and the hypotheses leave p - 1/tau of it. A "
+        "positive trace has an eigenvalue with positive real part.",
+        not_said="Anything about a law with dynamics of its own. A lead filter on the slip error, z' = -(p + 12) "
+        "z + e, reads the slip alone and puts the poles to -6, -6 and -1/tau for every p; a copy of the valve "
+        "that follows the law's own commands does it too, without a sensor of torque. Both have trace(A_c) < 0. "
+        "Nor that the motion is unbounded: it settles on a limit cycle. Nor that p < 1/tau suffices.",
+        identities=(
+            Identity(
+                "trace of the Jacobian = p - 1/tau + (du/dT)/tau + trace(A_c)", valve_limit.trace_residual
+            ),
+            Identity(
+                "it is p - 1/tau for du/dT = 0 and a memory of integrals", valve_limit.integral_residual
+            ),
+            Identity("lead filter: det(q - A) = (q + 1/tau)(q + 6)^2", valve_limit.lead_residual),
+            Identity("lead filter: trace(A_c) = -(p + 12)", valve_limit.lead_trace_residual),
+            Identity(
+                "copy of the valve: tau det(q - A) = (q + 1/tau)(tau q^2 + (1 + K - p tau) q + G kappa - (1 + K) p)",
+                valve_limit.copy_residual,
+            ),
+            Identity("copy of the valve: trace(A_c) = -(1 + K)/tau", valve_limit.copy_trace_residual),
+        ),
         certificates=("open_loop_pole", "no_go"),
     ),
     Theorem(
         anchor="hard-limits",
         title="What full venting brings back",
-        statement="Let the slip stand d above its reference while the torque is T*, which holds the reference, and let "
-        "a law see it h later. Full venting keeps the slip below the reference plus X and brings it back if "
+        statement="Let the slip stand d above its reference while the torque is T*, which holds the reference, "
+        "and let a law see it h later. Full venting keeps the slip below the reference plus X and brings it back if "
         "(A/X)^2 + A p (1 + p tau)/g <= 1 with A = d exp(p h), g = G T* and p > 0 the largest slope of F in between. "
         "Where full venting does not, no law does. If no slope is positive, d < X is enough.",
         hypotheses=(
@@ -50,11 +72,12 @@ THEOREMS = (
             "T* > 0; the valve vents as in (9) with the time constant tau",
             "the law holds T* until its next sample",
         ),
-        sketch="No command empties the cylinder faster than T* exp(-t/tau), and less torque means less slip. While the "
-        "slip is within X, x' <= p x + g z with z = T/T* - 1. The combination w = x + g tau z/(1 + p tau) obeys "
-        "w' = p (w - delta), delta = g/(p (1 + p tau)), and begins at A: below delta it falls for good, and x stays "
-        "below -delta ln(1 - A/delta). That is below X if A <= delta (1 - exp(-X/delta)), which follows from the "
-        "condition because u coth u <= sqrt(1 + u^2). For small deviations delta itself is the limit.",
+        sketch="No command empties the cylinder faster than T* exp(-t/tau), and less torque means less slip. "
+        "While the slip is within X, x' <= p x + g z with z = T/T* - 1. The combination w = x + g tau z/(1 + p "
+        "tau) obeys w' = p (w - delta), delta = g/(p (1 + p tau)), and begins at A: below delta it falls for "
+        "good, and x stays below -delta ln(1 - A/delta). That is below X if A <= delta (1 - exp(-X/delta)), which "
+        "follows from the condition because u coth u <= sqrt(1 + u^2). For small deviations delta itself is the "
+        "limit.",
         not_said="That more is impossible: friction that levels off allows more, so that a refutation needs a path "
         "that passes the limit. Nor what a falling train speed changes within the second that recovery takes, which "
         "counts at the lowest speeds. A deviation below the reference is benign: the wheel falls back to rolling.",
@@ -75,8 +98,8 @@ THEOREMS = (
     Theorem(
         anchor="sampling",
         title="The largest slip pole that sampled feedback of the slip stabilizes",
-        statement="A gain on the slip, sampled every h and held, stabilizes the pole p > 0 through the lag tau if and "
-        "only if p tau (exp(p h) - 1) < 1 - exp(-h/tau).",
+        statement="A gain on the slip, sampled every h and held, stabilizes the pole p > 0 through the lag tau if "
+        "and only if p tau (exp(p h) - 1) < 1 - exp(-h/tau).",
         hypotheses=(
             "train speed frozen",
             "proportional feedback",
@@ -102,22 +125,66 @@ THEOREMS = (
         certificates=("sampling",),
     ),
     Theorem(
-        anchor="routh",
-        title="The loop near its reference with the lag of the valve",
-        statement="A law that near its reference is u = u_0 + P e + I int e - K (T - T_0) gives the characteristic "
-        "polynomial a_3 q^3 + a_2 q^2 + a_1 q + a_0 = tau q^3 + (1 + K - p tau) q^2 + (G P - (1 + K) p) q + G I. The "
-        "loop is stable if and only if a_2 > 0, a_0 > 0 and a_2 a_1 > tau a_0, or, with I = 0, if and only if p tau < "
-        "1 + K and G P > (1 + K) p. The sliding mode with k = W K_P/Phi on its own design model has a_1 = c + k, the "
-        "adaptive law with k = G K_P du/ds has a_1 = k - p; both have K = 0 and a_0 = k c.",
+        anchor="valve",
+        title="The valve from sample to sample: two time constants, of which the slower one is not the safe side",
+        statement="Under full supply a sample that fills for a h and vents for b h takes the torque T to T_a = "
+        "T_in - (T_in - T) exp(-a h/T_F) and then to T+ = T_a exp(-b h/T_V). On average T' = a (T_in - T)/T_F - b "
+        "T/T_V, which is the lag (14) only if T_F = T_V. For samples that are short against both times the effect "
+        "of the duty on T+ is h ((T_in - T)/T_F + T/T_V): it grows as either time falls.",
         hypotheses=(
-            "small deviations: nothing saturates, and abs(s) stays inside the layer of a law that has one",
+            "supply pressure constant over the sample, T_in its torque",
+            "valves that open and close at once, one after the other, a + b <= 1",
+            "constant pad friction",
+        ),
+        sketch="(9) is linear while one valve is open. A faster vent raises the gain of the sampled loop: the "
+        "feedback of torque with K = tau/h - 1, tau = .3 s, h = .02 s, multiplies a deviation of the torque at "
+        "T_in/2 by "
+        f"{float(valve_map.factor_of_slower):.2f} a sample if both times are .3 s, and by "
+        f"{float(valve_map.factor_of_valve):.2f} if it vents with .08 s: it is unstable, and the slower of the two "
+        "times says that it is not.",
+        not_said="Anything about dead times of the valves, or about a supply that still rises.",
+        identities=(
+            Identity("T_a solves (9) while filling", valve_map.filling_residual),
+            Identity("T_a exp(-b h/T_V) solves (9) while venting", valve_map.venting_residual),
+            Identity("(T+ - T)/h tends to a (T_in - T)/T_F - b T/T_V", valve_map.average_residual),
+            Identity("dT+/d(duty) = h exp(-b h/T_V) ((T_in - T_a)/T_F + T_a/T_V)", valve_map.effect_residual),
+            Identity("it is h ((T_in - T)/T_F + T/T_V) to first order in h", valve_map.short_effect_residual),
+            Identity("dT+/dT = exp(-a h/T_F - b h/T_V)", valve_map.torque_effect_residual),
+        ),
+        certificates=("lpv_lyapunov", "sampled_invariance"),
+    ),
+    Theorem(
+        anchor="routh",
+        title="The loop near its equilibrium with the lag of the valve",
+        statement="If the estimates of an adaptive law are frozen, a law that near the equilibrium of the actual "
+        "parameters is u = u_0 + P e + I int e - K (T - T_0) gives the characteristic polynomial a_3 q^3 + a_2 q^2 + "
+        "a_1 q + a_0 = tau q^3 + (1 + K - p tau) q^2 + (G P - (1 + K) p) q + G I. The loop is stable if and only if "
+        "a_2 > 0, a_0 > 0 and a_2 a_1 > tau a_0, or, with I = 0, if and only if p tau < 1 + K and G P > (1 + K) "
+        "p. The sliding mode with k = W K_P/Phi on its own design model has a_1 = c + k, the adaptive law with k "
+        "= G K_P du/ds and frozen b_hat, psi_hat has a_1 = k - p; both have K = 0 and a_0 = k c. With the "
+        "adaptation (41) the polynomial is tau q^4 + (1 - p tau) q^3 + (G K_P k_s - p) q^2 + G (K_I k_s + K_P "
+        "kappa) q + G K_I kappa, k_s = du/ds, kappa = alpha_1 w^T w.",
+        hypotheses=(
+            "small deviations from the equilibrium of the actual parameters, p and G being those of this "
+            "equilibrium: nothing saturates, and abs(s) stays inside the layer of a law that has one",
+            "an equilibrium lies within the tolerance about the reference: without an integral of the error it is at "
+            "the reference only if the law knows the holding torque exactly",
+            "b_hat and psi_hat frozen, which is so inside the dead zone of the repaired law, and not in (41)",
             "train speed frozen",
+            "valve a first-order lag, T_F = T_V",
             "no sampling",
         ),
         sketch="Routh's criterion for a cubic with tau > 0. With I = 0 the integral decides nothing, and the "
-        "quadratic that remains needs positive coefficients.",
-        not_said="Anything about sampling at h: see the sampled checks.",
+        "quadratic that remains needs positive coefficients. With the adaptation the linearized law has a further "
+        "integral, w^T (b_hat - b_0), of alpha_1 w^T w s; psi_hat multiplies s, which vanishes at the equilibrium.",
+        not_said="That small deviations of the printed law die out: the quartic decides that, and it can have "
+        "unstable roots where the cubic has none. Anything about sampling at h: see the sampled checks.",
         identities=(
+            Identity(
+                "with adaptation: tau det(q - A) = q^2 times the quartic, for two rules and psi_hat",
+                adaptive_loop.characteristic_residual,
+            ),
+            Identity("the quartic is q times the cubic for kappa = 0", adaptive_loop.frozen_residual),
             Identity("tau det(q - A) = a_3 q^3 + a_2 q^2 + a_1 q + a_0", linear_residual),
             *(
                 Identity(f"coefficient of q^{3 - n} of the sliding mode", residual)
@@ -133,29 +200,36 @@ THEOREMS = (
     Theorem(
         anchor="lpv",
         title="One quadratic function for all speeds",
-        statement="In y = v e and t = (T - T*)/T_max a static law with the duty u* + kappa y - K t gives x' = A x, x "
-        "= (y, t), A = [[q, -gamma], [kappa/tau, -(1 + K)/tau]], with q = p - a/v and gamma = R T_max/I_w. If A'P + "
-        "PA < -2 alpha P at the four vertices of an interval of q and one of gamma, x'Px falls at least as exp(-2 "
-        "alpha t) whatever the course of q and gamma within them. If A_h'P A_h < c^2 P for the matrices A_h from "
-        "sample to sample, for all q and both ends of gamma, it falls by c^2 per sample.",
+        statement="If an equilibrium of the actual parameters lies within the tolerance about the reference, let "
+        "e and T - T* be the deviations from it. In y = v e and t = (T - T*)/T_max a static law with the duty u* "
+        "+ kappa y - K t gives x' = A x, x = (y, t), A = [[q, -gamma], [kappa/tau, -(1 + K)/tau]], with q = p - "
+        "a/v at the equilibrium and gamma = R T_max/I_w. If A^T P + P A < -2 alpha P at the four vertices of an "
+        "interval of q and one of gamma, x^T P x falls at least as exp(-2 alpha t) whatever the course of q and "
+        "gamma within them. If A_h^T P A_h < c^2 P for the matrices A_h from sample to sample, for all q and both "
+        "ends of gamma, it falls by c^2 per sample.",
         hypotheses=(
-            "small deviations; nothing saturates",
-            "q = p - a/v and gamma stay in their intervals on the domain",
+            "an equilibrium lies within the tolerance about the reference: it is at the reference only if the law "
+            "knows the holding torque u* of the actual parameters, and elsewhere the pole is another one",
+            "small deviations from that equilibrium; nothing saturates",
+            "q = p - a/v and gamma stay in their intervals, for every slip within the tolerance",
+            "valve a first-order lag, T_F = T_V",
             "P > 0; sampled: q and gamma constant within a sample",
-            "the change of T* is slow",
+            "the change of the equilibrium is slow",
         ),
-        sketch="A is affine in q and gamma, so that A'P + PA is negative between the vertices if it is at them. A_h is "
-        "affine in gamma, and x'Px is convex; in q it is not affine, so that the interval is covered by parts whose "
-        "matrix exponential is enclosed. P is positive definite if the pivots of LDL' are.",
-        not_said="What happens beyond small deviations, or when the brake is the limit.",
+        sketch="A is affine in q and gamma, so that A^T P + P A is negative between the vertices if it is at "
+        "them. A_h is affine in gamma, and x^T P x is convex; in q it is not affine, so that the interval is "
+        "covered by parts whose matrix exponential is enclosed. P is positive definite if the pivots of LDL' are.",
+        not_said="Where the equilibrium lies: without an integral of the error it moves with mass, inertia and "
+        "friction. What happens beyond small deviations, when the brake is the limit, or for a valve that vents "
+        "faster than it fills.",
         identities=(
             Identity("y' = q y - gamma t", sampled_loop.sliding_residual),
             Identity("t' = (kappa y - (1 + K) t)/tau", sampled_loop.loop_residual),
             Identity("A is affine in q and gamma", sampled_loop.affine_residual),
-            Identity("-(A'P + PA) - 2 alpha P as the checker has it", sampled_loop.decrease_residual),
-            Identity("c^2 P - A_h'P A_h as the checker has it", sampled_loop.contraction_residual),
-            Identity("x'Px by the pivots P_11 and P_22 - P_12^2/P_11", sampled_loop.pivots_residual),
-            Identity("x'Px is convex", sampled_loop.convex_residual),
+            Identity("-(A^T P + P A) - 2 alpha P by entries, for any A", sampled_loop.decrease_residual),
+            Identity("c^2 P - A^T P A by entries, for any A", sampled_loop.contraction_residual),
+            Identity("x^T P x by the pivots P_11 and P_22 - P_12^2/P_11", sampled_loop.pivots_residual),
+            Identity("x^T P x is convex", sampled_loop.convex_residual),
         ),
         certificates=("lpv_lyapunov",),
     ),
@@ -164,8 +238,8 @@ THEOREMS = (
         title="Sets of slip and torque that one sample maps into themselves",
         statement="Let a set of slip and torque be given for each of some windows of speed. If every state of a set "
         "is, one sample later, again in this set and in that of the next slower window, at all speeds of the window "
-        "and for all parameters of the box, then a wheel that is in the set once stays in the sets down to the lowest "
-        "speed.",
+        "and for all parameters of the box, then a wheel that is in the set once stays in the sets down to the "
+        "lowest speed.",
         hypotheses=(
             "a law without memory",
             "windows that cover the range of speed, and that no sample can jump over",

@@ -3,10 +3,16 @@
 import sympy as sp
 
 from derivations import adhesion, motion, slip_equation
-from derivations.equation_map import Claim
-from derivations.printing import form
+from derivations.claim import Claim
+from derivations.notation import symbol
+from derivations.printing import Form, form
 
 _slide = slip_equation.v - slip_equation.R * slip_equation.omega
+_ROLLS = "v > 0, omega >= 0"
+_UNIQUE = (
+    "On v > 0, omega > 0 the right sides of (1) to (3) are locally Lipschitz, so that the motion exists and is "
+    "unique until it leaves; at v = omega = 0 neither follows, because the slip has no limit there."
+)
 _MOTION, _ADHESION, _SLIP = (f"test_equations_{name}.py" for name in ("motion", "adhesion", "slip"))
 
 CLAIMS = (
@@ -18,7 +24,8 @@ CLAIMS = (
         test=f"{_MOTION}::test_momentum_and_power_balance",
         printed=form("speed_rate", motion.train_acceleration),
         residual=motion.momentum_residual,
-        remark="One creep force for all eight wheels; with (2) it conserves momentum and loses power.",
+        domain=_ROLLS,
+        remark=f"One creep force for all eight wheels; with (2) it conserves momentum and loses power. {_UNIQUE}",
     ),
     Claim(
         number="2",
@@ -28,6 +35,8 @@ CLAIMS = (
         test=f"{_MOTION}::test_momentum_and_power_balance",
         printed=form("wheel_speed_rate", motion.wheel_acceleration),
         residual=motion.power_residual,
+        certainty=("inferred", "scan"),
+        domain="v > 0, omega > 0",
         remark="Prints f_f for f_fr. No stiction at omega = 0: a locked wheel has to be treated apart.",
     ),
     Claim(
@@ -40,7 +49,11 @@ CLAIMS = (
         corrected=form("wheel_damping", motion.damping_corrected),
         residual=sp.simplify(motion.damping_printed - motion.damping_corrected),
         corrected_residual=motion.damping_corrected_growth + sp.Rational(1, 100),
-        remark="The printed power grows with time; negligible either way.",
+        certainty=("inferred", "scan"),
+        domain="t >= 0",
+        sides=(symbol("wheel_damping"), motion.initial ** (-motion.decay * motion.t)),
+        remark="The printed power grows with time and has no unit, unless 0.25 is in N m s and stands before an "
+        "exponential; negligible either way.",
     ),
     Claim(
         number="3",
@@ -50,7 +63,9 @@ CLAIMS = (
         test=f"{_SLIP}::test_slip_ratio",
         printed=form("slip", slip_equation.slip_of_speeds),
         corrected_residual=slip_equation.round_trip_residual,
-        remark="Singular at v = 0: the model refers the slip to a regularized speed there.",
+        domain="v > 0",
+        remark="Singular at v = 0: along R omega = k v the slip is 1 - k down to standstill. The model refers it "
+        "to a regularized speed there.",
     ),
     Claim(
         number="4",
@@ -59,6 +74,7 @@ CLAIMS = (
         functions=("motion.running_resistance",),
         test=f"{_MOTION}::test_resistance_may_be_negative",
         printed=form("resistance", motion.running_resistance),
+        domain="v >= 0",
         remark="May be negative downhill; the Lyapunov arguments need f_d + 8 f >= 0.",
     ),
     Claim(
@@ -72,9 +88,10 @@ CLAIMS = (
         ),
         test=f"{_ADHESION}::test_limits_of_the_creep_force",
         printed=form("creep_force", adhesion.force_of_gradient),
-        residual=adhesion.coulomb_limit - adhesion.Q * adhesion.mu,
-        remark="Tends to Q mu; its slope at zero slip is (kA + kS)/2 of Kalker's. Depends on slip and "
-        "on speed.",
+        residual=adhesion.force_residual,
+        domain="v > 0, slip >= 0, Q > 0",
+        remark="Judged by three marks: odd in the slip, Q mu for large slip, and (kA + kS)/2 of Kalker's slope at "
+        "zero slip. Depends on slip and on speed.",
     ),
     Claim(
         number="6",
@@ -84,6 +101,7 @@ CLAIMS = (
         test=f"{_ADHESION}::test_gradient_from_linear_theory",
         printed=form("gradient", adhesion.gradient_printed),
         residual=sp.simplify(adhesion.gradient_printed - adhesion.gradient_derived),
+        domain="Q mu > 0",
         remark="Follows from Polach's gradient with Kalker's stiffness C_t = 3 G c11 / (8 a).",
     ),
     Claim(
@@ -94,9 +112,20 @@ CLAIMS = (
         test=f"{_ADHESION}::test_friction_needs_the_magnitude_of_sliding",
         printed=form("friction", adhesion.friction_printed.subs(adhesion.w, _slide)),
         corrected=form("friction", adhesion.friction_corrected.subs(adhesion.w, _slide)),
-        residual=adhesion.friction_asymmetry,
         corrected_residual=adhesion.friction_asymmetry_corrected,
-        assumption="v >= R omega: sliding in the direction of braking.",
-        remark="Residual: mu(w) - mu(-w). The printed friction grows without limit for v < R omega.",
+        domain="v >= R omega",
+        remark="Holds on its domain, a wheel that brakes; for v < R omega the printed friction would grow without "
+        "limit. The second form, with the magnitude, goes on there. The function of the model takes the magnitude.",
+    ),
+    Claim(
+        number="Table 1",
+        title="Coefficients of the friction",
+        derivation=adhesion,
+        test=f"{_ADHESION}::test_legible_cells_of_table_1",
+        printed=Form("B = 0.6 s/m, μ0 = 0.55 (dry); μ0 = 0.3 (wet)"),
+        domain="the two rail conditions of the table",
+        sides=(1 / symbol("friction_decay"), symbol("sliding_speed")),
+        remark="The text at hand has lost A, kS, B of the wet rail and the headings; the values that are shipped "
+        "come from the source that the table cites.",
     ),
 )

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from wspd_design.certificates.quantities import TABLE
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
 from wspd_design.design.problem import stated_bounds
@@ -13,6 +14,7 @@ from wspd_design.design.selection import design_controller
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
+KEPT = ("mass", "wheelset inertia")
 PUBLISHED_RAILS = ("polach-dry", "polach-wet")
 
 
@@ -40,6 +42,26 @@ def make_controller(make_controller):
         return make_controller(name, rail, **sampling | changes)
 
     return make
+
+
+def _narrow(vehicle, friction, **bounds):
+    """Bounds that hold every number at its nominal value but those that are named; an axle at static load."""
+    exact = {name: (problem_value, problem_value) for name, problem_value in _nominal(vehicle, friction)}
+    slowest = 0.1
+    fastest = bounds.get("mu0", (0.0, friction.mu0))[1] * 9.81 + 0.2
+    axle = {"axle load share": (1.0, 1.0), "train deceleration": (slowest, fastest)}
+    return exact | axle | bounds
+
+
+def _nominal(vehicle, friction):
+    records = {"vehicle": vehicle, "brake": vehicle.brake, "contact": vehicle.contact, "rail": friction}
+    return [(row.name, getattr(records[row.record], row.field)) for row in TABLE if row.record in records]
+
+
+@pytest.fixture(scope="session")
+def narrow():
+    """Make bounds that hold every number but those that are named, for an axle at static load."""
+    return _narrow
 
 
 @pytest.fixture(scope="session")
@@ -117,6 +139,10 @@ def make_adaptive_problem(er24pc, make_problem):
 
     def make(**changes):
         law = replace(designed, gains=replace(designed.gains, **changes))
-        return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), bounds={"mu0": (0.28, 0.3)})
+        domain = {
+            name: (low, high) for name, (low, high) in stated_bounds(er24pc, rail).items() if name in KEPT
+        }
+        bounds = _narrow(er24pc, rail, **domain | {"mu0": (0.28, 0.3)})
+        return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), bounds=bounds)
 
     return make

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.certificates.round_trip import keep, no_proof_can_be_missed, no_word_can_be_changed
 from wspd_design.certificates.checks.adaptive import barbalat
 from wspd_design.certificates.records import Status
 from wspd_design.controllers import adaptive_fuzzy as law_module
@@ -11,7 +12,10 @@ from wspd_design.controllers import adaptive_fuzzy as law_module
 
 @pytest.mark.parametrize("name", ["afsmc", "smc"])
 def test_statement_about_infinity_is_vacuous_and_the_integral_is_bounded(make_problem, make_controller, name):
-    verdict = barbalat.check(make_problem(make_controller(name)))
+    kept = keep(barbalat.CHECK, make_problem(make_controller(name)))
+    verdict = kept.certificate
+    no_word_can_be_changed(kept)
+    no_proof_can_be_missed(kept)
     assert verdict.status is Status.VACUOUS
     for_ever, in_sigma, integral, lipschitz = verdict.hypotheses
     assert for_ever.status is Status.REFUTED
@@ -20,14 +24,14 @@ def test_statement_about_infinity_is_vacuous_and_the_integral_is_bounded(make_pr
     assert integral.status is Status.EVIDENCE
     assert lipschitz.status is Status.EVIDENCE
     at = {point.name: point.value for point in verdict.worst_point}
-    assert 0.0 < at["integral of abs(s_D)"] < at["bound of the integral"]
+    assert 0.0 < at["integral of abs(s_D)"] < at["bound on the integral"]
     assert 8.0 < at["end of the run"] < 15.0
 
 
 def test_integral_of_a_law_that_does_not_reach_exceeds_its_bound(make_problem, make_controller):
     law = make_controller("smc")
     weak = replace(law, gains=replace(law.gains, switching_gain=0.5), rail=replace(law.rail, mu0=0.1))
-    _, _, integral, _ = barbalat.check(make_problem(weak)).hypotheses
+    _, _, integral, _ = barbalat.CHECK.run(make_problem(weak)).hypotheses
     assert integral.status is Status.UNDECIDED
 
 
@@ -38,8 +42,8 @@ def test_integral_under_wrong_adaptation_exceeds_its_bound(make_problem, make_co
         rates = right(gains, surface, speed)
         return rates._replace(weights=tuple(0.0 for _ in rates.weights), bound=0.0)
 
-    monkeypatch.setattr("wspd_design.certificates.checks.ideal_run.adaptation", wrong)
-    _, _, integral, _ = barbalat.check(make_problem(make_controller("afsmc"))).hypotheses
+    monkeypatch.setattr("wspd_design.certificates.theorems.ideal_loop.adaptation", wrong)
+    _, _, integral, _ = barbalat.CHECK.run(make_problem(make_controller("afsmc"))).hypotheses
     assert integral.status is Status.UNDECIDED
 
 
@@ -49,8 +53,8 @@ def test_train_that_never_slows_down_leaves_the_claim_undecided(make_problem, ma
     )
     problem = make_problem(make_controller("smc"), vehicle=coasting, bounds={"mu0": (1e-5, 1e-5)})
     problem = replace(problem, rail=replace(problem.rail, mu0=1e-5))
-    assert barbalat.check(problem).status is Status.UNDECIDED
+    assert barbalat.CHECK.run(problem).status is Status.UNDECIDED
 
 
 def test_rule_tables_have_no_surface(make_problem, make_controller):
-    assert barbalat.check(make_problem(make_controller("mitsubishi"))).status is Status.NOT_APPLICABLE
+    assert barbalat.CHECK.run(make_problem(make_controller("mitsubishi"))).status is Status.NOT_APPLICABLE

@@ -4,11 +4,11 @@ import json
 
 import pytest
 
+from tests.certificates.round_trip import keep, no_proof_can_be_missed, no_word_can_be_changed
 from wspd_design.certificates.checks.foundations import derivation
-from wspd_design.certificates.kernel import exact
-from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
+from wspd_design.certificates.theorems import equations
 from wspd_design.model.generated import adaptive_fuzzy, brake, motion, sliding_surface, slip
 from wspd_design.parameters.equations import load_equations
 
@@ -19,27 +19,29 @@ def problem(make_problem, make_controller):
 
 
 def test_the_installed_functions_are_proved(problem):
-    found = derivation.check(problem)
-    assert found.status is Status.PROVED
-    assert len(found.proofs) == len(found.hypotheses) == len(derivation.IDENTITIES)
+    kept = keep(derivation.CHECK, problem)
+    assert kept.certificate.status is Status.PROVED
+    assert len(kept.content["findings"]) == len(kept.certificate.hypotheses) == len(equations.IDENTITIES)
+    no_word_can_be_changed(kept)
+    no_proof_can_be_missed(kept)
 
 
-def test_sympy_simplifies_the_same_differences_to_zero():
+def test_sympy_simplifies_the_same_differences_to_zero(problem):
     """Another way of deciding: no prime field."""
     import sympy as sp
 
-    for claim in derivation.claims():
-        assert sp.simplify(sp.nsimplify(claim.left - claim.right)) == 0, claim.name
+    for claim in equations.identities(problem):
+        assert sp.simplify(sp.nsimplify(claim.left - claim.right)) == 0, claim.text
 
 
 def test_misprints_are_listed_with_what_they_leave_over(problem, monkeypatch):
-    explanation = derivation.check(problem).explanation
-    listed = [entry for entry in load_equations() if entry.verdict == "misprint"]
+    explanation = derivation.CHECK.run(problem).explanation
+    listed = [entry for entry in load_equations() if "misprint" in entry.verdicts]
     assert {"14", "23", "28", "39"} <= {entry.number for entry in listed}
     assert "(14): -ū*T_max + ū'*T" in explanation
     assert all(entry.residual in explanation for entry in listed)
-    monkeypatch.setattr(derivation, "load_equations", lambda: listed[:1])
-    assert derivation.misprints().endswith(f"leaves over: B_W: {listed[0].residual}.")
+    monkeypatch.setattr(equations, "load_equations", lambda: listed[:1])
+    assert equations.misprints().endswith(f"leaves over: B_W: {listed[0].residual}.")
 
 
 def printed_filling(t, t0, start, full, _rate, tau):
@@ -74,17 +76,20 @@ FAULTS = {
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_wrong_function_is_refuted(problem, monkeypatch, fault):
-    kept = certificate_text(derivation.check(problem))
-    assert replay(problem, kept).accepted
+    kept = keep(derivation.CHECK, problem)
     module, name, wrong = FAULTS[fault]
     monkeypatch.setattr(module, name, wrong)
-    found = derivation.check(problem)
+    found = derivation.CHECK.run(problem)
     assert found.status is Status.REFUTED
     assert sum(h.status is Status.REFUTED for h in found.hypotheses) >= 1
-    assert len(found.proofs) < len(found.hypotheses)
-    # The file of the right function is not for the wrong one, whoever forges the fingerprints.
-    assert "belongs to another claim" in replay(problem, kept).reason
-    content = json.loads(kept)
-    for proof, claim in zip(content["proofs"], derivation.claims(), strict=True):
-        proof["claim_sha256"] = exact.digest(claim)
-    assert "it is false that" in replay(problem, json.dumps(content)).reason
+    assert "a function of the model is wrong" in found.explanation
+    # The file of the right function is not for the wrong one, whoever writes the wrong statement into it.
+    assert not replay(problem, json.dumps(kept.content)).accepted
+    content = dict(kept.content, findings={})
+    for each in equations.identities(problem):
+        proof = {
+            "format": kept.content["findings"][each.key]["proof"]["format"],
+            "statement": each.statement(),
+        }
+        content["findings"][each.key] = {"proof": proof}
+    assert "not the same function" in replay(problem, json.dumps(content)).reason

@@ -3,23 +3,29 @@
 import json
 import math
 from dataclasses import replace
-from itertools import product
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
+from tests.certificates.round_trip import keep, no_word_can_be_changed, not_for, refused
+from wspd_design.certificates.checks.frame import accepted
 from wspd_design.certificates.checks.valve import hard_limits
+from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates.quantities import QUANTITIES
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
-from wspd_design.certificates.search import recovery, recovery_samples
+from wspd_design.certificates.search import recovery_samples
+from wspd_design.certificates.search.recovery_samples import recoverable
+from wspd_design.certificates.search.settle import enclose
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import INERTIA, MASS, MU0, SLIP, SPEED
 from wspd_design.certificates.setting.plant import dynamics_at, plant_with
+from wspd_design.certificates.theorems import recovery
+from wspd_design.certificates.theorems.theorem import told
 from wspd_design.model.slip import slip_dynamics
-from wspd_design.parameters.bounds import Bounds
 
 
 @pytest.fixture(scope="module")
@@ -33,13 +39,23 @@ def wet(make_problem, make_controller):
 
 
 @pytest.fixture(scope="module")
-def refuted(dry):
-    return hard_limits.check(dry)
+def refuted_file(dry):
+    return keep(hard_limits.CHECK, dry)
 
 
 @pytest.fixture(scope="module")
-def proved(wet):
-    return hard_limits.check(wet)
+def proved_file(wet):
+    return keep(hard_limits.CHECK, wet)
+
+
+@pytest.fixture(scope="module")
+def refuted(refuted_file):
+    return refuted_file.certificate
+
+
+@pytest.fixture(scope="module")
+def proved(proved_file):
+    return proved_file.certificate
 
 
 def nominal(problem, speeds):
@@ -49,11 +65,17 @@ def nominal(problem, speeds):
     return points
 
 
-def pinned(problem):
-    """Return the problem without uncertainty."""
-    vehicle, mu0 = problem.vehicle, problem.rail.mu0
-    inertia = (vehicle.wheelset_inertia,) * 2
-    return replace(problem, bounds=Bounds.of({"wheelset inertia": inertia, "mu0": (mu0, mu0)}))
+def numbers(problem, point):
+    """Speed and numbers of the plant at a point of the basic columns, with the nominal venting time."""
+    basic = dict(zip(domain.BASIC, map(float, point), strict=True))
+    return {
+        "vent time": problem.vehicle.brake.vent_time,
+        **{name: basic[name] for name in basic if name != "slip"},
+    }
+
+
+def certain(problem, point, deviation):
+    return recovery.passes(problem, numbers(problem, point), deviation, Work())
 
 
 def leaves(problem, point, deviation):
@@ -99,17 +121,18 @@ def slip_when_seen(problem, point, deviation):
 @pytest.mark.parametrize("speed", [3.0, 7.0, 20.0])
 def test_recoverable_deviation_parts_runs_that_return_from_runs_that_do_not(dry, speed):
     (point,) = nominal(dry, [speed])
-    (found,) = recovery.recoverable(dry, point[None])
+    (found,) = recoverable(dry, point[None])
     assert not leaves(dry, point, 0.995 * found)
     assert leaves(dry, point, 1.005 * found)
 
 
 def test_balls_are_certain_just_beyond_the_recoverable_deviation(dry):
     points = nominal(dry, [3.0, 7.0, 20.0])
-    for point, found in zip(points, recovery.recoverable(dry, points), strict=True):
-        assert recovery.passes(dry, point, 0.98 * found) is None
+    for point, found in zip(points, recoverable(dry, points), strict=True):
+        with pytest.raises(Refused, match="not certain"):
+            certain(dry, point, 0.98 * found)
         at = slip_dynamics(dry.vehicle, dry.rail, dry.slip, point[SPEED])
-        seen = recovery.passes(dry, point, 1.05 * found)
+        seen = certain(dry, point, 1.05 * found)
         assert seen.torque == pytest.approx(-at.drift / at.gain, rel=1e-6)
         assert seen.slip <= slip_when_seen(dry, point, 1.05 * found) <= 1.02 * seen.slip
 
@@ -126,7 +149,7 @@ def overlooked(problem, samples):
     return [
         speed
         for speed, worst in zip(samples.speeds[::8], samples.worst[::8], strict=True)
-        if recovery.recoverable(problem, drawn_within(problem, speed)).min() < 0.999 * worst
+        if recoverable(problem, drawn_within(problem, speed)).min() < 0.999 * worst
     ]
 
 
@@ -158,9 +181,9 @@ def test_no_guarantee_exceeds_what_integration_finds(make_problem, make_controll
     for slip in np.linspace(problem.slip, problem.slips[1], 60):
         points[:, SLIP] = slip
         pole = dynamics_at(problem, points).pole
-        shares.append(recovery.per_deviation(problem, pole, pole / fall))
+        shares.append(recovery.per_deviation(problem, problem.vehicle.brake.vent_time, pole, pole / fall))
     guaranteed = np.minimum(1.0 / np.max(shares, axis=0), recovery.reach(problem))
-    assert np.all(guaranteed <= 1.0001 * recovery.recoverable(problem, points))
+    assert np.all(guaranteed <= 1.0001 * recoverable(problem, points))
 
 
 def test_a_straight_line_of_friction_leaves_the_linear_limit(dry):
@@ -168,23 +191,16 @@ def test_a_straight_line_of_friction_leaves_the_linear_limit(dry):
     wide = replace(dry, slips=(0.02, 1e6))
     pole, fall, lag = 5.0, 3.0, dry.vehicle.brake.vent_time
     limit = fall / (pole * (1.0 + pole * lag)) * math.exp(-pole * dry.sample_time)
-    assert 1.0 / recovery.per_deviation(wide, pole, pole / fall) == pytest.approx(limit, rel=1e-9)
+    assert 1.0 / recovery.per_deviation(wide, lag, pole, pole / fall) == pytest.approx(limit, rel=1e-9)
 
 
 def test_growth_is_that_of_a_small_deviation(dry, refuted):
-    (growth,) = (proof for proof in refuted.proofs if proof.claim == "growth within a sample")
-    bound = float(json.loads(growth.certificate)["bound"])
-    corners = product(
-        np.linspace(dry.slip, dry.slips[1], 60),
-        dry.speeds[:1],
-        dry.span("mass"),
-        dry.span("wheelset inertia"),
-        dry.span("mu0"),
+    growth = refuted.findings["growth"]
+    slip = growth.place["slip"]
+    vehicle, rail = plant_with(
+        dry, {name: growth.values[name] for name in QUANTITIES if name in growth.values}
     )
-    points = np.array(list(corners))
-    poles = dynamics_at(dry, points).pole
-    slip, speed, *plant = points[poles.argmax()]
-    vehicle, rail = plant_with(dry, dict(zip(domain.PARAMETERS, plant, strict=True)))
+    speed = growth.values["speed"]
     holding = -slip_dynamics(vehicle, rail, slip, speed).drift
 
     def rate(_, state):
@@ -192,105 +208,127 @@ def test_growth_is_that_of_a_small_deviation(dry, refuted):
 
     run = solve_ivp(rate, (0.0, dry.sample_time), [slip + 1e-6], rtol=1e-10, atol=1e-13)
     grown = (run.y[0, -1] - slip) / 1e-6
-    assert grown == pytest.approx(math.exp(dry.sample_time * poles.max()), rel=1e-3)
-    assert 0.999 * grown <= bound <= 1.01 * grown
+    assert growth.proved
+    assert 0.99 * grown <= growth.low <= growth.high <= 1.05 * grown
 
 
 def test_dry_rail_at_the_printed_sample_time_is_refuted(dry, refuted):
     assert refuted.status is Status.REFUTED
-    assert refuted.margin.high < 0.0
     at = {point.name: point.value for point in refuted.witness}
+    assert set(at) >= {"speed", "mass", "mu0", "wheel radius", "vent time", "slip", "torque"}
     point = np.array([dry.slip, at["speed"] / domain.KMH, at["mass"], at["wheelset inertia"], at["mu0"]])
-    assert at["slip"] == pytest.approx(slip_when_seen(dry, point, hard_limits.DEVIATION), rel=0.01)
-    assert leaves(dry, point, hard_limits.DEVIATION)
-    assert not leaves(dry, point, 0.99 * at["recoverable deviation"])
+    pinned = recovery.pinned(dry, refuted.findings["escape"].place)
+    vented = replace(
+        pinned,
+        vehicle=replace(pinned.vehicle, brake=replace(pinned.vehicle.brake, vent_time=at["vent time"])),
+    )
+    assert at["slip"] == pytest.approx(slip_when_seen(vented, point, recovery.DEVIATION), rel=0.01)
+    assert leaves(vented, point, recovery.DEVIATION)
     assert "The lowest controllable speed lies between" in refuted.explanation
 
 
 def test_wet_rail_is_proved(wet, proved):
     assert proved.status is Status.PROVED
     assert proved.margin.low > 0.0
-    points = np.random.default_rng(10).uniform(*domain.box(wet), (500, 5))
-    found = recovery.recoverable(wet, points).min()
-    assert (
-        hard_limits.DEVIATION + proved.margin.low
-        <= found
-        <= 1.05 * (hard_limits.DEVIATION + proved.margin.high)
-    )
-    assert found >= 0.999 * (hard_limits.DEVIATION + proved.margin.high)
+    points = np.random.default_rng(10).uniform(*domain.box(wet), (300, 5))
+    slow = replace(wet.vehicle.brake, vent_time=wet.span("vent time")[1])
+    found = recoverable(replace(wet, vehicle=replace(wet.vehicle, brake=slow)), points).min()
+    assert recovery.DEVIATION + proved.margin.low <= found
 
 
-def test_lowest_speed_agrees_with_the_root_at_nominal_parameters(dry):
-    problem = pinned(dry)
-    samples = recovery_samples.sample(problem)
+def test_the_sentence_says_no_more_than_the_proof(proved):
+    words = proved.explanation.split("A deviation of ")[1].split()
+    assert float(words[0]) <= recovery.DEVIATION + proved.margin.low
+    share = proved.findings["share"]
+    assert Fraction(proved.margin.low + recovery.DEVIATION) * Fraction(share.high) <= Fraction(
+        recovery.DEVIATION
+    ) * (1 + Fraction(1, 10**12))
 
-    def excess(speed):
-        fall = -slip_dynamics(dry.vehicle, dry.rail, dry.slip, speed).drift
-        pole = slip_dynamics(
-            dry.vehicle, dry.rail, np.linspace(dry.slip, dry.slips[1], 400), speed
-        ).pole.max()
-        grown, lag = hard_limits.DEVIATION * math.exp(pole * dry.sample_time), dry.vehicle.brake.vent_time
-        return (grown / 0.46) ** 2 + grown * pole * (1.0 + pole * lag) / fall - hard_limits.TIGHT
 
-    # TIGHT is a share of the deviation; the condition is between linear and quadratic in it.
-    root = brentq(excess, 10.0, 30.0)
-    found = hard_limits.lowest_speed(problem, samples)
-    step = (problem.speeds[1] / problem.speeds[0]) ** (1.0 / (recovery_samples.SPEEDS - 1))
-    assert root / step <= found <= root * step
+def test_what_is_varied_and_what_is_held_is_said(proved):
+    assert "vent time 0.3 to 0.9 s" in proved.claim
+    assert "held: semi axis rolling" in proved.claim
+    assert set(proved.varied) & set(proved.held) == set()
 
 
 def test_larger_deviation_is_refuted(monkeypatch, wet):
-    monkeypatch.setattr(hard_limits, "DEVIATION", 0.4)
-    assert hard_limits.check(wet).status is Status.REFUTED
+    for module in (recovery, hard_limits):
+        monkeypatch.setattr(module, "DEVIATION", 0.4)
+    assert hard_limits.CHECK.run(wet).status is Status.REFUTED
 
 
-def test_a_refutation_that_is_not_certain_is_none(monkeypatch, dry):
-    monkeypatch.setattr(hard_limits, "passes", lambda *_: None)
-    found = hard_limits.check(dry)
-    assert found.status is Status.UNDECIDED
-    assert not found.witness
-    assert 0.0 < found.undecided < 1.0
+def test_a_refutation_that_is_not_certain_is_none(dry, refuted):
+    found = {key: each.stated for key, each in refuted.findings.items() if key != "escape"}
+    theorem = recovery.HARD_LIMITS
+    made = told(theorem, dry, accepted(theorem.obligations(dry), found))
+    assert made.status is Status.UNDECIDED
+    assert not made.witness
 
 
-def test_it_speaks_about_every_law_and_the_valve_decides(
-    make_problem, make_controller, fast_vehicle, refuted
-):
-    other = hard_limits.check(make_problem(make_controller("trenitalia", sample_time=0.1)))
-    assert (other.status, other.margin) == (refuted.status, refuted.margin)
-    quick = make_problem(make_controller("afsmc", sample_time=0.01), vehicle=fast_vehicle)
-    assert hard_limits.check(quick).status is Status.PROVED
+def test_without_a_torque_that_holds_the_reference_nothing_is_said(wet, proved):
+    found = {key: each.stated for key, each in proved.findings.items() if key != "torque"}
+    made = told(recovery.HARD_LIMITS, wet, accepted(recovery.HARD_LIMITS.obligations(wet), found))
+    assert made.status is Status.UNDECIDED
+
+
+def test_a_recovery_up_to_less_than_the_highest_speed_is_no_recovery(wet, proved):
+    """A forger proves the condition on the lowest speeds alone, where it is easy."""
+    low = wet.speeds[0]
+    short = enclose(recovery.share_claim(wet, recovery.DEVIATION, speed=(low, 1.01 * low)), tolerance=0.1)
+    assert short.proof is not None
+    found = {key: each.stated for key, each in proved.findings.items()} | {"share": short}
+    made = told(recovery.HARD_LIMITS, wet, accepted(recovery.HARD_LIMITS.obligations(wet), found))
+    assert made.findings["share"].status is Status.PROVED  # of what it states
+    assert made.status is Status.UNDECIDED
+    assert "proved from no speed on" in made.explanation
+
+
+def test_it_speaks_about_every_law(make_problem, make_controller):
+    for name in ("trenitalia", "torque-feedback", "afsmc"):
+        assert recovery.HARD_LIMITS.speaks_about(make_problem(make_controller(name))) == ""
+
+
+def test_the_valve_decides(make_problem, make_controller, fast_vehicle):
+    problem = make_problem(
+        make_controller("afsmc", sample_time=0.01), vehicle=fast_vehicle, bounds={"vent time": (0.02, 0.02)}
+    )
+    assert hard_limits.CHECK.run(problem).status is Status.PROVED
 
 
 @pytest.mark.parametrize("slips", [(0.02, 0.18), (0.2, 0.6)])
 def test_no_room_leaves_it_undecided(dry, slips):
-    found = hard_limits.check(replace(dry, slips=slips))
+    found = hard_limits.CHECK.run(replace(dry, slips=slips))
     assert found.status is Status.UNDECIDED
-    assert "no room" in found.claim
+    assert "no room" in found.explanation
 
 
-def forged(certificate, problem, **changes):
-    """Replay a file with another content of the last proof."""
-    content = json.loads(certificate_text(certificate))
-    content["proofs"][-1].update(changes)
-    return replay(problem, json.dumps(content))
+def test_files_say_what_is_shown(refuted_file, proved_file):
+    for kept in (refuted_file, proved_file):
+        no_word_can_be_changed(kept)
+    assert not_for(proved_file, replace(proved_file.problem, sample_time=0.12))
 
 
-def test_files_are_accepted(dry, wet, refuted, proved):
-    found = replay(wet, certificate_text(proved))
-    assert found.accepted
-    assert not found.missing
-    found = replay(dry, certificate_text(refuted))
-    assert found.accepted, found.reason
-    assert "for speed from" in found.shown[-1]
+@pytest.mark.parametrize("key", ["torque", "growth", "share"])
+def test_a_proof_cannot_be_missed(proved_file, key):
+    findings = proved_file.content["findings"]
+    assert refused(proved_file, findings={name: each for name, each in findings.items() if name != key})
 
 
-def test_forged_files_are_refused(dry, wet, refuted, proved):
-    assert not forged(proved, wet, bound="0.3").accepted
-    assert not forged(proved, replace(wet, sample_time=0.12)).accepted
-    assert not forged(refuted, dry, part={"speed": [repr(dry.speeds[0]), repr(dry.speeds[1])]}).accepted
+@pytest.mark.parametrize(
+    ("name", "factor"), [("speed", 1.0 + 1e-15), ("speed", 1.005), ("mu0", 1.01), ("vent time", 2.0)]
+)
+def test_a_witness_outside_the_domain_by_any_amount_is_refused(refuted_file, name, factor):
+    """Every coordinate stands in the box to the last bit."""
+    findings = json.loads(json.dumps(refuted_file.content["findings"]))
+    high = refuted_file.problem.speeds[1] if name == "speed" else refuted_file.problem.span(name)[1]
+    findings["escape"]["place"][name] = repr(float(np.nextafter(high * factor, np.inf)))
+    found = replay(refuted_file.problem, json.dumps(refuted_file.content | {"findings": findings}))
+    assert "leaves the domain" in found.reason
 
 
 def test_arranged_form_is_the_model_also_with_a_fixed_contact(make_reference_problem):
     problem = make_reference_problem(1.0)
     problem = replace(problem, speeds=(25.0, 33.0), bounds=problem.bounds | {"mu0": (0.3, 0.4)})
-    assert hard_limits.check(problem).status is Status.PROVED
+    made = hard_limits.CHECK.run(problem)
+    assert made.status is Status.PROVED
+    assert replay(problem, certificate_text(made)).accepted

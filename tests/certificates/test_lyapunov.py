@@ -1,5 +1,6 @@
 """The three Lyapunov functions along the loops that their proofs speak about."""
 
+import json
 from dataclasses import replace
 
 import flint
@@ -8,13 +9,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from wspd_design.certificates.checks.adaptive import lyapunov_printed, lyapunov_repaired
-from wspd_design.certificates.checks.adaptive.adaptive_error import ideal, signals
-from wspd_design.certificates.checks.certain_rise import exact_law
-from wspd_design.certificates.checks.ideal_run import adaptive_flow, adaptive_run, sliding_flow
 from wspd_design.certificates.checks.sliding import lyapunov_surface
-from wspd_design.certificates.checks.sliding.reaching import reserve
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.replay import replay
 from wspd_design.certificates.setting.plant import exact_plant
+from wspd_design.certificates.theorems.adaptive_error import Ideal, signals
+from wspd_design.certificates.theorems.ideal_loop import adaptive_flow, exact_law, sliding_flow
 from wspd_design.controllers import adaptive_fuzzy as law_module
 from wspd_design.model.generated import adaptive_fuzzy as generated
 
@@ -29,11 +30,11 @@ def printed(make_problem, make_controller):
 @pytest.mark.parametrize("rail", RAILS)
 def test_printed_v2_rises_while_the_slip_converges(make_problem, make_controller, rail):
     problem = make_problem(make_controller("afsmc"), rail=rail, speeds=(2.0, 120.0 / 3.6))
-    verdict = lyapunov_printed.check(problem)
+    verdict = lyapunov_printed.CHECK.run(problem)
     assert verdict.status is Status.REFUTED
-    at = {point.name: point.value for point in verdict.witness}
-    assert at["V2 after"] > 10.0 * at["V2 before"]
-    assert at["time before"] < at["time after"]
+    (values,) = (series for series in verdict.series if series.name == "V2 as printed")
+    assert max(values.y) > 10.0 * min(values.y)
+    assert values.y.index(min(values.y)) < values.y.index(max(values.y))
     slip = next(series for series in verdict.series if series.name == "slip")
     assert slip.y[-1] == pytest.approx(0.14, abs=2e-3)
 
@@ -42,12 +43,12 @@ def test_printed_v2_rises_while_the_slip_converges(make_problem, make_controller
 def test_witness_of_the_printed_v2_rises_by_differences(make_problem, make_controller, rail):
     """A short step of the loop from the witness, by hand, with the weights and bound that the witness states."""
     problem = make_problem(make_controller("afsmc"), rail=rail, speeds=(2.0, 120.0 / 3.6))
-    verdict = lyapunov_printed.check(problem)
+    verdict = lyapunov_printed.CHECK.run(problem)
     at = {point.name: point.value for point in verdict.witness}
     gains = problem.controller.gains
     plant = (problem.vehicle, problem.rail, gains)
-    run = adaptive_run(*plant, speeds=problem.speeds)
-    target = ideal(*plant, run, reserve(problem))
+    weights = tuple(at[f"ideal weight {k}"] for k in range(1, 6))
+    target = Ideal(weights=weights, bound=at["ideal bound"])
     state = np.array(
         [at["speed"] / 3.6, at["slip"], at["integral of the slip error"]]
         + [at[f"weight {k}"] for k in range(1, 6)]
@@ -74,18 +75,18 @@ def test_a_rise_that_only_floats_see_is_undecided(make_problem, make_controller,
     problem = make_problem(law)
     if module is lyapunov_repaired:
         monkeypatch.setattr(generated, "lyapunov_repaired", _without_speed)
-    assert module.check(problem).status is Status.REFUTED
+    assert module.CHECK.run(problem).status is Status.REFUTED
     monkeypatch.setattr(
-        "wspd_design.certificates.checks.certain_rise.exact_rate", lambda *_: flint.arb(0, 1e-9)
+        "wspd_design.certificates.theorems.ideal_loop.exact_rate", lambda *_: flint.arb(0, 1e-9)
     )
-    verdict = module.check(problem)
+    verdict = module.CHECK.run(problem)
     assert verdict.status is Status.UNDECIDED
     assert not verdict.witness
     assert "at no state" in verdict.explanation
 
 
 def test_derivative_is_the_true_one_and_not_the_claimed_one(printed):
-    claimed, true = lyapunov_printed.check(printed).hypotheses
+    claimed, true = lyapunov_printed.CHECK.run(printed).hypotheses
     assert claimed.status is Status.REFUTED
     assert true.status is Status.EVIDENCE
 
@@ -93,7 +94,7 @@ def test_derivative_is_the_true_one_and_not_the_claimed_one(printed):
 def test_printed_v2_falls_as_long_as_the_gain_hardly_changes(make_problem, make_controller):
     """The check can also find nothing: in the first tenth of a second the gain is nearly constant."""
     problem = make_problem(make_controller("afsmc"), speeds=(33.1, 120.0 / 3.6))
-    assert lyapunov_printed.check(problem).status is Status.EVIDENCE
+    assert lyapunov_printed.CHECK.run(problem).status is Status.EVIDENCE
 
 
 def test_printed_v2_rises_in_a_run_that_shares_no_code(er24pc, printed_gains):
@@ -150,7 +151,7 @@ def test_printed_v2_rises_in_a_run_that_shares_no_code(er24pc, printed_gains):
 @pytest.mark.parametrize("rail", RAILS)
 @pytest.mark.parametrize("name", ["afsmc", "afsmc-repaired"])
 def test_repaired_v_does_not_rise(make_problem, make_controller, name, rail):
-    verdict = lyapunov_repaired.check(
+    verdict = lyapunov_repaired.CHECK.run(
         make_problem(make_controller(name), rail=rail, speeds=(2.0, 120.0 / 3.6))
     )
     assert verdict.status is Status.EVIDENCE
@@ -159,7 +160,7 @@ def test_repaired_v_does_not_rise(make_problem, make_controller, name, rail):
 
 def test_repaired_law_is_not_judged_by_the_printed_v2(make_problem, make_controller):
     problem = make_problem(make_controller("afsmc-repaired"))
-    assert lyapunov_printed.check(problem).status is Status.NOT_APPLICABLE
+    assert lyapunov_printed.CHECK.run(problem).status is Status.NOT_APPLICABLE
 
 
 def _wrong_sign_of_the_weights(s_d, speed, gain_speed, weights, bound, alpha1, alpha2):
@@ -173,26 +174,30 @@ def _without_speed(s_d, _, gain_speed, weights, bound, alpha1, alpha2):
 @pytest.mark.parametrize("wrong", [_wrong_sign_of_the_weights, _without_speed])
 def test_wrong_v_is_refuted(printed, monkeypatch, wrong):
     monkeypatch.setattr(generated, "lyapunov_repaired", wrong)
-    verdict = lyapunov_repaired.check(printed)
+    verdict = lyapunov_repaired.CHECK.run(printed)
     assert Status.REFUTED in {verdict.status, *(hypothesis.status for hypothesis in verdict.hypotheses)}
     assert verdict.status is Status.REFUTED
 
 
-def test_wrong_sign_of_the_adaptation_is_refuted(printed, monkeypatch):
+@pytest.mark.parametrize(("weights", "bound"), [(-0.05, 1.0), (1.0, -1.0)])
+def test_wrong_sign_of_the_adaptation_is_refuted(printed, monkeypatch, weights, bound):
+    """The weights unlearn slowly, so that the run has states at which the hypotheses of the repair hold."""
     right = law_module.adaptation
 
     def wrong(gains, surface, speed):
         rates = right(gains, surface, speed)
-        return rates._replace(weights=tuple(-rate for rate in rates.weights))
+        return rates._replace(
+            weights=tuple(weights * rate for rate in rates.weights), bound=bound * rates.bound
+        )
 
-    monkeypatch.setattr("wspd_design.certificates.checks.ideal_run.adaptation", wrong)
-    assert lyapunov_repaired.check(printed).status is Status.REFUTED
+    monkeypatch.setattr("wspd_design.certificates.theorems.ideal_loop.adaptation", wrong)
+    assert lyapunov_repaired.CHECK.run(printed).status is Status.REFUTED
 
 
 def test_sliding_mode_with_enough_gain_reaches_its_layer(make_problem, make_controller):
     law = make_controller("smc")
     strong = replace(law, gains=replace(law.gains, switching_gain=25.0))
-    verdict = lyapunov_surface.check(make_problem(strong))
+    verdict = lyapunov_surface.CHECK.run(make_problem(strong))
     assert verdict.status is Status.EVIDENCE
     assert {series.name for series in verdict.series} >= {"V from slip 0.02", "V from slip 0.6"}
 
@@ -200,17 +205,20 @@ def test_sliding_mode_with_enough_gain_reaches_its_layer(make_problem, make_cont
 def test_sliding_mode_with_too_little_gain_is_refuted(make_problem, make_controller):
     law = make_controller("smc")
     weak = replace(law, gains=replace(law.gains, switching_gain=0.5))
-    verdict = lyapunov_surface.check(make_problem(weak))
+    verdict = lyapunov_surface.CHECK.run(make_problem(weak))
     assert verdict.status is Status.REFUTED
     at = {point.name: point.value for point in verdict.witness}
-    assert at["rising since"] < at["time"]
+    assert at["least dV/dt"] > 0.0
+    error = 0.14 - at["slip"]
+    surface = error + weak.gains.surface_rate * at["integral of the slip error"]
+    assert abs(surface) > weak.gains.boundary_layer
 
 
 def test_each_v_speaks_about_its_own_law(make_problem, make_controller):
     sliding, adaptive = make_problem(make_controller("smc")), make_problem(make_controller("afsmc"))
-    assert lyapunov_surface.check(adaptive).status is Status.NOT_APPLICABLE
-    assert lyapunov_printed.check(sliding).status is Status.NOT_APPLICABLE
-    assert lyapunov_repaired.check(sliding).status is Status.NOT_APPLICABLE
+    assert lyapunov_surface.CHECK.run(adaptive).status is Status.NOT_APPLICABLE
+    assert lyapunov_printed.CHECK.run(sliding).status is Status.NOT_APPLICABLE
+    assert lyapunov_repaired.CHECK.run(sliding).status is Status.NOT_APPLICABLE
 
 
 def test_exact_flows_enclose_those_of_the_runs(er24pc, make_controller, make_problem):
@@ -224,3 +232,49 @@ def test_exact_flows_enclose_those_of_the_runs(er24pc, make_controller, make_pro
         for ball, number in zip(exact, floats, strict=True):
             assert abs(float(ball.mid()) - number) <= 1e-11 * (1.0 + abs(number))
             assert float(ball.rad()) <= 1e-11 * (1.0 + abs(number))
+
+
+ROUND_TRIPS = {
+    lyapunov_surface: "smc",
+    lyapunov_printed: "afsmc",
+    lyapunov_repaired: "afsmc",
+}
+
+
+@pytest.mark.parametrize("module", ROUND_TRIPS, ids=lambda module: module.CHECK.name)
+def test_a_file_is_what_the_design_gives(make_problem, make_controller, module):
+    """Evidence stays evidence; no word, no number of it can be changed into another verdict."""
+    problem = make_problem(make_controller(ROUND_TRIPS[module]))
+    kept = certificate_text(module.CHECK.run(problem))
+    found = replay(problem, kept)
+    assert found.accepted, found.reason
+    content = json.loads(kept)
+    for changes in (
+        {"status": "PROVED"},
+        {"claim": "Every stop is stable."},
+        {"assumptions": []},
+        {"margin": {"low": 1.0, "high": 2.0, "unit": "-"}},
+        {"hypotheses": []},
+        {"findings": {}},
+    ):
+        forged = content | changes
+        if any(content[key] != entry for key, entry in changes.items()):
+            assert not replay(problem, json.dumps(forged)).accepted, changes
+
+
+@pytest.mark.parametrize("change", ["speed", "bound", "ideal bound", "slip"])
+def test_a_witness_that_denies_nothing_is_refused(make_problem, make_controller, change):
+    """The state of a refuted V2 is evaluated again: moved to where V2 falls, or (34) fails, it is refused."""
+    problem = make_problem(make_controller("afsmc"))
+    content = json.loads(certificate_text(lyapunov_printed.CHECK.run(problem)))
+    place = content["findings"]["rise"]["place"]
+    moved = {"speed": "100.0", "bound": "1e6", "ideal bound": "0.0", "slip": "0.9"}[change]
+    found = replay(problem, json.dumps(_with(content, place | {change: moved})))
+    assert not found.accepted
+    missing = {name: at for name, at in place.items() if name != change}
+    assert not replay(problem, json.dumps(_with(content, missing))).accepted
+
+
+def _with(content, place):
+    rise = content["findings"]["rise"] | {"place": place}
+    return content | {"findings": content["findings"] | {"rise": rise}}

@@ -22,10 +22,10 @@ def _smc(make_controller, make_problem, rail):
 @pytest.mark.parametrize(
     ("check", "sign", "scale"),
     [
-        (reaching.check, 1.0, 1.0),
-        (open_loop_pole.check, 1.0, 1.0),
-        (well_posed.check, -1.0, 1.0),
-        (sliding_exists.check, -1.0, 1e3),
+        (reaching.CHECK.run, 1.0, 1.0),
+        (open_loop_pole.CHECK.run, 1.0, 1.0),
+        (well_posed.CHECK.run, -1.0, 1.0),
+        (sliding_exists.CHECK.run, -1.0, 1e3),
     ],
 )
 def test_the_worst_of_the_map_is_what_is_proved(make_controller, make_problem, rail, check, sign, scale):
@@ -81,4 +81,4 @@ def test_a_tightest_point_inside_the_ranges_is_on_the_map(make_controller, make_
 def test_one_speed_has_no_map(make_controller, make_problem):
     problem = _smc(make_controller, make_problem, "polach-dry")
     assert _map(replace(problem, speeds=(20.0, 20.0)), lambda points: points[:, 0]) == ()
-    assert well_posed.check(replace(problem, slips=(0.14, 0.14))).maps == ()
+    assert well_posed.CHECK.run(replace(problem, slips=(0.14, 0.14))).maps == ()

@@ -26,6 +26,26 @@ def test_known_loop():
     assert found.delay == pytest.approx(phase / crossing, rel=1e-4)
 
 
+def unstable_below(opened):
+    """First factor under 1 at which the closed loop is unstable, from its poles."""
+    numerator, denominator = opened.num[0][0], opened.den[0][0]
+    factors = np.geomspace(1.0, 1e-3, 3001)
+    stable = [np.all(np.roots(np.polyadd(f * numerator, denominator)).real < 0.0) for f in factors]
+    assert stable[0]
+    changes = np.flatnonzero(np.diff(stable))
+    return float(factors[changes[0]]), len(changes)
+
+
+@pytest.mark.parametrize("zero", [1.0, 2.0])
+def test_the_nearest_of_two_lower_gain_margins_counts(zero):
+    """(s + z)^2/((s + 0.1)^3 (0.02 s + 1)) is unstable between two factors below 1; the larger one ends the margin."""
+    lag = np.polymul(np.polymul([1.0, 0.1], [1.0, 0.1]), np.polymul([1.0, 0.1], [0.02, 1.0]))
+    opened = control.tf(np.polymul([1.0, zero], [1.0, zero]), lag)
+    factor, changes = unstable_below(opened)
+    assert changes == 2
+    assert margins.margins(control.ss(opened)).gain_down == pytest.approx(factor, rel=3e-3)
+
+
 def balanced_peak(opened, low, high):
     """Largest abs(S - 1/2) of a loop on a grid of frequencies [rad/s] that is made finer around its peak."""
     for _ in range(4):

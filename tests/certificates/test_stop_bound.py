@@ -110,9 +110,9 @@ def test_proved_and_kept(make_problem, make_controller, name):
     verdict = stop_bound.check(make_problem(make_controller(name, "polach-wet"), rail="polach-wet"))
     assert verdict.status is Status.PROVED
     at = {point.name: point.value for point in verdict.worst_point}
-    assert at["bound of the time"] > 14.4  # the printed 12.2 s cannot come from this rail
+    assert at["bound on the time"] > 14.4  # the printed 12.2 s cannot come from this rail
     assert (
-        at["bound of the distance"] < at["distance of the ideal stop"] <= at["distance of the simulated stop"]
+        at["bound on the distance"] < at["distance of the ideal stop"] <= at["distance of the simulated stop"]
     )
 
 

@@ -114,7 +114,7 @@ COMMAND_LINES = {
     "no terminal for new": (("new",), ("terminal", "wspd new --yes")),
     "no draft": (("new", "--resume", "missing.toml.part"), ("missing.toml.part", "check the path")),
     "draft of another kind": (("new", "--resume", "typo.toml"), (".part", "-o")),
-    "draft that is none": (("new", "--resume", "other.toml.part"), ("no draft", "wspd new")),
+    "draft that is none": (("new", "--resume", "other.toml.part"), ("not a draft", "wspd new")),
     "draft with a typo": (("new", "--yes", "--resume", "typo.toml.part", "-o", "a.toml"), ("slipp", "slip?")),
     "draft with a wrong value": (("new", "--yes", "--resume", "wrong.toml.part"), ("7", "(0, 1)")),
     "option unknown": (("simulate", "--spede", "3"), ("--spede", "--speed", "wspd simulate --help")),

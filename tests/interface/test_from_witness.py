@@ -85,7 +85,7 @@ def test_the_slip_rests_at_first_on_either_plant(wspd, witness_file):
         a, b = rows[:2]
         step = b["time_s"] - a["time_s"]
         # The brake fills from the first moment on: the rate of the slip is G times what it has added by then.
-        added = gain * (b["torque_N_m_1"] - a["torque_N_m_1"])
+        added = gain * (b["torque_Nm_1"] - a["torque_Nm_1"])
         assert 0.0 < (b["slip_1"] - a["slip_1"]) / step < added
 
 

@@ -36,8 +36,12 @@ def test_report_of_a_design_file(wspd, smc_file, calls):
     assert "a.pdf" in outcome.out
     assert calls["design"].name == "smc-er24pc-polach-wet"
     options = calls["options"]
-    assert (options["vehicle_name"], options["rail_name"], options["seed"]) == ("er24pc", "polach-wet", 4)
-    assert options["initial_speed"] == pytest.approx(100.0 / 3.6)
+    assert (options["vehicle_name"], options["rail_name"], options["scenario"].seed) == (
+        "er24pc",
+        "polach-wet",
+        4,
+    )
+    assert options["scenario"].initial_speed == pytest.approx(100.0 / 3.6)
     assert options["baselines"] == ["afsmc", "smc", "torque-feedback", *INDUSTRY]
 
 
@@ -56,3 +60,11 @@ def test_an_existing_report_is_replaced_only_by_force(wspd, smc_file, tmp_path):
     assert (tmp_path / "report.html").read_text() == "old"
     assert wspd("report", smc_file.name, "--force").code == 0
     assert (tmp_path / "report.html").read_text() == "new"
+
+
+def test_a_report_takes_the_disturbances_of_every_stop(wspd, smc_file, calls):
+    options = ("--grade", "-5 permille", "--patch", "50 m polach-dry", "--dead-time", "40 ms")
+    assert wspd("report", smc_file.name, *options, "-o", "a.html").code == 0
+    scenario = calls["options"]["scenario"]
+    assert (scenario.grade, scenario.sensing.dead_time) == (-0.005, 0.04)
+    assert [(patch.start, patch.rail.name) for patch in scenario.patches] == [(50.0, "polach-dry")]

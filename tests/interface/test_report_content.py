@@ -15,6 +15,7 @@ from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.reporting.report import write_report
 from wspd_design.reporting.sections.summary import verdict
 from wspd_design.reporting.text import plain
+from wspd_design.simulation.records import Scenario
 from wspd_design.studies.dossier import dossier
 
 
@@ -25,7 +26,7 @@ def made():
         named_design("afsmc", vehicle, rail, Specification()),
         vehicle_name="er24pc",
         rail_name="table10-dry",
-        initial_speed=120.0 / 3.6,
+        scenario=Scenario.stop(from_kmh=120.0, rail=rail),
         baselines=("trenitalia", "none"),
         command="wspd report afsmc --rail table10-dry",
     )

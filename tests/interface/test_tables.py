@@ -69,22 +69,37 @@ def test_every_equation_is_listed_with_its_verdict(wspd):
     for equation in load_equations():
         label = f"({equation.number})" if equation.number[0].isdigit() else equation.number
         assert re.search(rf"^{re.escape(label)} +{equation.verdict} ", out, re.MULTILINE), label
+    assert "A misprint of one glyph may be the scan's" in out
 
 
 def test_equations_of_one_verdict(wspd):
-    numbers = {e.number for e in load_equations() if e.verdict == "misprint"}
+    numbers = {e.number for e in load_equations() if "misprint" in e.verdicts}
     out = wspd("equations", "--verdict", "misprint").out
-    listed = re.findall(r"^(?:\((\d+)\)|(\S.*?)) +misprint ", out, re.MULTILINE)
+    listed = re.findall(r"^(?:\((\d+)\)|(\S.*?)) +misprint(?:, gap)? {2}", out, re.MULTILINE)
     assert {a or b for a, b in listed} == numbers
 
 
-@pytest.mark.parametrize("number", ["14", "(14)", "b_w", "table 5"])
+@pytest.mark.parametrize("number", ["14", "(14)", "b_w", "table 5", "table 4", "t_d"])
 def test_one_equation_shows_its_parts(number, wspd):
     out = wspd("equations", number).out
     equation = next(e for e in load_equations() if e.number.lower() == number.strip("()"))
     squeezed = re.sub(r"\s", "", out)
-    for part in (equation.title, equation.printed, equation.corrected, equation.file, equation.test):
-        assert re.sub(r"\s", "", part) in squeezed
+    for name in ("title", "printed", "corrected", "domain", "unit", "unit_fault", "gap", "file", "test"):
+        assert re.sub(r"\s", "", getattr(equation, name)) in squeezed, name
+
+
+def test_certainty_of_a_correction_is_told(wspd):
+    out = " ".join(wspd("equations", "14").out.split())
+    assert "misprint, gap" in out
+    assert "proved from the paper's other equations or from units; one glyph, which the scan" in out
+
+
+def test_unknown_entry_is_not_denied_to_the_paper(wspd):
+    """Table 8 is in the paper and not in the map."""
+    outcome = wspd("equations", "Table 8")
+    assert outcome.code == 2
+    assert 'the map has no entry "Table 8"' in outcome.err
+    assert "the paper has no" not in outcome.err
 
 
 @pytest.mark.parametrize("columns", ["60", "120"])

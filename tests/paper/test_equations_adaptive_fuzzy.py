@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from derivations import adaptive_fuzzy
+from derivations import adaptive_fuzzy, slip_equation
+from wspd_design.model.adhesion import contact_stiffness
 from wspd_design.model.generated.adaptive_fuzzy import (
     lyapunov_printed,
     lyapunov_printed_rate_claimed,
@@ -12,6 +13,8 @@ from wspd_design.model.generated.adaptive_fuzzy import (
     lyapunov_repaired_rate,
     membership,
 )
+from wspd_design.model.generated.adhesion import creep_force_speed_derivative
+from wspd_design.parameters.loading import load_rail
 
 # The setting of the proof: u* = b'w(s) + xi with constant b and |xi| < psi; torque in kN m.
 K_P, ALPHA1, ALPHA2, PSI = 18.0, 10.0, 0.85, 1.0
@@ -63,19 +66,56 @@ def test_fuzzy_basis():
     assert adaptive_fuzzy.partition_residual == adaptive_fuzzy.output_residual == 0
 
 
-def test_ideal_control_depends_on_speed():
-    assert adaptive_fuzzy.ideal_speed_dependence != 0
+@pytest.mark.parametrize(("name", "at_33", "at_2"), [("polach-dry", -187, -2544), ("polach-wet", -204, -469)])
+def test_ideal_control_depends_on_speed(name, at_33, at_2, er24pc):
+    """du*/dv at slip 0.14 with the friction and the resistance of the speed, in N m per m/s."""
+    rail = load_rail(name)
+    law = (rail.mu0, rail.friction_ratio, rail.friction_decay, rail.adhesion_reduction, rail.slip_reduction)
+    load = er24pc.mass * 9.81 / 8
+    stiffness = contact_stiffness(er24pc.contact, load)
+
+    def slope(speed):
+        return float(
+            adaptive_fuzzy.ideal_speed_dependence.subs(
+                {
+                    adaptive_fuzzy.force_slope: creep_force_speed_derivative(
+                        0.14, speed, load, *law, stiffness
+                    ),
+                    adaptive_fuzzy.resistance_slope: er24pc.resistance_linear
+                    + 2 * er24pc.resistance_quadratic * speed,
+                    slip_equation.inertia: er24pc.wheelset_inertia / 2,
+                    slip_equation.R: er24pc.wheel_radius,
+                    slip_equation.m: er24pc.mass,
+                    slip_equation.slip: 0.14,
+                    slip_equation.B_W: 0.25,
+                    adaptive_fuzzy.e: 0,
+                    adaptive_fuzzy.slip_d_rate: 0,
+                }
+            )
+        )
+
+    assert slope(120 / 3.6) == pytest.approx(at_33, abs=1.5)
+    assert slope(2.0) == pytest.approx(at_2, rel=0.01)
+
+
+def test_ideal_control_is_bounded_on_its_domain():
+    assert adaptive_fuzzy.ideal_singular_part == 0
 
 
 def test_saturation_is_a_relay():
     assert float(adaptive_fuzzy.layer_in_slip) == pytest.approx(5.6e-4, rel=0.01)
-    inside = adaptive_fuzzy.layer_excess.subs(adaptive_fuzzy.s, 0.5)
-    assert inside.subs({adaptive_fuzzy.psi_hat: 1, adaptive_fuzzy.G: 1}) > 0
+    for s in (-0.5, 0.5):  # either side of the surface
+        inside = adaptive_fuzzy.layer_excess.subs({adaptive_fuzzy.s: s, adaptive_fuzzy.psi_hat: 1})
+        assert inside.subs(adaptive_fuzzy.G, 1) == pytest.approx(0.25)  # G psi_hat |s| (1 - |s|)
+    assert adaptive_fuzzy.layer_excess_at_edge == 0
 
 
 def test_error_dynamics():
     assert adaptive_fuzzy.error_dynamics_residual == 0
     assert adaptive_fuzzy.error_dynamics_residual_printed != 0
+    # Without T_brake = u the error moves by G (u - T) more.
+    gap = adaptive_fuzzy.torque_residual
+    assert gap == adaptive_fuzzy.G * (adaptive_fuzzy.u - adaptive_fuzzy.torque)
 
 
 def test_printed_adaptation_is_zero():
@@ -86,7 +126,8 @@ def test_printed_adaptation_is_zero():
 def test_bound_estimate_never_falls():
     _, _, _, _, bound_error, _ = simulate(1.0, 1e-3, printed_law)
     assert (np.diff(bound_error) <= 0).all()
-    assert adaptive_fuzzy.bound_rate_residual != 0
+    assert adaptive_fuzzy.bound_rate_residual == 0  # sgn(G) = 1 by (19)
+    assert adaptive_fuzzy.sign_of_gain == 1
 
 
 def test_true_rate_of_v2_along_a_trajectory():
@@ -123,6 +164,17 @@ def test_printed_v2_rises_and_repaired_v_falls():
     assert (rate <= 0).all()
     assert rate[1:-1] == pytest.approx(np.gradient(v, t)[1:-1], abs=2e-3)
     assert adaptive_fuzzy.repaired_rate_residual == 0
+    assert adaptive_fuzzy.repaired_scale_residual == 0  # V is V2/(G K_P)
+
+
+def test_energy_with_held_adaptation_needs_the_ideal_torque_inside_the_limits():
+    """u* = 65 kN m, T_max = 60 kN m, s_D = .05: V' = +245 N m."""
+    g, deceleration, dead_zone = 0.55 / (2 * 331), 3.0, 0.05
+    rate = dead_zone * (65e3 - 60e3) - deceleration * dead_zone**2 / (2 * g)
+    assert rate == pytest.approx(245.0, abs=1.0)
+    assert float(adaptive_fuzzy.held_counterexample) == pytest.approx(rate)
+    # Inside by eta it falls, at either limit.
+    assert adaptive_fuzzy.held_full_residual == adaptive_fuzzy.held_empty_residual == 0
 
 
 def test_wrong_lyapunov_function_is_caught():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from derivations import adhesion
 from wspd_design.model.generated.adhesion import (
@@ -12,6 +13,7 @@ from wspd_design.model.generated.adhesion import (
     creep_gradient,
     friction_coefficient,
 )
+from wspd_design.parameters.loading import load_rail
 
 Q = 94226.0
 STIFFNESS = contact_stiffness(84e9, 7.73e-3, 5.17e-3, 4.2)
@@ -47,6 +49,17 @@ def test_limits_of_the_creep_force():
     assert adhesion.slope_at_zero == adhesion.kalker_slope * (adhesion.kA + adhesion.kS) / 2
 
 
+def test_creep_force_is_judged_by_three_marks():
+    assert adhesion.force_residual == 0
+    planted = adhesion.force_of_gradient + 1  # neither odd nor Q mu for large slip
+    assert sp.simplify(planted + planted.subs(adhesion.gradient, -adhesion.gradient)) != 0
+
+
+def test_legible_cells_of_table_1():
+    dry, wet = load_rail("polach-dry"), load_rail("polach-wet")
+    assert (dry.friction_decay, dry.mu0, wet.mu0) == (0.6, 0.55, 0.3)
+
+
 def test_gradient_from_linear_theory():
     a, b, c11, shear, mu, slip = 7.73e-3, 5.17e-3, 4.2, 84e9, 0.4, 0.01
     tangential = 3.0 / 8.0 * shear * c11 / a
@@ -57,6 +70,8 @@ def test_gradient_from_linear_theory():
 
 
 def test_friction_needs_the_magnitude_of_sliding():
+    on_domain = adhesion.friction_printed - adhesion.friction_corrected.subs(sp.Abs(adhesion.w), adhesion.w)
+    assert sp.simplify(on_domain) == 0  # the printed form, where v >= R omega
     assert friction_coefficient(5.0, 0.55, 0.4, 0.6) == pytest.approx(0.55 * (0.6 * np.exp(-3.0) + 0.4))
     assert friction_coefficient(-10.0, 0.55, 0.4, 0.6) > 100.0  # as printed, for v < R omega
     assert adhesion.friction_asymmetry != 0

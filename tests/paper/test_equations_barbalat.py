@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import sympy as sp
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 from derivations import barbalat
 from wspd_design.model.generated.adaptive_fuzzy import lyapunov_printed_rate_true
@@ -38,3 +38,14 @@ def test_hypotheses_of_the_lemma():
     assert barbalat.gain_slope_in_speed.is_negative
     assert barbalat.gain_rate_at_standstill == sp.oo  # no Lipschitz bound of Gamma
     assert barbalat.gamma_without_margin == 0  # psi = |xi|: Gamma = 0 for any s
+
+
+def test_error_follows_the_surface_to_zero():
+    """s -> 0 gives e -> 0: (22) integrated for an s that tends to zero."""
+    rate, times = 0.306, np.linspace(0.0, 60.0, 6001)
+    integral = solve_ivp(
+        lambda t, i: np.exp(-t) - rate * i, (0.0, 60.0), [0.0], t_eval=times, rtol=1e-9, atol=1e-12
+    )
+    error = np.exp(-times) - rate * integral.y[0]  # s/K_P = e + c int e
+    assert abs(error[-1]) < 1e-6 < abs(error[0])
+    assert barbalat.error_after_step == barbalat.filter_residual == 0

@@ -21,6 +21,7 @@ def test_valve_states_of_table_2():
     rates = [brake.cylinder_pressure_rate(3e5, P_MAX, *state, T_F, T_V) for state in (increase, hold, reduce)]
     assert rates == pytest.approx([3e5 / T_F, 0.0, -3e5 / T_V])
     assert brake_actuator.pressure_rate_residual == 0
+    assert brake_actuator.pressure_rate_on_hold == 0
 
 
 @pytest.mark.parametrize(("start", "pressure"), [(0.0, 0.0), (0.5, 1.5e5), (2.0, 5.9e5)])
@@ -77,6 +78,29 @@ def test_lag_under_full_supply():
     assert brake.torque_rate(torque, 1.0, T_MAX, tau) != pytest.approx(at_half_supply, rel=0.1)
     assert brake_actuator.lag_residual != 0
     assert brake_actuator.bilinear_coefficient.subs(brake_actuator.T_F, brake_actuator.T_V) == 0
+
+
+def test_supply_is_far_from_full_when_the_brake_is_applied():
+    assert brake.supply_pressure(1.0 / RATE, P_MAX, RATE) == pytest.approx(0.632 * P_MAX, rel=1e-3)
+    assert float(brake_actuator.supply_share) == pytest.approx(0.632, abs=1e-3)
+    assert brake_actuator.supply_residual_of_lag != 0
+
+
+@pytest.mark.parametrize("period", [0.1, 0.5, 2.0])
+def test_average_of_a_simulated_pulse_train(period):
+    """The moving average over a period of any length obeys (15) exactly, from the first period on."""
+    tau, duty, steps = 0.6, 0.37, 1000
+    step, torque, history = period / steps, 0.0, []
+    for n in range(20 * steps):
+        command = 1.0 if n % steps < duty * steps else 0.0
+        torque = command + (torque - command) * np.exp(-step / tau)
+        history.append(torque)
+    total = np.concatenate([[0.0], np.cumsum(history)])
+    average = (total[steps:] - total[:-steps]) / steps
+    times = step * np.arange(len(average))
+    expected = duty + (average[0] - duty) * np.exp(-times / tau)  # tau T' + T = dc, T_max = 1
+    assert average == pytest.approx(expected, abs=1e-9)
+    assert brake_actuator.average_residual == 0
 
 
 @pytest.mark.parametrize("period", [0.1, 0.5, 2.0])

@@ -101,7 +101,32 @@ def test_error_inside_the_layer():
 
 
 def test_unit_of_the_printed_gains():
-    assert float(sliding_surface.duty_of_printed_gains) == pytest.approx(2.0 / 60e3)
+    """u in N m: a wheel that rolls, no limit of adhesion, lag .6 s: 294 m where Table 10 has 184 m."""
+
+    def rates(t, state):
+        speed, _, torque = state
+        error = 0.14  # rolling: slip 0
+        weights = 1 + 10.0 * (1800 * error * t + 550 * error * t**2 / 2)
+        bound = 1 + 0.85 * (1800 * error * t + 550 * error * t**2 / 2)
+        command = min(weights + bound, 60e3)
+        return -4 * torque / 0.55 / (76841 + 8 * 331 / 0.55**2), speed, (command - torque) / 0.6
+
+    def stop(_, state):
+        return state[0]
+
+    stop.terminal = True
+    run = solve_ivp(rates, (0.0, 30.0), [120 / 3.6, 0.0, 0.0], events=stop, max_step=0.02)
+    assert run.y[1, -1] == pytest.approx(294.0, abs=2.0)
+    # The bound of the map: no lag and no limit of the torque, so at most this.
+    assert sliding_surface.printed_distance < sliding_surface.distance_in_newton_metres < run.y[1, -1]
+    assert sliding_surface.distance_in_newton_metres == pytest.approx(273.0, abs=1.0)
+    assert float(sliding_surface.duty_at_start) == pytest.approx(2.0 / 60e3)
+
+
+def test_torque_lags_behind_the_control_input():
+    torque = sliding_surface.torque_of_duty
+    assert sliding_surface.torque_residual == torque - sliding_surface.u != 0
+    assert sliding_surface.torque_rate_of_surface != 0
 
 
 def test_ideal_control_is_bounded_at_standstill():

@@ -8,8 +8,8 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 
 from derivations import slip_equation
+from derivations.claim import verdicts
 from derivations.claims import sliding
-from derivations.equation_map import verdict
 from wspd_design.model.generated import adhesion, motion, slip
 
 M, R, INERTIA, B = 76841.0, 0.55, 331.0, 1.0
@@ -32,6 +32,21 @@ def test_slip_ratio():
     assert slip.slip_ratio(20.0, 32.0, R, 20.0) == pytest.approx(0.12)
     assert slip.wheel_speed_at_slip(0.12, 20.0, R) == pytest.approx(32.0)
     assert slip_equation.slip_at_standstill == -sp.oo
+
+
+def test_slip_has_no_limit_at_standstill():
+    """Down to v = omega = 0 along two rays: two limits, so that (1) to (3) have no right side there."""
+    for share, limit in ((0.5, 0.5), (0.9, 0.1)):
+        along_ray = [slip.slip_ratio(v, share * v / R, R, v) for v in (1.0, 1e-3, 1e-6)]
+        assert along_ray == pytest.approx([limit] * 3)
+    assert not slip_equation.slip_along_ray.has(slip_equation.v)
+    steepness = slip_equation.slip_speed_slope.subs({slip_equation.omega: 1, slip_equation.R: R})
+    assert sp.limit(steepness, slip_equation.v, 0, "+") == sp.oo  # not Lipschitz
+
+
+def test_drift_hides_the_speed():
+    assert drift(0.14, 20.0) != pytest.approx(drift(0.14, 10.0), rel=0.1)
+    assert slip_equation.drift_speed_slope != 0
 
 
 def test_slip_dynamics_follow_from_the_laws_of_motion():
@@ -69,15 +84,15 @@ def test_drift_slope_is_the_derivative_of_the_drift():
 
 def test_wrong_sign_in_eq_19_is_caught():
     claim = next(c for c in sliding.CLAIMS if c.number == "19")
-    assert verdict(claim) == "holds"
+    assert verdicts(claim) == ("holds",)
     printed = slip_equation.slip_rate_printed
     for term in sp.Add.make_args(sp.expand(printed)):
         planted = sp.expand(printed) - 2 * term
         residual = sp.simplify(planted - slip_equation.slip_rate_derived)
         assert residual != 0
-        assert verdict(replace(claim, residual=residual)) != "holds"
+        assert verdicts(replace(claim, residual=residual)) == ("misprint",)
     with pytest.raises(ValueError, match="corrected form leaves"):
-        verdict(replace(claim, corrected_residual=slip_equation.drift_derived + slip_equation.drift))
+        verdicts(replace(claim, corrected_residual=slip_equation.drift_derived + slip_equation.drift))
 
 
 def test_gain_is_positive_and_input_affine():
@@ -93,3 +108,14 @@ def test_uncertainty_contains_the_gain():
     assert np.abs(uncertainty[1:] / uncertainty[:-1]) == pytest.approx(10.0)
     assert np.ptp(uncertainty * speeds) < 1e-12
     assert slip_equation.uncertainty_at_standstill == sp.oo
+
+
+def test_bound_of_the_uncertainty_is_circular():
+    """T = u_eq + W/G puts W into delta: the bound grows without end as the gain becomes uncertain by 100 %."""
+    apart, share = 0.3, 0.2
+    bound = apart
+    for _ in range(200):
+        bound = apart + share * bound
+    q, d = sorted(slip_equation.smallest_bound.free_symbols, key=str, reverse=True)
+    assert float(slip_equation.smallest_bound.subs({q: share, d: apart})) == pytest.approx(bound)
+    assert slip_equation.circular_limit == sp.oo

@@ -6,7 +6,11 @@ from scipy.integrate import solve_ivp
 from derivations import torque_balance
 from wspd_design.model.generated import adhesion, motion
 
-M, R, INERTIA, B = 76841.0, 0.55, 331.0, 1.0
+M, R, INERTIA = 76841.0, 0.55, 331.0
+
+
+def damping(t):
+    return 1e3 * motion.wheel_damping(t, 0.25, 0.3)  # falls, and is large enough to matter
 
 
 def test_identity_on_a_simulated_stop():
@@ -18,18 +22,19 @@ def test_identity_on_a_simulated_stop():
         torque = 3.5e4 * (1.0 - 0.3 * t / 10.0)
         return (
             motion.train_acceleration(force, resistance, M),
-            motion.wheel_acceleration(force, omega, torque, INERTIA, R, B),
+            motion.wheel_acceleration(force, omega, torque, INERTIA, R, damping(t)),
             4.0 * torque,
             resistance,
-            omega,
+            damping(t) * omega,
         )
 
     start = [33.3, 33.3 / R, 0.0, 0.0, 0.0]
     run = solve_ivp(rates, (0.0, 12.0), start, method="Radau", rtol=1e-9, atol=1e-9)
-    v, omega, torque, resistance, turned = run.y[:, -1]
+    v, omega, torque, resistance, damped = run.y[:, -1]
     assert 0.0 < v < 10.0
     taken = R * M * (start[0] - v) + 8 * INERTIA * (start[1] - omega)
-    assert torque == pytest.approx(taken - R * resistance - 8 * B * turned, rel=1e-6)
+    assert torque == pytest.approx(taken - R * resistance - 8 * damped, rel=1e-6)
+    assert 8 * damped > 1e-3 * torque
     assert torque_balance.identity_residual == 0
     assert torque_balance.torque_coefficient == -4
 

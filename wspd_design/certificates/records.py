@@ -54,6 +54,16 @@ class Hypothesis:
     status: Status
 
 
+class Role(Enum):
+    """What a series is in its plot."""
+
+    CURVE = "curve"
+    LIMIT = "limit that curves must respect, or reference"
+    OUTLINE = "edge of a region"
+    LYAPUNOV = "Lyapunov function over time"
+    LOOP_GAIN = "gain inside the boundary layer"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Series:
     """Samples of a quantity over another one, for the plot beside the verdict."""
@@ -63,6 +73,7 @@ class Series:
     y_label: str
     x: tuple[float, ...]
     y: tuple[float, ...]
+    role: Role = Role.CURVE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,6 +124,18 @@ class Certificate:
     def boxes(self) -> int:
         """Number of boxes that the searches looked at."""
         return sum(each.effort.boxes for each in self.findings.values())
+
+    @property
+    def proved(self) -> Mapping[str, "Finding"]:
+        """What a checker accepted a proof of, by the keys of the obligations."""
+        return {
+            key: each for key, each in self.findings.items() if each.shown and each.stated.proof is not None
+        }
+
+    @property
+    def undecided(self) -> float:
+        """Largest share of a box that a search left open."""
+        return max((each.effort.undecided for each in self.findings.values()), default=0.0)
 
     @property
     def cut(self) -> bool:

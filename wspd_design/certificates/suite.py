@@ -4,11 +4,28 @@ from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
-from wspd_design.certificates.checks.foundations import gain_positive
+from wspd_design.certificates.checks.adaptive import (
+    afsmc_energy,
+    barbalat,
+    lyapunov_printed,
+    lyapunov_repaired,
+)
+from wspd_design.certificates.checks.foundations import (
+    conservation,
+    derivation,
+    gain_positive,
+    surface_hurwitz,
+    well_posed,
+)
 from wspd_design.certificates.checks.frame import Check, illustrated
+<<<<<<< HEAD
 from wspd_design.certificates.checks.linear import margins, routh_lag
 from wspd_design.certificates.checks.region import lpv_lyapunov
 from wspd_design.certificates.checks.sliding import boundary_layer, reaching, sliding_exists
+=======
+from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
+from wspd_design.certificates.checks.stop import tracking
+>>>>>>> kernel
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
@@ -22,17 +39,30 @@ from wspd_design.parameters.errors import UserError
 CHECKS: Mapping[str, Check] = {
     each.name: each
     for each in (
+        derivation.CHECK,
+        surface_hurwitz.CHECK,
         gain_positive.CHECK,
+        well_posed.CHECK,
         sliding_exists.CHECK,
         reaching.CHECK,
         boundary_layer.CHECK,
+        lyapunov_surface.CHECK,
+        lyapunov_printed.CHECK,
+        lyapunov_repaired.CHECK,
+        afsmc_energy.CHECK,
+        barbalat.CHECK,
         open_loop_pole.CHECK,
         no_go.CHECK,
         hard_limits.CHECK,
         sampling.CHECK,
+<<<<<<< HEAD
         routh_lag.CHECK,
         margins.CHECK,
         lpv_lyapunov.CHECK,
+=======
+        tracking.CHECK,
+        conservation.CHECK,
+>>>>>>> kernel
     )
 }
 NAMES = tuple(THEOREMS)

@@ -23,10 +23,10 @@ from wspd_design.cli.commands import (
     sources,
     verify,
 )
-from wspd_design.cli.console import program_version
 from wspd_design.cli.exit_codes import BUG, INTERRUPTED, WRONG_USE
 from wspd_design.cli.notices import plain_notices
 from wspd_design.design.own_controller import fault_in_own_file
+from wspd_design.exchange.version import program_version
 from wspd_design.parameters.errors import UserError
 
 # Newer versions of Typer carry their own copy of Click; the parent of this class is the usage error of either.

@@ -5,7 +5,7 @@ from difflib import get_close_matches
 from wspd_design.cli.options import CONTROLLER, QUARTER
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.units import parse_quantity
-from wspd_design.simulation.records import PLANTS
+from wspd_design.plants.names import PLANTS
 
 
 def parse_speed(text: str) -> float:

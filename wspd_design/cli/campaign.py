@@ -4,20 +4,20 @@ import sys
 from pathlib import Path
 
 import typer
-from rich.text import Text
 
-from wspd_design.cli.console import console, print_json, progress_bar, spaced, table
+from wspd_design.cli.console import console, print_json, progress_bar, spaced
 from wspd_design.cli.exit_codes import INTERRUPTED
-from wspd_design.cli.from_witness import Origin
+from wspd_design.cli.from_witness import WitnessStart
 from wspd_design.cli.json_objects import campaign_object
-from wspd_design.cli.stop_figures import number
-from wspd_design.cli.stop_options import disturbances_of, rails_of
 from wspd_design.cli.summary import Summary, summarize
 from wspd_design.cli.tables import write_table
+from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import Case
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.records import ParameterSet
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.campaign import simulate_many
+from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Scenario
 
 _NAMES = {"distance_m": "distance [m]", "stopping_time_s": "time [s]", "lock_time_s": "wheels locked [s]"}
@@ -33,7 +33,7 @@ def simulate_campaign(
     output: Path | None,
     force: bool,
     as_json: bool,
-    origin: Origin | None,
+    start: WitnessStart | None,
 ) -> None:
     """Simulate many stops and say how they spread; an interrupt keeps what is done.
 
@@ -55,7 +55,7 @@ def simulate_campaign(
         Whether an existing file may be replaced.
     as_json : bool
         Print an object in place of the table.
-    origin : Origin or None
+    start : WitnessStart or None
         The witness that the stops start at.
     """
     bounds = () if nominal else _bounds(case, scenario)
@@ -69,7 +69,7 @@ def simulate_campaign(
         write_table(written, campaign.table, force=force)
     summary = summarize(campaign, wanted=runs)
     if as_json:
-        print_json(campaign_object(summary, case, scenario, origin))
+        print_json(campaign_object(summary, case, scenario, start))
     elif done:
         _show(summary, case, scenario)
         if written is not None:
@@ -100,12 +100,19 @@ def _show(summary: Summary, case: Case, scenario: Scenario) -> None:
     disturbances = disturbances_of(scenario)
     if disturbances:
         out.print(f"With {disturbances}.", markup=False)
-    headers = ("min", "5 %", "median", "95 %", "max")
-    shown = table("Figure", *headers, numeric=headers)
-    for name, spread in summary.spreads.items():
-        values = (spread.min, spread.p05, spread.median, spread.p95, spread.max)
-        shown.add_row(Text(_NAMES[name]), *(number(value, ".2f") for value in values))
-    out.print(spaced(shown))
+    shown = build(
+        summary.spreads.items(),
+        (
+            ColumnOf(title="Figure", read=lambda row: _NAMES[row[0]]),
+            ColumnOf(title="min", decimals=2, read=lambda row: row[1].min),
+            ColumnOf(title="5 %", decimals=2, read=lambda row: row[1].p05),
+            ColumnOf(title="median", decimals=2, read=lambda row: row[1].median),
+            ColumnOf(title="95 %", decimals=2, read=lambda row: row[1].p95),
+            ColumnOf(title="max", decimals=2, read=lambda row: row[1].max),
+        ),
+        caption="",
+    )
+    out.print(spaced(terminal_table(shown)))
     share = summary.not_stopped_share
     out.print(
         f"Not stopped within the time limit: {100.0 * share:.3g} %"

@@ -1,12 +1,10 @@
 """Where output goes: tables on standard output, progress and errors on standard error."""
 
 import json
-import math
 import shutil
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib.metadata import version
 from typing import Any
 
 from rich import box
@@ -15,13 +13,10 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from wspd_design.exchange.plain import finite
+
 WIDE = 96
 """Columns of a terminal from which on tables put everything side by side."""
-
-
-def program_version() -> str:
-    """Return the version of the installed program."""
-    return version("wspd-design")
 
 
 def console(*, error: bool = False) -> Console:
@@ -46,7 +41,7 @@ def spaced(shown: Table) -> Padding:
 
 def print_json(value: dict[str, Any]) -> None:
     """Print one JSON object and nothing else; a number that is not finite becomes null."""
-    print(json.dumps(_finite(value), indent=2, ensure_ascii=False, allow_nan=False))
+    print(json.dumps(finite(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
 @contextmanager
@@ -83,14 +78,3 @@ def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
 def is_interactive() -> bool:
     """Tell whether somebody sits in front of the program and can answer questions."""
     return sys.stdin.isatty() and sys.stdout.isatty()
-
-
-def _finite(value: Any) -> Any:
-    match value:
-        case float() if not math.isfinite(value):
-            return None
-        case dict():
-            return {key: _finite(item) for key, item in value.items()}
-        case list() | tuple():
-            return [_finite(item) for item in value]
-    return value

@@ -19,7 +19,7 @@ LEFT = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Origin:
+class WitnessStart:
     """What a stop starts from."""
 
     witness: Witness
@@ -73,7 +73,7 @@ def check_words(*, named: bool, speed: str | None, axle_rails: str | None, draws
         )
 
 
-def origin(case: Case, stop: Scenario, witness: Witness) -> Origin:
+def witness_start(case: Case, stop: Scenario, witness: Witness) -> WitnessStart:
     """Put a case at a witness: the controller stays what it is, vehicle and rail take the numbers of the point.
 
     Parameters
@@ -88,7 +88,7 @@ def origin(case: Case, stop: Scenario, witness: Witness) -> Origin:
     problem = problem_of(case)
     vehicle, rail = plant_at(problem, witness)
     start, holding = start_at(witness, vehicle, rail, grade=stop.grade)
-    return Origin(
+    return WitnessStart(
         witness=witness,
         vehicle=vehicle,
         rail=rail,
@@ -98,7 +98,7 @@ def origin(case: Case, stop: Scenario, witness: Witness) -> Origin:
     )
 
 
-def show_origin(made: Origin) -> None:
+def show_start(made: WitnessStart) -> None:
     """Print what the stop starts from."""
     witness, start, out = made.witness, made.scenario.start, console()
     out.print(
@@ -115,7 +115,7 @@ def show_origin(made: Origin) -> None:
         )
 
 
-def _reason(made: Origin) -> str:
+def _reason(made: WitnessStart) -> str:
     """Say why the stop starts with this torque."""
     holding, limit = made.holding_torque, made.vehicle.brake.max_torque
     if made.witness.torque is not None:

@@ -10,13 +10,14 @@ from wspd_design.design.case import RAIL, VEHICLE
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import available
 from wspd_design.parameters.units import format_quantity
-from wspd_design.simulation.records import PLANTS
+from wspd_design.plants.names import DEFAULT_PLANT, PLANTS
+from wspd_design.plants.quarter import Quarter
 
 _PAPER = Specification()
 
 CONTROLLER = "afsmc"
-PLANT = PLANTS[0]
-QUARTER = "quarter"
+PLANT = DEFAULT_PLANT
+QUARTER = Quarter.name
 LAW = "afsmc"
 LAWS = " or ".join(family.name for family in designed())
 SPEED = format_quantity(_PAPER.speeds[1], "km/h")
@@ -27,7 +28,6 @@ TOLERANCE = format_quantity(_PAPER.slip_tolerance, "-")
 DESIGN_FILE = "design.toml"
 
 CASE = "Case"
-DISTURBANCES = "Disturbances, all off by default"
 _CONTROLLERS = (
     f"{', '.join(FAMILIES)}, a design file, which brings its own case, or FILE.py:NAME "
     f"(docs/own-controller.md). {', '.join(family.name for family in with_presets())} also with :textbook "
@@ -37,10 +37,6 @@ _CONTROLLERS = (
 
 def _names(names: list[str]) -> str:
     return f"{', '.join(names)} or a .toml file."
-
-
-def _disturbance(flag: str, metavar: str, meaning: str) -> Any:
-    return typer.Option(flag, metavar=metavar, help=meaning, show_default=False, rich_help_panel=DISTURBANCES)
 
 
 def case_option(flag: str, metavar: str, meaning: str, default: str) -> Any:
@@ -120,54 +116,6 @@ SampleTimeOption: TypeAlias = Annotated[
 SeedOption: TypeAlias = Annotated[
     int,
     typer.Option("--seed", min=0, metavar="NUMBER", help="Seed of all random numbers.", rich_help_panel=CASE),
-]
-AxleRailsOption: TypeAlias = Annotated[
-    str | None,
-    _disturbance(
-        "--axle-rails",
-        "R1,R2,R3,R4",
-        "Rail below each axle, front first; --rail stays the one that controllers are designed for.",
-    ),
-]
-PatchOption: TypeAlias = Annotated[
-    list[str] | None,
-    _disturbance(
-        "--patch", '"START RAIL"', 'From START on another rail: "50 m polach-wet". Repeat it for several.'
-    ),
-]
-GradeOption: TypeAlias = Annotated[
-    str | None, _disturbance("--grade", "GRADE", 'Positive uphill: "5 permille" or "-0.5 %".')
-]
-PadVibrationOption: TypeAlias = Annotated[
-    bool,
-    typer.Option(
-        "--pad-vibration",
-        help="Vibration of the brake pads, T_d in Section 7 of the paper.",
-        show_default=False,
-        rich_help_panel=DISTURBANCES,
-    ),
-]
-SpeedNoiseOption: TypeAlias = Annotated[
-    str | None, _disturbance("--speed-noise", "SPEED", 'Of the measured rim speed, rms: "0.05 m/s".')
-]
-PulsesOption: TypeAlias = Annotated[
-    int | None,
-    typer.Option(
-        "--pulses",
-        min=1,
-        metavar="NUMBER",
-        help="Pulses per turn of the wheel that measures the speed, such as 80.",
-        show_default=False,
-        rich_help_panel=DISTURBANCES,
-    ),
-]
-ReferenceErrorOption: TypeAlias = Annotated[
-    str | None,
-    _disturbance("--reference-error", "SHARE", 'Of the train speed that the controller knows: "2 %".'),
-]
-DeadTimeOption: TypeAlias = Annotated[
-    str | None,
-    _disturbance("--dead-time", "TIME", 'From command to valve, at most one sample time: "40 ms".'),
 ]
 OnlyOption: TypeAlias = Annotated[
     list[str] | None, typer.Option("--only", metavar="CHECK", help="One check; repeat it for several.")

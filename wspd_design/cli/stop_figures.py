@@ -3,8 +3,10 @@
 from rich.text import Text
 
 from wspd_design.cli.console import console, spaced, table
-from wspd_design.cli.stop_options import disturbances_of, rails_of
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.ideal import NO_IDEAL_STOP
+from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.self_check import StepCheck
 
@@ -28,8 +30,8 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     out.print(f"Ending: {run.ending.value}.", style="" if stopped else "bold yellow")
     shown = table("Figure", "Value", "Unit", numeric=("Value",))
     shown.add_row("distance", f"{figures.distance:.1f}", "m")
-    shown.add_row("bound, no controller stops shorter", number(figures.bound, ".1f"), "m")
-    shown.add_row("efficiency, bound over distance", number(100.0 * figures.efficiency, ".1f"), "%")
+    shown.add_row("ideal stop, best slip held", *_ideal_stop(figures))
+    shown.add_row("efficiency, ideal stop over distance", number(100.0 * figures.efficiency, ".1f"), "%")
     shown.add_row("time", f"{figures.stopping_time:.2f}", "s")
     if figures.lag == figures.lag:
         shown.add_row("lag of the brake build-up", f"{figures.lag:.2f}", "s")
@@ -48,8 +50,17 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     shown.add_row("step check, distance, relative", f"{made.check.distance:.1e}", "-")
     shown.add_row("step check, slip", f"{made.check.slip:.1e}", "-")
     out.print(spaced(shown))
+    if figures.ideal_ending is Ending.TIME_LIMIT:
+        out.print(f"No ideal stop: {NO_IDEAL_STOP}.", style="bold yellow")
     out.print(_trust(made.check))
     out.print("Slip figures count above 10 km/h.", style="dim")
+
+
+def _ideal_stop(figures: Metrics) -> tuple[str, str]:
+    """Return the distance of the ideal stop and its unit; a word for a train that cannot stop."""
+    if figures.ideal_ending is Ending.TIME_LIMIT:
+        return "none", ""
+    return number(figures.ideal_stop, ".1f"), "m"
 
 
 def number(value: float, form: str) -> str:

@@ -6,19 +6,18 @@ last axis.
 
 import ctypes
 import math
-from collections.abc import Hashable
-from dataclasses import dataclass
-from functools import lru_cache
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
-from wspd_design.codegen.kernels import PARAMETERS, closed_loop_kernels
+from wspd_design.codegen.kernels import PARAMETERS, Kernels, kinds_of, plant_kernels
+from wspd_design.codegen.laws import LawKernels, immutable, law_kernels
+from wspd_design.codegen.loop_numbers import DOUBLES, LANE_TOTALS, STOP_TOTALS, Head, LoopInput, LoopOutput
+from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
-from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.plants.four_axle import AXLES
+from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,111 +25,17 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-LANE_TOTALS = (
-    "torque",
-    "damping_impulse",
-    "brake_work",
-    "sliding_work",
-    "damping_work",
-    "slip",
-    "slip_squared",
-    "lock_time",
-    "slip_max",
-    "vented_pressure",
-)
-STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
-RAIL_NUMBERS = 5
-_DOUBLES = ctypes.POINTER(ctypes.c_double)
-
-
-class Settings(ctypes.Structure):
-    """Numbers of the run that are the same for all stops, in SI units."""
-
-    _fields_ = tuple(
-        (name, ctypes.c_double)
-        for name in (
-            "sample_time",
-            "dead_time",
-            "longest_step",
-            "creep_rate",
-            "stop_speed",
-            "regularization_speed",
-            "time_limit",
-            "judging_speed",
-            "record_interval",
-        )
-    )
-
-
-class _Head(ctypes.Structure):
-    """What the caller sets in the C structure ``Loop``; its state follows."""
-
-    _fields_ = (
-        ("set", Settings),
-        ("measured", _DOUBLES),
-        ("patch_start", _DOUBLES),
-        ("patch_rail", _DOUBLES),
-        ("patches", ctypes.c_long),
-        ("load_factor", _DOUBLES),
-        ("load_points", ctypes.c_long),
-        ("load_spacing", ctypes.c_double),
-        ("hold", _DOUBLES),
-        ("hold_points", ctypes.c_long),
-        ("hold_first", ctypes.c_double),
-        ("hold_spacing", ctypes.c_double),
-        ("trace", _DOUBLES),
-        ("trace_rows", ctypes.c_long),
-        ("trace_used", ctypes.c_long),
-        ("quantum", ctypes.c_double),
-        ("reference_factor", ctypes.c_double),
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoopInput:
-    """Everything that the loop takes, as numbers."""
-
-    stop_parameters: "Array"  # (PARAMETERS, stops)
-    lane_parameters: "Array"  # (PARAMETERS, lanes)
-    speeds: "Array"  # (stops,), initial [m/s]
-    wheel_speeds: "Array"  # (lanes,), initial [rad/s]
-    pressures: "Array"  # (lanes,), of the cylinders, initial [Pa]
-    settings: Settings
-    patch_starts: "Array | None" = None  # (patches,) [m]
-    patch_rails: "Array | None" = None  # (patches, axles, RAIL_NUMBERS)
-    wheel_noise: "Array | None" = None  # (samples, lanes) [rad/s]
-    quantum: float = 0.0  # rad/s
-    reference_factor: float = 1.0
-    load_factors: "Array | None" = None  # (axles, points)
-    load_spacing: float = 1.0  # m
-    held_slips: "Array | None" = None  # (axles, points), what an ideal brake never exceeds
-    held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
-    trace_rows: int = 0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoopOutput:
-    """What the loop gives back, as numbers."""
-
-    result: int
-    stopped: "NDArray[np.bool_]"  # (stops,)
-    lane_totals: dict[str, "Array"]  # (lanes,) each
-    stop_totals: dict[str, "Array"]  # (stops,) each
-    wheel_speeds: "Array"  # (lanes,)
-    trace: "Array"  # (rows, 3 + 5 axles), of the first stop
-    samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
-    bad_command: tuple[float, float, float]  # time, fill, vent
-    steps: int
-
 
 class ClosedLoop:
     """A compiled loop of a number of stops side by side; without a controller it is driven from Python."""
 
-    def __init__(self, library: ctypes.CDLL, stops: int, states: int) -> None:
-        self.stops, self.states = stops, states
-        self._library = library
+    def __init__(self, library: ctypes.CDLL, kernels: Kernels, law: LawKernels, stops: int) -> None:
+        import numpy as np
+
+        self.stops, self.axles, self.states = stops, kernels.axles, law.states
+        self._library, self._gains = library, np.array(law.gains)
         for name in ("wspd_lane_totals", "wspd_stop_totals", "wspd_wheel_speeds", "wspd_bad_command"):
-            getattr(library, name).restype = _DOUBLES
+            getattr(library, name).restype = DOUBLES
         for name in ("wspd_size", "wspd_steps", "wspd_samples"):
             getattr(library, name).restype = ctypes.c_long
 
@@ -139,7 +44,7 @@ class ClosedLoop:
         import numpy as np
 
         buffer, trace, keep = self._begin(given)
-        samples = np.zeros((sample_rows, 1 + (self.states + 5) * AXLES * self.stops))
+        samples = np.zeros((sample_rows, 1 + (self.states + 5) * self.axles * self.stops))
         rows = ctypes.c_long(sample_rows)
         result = self._library.wspd_run(buffer, _pointer(samples) if sample_rows else None, rows)
         del keep
@@ -148,7 +53,7 @@ class ClosedLoop:
     def run_with(self, given: LoopInput, controller: Controller, *, sample_rows: int) -> LoopOutput:
         """Run a single stop with a controller that stays in Python."""
         buffer, trace, keep = self._begin(given)
-        result, samples = drive(_Plant(self._library, buffer), controller, sample_rows)
+        result, samples = drive(_Plant(self._library, buffer, self.axles), controller, sample_rows)
         del keep
         return self._output(buffer, result, trace, samples)
 
@@ -156,8 +61,8 @@ class ClosedLoop:
         import numpy as np
 
         buffer = _aligned(self._library.wspd_size())
-        head = _Head.from_buffer(buffer)
-        trace = np.zeros((given.trace_rows, 3 + 5 * AXLES))
+        head = Head.from_buffer(buffer)
+        trace = np.zeros((given.trace_rows, 3 + 5 * self.axles))
         head.set = given.settings
         head.quantum, head.reference_factor = given.quantum, given.reference_factor
         head.trace_rows = given.trace_rows
@@ -167,6 +72,7 @@ class ClosedLoop:
             "patch_rail": given.patch_rails,
             "load_factor": given.load_factors,
             "hold": given.held_slips,
+            "gains": self._gains,
             "trace": trace if given.trace_rows else None,
         }
         keep = [np.ascontiguousarray(a, dtype=np.float64) for a in arrays.values() if a is not None]
@@ -189,14 +95,14 @@ class ClosedLoop:
     def _output(self, buffer: Any, result: int, trace: "Array", samples: "Array") -> LoopOutput:
         import numpy as np
 
-        library, lanes = self._library, AXLES * self.stops
+        library, lanes = self._library, self.axles * self.stops
 
         def block(name: str, rows: int, columns: int) -> "Array":
             return np.ctypeslib.as_array(getattr(library, name)(buffer), (rows, columns)).copy()
 
         lane = block("wspd_lane_totals", len(LANE_TOTALS), lanes)
         stop = block("wspd_stop_totals", len(STOP_TOTALS), self.stops)
-        settings = _Head.from_buffer(buffer)
+        settings = Head.from_buffer(buffer)
         totals = dict(zip(STOP_TOTALS, stop, strict=True))
         bad = block("wspd_bad_command", 1, 3)[0]
         return LoopOutput(
@@ -215,32 +121,33 @@ class ClosedLoop:
 class _Plant:
     """The compiled plant behind the interface of :class:`~wspd_design.codegen.sampled.SampledPlant`."""
 
-    def __init__(self, library: ctypes.CDLL, buffer: Any) -> None:
-        self._library, self._buffer = library, buffer
+    def __init__(self, library: ctypes.CDLL, buffer: Any, axles: int) -> None:
+        self._library, self._buffer, self._axles = library, buffer, axles
 
     def running(self) -> bool:
         return bool(self._library.wspd_running(self._buffer))
 
     def measure(self) -> list[Measurement]:
-        seen = (ctypes.c_double * (3 * AXLES))()
+        axles = self._axles
+        seen = (ctypes.c_double * (3 * axles))()
         self._library.wspd_measure(self._buffer, seen)
-        return [Measurement(*(seen[row * AXLES + axle] for row in range(3))) for axle in range(AXLES)]
+        return [Measurement(*(seen[row * axles + axle] for row in range(3))) for axle in range(axles)]
 
     def advance(self, commands: list[Command]) -> int:
-        fill = (ctypes.c_double * AXLES)(*(command.fill for command in commands))
-        vent = (ctypes.c_double * AXLES)(*(command.vent for command in commands))
+        fill = (ctypes.c_double * self._axles)(*(command.fill for command in commands))
+        vent = (ctypes.c_double * self._axles)(*(command.vent for command in commands))
         return int(self._library.wspd_sample(self._buffer, fill, vent))
 
 
 def load_closed_loop(
-    vehicle: Vehicle, rail: Rail, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
+    plant: Plant, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
 ) -> ClosedLoop:
-    """Trace, emit, compile and load the loop of a controller.
+    """Trace, emit, compile and load the loop of a controller with its present numbers.
 
     Parameters
     ----------
-    vehicle, rail : Vehicle, Rail
-        Of the kind to be simulated; their numbers are inputs of the loop.
+    plant : Plant
+        Of the kind to be simulated; its numbers are inputs of the loop.
     controller : Controller or None
         Law of every wheelset; None for a loop that is driven from Python.
     stops : int
@@ -255,29 +162,43 @@ def load_closed_loop(
     UntraceableError
         If ``step`` contains what CasADi cannot trace or the emitter cannot translate.
     """
-    if isinstance(controller, Hashable):
-        return _load_once(vehicle, rail, controller, stops, disturbed)
-    return _load(vehicle, rail, controller, stops, disturbed)
+    known = immutable(controller)
+    if known is None:
+        kernels, law, library = _loaded(plant, controller, stops, disturbed)
+    else:
+        content, kinds = known
+        kernels, law, library = _loops.get(
+            (type(plant), plant.axles, content, stops, disturbed),
+            (*kinds_of(plant), *kinds),
+            lambda: _loaded(plant, controller, stops, disturbed),
+        )
+    return ClosedLoop(library, kernels, law, stops)
 
 
-def _load(
-    vehicle: Vehicle, rail: Rail, controller: Controller | None, stops: int, disturbed: bool
-) -> ClosedLoop:
-    source, states = closed_loop_source(vehicle, rail, controller, stops=stops, disturbed=disturbed)
-    return ClosedLoop(load_library(source), stops, states)
+_Loaded: TypeAlias = tuple[Kernels, LawKernels, ctypes.CDLL]
+_loops: "Memory[_Loaded]" = Memory(64)
+_libraries: "Memory[ctypes.CDLL]" = Memory(32)
 
 
-_load_once = lru_cache(maxsize=32)(_load)
+def _loaded(plant: Plant, controller: Controller | None, stops: int, disturbed: bool) -> _Loaded:
+    """Trace the law as it is now; its library is the one of all laws with the same kernels."""
+    kernels, law = plant_kernels(plant, disturbed=disturbed), law_kernels(controller)
+    library = _libraries.get(
+        (kernels, law, stops),
+        kinds_of(plant),
+        lambda: load_library(closed_loop_source(kernels, law, stops=stops)),
+    )
+    return kernels, law, library
 
 
-def closed_loop_source(
-    vehicle: Vehicle, rail: Rail, controller: Controller | None, *, stops: int, disturbed: bool
-) -> tuple[str, int]:
-    """Return the C source of the loop and the number of controller states."""
-    kernels = closed_loop_kernels(vehicle, rail, controller, disturbed=disturbed)
+def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
+    """Return the C source of the loop."""
     places = {
         "STOPS": stops,
-        "STATES": kernels.states,
+        "AXLES": kernels.axles,
+        "AXLE_STATES": kernels.axle_states,
+        "TRANSFERS": kernels.transfers,
+        "STATES": law.states,
         "PARAMETERS": len(PARAMETERS),
         "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
@@ -289,15 +210,16 @@ def closed_loop_source(
     folder = files("wspd_design").joinpath("codegen", "templates")
     parts = [f"#define {name} {value}\n" for name, value in places.items()]
     parts.append(folder.joinpath("elementary.h").read_text())
-    lanes, twice = f"({AXLES} * STOPS)", f"(2 * {AXLES} * STOPS)"  # twice: middle and end of a step at once
+    lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
     groups = {
         "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
-        lanes: (kernels.lane_constants, kernels.condition, kernels.axle, kernels.start, kernels.step),
+        lanes: (kernels.lane_constants, kernels.condition, kernels.axle),
         twice: (kernels.window_constants, kernels.actuator),
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
+    parts += [emit(kernel, lanes, shared=kernel.n_in() - 1) for kernel in (law.start, law.step)]
     parts += [folder.joinpath(name).read_text() for name in ("motion.c", "closed_loop.c")]
-    return "".join(parts), kernels.states
+    return "".join(parts)
 
 
 def _aligned(size: int) -> Any:
@@ -307,4 +229,4 @@ def _aligned(size: int) -> Any:
 
 
 def _pointer(array: "Array") -> Any:
-    return array.ctypes.data_as(_DOUBLES)
+    return array.ctypes.data_as(DOUBLES)

@@ -38,7 +38,7 @@ class UntraceableError(WspdError, ValueError):
     """An operation that the emitter has no C for."""
 
 
-def emit(function: Any, lanes: str) -> str:
+def emit(function: Any, lanes: str, *, shared: int | None = None) -> str:
     """Return the C text of a CasADi SX function.
 
     Parameters
@@ -47,6 +47,8 @@ def emit(function: Any, lanes: str) -> str:
         Of dense vectors of SX.
     lanes : str
         C expression of the number of lanes.
+    shared : int, optional
+        The input that is the same for all lanes: element ``k`` stands at ``k``.
 
     Returns
     -------
@@ -69,7 +71,7 @@ def emit(function: Any, lanes: str) -> str:
         if operation == "OP_OUTPUT":
             lines.append(f"o{outputs[0]}[{outputs[1]} * {lanes} + l] = w{inputs[0]};")
             continue
-        lines.append(f"w{outputs[0]} = {_right_side(function, k, operation, inputs, lanes)};")
+        lines.append(f"w{outputs[0]} = {_right_side(function, k, operation, inputs, lanes, shared)};")
     arguments = [f"const double *restrict i{k}" for k in range(function.n_in())]
     arguments += [f"double *restrict o{k}" for k in range(function.n_out())]
     work = ", ".join(f"w{k}" for k in range(function.sz_w()))
@@ -80,8 +82,12 @@ def emit(function: Any, lanes: str) -> str:
     )
 
 
-def _right_side(function: Any, k: int, operation: str, inputs: list[int], lanes: str) -> str:
+def _right_side(
+    function: Any, k: int, operation: str, inputs: list[int], lanes: str, shared: int | None
+) -> str:
     if operation == "OP_INPUT":
+        if inputs[0] == shared:
+            return f"i{shared}[{inputs[1]}]"
         return f"i{inputs[0]}[{inputs[1]} * {lanes} + l]"
     if operation == "OP_CONST":
         return _constant(function.instruction_constant(k))

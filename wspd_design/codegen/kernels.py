@@ -1,22 +1,19 @@
-"""The kernels of the compiled closed loop: the plant's and the controller's own functions, traced by CasADi.
+"""The kernels of the plant in the compiled closed loop: its own functions, traced by CasADi.
 
-The numbers of vehicle and rail are inputs of the plant kernels, so that one compiled loop serves every vehicle,
-rail and sample of parameters; those of the controller are constants of its kernel.
+The numbers of vehicle and rail are inputs of the kernels, so that one compiled loop serves every vehicle of as many
+axles, every rail and every sample of parameters.
 """
 
-import re
 from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
-from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.hoisting import hoist
-from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.codegen.memory import Memory
 from wspd_design.model import brake as brake_model
 from wspd_design.model.generated import brake as generated
 from wspd_design.model.number import maximum, minimum, where
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
-from wspd_design.plants import four_axle
-from wspd_design.plants.four_axle import AXLES, AxleCondition, Pitch
+from wspd_design.plants.protocol import AxleCondition, Plant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,7 +22,7 @@ class Surroundings:
 
     grade_force: float = 0.0  # N, positive uphill
     axle_offset: float = 0.0  # m, behind the first axle
-    braking_time: float = 0.0  # s, from the application of the brake to the begin of the stop
+    braking_time: float = 0.0  # s, from the application of the brake to the start of the stop
 
 
 _RECORDS: tuple[tuple[str, type], ...] = (
@@ -65,48 +62,71 @@ def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -
 
 
 class Kernels(NamedTuple):
-    """CasADi functions of dense vectors; the first inputs of a plant kernel are the constants made for it."""
+    """CasADi functions of dense vectors; the first inputs of a kernel are the constants made for it."""
 
     stop_constants: Any  # (p) -> constants of loads and train
     lane_constants: Any  # (p) -> constants of condition and axle
     window_constants: Any  # (p, [start, start pressure, fill end, vent end]) -> constants of actuator
-    loads: Any  # (constants, pitch[6]) -> wheel load[4]
-    train: Any  # (constants, speed, force[4], pitch[6]) -> acceleration, resistance, pitch'[6]
+    loads: Any  # (constants, transfers) -> wheel load of each axle
+    train: Any  # (constants, speed, force of each axle, transfers) -> acceleration, resistance, transfers'
     condition: Any  # (constants, time, load) -> [stiffness, damping]
-    axle: Any  # (constants, speed, wheel speed, load, torque, locked, [stiffness, damping])
-    #           -> force, wheel acceleration, slip, damping torque, torque that is passed on
+    axle: Any  # (constants, speed, axle states, load, torque, locked, [stiffness, damping])
+    #           -> force, axle states', slip, damping torque, torque that is passed on
     actuator: Any  # (constants, time) -> pressure, torque, pressure without venting
-    start: Any  # ([speed, wheel speed, torque]) -> state
-    step: Any  # (state, [speed, wheel speed, torque]) -> [state, fill, vent]
-    states: int  # length of the controller state
+
+    @property
+    def axles(self) -> int:
+        """Number of wheelsets."""
+        return int(self.loads.size1_out(0))
+
+    @property
+    def axle_states(self) -> int:
+        """Number of states of one wheelset; the first is its wheel speed."""
+        return int(self.axle.size1_in(2))
+
+    @property
+    def transfers(self) -> int:
+        """Number of load transfers, whose rates are states as well."""
+        return int(self.loads.size1_in(1)) // 2
 
 
-def closed_loop_kernels(
-    vehicle: Vehicle, rail: Rail, controller: Controller | None, *, disturbed: bool
-) -> Kernels:
-    """Trace plant and controller; without a controller its kernels hold the valves.
+def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
+    """Trace a plant, whatever the numbers of its vehicle are.
 
     ``disturbed`` adds the vibration of the pads, T_d, to the torque.
     """
+    blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
+    shape = plant.on(Vehicle(**{**blank, "wheelsets": plant.vehicle.wheelsets}))
+    return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
+
+
+def kinds_of(plant: Plant) -> tuple[type, ...]:
+    """Classes whose methods and properties make the kernels of a plant."""
+    return type(plant), *(kind for _, kind in _RECORDS)
+
+
+_memory: "Memory[Kernels]" = Memory(16)
+
+
+def _traced(blank: Plant, disturbed: bool) -> Kernels:
     import casadi as ca
 
     p = ca.SX.sym("p", len(PARAMETERS))
     symbols: dict[str, dict[str, Any]] = {record: {} for record, _ in _RECORDS}
     for index, (record, field) in enumerate(PARAMETERS):
         symbols[record][field] = p[index]
-    loco = replace(
-        vehicle,
+    vehicle = replace(
+        blank.vehicle,
         **symbols["vehicle"],
         brake=Brake(**symbols["brake"]),
         contact=Contact(**symbols["contact"]),
     )
-    track = replace(rail, **symbols["rail"])
-
-    plant = _plant_functions(loco, track, p, Surroundings(**symbols["surroundings"]), disturbed)
-    stop_constants, (loads, train) = hoist(plant[:2], 1, "stop_constants")
-    lane_constants, (condition, axle) = hoist(plant[2:4], 1, "lane_constants")
-    window_constants, (actuator,) = hoist(plant[4:], 2, "window_constants")
-    start, step, states = controller_kernels(controller)
+    rail: dict[str, Any] = {field.name: None for field in fields(Rail)}
+    track = Rail(**{**rail, **symbols["rail"]})
+    functions = _functions(blank.on(vehicle), track, p, Surroundings(**symbols["surroundings"]), disturbed)
+    stop_constants, (loads, train) = hoist(functions[:2], 1, "stop_constants")
+    lane_constants, (condition, axle) = hoist(functions[2:4], 1, "lane_constants")
+    window_constants, (actuator,) = hoist(functions[4:], 2, "window_constants")
     return Kernels(
         stop_constants=stop_constants,
         lane_constants=lane_constants,
@@ -116,64 +136,63 @@ def closed_loop_kernels(
         condition=condition,
         axle=axle,
         actuator=actuator,
-        start=start,
-        step=step,
-        states=states,
     )
 
 
-def _plant_functions(
-    loco: Vehicle, track: Rail, p: Any, surroundings: Surroundings, disturbed: bool
-) -> list[Any]:
+def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, disturbed: bool) -> list[Any]:
     """Trace the plant; the first input of every function is the parameter vector."""
     import casadi as ca
 
-    speed, wheel_speed, load, demand, locked, time = (
-        ca.SX.sym(name) for name in ("speed", "wheel_speed", "load", "torque", "locked", "time")
+    brake = plant.vehicle.brake
+    speed, load, demand, locked, time = (
+        ca.SX.sym(name) for name in ("speed", "load", "torque", "locked", "time")
     )
-    held, force, pitch = ca.SX.sym("condition", 2), ca.SX.sym("force", AXLES), ca.SX.sym("pitch", 6)
-    motions = Pitch(*(pitch[i] for i in range(6)))
-    loads = four_axle.wheel_loads(loco, motions)
-    train = four_axle.train_motion(
-        loco,
+    held, force = ca.SX.sym("condition", 2), ca.SX.sym("force", plant.axles)
+    states, transfers = ca.SX.sym("states", plant.axle_states), ca.SX.sym("transfers", 2 * plant.transfers)
+    loads = plant.wheel_loads(_elements(transfers))
+    train = plant.train_motion(
         speed=speed,
-        creep_forces=tuple(force[i] for i in range(AXLES)),
-        pitch=motions,
+        creep_forces=_elements(force),
+        transfers=_elements(transfers),
         grade_force=surroundings.grade_force,
     )
     braking_time = time + surroundings.braking_time
-    condition = four_axle.axle_condition(loco, time=braking_time, wheel_load=load)
-    axle = four_axle.axle_motion(
-        loco,
+    condition = plant.axle_condition(time=braking_time, wheel_load=load)
+    axle = plant.axle_motion(
         track,
         speed=speed,
-        wheel_speed=wheel_speed,
+        states=_elements(states),
         wheel_load=load,
         torque=demand,
         condition=AxleCondition(stiffness=held[0], damping=held[1]),
     )
-    rolling = where(locked != 0.0, 0.0, axle.wheel_acceleration)
-    passed = where(locked != 0.0, 2.0 * loco.wheel_radius * axle.creep_force, demand)
+    wheel, *others = axle.rates
+    rates = ca.vertcat(where(locked != 0.0, 0.0, wheel), *others)
+    passed = where(locked != 0.0, 2.0 * plant.vehicle.wheel_radius * axle.creep_force, demand)
     valves = ca.SX.sym("valves", 4)
-    pressures = _pressure(loco.brake, time, surroundings.braking_time, *(valves[i] for i in range(4)))
-    torque = brake_model.braking_torque(loco.brake, pressures[0])
+    pressures = _pressure(brake, time, surroundings.braking_time, *_elements(valves))
+    torque = brake_model.braking_torque(brake, pressures[0])
     if disturbed:
-        torque *= 1.0 + brake_model.torque_disturbance(loco.brake, braking_time)
+        torque *= 1.0 + brake_model.torque_disturbance(brake, braking_time)
     return [
-        ca.Function("loads_kernel", [p, pitch], [ca.vertcat(*loads)]),
+        ca.Function("loads_kernel", [p, transfers], [ca.vertcat(*loads)]),
         ca.Function(
             "train_kernel",
-            [p, speed, force, pitch],
-            [train.acceleration, train.resistance, ca.vertcat(*train.pitch)],
+            [p, speed, force, transfers],
+            [train.acceleration, train.resistance, ca.vertcat(ca.SX(0, 1), *train.transfer_rates)],
         ),
         ca.Function("condition_kernel", [p, time, load], [ca.vertcat(*condition)]),
         ca.Function(
             "axle_kernel",
-            [p, speed, wheel_speed, load, demand, locked, held],
-            [axle.creep_force, rolling, axle.slip, axle.damping_torque, passed],
+            [p, speed, states, load, demand, locked, held],
+            [axle.creep_force, rates, axle.slip, axle.damping_torque, passed],
         ),
         ca.Function("actuator_kernel", [p, valves, time], [pressures[0], torque, pressures[1]]),
     ]
+
+
+def _elements(vector: Any) -> tuple[Any, ...]:
+    return tuple(vector[k] for k in range(vector.size1()))
 
 
 def _pressure(
@@ -193,34 +212,3 @@ def _pressure(
     )
     vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
     return generated.vented_pressure(vented_for, filled, brake.vent_time), filled
-
-
-def controller_kernels(controller: Controller | None) -> tuple[Any, Any, int]:
-    """Trace ``start`` and ``step``; returns also the number of states.
-
-    Whatever goes wrong there means that the controller cannot be traced.
-    """
-    import casadi as ca
-
-    m = ca.SX.sym("m", 3)
-    measurement = Measurement(speed=m[0], wheel_speed=m[1], torque=m[2])
-    if controller is None:
-        return (
-            ca.Function("start_kernel", [m], [ca.SX(0, 1)]),
-            ca.Function("step_kernel", [ca.SX(0, 1), m], [ca.SX.zeros(2)]),
-            0,
-        )
-    try:
-        initial = controller.start(measurement)
-        state = ca.SX.sym("state", len(initial))
-        following, command = controller.step(tuple(state[i] for i in range(len(initial))), measurement)
-        start = ca.Function("start_kernel", [m], [ca.vertcat(*initial)])
-        step = ca.Function("step_kernel", [state, m], [ca.vertcat(*following, command.fill, command.vent)])
-    except Exception as error:  # the user's code may fail on symbols in any way
-        reason = re.sub(r"\S*\.[ch]pp:\d+: ", "", str(error))  # without CasADi's places in its own source
-        raise UntraceableError(f"{controller.name}: {reason}") from error
-    if len(following) != len(initial):
-        raise UntraceableError(
-            f"{controller.name}: step returns {len(following)} states, start {len(initial)}"
-        )
-    return start, step, len(initial)

@@ -3,7 +3,6 @@
 from typing import TYPE_CHECKING, Protocol
 
 from wspd_design.controllers.protocol import Command, Controller, Measurement
-from wspd_design.plants.four_axle import AXLES
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,5 +45,5 @@ def drive(plant: SampledPlant, controller: Controller, sample_rows: int) -> tupl
         lists = [*by_element, *zip(*commands, strict=True), *zip(*seen, strict=True)]
         rows.append([len(rows) * controller.sample_time, *(float(x) for element in lists for x in element)])
         result = plant.advance(commands)
-    width = 1 + AXLES * (len(states[0]) + 5)
+    width = 1 + len(states) * (len(states[0]) + 5)
     return result, np.asarray(rows, dtype=np.float64).reshape(len(rows), width)

@@ -7,30 +7,14 @@ import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.codegen.closed_loop import (
-    LANE_TOTALS,
-    RAIL_NUMBERS,
-    STOP_TOTALS,
-    LoopInput,
-    LoopOutput,
-)
 from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.kernels import PARAMETERS, Kernels, closed_loop_kernels, controller_kernels
+from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
+from wspd_design.codegen.laws import law_kernels
+from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
-from wspd_design.codegen.virtual_step import (
-    END_SPEED,
-    INERTIA,
-    MADE,
-    RADIUS,
-    ROW,
-    STATE,
-    STATES,
-    StepFunctions,
-    step_functions,
-)
+from wspd_design.codegen.virtual_step import INERTIA, RADIUS, StepFunctions, step_functions
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State
-from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.plants.four_axle import AXLES
+from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,8 +29,7 @@ _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "r
 
 
 def run_virtual(
-    vehicle: Vehicle,
-    rail: Rail,
+    plant: Plant,
     controller: Controller,
     given: LoopInput,
     *,
@@ -56,29 +39,28 @@ def run_virtual(
     """Run a single stop; takes and returns what :meth:`ClosedLoop.run` does."""
     import numpy as np
 
-    kernels, functions = _functions(vehicle, rail, disturbed, given.held_slips is not None)
-    plant = _VirtualPlant(kernels, functions, given)
-    result, samples = drive(plant, _traced(controller), sample_rows)
-    lane = np.vstack([plant.part("lane").reshape(-1, AXLES), plant.vented])
-    stop = [*plant.part("stop"), plant.part("speed")[0]]
+    kernels = plant_kernels(plant, disturbed=disturbed)
+    driven = _VirtualPlant(kernels, _functions(kernels, given.held_slips is not None), given)
+    result, samples = drive(driven, _traced(controller), sample_rows)
+    lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), driven.vented])
+    stop = [*driven.part("stop"), driven.part("speed")[0]]
     stop_totals = {name: np.array([value]) for name, value in zip(STOP_TOTALS, stop, strict=True)}
     return LoopOutput(
         result=result,
         stopped=stop_totals["end_speed"] <= given.settings.stop_speed * (1.0 + 1e-6),
         lane_totals=dict(zip(LANE_TOTALS, lane, strict=True)),
         stop_totals=stop_totals,
-        wheel_speeds=plant.part("wheel").copy(),
-        trace=np.array(plant.rows).reshape(len(plant.rows), ROW),
+        wheel_speeds=driven.wheels.copy(),
+        trace=np.array(driven.rows).reshape(len(driven.rows), driven.layout.row),
         samples=samples,
-        bad_command=plant.bad_command,
-        steps=plant.steps,
+        bad_command=driven.bad_command,
+        steps=driven.steps,
     )
 
 
 @lru_cache(maxsize=8)
-def _functions(vehicle: Vehicle, rail: Rail, disturbed: bool, holding: bool) -> tuple[Kernels, StepFunctions]:
-    kernels = closed_loop_kernels(vehicle, rail, None, disturbed=disturbed)
-    return kernels, step_functions(kernels, holding=holding, batches=() if holding else _BATCHES)
+def _functions(kernels: Kernels, holding: bool) -> StepFunctions:
+    return step_functions(kernels, holding=holding, batches=() if holding else _BATCHES)
 
 
 class _VirtualPlant:
@@ -87,18 +69,19 @@ class _VirtualPlant:
     def __init__(self, kernels: Kernels, functions: StepFunctions, given: LoopInput) -> None:
         import numpy as np
 
-        self.given, self.set, self.kernels, self.places = given, given.settings, kernels, functions.inputs
+        self.given, self.set, self.kernels, self.layout = given, given.settings, kernels, functions.layout
+        axles = self.layout.axles
         # The numbers of an axle are a column for CasADi and a row here.
         self._by_axle = np.array(given.lane_parameters.T, dtype=np.float64, order="C")
         self.parameters = self._by_axle.T
-        self.state, self.inputs = np.zeros(STATES), np.zeros(functions.single.size1_in(1))
+        self.state, self.inputs = np.zeros(self.layout.states), np.zeros(self.layout.inputs)
         self.part("speed")[:] = given.speeds[0]
-        self.part("wheel")[:] = given.wheel_speeds
+        self.wheels[:] = given.wheel_speeds
         self.edges: tuple[float, ...] = ()
-        self.vented = np.zeros(AXLES)
+        self.vented = np.zeros(axles)
         self.recorded = -1.0
         self.sample = self.steps = 0
-        self.patch = [0] * AXLES
+        self.patch = [0] * axles
         self.moving = True
         self.rows: list[NDArray[np.float64]] = []
         self.bad_command = (0.0, 0.0, 0.0)
@@ -106,17 +89,22 @@ class _VirtualPlant:
             number: _Bound(function, self.state, self.inputs)
             for number, function in ((1, functions.single), *functions.batches.items())
         }
-        self._window = np.zeros((AXLES, 4))
-        self._window_constants = _Bound(kernels.window_constants.map(AXLES), self._by_axle, self._window)
+        self._window = np.zeros((axles, 4))
+        self._window_constants = _Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
         self._close_valves(given.pressures)
 
     def part(self, name: str) -> "Array":
         """One part of the state, to read and to write."""
-        return self.state[STATE[name]]
+        return self.state[self.layout.state[name]]
+
+    @property
+    def wheels(self) -> "Array":
+        """Wheel speeds, to read and to write [rad/s]."""
+        return self.part("axle")[: self.layout.axles]
 
     def _give(self, name: str, values: Any) -> None:
-        self.inputs[self.places[name]] = values
+        self.inputs[self.layout.given[name]] = values
 
     def _write_fixed_inputs(self) -> None:
         settings = self.set
@@ -138,7 +126,7 @@ class _VirtualPlant:
         import numpy as np
 
         given = self.given
-        wheels = self.part("wheel").copy()
+        wheels = self.wheels.copy()
         if given.wheel_noise is not None:
             wheels += given.wheel_noise[self.sample]
         if given.quantum > 0.0:
@@ -209,11 +197,11 @@ class _VirtualPlant:
         if number == 1:
             self._look_up(min(h, change))
         rows = self._step(number)
-        kept = int(rows[:, MADE].sum())  # a step that is not made is the last one
+        kept = int(rows[:, self.layout.row].sum())  # a step that is not made is the last one
         result = self._record(rows[:kept])
-        if kept < number and rows[kept, END_SPEED] < self.set.stop_speed:
+        if kept < number and rows[kept, self.layout.row + 1] < self.set.stop_speed:
             ahead = float(self.part("speed")[0])
-            self._give("scale", (ahead - self.set.stop_speed) / (ahead - rows[kept, END_SPEED]))
+            self._give("scale", (ahead - self.set.stop_speed) / (ahead - rows[kept, self.layout.row + 1]))
             result = result or self._record(self._step(1))
             kept += 1
         self.steps += kept
@@ -233,7 +221,7 @@ class _VirtualPlant:
         if given.patch_starts is None or given.patch_rails is None:
             return soonest
         changed = False
-        for axle in range(AXLES):
+        for axle in range(self.layout.axles):
             place = self.part("stop")[0] - self.parameters[_OFFSET, axle]
             reached = self.patch[axle]
             while reached < len(given.patch_starts) and given.patch_starts[reached] <= place:
@@ -278,7 +266,7 @@ class _VirtualPlant:
                 if len(self.rows) == self.given.trace_rows:
                     return BUFFER_FULL
                 self.recorded = time
-                self.rows.append(row[:ROW].copy())
+                self.rows.append(row[: self.layout.row].copy())
         return GOOD
 
 
@@ -304,9 +292,9 @@ class _Traced:
         import numpy as np
 
         self.name, self.sample_time, self.start = controller.name, controller.sample_time, controller.start
-        _, step, states = controller_kernels(controller)
-        self._state, self._seen = np.zeros(states), np.zeros(3)
-        self._bound = _Bound(step, self._state, self._seen)
+        law = law_kernels(controller)
+        self._state, self._seen, self._gains = np.zeros(law.states), np.zeros(3), np.array(law.gains)
+        self._bound = _Bound(law.step, self._state, self._seen, self._gains)
 
     def step(self, state: State, measurement: Measurement) -> tuple[State, Command]:
         self._state[:] = state

@@ -5,15 +5,13 @@ stop speed, leave the state as it is, so that a call may hold more steps than ar
 """
 
 from collections.abc import Iterable
-from functools import lru_cache
+from dataclasses import dataclass
 from itertools import accumulate
 from typing import Any, NamedTuple
 
 from wspd_design.codegen.kernels import PARAMETERS, Kernels
 from wspd_design.model.number import maximum, minimum, where
-from wspd_design.plants.four_axle import AXLES
 
-PITCH = 6
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
 INTEGRATED = 7  # totals of a lane that are integrals; lock time and largest slip follow
@@ -24,101 +22,129 @@ def _places(sizes: dict[str, int]) -> dict[str, slice]:
     return {name: slice(end - size, end) for (name, size), end in zip(sizes.items(), ends, strict=True)}
 
 
-STATE = _places(
-    {
-        "speed": 1,
-        "wheel": AXLES,
-        "pitch": PITCH,
-        "locked": AXLES,
-        "held": AXLES,
-        "pressure": AXLES,
-        "torque": AXLES,
-        "filled": AXLES,
-        "time": 1,
-        "lane": (INTEGRATED + 2) * AXLES,
-        "stop": 5,  # distance, impulse and work of the resistance, judged time, time
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Layout:
+    """Places of everything in the vectors of a step."""
+
+    axles: int
+    state: dict[str, slice]
+    given: dict[str, slice]  # what a step needs beside the state
+
+    @property
+    def states(self) -> int:
+        """Length of the state."""
+        return int(self.state["stop"].stop)
+
+    @property
+    def inputs(self) -> int:
+        """Length of what a step needs beside the state."""
+        return int(self.given["hold"].stop)
+
+    @property
+    def row(self) -> int:
+        """Length of a row of the trace.
+
+        After it come whether the step was made, and the speed at its end.
+        """
+        return 3 + 5 * self.axles
+
+
+def layout(kernels: Kernels) -> Layout:
+    """Lay out the vectors for the numbers of axles and states of a plant."""
+    axles = kernels.axles
+    constants = {
+        name: getattr(kernels, name).size1_out(0)
+        for name in ("lane_constants", "stop_constants", "window_constants")
     }
-)
-STATES = STATE["stop"].stop
-ROW = 3 + 5 * AXLES  # of the trace
-MADE, END_SPEED = ROW, ROW + 1  # after the row: whether the step was made, and the speed at its end
+    return Layout(
+        axles=axles,
+        state=_places(
+            {
+                "speed": 1,
+                "axle": kernels.axle_states * axles,  # first the wheel speeds
+                "transfer": 2 * kernels.transfers,
+                "locked": axles,
+                "held": axles,
+                "pressure": axles,
+                "torque": axles,
+                "filled": axles,
+                "time": 1,
+                "lane": (INTEGRATED + 2) * axles,
+                "stop": 5,  # distance, impulse and work of the resistance, judged time, time
+            }
+        ),
+        given=_places(
+            {
+                "lane_constants": constants["lane_constants"] * axles,
+                "stop_constants": constants["stop_constants"],
+                "window_constants": constants["window_constants"] * axles,
+                "radius": axles,
+                "inertia": axles,
+                "until": 1,
+                "scale": 1,
+                "longest_step": 1,
+                "per_creep_rate": 1,
+                "regularization_speed": 1,
+                "stop_speed": 1,
+                "judging_speed": 1,
+                "load_factors": 3 * axles,  # at the start, middle and end of the step
+                "hold": 3
+                + 3 * axles,  # first point, spacing and place of the table; slip there and beside it
+            }
+        ),
+    )
 
 
 class StepFunctions(NamedTuple):
     """What runs a stop without a compiler."""
 
-    inputs: dict[str, slice]  # places in the vector of everything that a step needs beside the state
+    layout: Layout
     single: Any  # (state, inputs) -> state, row with what follows it
     batches: dict[int, Any]  # number of steps -> (state, inputs) -> state, one column per step
-
-
-@lru_cache(maxsize=16)
-def _sizes(lane: int, stop: int, window: int) -> dict[str, slice]:
-    return _places(
-        {
-            "lane_constants": lane * AXLES,
-            "stop_constants": stop,
-            "window_constants": window * AXLES,
-            "radius": AXLES,
-            "inertia": AXLES,
-            "until": 1,
-            "scale": 1,
-            "longest_step": 1,
-            "per_creep_rate": 1,
-            "regularization_speed": 1,
-            "stop_speed": 1,
-            "judging_speed": 1,
-            "load_factors": 3 * AXLES,  # at the begin, middle and end of the step
-            "hold": 3
-            + 3 * AXLES,  # first point, spacing and place of the table; slip at that place and beside it
-        }
-    )
 
 
 def step_functions(kernels: Kernels, *, holding: bool, batches: Iterable[int]) -> StepFunctions:
     """Build the functions of a plant; ``holding`` for the ideal brake that never exceeds a slip."""
     import casadi as ca
 
-    sizes = (kernels.lane_constants.size1_out(0), kernels.stop_constants.size1_out(0))
-    places = _sizes(*sizes, kernels.window_constants.size1_out(0))
-    state, given = ca.SX.sym("state", STATES), ca.SX.sym("given", places["hold"].stop)
+    places = layout(kernels)
+    state, given = ca.SX.sym("state", places.states), ca.SX.sym("given", places.inputs)
     outputs = ca.cse(_Step(kernels, places, state, given, holding).outputs())
     single = ca.Function("step", [state, given], outputs)
     repeated = {}
     for number in batches:
-        following, rows = ca.MX.sym("state", STATES), []
-        inputs = [following, ca.MX.sym("given", places["hold"].stop)]
+        following, rows = ca.MX.sym("state", places.states), []
+        inputs = [following, ca.MX.sym("given", places.inputs)]
         for _ in range(number):
             following, row = single(following, inputs[1])
             rows.append(row)
         repeated[number] = ca.Function(f"steps{number}", inputs, [following, ca.horzcat(*rows)])
-    return StepFunctions(inputs=places, single=single, batches=repeated)
+    return StepFunctions(layout=places, single=single, batches=repeated)
 
 
 class _Step:
     """The expressions of one step."""
 
-    def __init__(
-        self, kernels: Kernels, places: dict[str, slice], state: Any, given: Any, holding: bool
-    ) -> None:
-        self.kernels, self.holding, self.whole = kernels, holding, state
-        self.state = {name: state[place] for name, place in STATE.items()}
-        self.given = {name: given[place] for name, place in places.items()}
+    def __init__(self, kernels: Kernels, places: Layout, state: Any, given: Any, holding: bool) -> None:
+        self.kernels, self.holding, self.whole, self.axles = kernels, holding, state, places.axles
+        self.state = {name: state[place] for name, place in places.state.items()}
+        self.given = {name: given[place] for name, place in places.given.items()}
 
     def per_axle(self, name: str, axle: int) -> Any:
         """Constants of one axle."""
         values = self.given[name]
-        size = values.size1() // AXLES
+        size = values.size1() // self.axles
         return values[axle * size : (axle + 1) * size]
 
     def outputs(self) -> list[Any]:
         import casadi as ca
 
-        now, given, integrated = self.state, self.given, INTEGRATED * AXLES
+        now, given, axles = self.state, self.given, self.axles
+        integrated = INTEGRATED * axles
         h, following = self._length()
         pressure, torque, filled = self._actuators(now["time"] + 0.5 * h, following)
         condition = self._conditions(h)
-        motion = ca.vertcat(now["speed"], now["wheel"], now["pitch"])
+        motion = ca.vertcat(now["speed"], now["axle"], now["transfer"])
         shares = ((0.0, 0, now["torque"], 1.0), (0.5, 1, torque[0], 2.0), (0.5, 1, torque[0], 2.0))
         rates, sums = ca.SX.zeros(motion.size1()), [ca.SX(0)] * 3
         last: list[Any] = []
@@ -129,18 +155,18 @@ class _Step:
         reached = motion + sums[0]
         force, slip, load, passed = last
         slip = minimum(slip, 1.0)
-        speed, wheel = reached[0], reached[1 : 1 + AXLES]
+        speed, wheel = reached[0], reached[1 : 1 + axles]
         wheel, locked, held, lost = self._settled(speed, wheel, force, passed, torque[1])
-        most = now["lane"][integrated + AXLES :]
+        most = now["lane"][integrated + axles :]
         totals = ca.vertcat(
-            now["lane"][:AXLES] + sums[1][:AXLES] + lost,
-            now["lane"][AXLES:integrated] + sums[1][AXLES:],
-            now["lane"][integrated : integrated + AXLES] + now["locked"] * h,
+            now["lane"][:axles] + sums[1][:axles] + lost,
+            now["lane"][axles:integrated] + sums[1][axles:],
+            now["lane"][integrated : integrated + axles] + now["locked"] * h,
             where(speed > given["judging_speed"], maximum(most, slip), most),
         )
         stop = now["stop"] + ca.vertcat(sums[2], h)
         ahead = ca.vertcat(
-            *(speed, wheel, reached[1 + AXLES :], locked, held),
+            *(speed, wheel, reached[1 + axles :], locked, held),
             *(pressure, torque[1], filled, following, totals, stop),
         )
         made = where(given["scale"] < 1.0, 1.0, where(speed < given["stop_speed"], 0.0, 1.0))
@@ -166,7 +192,10 @@ class _Step:
         import casadi as ca
 
         half, full = (
-            [self.kernels.actuator(self.per_axle("window_constants", axle), time) for axle in range(AXLES)]
+            [
+                self.kernels.actuator(self.per_axle("window_constants", axle), time)
+                for axle in range(self.axles)
+            ]
             for time in (middle, end)
         )
         pressure, torque, filled = (ca.vertcat(*column) for column in zip(*full, strict=True))
@@ -175,19 +204,18 @@ class _Step:
     def _conditions(self, h: Any) -> list[Any]:
         import casadi as ca
 
-        half = PITCH // 2
-        pitch = self.state["pitch"]
-        ahead = ca.vertcat(pitch[:half] + 0.5 * h * pitch[half:], ca.SX.zeros(half))
+        transfer, half = self.state["transfer"], self.kernels.transfers
+        ahead = ca.vertcat(transfer[:half] + 0.5 * h * transfer[half:], ca.SX.zeros(half))
         loads = self._loads(ahead, 1)
         time = self.state["time"] + 0.5 * h
         return [
             self.kernels.condition(self.per_axle("lane_constants", axle), time, loads[axle])
-            for axle in range(AXLES)
+            for axle in range(self.axles)
         ]
 
-    def _loads(self, pitch: Any, column: int) -> Any:
-        factors = self.given["load_factors"][column * AXLES : (column + 1) * AXLES]
-        return self.kernels.loads(self.given["stop_constants"], pitch) * factors
+    def _loads(self, transfer: Any, column: int) -> Any:
+        factors = self.given["load_factors"][column * self.axles : (column + 1) * self.axles]
+        return self.kernels.loads(self.given["stop_constants"], transfer) * factors
 
     def _stage(
         self, at: Any, demand: Any, condition: list[Any], column: int
@@ -195,24 +223,31 @@ class _Step:
         """Rates of the motion, integrands of the totals of lanes and stop, and what is recorded."""
         import casadi as ca
 
-        speed, wheel, pitch = at[0], at[1 : 1 + AXLES], at[1 + AXLES :]
+        size = self.kernels.axle_states * self.axles
+        speed, states, transfer = at[0], at[1 : 1 + size], at[1 + size :]
+        wheel = states[: self.axles]
         locked, radius = self.state["locked"], self.given["radius"]
-        load = self._loads(pitch, column)
+        load = self._loads(transfer, column)
         axles = [
             self.kernels.axle(
                 self.per_axle("lane_constants", a),
                 speed,
-                wheel[a],
+                states[a :: self.axles],
                 load[a],
                 demand[a],
                 locked[a],
                 condition[a],
             )
-            for a in range(AXLES)
+            for a in range(self.axles)
         ]
-        force, rolling, slip, damping, passed = (ca.vertcat(*column) for column in zip(*axles, strict=True))
-        acceleration, resistance, pitching = self.kernels.train(
-            self.given["stop_constants"], speed, force, pitch
+        force, rolling, slip, damping, passed = (
+            # Element by element, each for all axles, as the state has them.
+            ca.reshape(ca.horzcat(*column).T, -1, 1)
+            for column in zip(*axles, strict=True)
+        )
+        rolling, others = rolling[: self.axles], rolling[self.axles :]
+        acceleration, resistance, transferring = self.kernels.train(
+            self.given["stop_constants"], speed, force, transfer
         )
         if self.holding:
             held_slip, slope = self._held_slip(speed)
@@ -231,7 +266,7 @@ class _Step:
             judged * slip * slip,
         )
         stop = ca.vertcat(speed, resistance, resistance * speed, judged)
-        rates = ca.vertcat(acceleration, rolling, pitching)
+        rates = ca.vertcat(acceleration, rolling, others, transferring)
         return rates, ca.vertcat(*lane), stop, [force, slip, load, passed]
 
     def _held_slip(self, speed: Any) -> tuple[Any, Any]:
@@ -239,7 +274,9 @@ class _Step:
         import casadi as ca
 
         first, spacing, k = (self.given["hold"][i] for i in range(3))
-        below, here, above = (self.given["hold"][3 + i * AXLES : 3 + (i + 1) * AXLES] for i in range(3))
+        below, here, above = (
+            self.given["hold"][3 + i * self.axles : 3 + (i + 1) * self.axles] for i in range(3)
+        )
         beyond = (ca.log(speed) - first) / spacing - k
         rise = where(beyond >= 0.0, above - here, here - below)
         return here + beyond * rise, rise / (spacing * speed)

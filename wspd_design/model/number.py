@@ -21,28 +21,28 @@ def _library(*operands: Number) -> Any:
     return math
 
 
+def _elementary(name: str, x: Number) -> Number:
+    """Apply a function of the library of the argument, or the argument's own method of that name."""
+    kind = type(x)
+    if issubclass(kind, (float, int)):
+        return getattr(math, name)(x)
+    function = getattr(sys.modules[kind.__module__.partition(".")[0]], name, None)
+    return function(x) if function else getattr(x, name)()
+
+
 def exp(x: Number) -> Number:
     """Exponential function."""
-    if isinstance(x, float):
-        return math.exp(x)
-    library = _library(x)
-    return library.exp(x) if hasattr(library, "exp") else x.exp()
+    return math.exp(x) if type(x) is float else _elementary("exp", x)
 
 
 def atan(x: Number) -> Number:
     """Inverse tangent."""
-    if isinstance(x, float):
-        return math.atan(x)
-    library = _library(x)
-    return library.atan(x) if hasattr(library, "atan") else x.atan()
+    return math.atan(x) if type(x) is float else _elementary("atan", x)
 
 
 def sin(x: Number) -> Number:
     """Sine."""
-    if isinstance(x, float):
-        return math.sin(x)
-    library = _library(x)
-    return library.sin(x) if hasattr(library, "sin") else x.sin()
+    return math.sin(x) if type(x) is float else _elementary("sin", x)
 
 
 def maximum(x: Number, y: Number) -> Number:

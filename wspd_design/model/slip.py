@@ -42,9 +42,40 @@ def resistance(vehicle: Vehicle, speed: Number, grade_force: Number = 0.0) -> Nu
     )
 
 
+COUNTED = -motion.train_acceleration(1.0, 0.0, 1.0)
+"""Wheels that eqs. (1) and (19) count, as they are generated."""
+
+
+def wheels(vehicle: Vehicle) -> int:
+    """Return the number of wheels."""
+    return 2 * vehicle.wheelsets
+
+
 def static_wheel_load(vehicle: Vehicle) -> Number:
-    """Wheel load without weight transfer, m g / 8 [N]."""
-    return vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
+    """Wheel load without weight transfer, m g over the number of wheels [N]."""
+    return vehicle.mass * constants().gravity / wheels(vehicle)
+
+
+def train_acceleration(vehicle: Vehicle, creep_force: Number, resistance: Number) -> Number:
+    """Acceleration of the train under the mean creep force of its wheels, eq. (1) [m/s2].
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        Mass and number of wheels.
+    creep_force : number
+        Mean over all wheels [N].
+    resistance : number
+        Running resistance [N].
+    """
+    return motion.train_acceleration(
+        creep_force, _counted(vehicle, resistance), _counted(vehicle, vehicle.mass)
+    )
+
+
+def _counted(vehicle: Vehicle, whole: Number) -> Number:
+    """Return the part of a mass or force of the train that stands on as many wheels as eqs. (1), (19) count."""
+    return whole if wheels(vehicle) == COUNTED else whole * (COUNTED / wheels(vehicle))
 
 
 class SlipDynamics(NamedTuple):
@@ -89,19 +120,21 @@ def slip_dynamics(
     force = adhesion.creep_force(slip, speed * slip, load, rail, stiffness)
     force_slope = adhesion.creep_force_slip_derivative(slip, speed, load, rail, stiffness)
     inertia = vehicle.wheel_inertia
-    mechanics = (vehicle.mass, inertia, vehicle.wheel_radius, vehicle.wheel_damping)
+    mass = _counted(vehicle, vehicle.mass)
+    mechanics = (mass, inertia, vehicle.wheel_radius, vehicle.wheel_damping)
     if deceleration is None:
         resisting = resistance(vehicle, speed)
-        slowing = -motion.train_acceleration(force, resisting, vehicle.mass)
+        slowing = -train_acceleration(vehicle, force, resisting)
+        carried = _counted(vehicle, resisting)
     else:
-        # The kernels know the deceleration as that by a resistance and eight wheels, which change with the slip.
-        resisting = vehicle.mass * deceleration - 8.0 * force
+        # The kernels know the deceleration as that by a resistance and their wheels, which change with the slip.
+        carried = mass * deceleration - COUNTED * force
         slowing = deceleration
-    pole = generated.slip_drift_slip_derivative(slip, speed, force, force_slope, resisting, *mechanics)
+    pole = generated.slip_drift_slip_derivative(slip, speed, force, force_slope, carried, *mechanics)
     if deceleration is not None:
-        pole = pole + (1.0 - slip) * 8.0 * force_slope / (vehicle.mass * speed)
+        pole = pole + (1.0 - slip) * COUNTED * force_slope / (mass * speed)
     return SlipDynamics(
-        drift=generated.slip_drift(slip, speed, force, resisting, *mechanics),
+        drift=generated.slip_drift(slip, speed, force, carried, *mechanics),
         gain=generated.slip_gain(speed, inertia, vehicle.wheel_radius),
         pole=pole,
         creep_force=force,

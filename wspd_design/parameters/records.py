@@ -96,7 +96,7 @@ class Contact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vehicle:
-    """A four-axle locomotive, eqs. (1)-(4)."""
+    """A vehicle on two-axle bogies, eqs. (1)-(4)."""
 
     name: str
     mass: float  # kg

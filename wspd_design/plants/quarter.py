@@ -1,17 +1,61 @@
-"""The quarter locomotive: eight equal wheels, one train mass, eqs. (1)-(7).
+"""The quarter locomotive: equal wheels under one train mass, eqs. (1)-(7).
 
-All wheels carry the static load, so one wheelset stands for all of them.
+All wheels carry the static load, so one wheelset stands for all of them. It is the planar vehicle without heights
+and with equal rails, for any number of wheelsets.
 """
 
-import math
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import ClassVar, NamedTuple
 
-from wspd_design.model import adhesion
 from wspd_design.model import slip as slip_model
-from wspd_design.model.generated import motion as generated
 from wspd_design.model.number import Number
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.plants.axle import RigidWheelsets
+from wspd_design.plants.protocol import AxleCondition, TrainMotion
+
+
+@dataclass(frozen=True, slots=True)
+class Quarter(RigidWheelsets):
+    """The plant without load transfer."""
+
+    vehicle: Vehicle
+    name: ClassVar[str] = "quarter"
+    alike: ClassVar[bool] = True
+
+    @property
+    def transfers(self) -> int:
+        """No load is transferred."""
+        return 0
+
+    @property
+    def offsets(self) -> tuple[Number, ...]:
+        """The vehicle is a point [m]."""
+        return (0.0,) * self.axles
+
+    def on(self, vehicle: Vehicle) -> "Quarter":
+        """Return the same plant with the numbers of another vehicle."""
+        return replace(self, vehicle=vehicle)
+
+    def wheel_loads(self, transfers: tuple[Number, ...]) -> tuple[Number, ...]:  # noqa: ARG002 - there are none
+        """Static load of one wheel of each axle [N]."""
+        return (slip_model.static_wheel_load(self.vehicle),) * self.axles
+
+    def train_motion(
+        self,
+        *,
+        speed: Number,
+        creep_forces: tuple[Number, ...],
+        transfers: tuple[Number, ...] = (),  # noqa: ARG002 - there are none
+        grade_force: Number = 0.0,
+    ) -> TrainMotion:
+        """Acceleration of the train, eq. (1)."""
+        resistance = slip_model.resistance(self.vehicle, speed, grade_force)
+        mean = sum(creep_forces) / self.axles
+        return TrainMotion(
+            acceleration=slip_model.train_acceleration(self.vehicle, mean, resistance),
+            resistance=resistance,
+            transfer_rates=(),
+        )
 
 
 class Motion(NamedTuple):
@@ -26,13 +70,13 @@ class Motion(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Quarter:
-    """A vehicle on a rail, with what does not change during a stop worked out once."""
+class QuarterOnRail:
+    """The quarter locomotive on one rail, with what does not change during a stop worked out once."""
 
-    vehicle: Vehicle
+    plant: Quarter
     rail: Rail
-    wheel_load: float  # N
-    stiffness: float  # N, initial slope of the creep force
+    wheel_load: Number  # N
+    stiffness: Number  # N, initial slope of the creep force
 
     def motion(self, time: Number, speed: Number, wheel_speed: Number, torque: Number) -> Motion:
         """Accelerations while the wheel rolls, eqs. (1), (2).
@@ -48,37 +92,33 @@ class Quarter:
         torque : number
             Braking torque per wheelset [N m].
         """
-        vehicle = self.vehicle
-        slip = slip_model.slip_ratio(speed, wheel_speed, vehicle.wheel_radius)
-        sliding = speed - vehicle.wheel_radius * wheel_speed
-        force = adhesion.creep_force(slip, abs(sliding), self.wheel_load, self.rail, self.stiffness)
-        resistance = slip_model.resistance(vehicle, speed)
-        damping = generated.wheel_damping(time, vehicle.wheel_damping, vehicle.wheel_damping_decay)
+        plant = self.plant
+        damping = plant.axle_condition(time=time, wheel_load=self.wheel_load).damping
+        axle = plant.axle_motion(
+            self.rail,
+            speed=speed,
+            states=(wheel_speed,),
+            wheel_load=self.wheel_load,
+            torque=torque,
+            condition=AxleCondition(stiffness=self.stiffness, damping=damping),
+        )
+        train = plant.train_motion(speed=speed, creep_forces=(axle.creep_force,) * plant.axles)
         return Motion(
-            acceleration=generated.train_acceleration(force, resistance, vehicle.mass),
-            wheel_acceleration=generated.wheel_acceleration(
-                force, wheel_speed, torque, vehicle.wheel_inertia, vehicle.wheel_radius, damping
-            ),
-            slip=slip,
-            creep_force=force,
-            resistance=resistance,
+            acceleration=train.acceleration,
+            wheel_acceleration=axle.rates[0],
+            slip=axle.slip,
+            creep_force=axle.creep_force,
+            resistance=train.resistance,
             wheel_damping=damping,
         )
 
     def creep_rate(self, speed: Number) -> Number:
         """Fastest rate of the slip on the adhering side, which limits an explicit step [1/s]."""
-        vehicle = self.vehicle
-        slope = 2.0 / math.pi * self.stiffness * (self.rail.adhesion_reduction + self.rail.slip_reduction)
-        per_slip = vehicle.wheel_radius**2 / vehicle.wheel_inertia + 8.0 / vehicle.mass
-        return slope * per_slip / speed
+        return self.plant.creep_rate(self.rail, speed)
 
 
-def quarter(vehicle: Vehicle, rail: Rail) -> Quarter:
+def quarter(vehicle: Vehicle, rail: Rail) -> QuarterOnRail:
     """Put a vehicle on a rail."""
-    load = slip_model.static_wheel_load(vehicle)
-    return Quarter(
-        vehicle=vehicle,
-        rail=rail,
-        wheel_load=load,
-        stiffness=adhesion.contact_stiffness(vehicle.contact, load),
-    )
+    plant, load = Quarter(vehicle), slip_model.static_wheel_load(vehicle)
+    stiffness = plant.axle_condition(time=0.0, wheel_load=load).stiffness
+    return QuarterOnRail(plant=plant, rail=rail, wheel_load=load, stiffness=stiffness)

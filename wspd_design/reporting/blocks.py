@@ -17,7 +17,7 @@ class Status(Enum):
 
     PROVED = ("✓", "proved", "good")
     REFUTED = ("✗", "refuted", "bad")
-    LIMIT = ("!", "limit proved", "bad")
+    LIMITATION = ("!", "limitation", "bad")
     UNDECIDED = ("?", "undecided", "open")
     EVIDENCE = ("≈", "evidence", "open")
     VACUOUS = ("∅", "vacuous", "neutral")

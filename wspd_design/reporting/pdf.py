@@ -131,6 +131,13 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
 LONG_TEXT = 25  # characters
 
 
+def _length(cell: Text | Cell) -> int:
+    """Return the characters of a cell; the sign of a status and the space behind it count."""
+    if isinstance(cell, Cell):
+        return len(plain(cell.text or cell.status.word)) + 2
+    return len(plain(cell))
+
+
 def _shares(table: Table) -> list[int]:
     """Return for each column its share of the free width; 0 for columns as wide as their content.
 
@@ -138,7 +145,7 @@ def _shares(table: Table) -> list[int]:
     text all share.
     """
     longest = [
-        max(len(plain(cell.text if isinstance(cell, Cell) else cell)) for cell in (column.title, *cells))
+        max(len(plain(column.title)), *map(_length, cells)) if cells else len(plain(column.title))
         for column, *cells in zip(table.columns, *table.rows, strict=True)
     ]
     if max(longest) < LONG_TEXT:

@@ -43,7 +43,7 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
     Raises
     ------
     UserError
-        If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is no number of seconds.
+        If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is not a number of seconds.
     """
     document = report_document(dossier, report_time())
     for path in paths:
@@ -54,7 +54,7 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
     """Return the report of a design, not yet rendered."""
     made = dossier.design
     version = dict(dossier.provenance.versions)["wspd-design"]
-    speed = numbers.quantity_in(dossier.initial_speed, "km/h")
+    speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
     record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
     return Document(
         title=f"Wheel slide protection: {made.name}",

@@ -6,13 +6,17 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.codegen.closed_loop import LoopOutput, load_closed_loop
+from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.loop_numbers import LoopOutput
 from wspd_design.codegen.sampled import GOOD
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import ParameterSet, Vehicle
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
+from wspd_design.plants.planar import bogies
+from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import first_slip, loop_input
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import run_loop
@@ -22,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 STOPS_SIDE_BY_SIDE = 16
-FIGURES = ("distance_m", "stopping_time_s", "torque_integral_kNms", "slip_mean", "slip_max", "lock_time_s")
+FIGURES = ("distance_m", "stopping_time_s", "torque_integral_Nms", "slip_mean", "slip_max", "lock_time_s")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +47,7 @@ def simulate_many(
     *,
     runs: int,
     bounds: Sequence[ParameterSet] = (),
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
     progress: Callable[[int], object] = abs,
 ) -> Campaign:
     """Simulate many stops that differ in their seed and in parameters drawn from their bounds.
@@ -74,7 +78,7 @@ def simulate_many(
 
     if runs < 1:
         raise UserError(f"runs = {runs} must be at least 1")
-    cases, drawn, names = _cases(vehicle, scenario, runs, bounds)
+    cases, drawn, names = _cases(plant_of(plant, vehicle), scenario, runs, bounds)
     columns = [
         ("run", "i8"),
         ("seed", "i8"),
@@ -89,7 +93,7 @@ def simulate_many(
         table[name] = drawn[:, k]
     complete = True
     try:
-        for first, count, output in _outputs(cases, controller, plant):
+        for first, count, output in _outputs(cases, controller):
             rows = slice(first, first + count)
             for name, values in _figures(output, count, scenario).items():
                 table[name][rows] = values
@@ -103,8 +107,8 @@ def simulate_many(
 
 
 def _cases(
-    vehicle: Vehicle, scenario: Scenario, runs: int, bounds: Sequence[ParameterSet]
-) -> tuple[list[tuple[Vehicle, Scenario]], "NDArray[np.float64]", tuple[str, ...]]:
+    plant: Plant, scenario: Scenario, runs: int, bounds: Sequence[ParameterSet]
+) -> tuple[list[tuple[Plant, Scenario]], "NDArray[np.float64]", tuple[str, ...]]:
     """Draw the parameters of every stop; the same seed draws the same ones."""
     import numpy as np
 
@@ -128,7 +132,7 @@ def _cases(
         case = replace(
             scenario, rail=_with(scenario.rail, values["rail"]), axle_rails=rails, seed=scenario.seed + run
         )
-        cases.append((_vehicle_with(vehicle, values["vehicle"]), case))
+        cases.append((plant.on(_vehicle_with(plant.vehicle, values["vehicle"])), case))
     return cases, drawn, tuple(f"{kind}.{name}" for kind, name, _ in varied)
 
 
@@ -152,28 +156,27 @@ def _vehicle_with(vehicle: Vehicle, values: dict[str, float]) -> Vehicle:
     }
     changed: Vehicle = replace(_with(vehicle, values), **parts)
     if "mass" in values:
-        changed = replace(changed, body_mass=changed.mass - 2.0 * changed.bogie_mass)
+        changed = replace(changed, body_mass=changed.mass - bogies(vehicle) * changed.bogie_mass)
     return changed
 
 
 def _outputs(
-    cases: list[tuple[Vehicle, Scenario]], controller: Controller, plant: str
+    cases: list[tuple[Plant, Scenario]], controller: Controller
 ) -> Iterator[tuple[int, int, LoopOutput]]:
     """Run the stops in chunks on all cores; yields (first run, number, output) as chunks finish."""
-    vehicle, scenario = cases[0]
+    plant, scenario = cases[0]
     try:
-        loop = load_closed_loop(
-            vehicle, scenario.rail, controller, stops=STOPS_SIDE_BY_SIDE, disturbed=scenario.pad_vibration
-        )
+        loop = load_closed_loop(plant, controller, stops=STOPS_SIDE_BY_SIDE, disturbed=scenario.pad_vibration)
     except (NoCompilerError, UntraceableError):
         for run, case in enumerate(cases):
-            yield run, 1, run_loop(*_split(case, controller), loop_input([case], controller, plant=plant))[0]
+            each, stop = case
+            yield run, 1, run_loop(each, controller, stop, loop_input([case], controller))[0]
         return
 
     def work(first: int) -> tuple[int, int, LoopOutput]:
         chunk = cases[first : first + STOPS_SIDE_BY_SIDE]
         filled = chunk + chunk[-1:] * (STOPS_SIDE_BY_SIDE - len(chunk))
-        output = loop.run(loop_input(filled, controller, plant=plant))
+        output = loop.run(loop_input(filled, controller))
         if output.result != GOOD:
             raise UserError(
                 f"controller {controller.name} commanded no share of the sample time in runs {first} to "
@@ -199,10 +202,6 @@ def _outputs(
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _split(case: tuple[Vehicle, Scenario], controller: Controller) -> tuple[Vehicle, Controller, Scenario]:
-    return case[0], controller, case[1]
-
-
 def _figures(output: LoopOutput, count: int, scenario: Scenario) -> dict[str, Any]:
     """Columns of the table for the first ``count`` stops of a chunk."""
     import numpy as np
@@ -214,7 +213,7 @@ def _figures(output: LoopOutput, count: int, scenario: Scenario) -> dict[str, An
     return {
         "distance_m": totals["distance"],
         "stopping_time_s": totals["time"],
-        "torque_integral_kNms": lanes["torque"].sum(axis=0) / 1e3,
+        "torque_integral_Nms": lanes["torque"].sum(axis=0),
         "slip_mean": lanes["slip"].mean(axis=0) / judged,
         "slip_max": np.maximum(lanes["slip_max"].max(axis=0), first_slip(scenario)),
         "lock_time_s": lanes["lock_time"].max(axis=0),

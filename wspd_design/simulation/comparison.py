@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import Vehicle
+from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.metrics import Metrics, metrics
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.simulation.self_check import StepCheck, simulate_checked
@@ -26,7 +27,7 @@ def trial(
     scenario: Scenario,
     *,
     slip_reference: float,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
 ) -> Trial:
     """Simulate one stop, check its steps and judge it."""
     run, check = simulate_checked(vehicle, controller, scenario, plant=plant)
@@ -39,7 +40,7 @@ def compare(
     scenario: Scenario,
     *,
     slip_reference: float,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
     progress: Callable[[str], object] = str,
 ) -> tuple[Trial, ...]:
     """Simulate the same stop with each controller.

@@ -1,10 +1,11 @@
-"""Stops that no controller can beat or that a perfect one would give: the yardsticks of every simulated stop.
+"""Ideal stops: simulations of a brake that holds the best slip, the yardstick of every simulated stop.
 
 An ideal brake never lets the slip exceed a given one. It fills until the slip gets there and from then on passes
-on what keeps it there, unless even the filling brake cannot give that. At the slip of the adhesion peak this is
-the bound for every controller.
+on what keeps it there, unless even the filling brake cannot give that. By default it holds the slip of the adhesion
+peak. Nothing is proved here: what no controller can beat is decided by the check ``stop_bound``.
 """
 
+import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -15,9 +16,9 @@ from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.plants.four_axle import AXLES
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.simulation.loop_input import loop_input
-from wspd_design.simulation.records import Scenario, Start
+from wspd_design.simulation.records import Ending, Scenario, Start
 from wspd_design.simulation.stop import run_loop
 
 if TYPE_CHECKING:
@@ -31,12 +32,16 @@ _AT_ONCE = 1e9  # 1/s: a supply that is there at once
 _INSTANT = 1e-6  # s: a cylinder that fills at once
 _SAMPLE_TIME = 0.1  # s: the unprotected brake fills whatever it samples
 
+NO_IDEAL_STOP = "even a brake that holds the best slip is still moving at the time limit"
+"""What to say of a train that cannot stop, in place of a distance."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IdealStop:
-    """Time and distance of an idealized stop."""
+    """Time and distance of an idealized stop; NaN where even the ideal brake does not stop the train."""
 
     name: str
+    ending: Ending
     distance: float  # m
     stopping_time: float  # s
 
@@ -48,7 +53,7 @@ def ideal_stop(
     *,
     slip: float | None = None,
     instantaneous: bool = False,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
 ) -> IdealStop:
     """Stop at the adhesion peak or at a constant slip.
 
@@ -68,7 +73,8 @@ def ideal_stop(
     Returns
     -------
     IdealStop
-        Without ``slip`` its distance is the bound for every controller.
+        Without ``slip`` its distance is that of the brake that holds the best slip. A train that is still moving
+        at the time limit has neither distance nor time.
 
     Raises
     ------
@@ -80,16 +86,19 @@ def ideal_stop(
 
     if scenario.start != Start():
         raise UserError(
-            "the bound is known for a stop that starts rolling with empty cylinders; leave start out"
+            "the ideal stop is known where a stop starts rolling with empty cylinders; leave start out"
         )
     if scenario.patches:
-        raise UserError("the bound is not known for a change of rail along the track; leave the patches out")
+        raise UserError(
+            "the ideal stop is not known for a change of rail along the track; leave the patches out"
+        )
     if instantaneous:
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
     filling = Unprotected(name="ideal", sample_time=max(_SAMPLE_TIME, scenario.sensing.dead_time))
-    given = loop_input([(vehicle, scenario)], filling, plant=plant)
-    rails = scenario.axle_rails or (scenario.rail,) * AXLES
+    braked = plant_of(plant, vehicle)
+    given = loop_input([(braked, scenario)], filling)
+    rails = scenario.axle_rails or (scenario.rail,) * braked.axles
     speeds = _speeds(scenario.initial_speed)
     slips = {rail: _held_slips(vehicle, rail, speeds, slip) for rail in set(rails)}
     given = replace(
@@ -97,13 +106,15 @@ def ideal_stop(
         held_slips=np.array([slips[rail] for rail in rails]),
         held_speeds=(float(speeds[0]), float(speeds[1])),
     )
-    output, _ = run_loop(vehicle, filling, scenario, given)
+    output, _ = run_loop(braked, filling, scenario, given)
     what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
     build_up = "full torque at once" if instantaneous else "with brake build-up"
+    stopped = bool(output.stopped[0])
     return IdealStop(
         name=f"{what}, {build_up}",
-        distance=float(output.stop_totals["distance"][0]),
-        stopping_time=float(output.stop_totals["time"][0]),
+        ending=Ending.STOPPED if stopped else Ending.TIME_LIMIT,
+        distance=float(output.stop_totals["distance"][0]) if stopped else math.nan,
+        stopping_time=float(output.stop_totals["time"][0]) if stopped else math.nan,
     )
 
 

@@ -2,18 +2,17 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from wspd_design.codegen.closed_loop import LoopInput, Settings
 from wspd_design.codegen.kernels import Surroundings, parameter_values
+from wspd_design.codegen.loop_numbers import LoopInput, Settings
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Rail, Vehicle
-from wspd_design.plants.four_axle import AXLES
-from wspd_design.plants.quarter import quarter
-from wspd_design.simulation.records import PLANTS, Scenario, Start
+from wspd_design.plants.planar import Planar
+from wspd_design.plants.protocol import Plant
+from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.start import available_torque
 
 if TYPE_CHECKING:
@@ -28,7 +27,7 @@ JUDGING_SPEED = 10.0 / 3.6  # m/s, slip statistics count above it
 
 
 def loop_input(
-    cases: Sequence[tuple[Vehicle, Scenario]], controller: Controller, *, plant: str, refinement: int = 1
+    cases: Sequence[tuple[Plant, Scenario]], controller: Controller, *, refinement: int = 1
 ) -> LoopInput:
     """Numbers of one or several stops for the closed loop.
 
@@ -37,28 +36,26 @@ def loop_input(
     """
     import numpy as np
 
-    scenario = cases[0][1]
-    sensing = scenario.sensing
+    plant, scenario = cases[0]
+    sensing, axles = scenario.sensing, plant.axles
     _check(scenario, controller, plant)
-    for vehicle, each in cases:
-        _check_start(vehicle, each.start)
-    placed = [(_flat(vehicle) if plant == "quarter" else vehicle, each) for vehicle, each in cases]
+    for each_plant, each in cases:
+        _check_start(each_plant.vehicle, each.start)
     grade = constants().gravity * scenario.grade
     columns = [
         [
             parameter_values(
-                vehicle,
-                rail,
+                each_plant.vehicle,
+                _rails(each, each_plant)[axle],
                 Surroundings(
-                    grade_force=vehicle.mass * grade,
-                    axle_offset=offset,
+                    grade_force=each_plant.vehicle.mass * grade,
+                    axle_offset=each_plant.offsets[axle],
                     braking_time=each.start.braking_time,
                 ),
             )
-            for vehicle, each in placed
-            for rail, offset in [(_rails(each)[axle], axle_offsets(vehicle, plant)[axle])]
+            for each_plant, each in cases
         ]
-        for axle in range(AXLES)
+        for axle in range(axles)
     ]
     irregularity = scenario.load_irregularity
     pulses = sensing.pulses_per_turn * controller.sample_time
@@ -66,11 +63,11 @@ def loop_input(
         stop_parameters=np.array(columns[0]).T,
         lane_parameters=np.array([row for axle in columns for row in axle]).T,
         speeds=np.array([each.initial_speed for _, each in cases]),
-        wheel_speeds=np.tile([_rim_speed(each) / vehicle.wheel_radius for vehicle, each in cases], AXLES),
-        pressures=np.tile([_pressure(vehicle.brake, each.start) for vehicle, each in cases], AXLES),
+        wheel_speeds=np.tile([_rim_speed(each) / p.vehicle.wheel_radius for p, each in cases], axles),
+        pressures=np.tile([_pressure(p.vehicle.brake, each.start) for p, each in cases], axles),
         settings=_settings(cases, controller, refinement),
         patch_starts=np.array([patch.start for patch in scenario.patches]) if scenario.patches else None,
-        patch_rails=_patch_rails(scenario) if scenario.patches else None,
+        patch_rails=_patch_rails(scenario, axles) if scenario.patches else None,
         wheel_noise=_wheel_noise(cases, controller) if sensing.speed_noise else None,
         quantum=2.0 * math.pi / pulses if pulses else 0.0,
         reference_factor=1.0 + sensing.reference_error,
@@ -79,9 +76,7 @@ def loop_input(
     )
 
 
-def _check(scenario: Scenario, controller: Controller, plant: str) -> None:
-    if plant not in PLANTS:
-        raise UserError(f'unknown plant "{plant}"; available: {", ".join(PLANTS)}')
+def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
     if not 1e-3 <= controller.sample_time <= 10.0:
         raise UserError(
             f"sample time = {controller.sample_time:g} s of controller {controller.name} must lie between 1 ms and 10 s"
@@ -91,8 +86,19 @@ def _check(scenario: Scenario, controller: Controller, plant: str) -> None:
             f"dead time = {scenario.sensing.dead_time:g} s must lie between 0 and the sample time "
             f"of {controller.sample_time:g} s"
         )
-    if plant == "quarter" and (scenario.axle_rails is not None or scenario.load_irregularity is not None):
-        raise UserError('rails and loads of single axles need the plant "four-axle"')
+    irregularity = scenario.load_irregularity
+    if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
+        raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
+    tables = None if irregularity is None else irregularity.factors
+    for what, one, several in (
+        ("axle rails", "rail", scenario.axle_rails),
+        ("load irregularity", "table", tables),
+    ):
+        if several is not None and len(several) != plant.axles:
+            raise UserError(
+                f"{what}: the stop names {len(several)} {one}{'s' * (len(several) != 1)}; name {plant.axles}, "
+                f"one for each wheelset of vehicle {plant.vehicle.name}, front axle first"
+            )
 
 
 def _check_start(vehicle: Vehicle, start: Start) -> None:
@@ -114,32 +120,19 @@ def _pressure(brake: Brake, start: Start) -> float:
 
 
 def first_slip(scenario: Scenario) -> float:
-    """Slip at the begin of a stop, as far as the figures count it [-]."""
+    """Slip at the start of a stop, as far as the figures count it [-]."""
     return scenario.start.slip if scenario.initial_speed > JUDGING_SPEED else 0.0
 
 
-def _flat(vehicle: Vehicle) -> Vehicle:
-    """Take the heights out: no load is transferred."""
-    return replace(vehicle, body_height=0.0, bogie_height=0.0, traction_rod_height=0.0)
+def _rails(scenario: Scenario, plant: Plant) -> tuple[Rail, ...]:
+    return scenario.axle_rails or (scenario.rail,) * plant.axles
 
 
-def _rails(scenario: Scenario) -> tuple[Rail, ...]:
-    return scenario.axle_rails or (scenario.rail,) * AXLES
-
-
-def axle_offsets(vehicle: Vehicle, plant: str) -> tuple[float, float, float, float]:
-    """Distance of each axle behind the first one; the quarter locomotive is a point [m]."""
-    if plant == "quarter":
-        return (0.0, 0.0, 0.0, 0.0)
-    base, spacing = vehicle.wheelbase, vehicle.bogie_spacing
-    return (0.0, base, spacing, spacing + base)
-
-
-def _settings(cases: Sequence[tuple[Vehicle, Scenario]], controller: Controller, refinement: int) -> Settings:
+def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, refinement: int) -> Settings:
     steepest = max(
-        quarter(vehicle, rail).creep_rate(1.0)
-        for vehicle, scenario in cases
-        for rail in {*_rails(scenario), *(patch.rail for patch in scenario.patches)}
+        plant.creep_rate(rail, 1.0)
+        for plant, scenario in cases
+        for rail in {*_rails(scenario, plant), *(patch.rail for patch in scenario.patches)}
     )
     fixed = constants()
     return Settings(
@@ -155,27 +148,27 @@ def _settings(cases: Sequence[tuple[Vehicle, Scenario]], controller: Controller,
     )
 
 
-def _patch_rails(scenario: Scenario) -> "NDArray[np.float64]":
+def _patch_rails(scenario: Scenario, axles: int) -> "NDArray[np.float64]":
     import numpy as np
 
     rows = [
         (r.mu0, r.friction_ratio, r.friction_decay, r.adhesion_reduction, r.slip_reduction)
         for r in (patch.rail for patch in scenario.patches)
     ]
-    return np.repeat(np.array(rows)[:, np.newaxis, :], AXLES, axis=1)
+    return np.repeat(np.array(rows)[:, np.newaxis, :], axles, axis=1)
 
 
-def _wheel_noise(cases: Sequence[tuple[Vehicle, Scenario]], controller: Controller) -> "NDArray[np.float64]":
+def _wheel_noise(cases: Sequence[tuple[Plant, Scenario]], controller: Controller) -> "NDArray[np.float64]":
     """Noise of the measured wheel speeds [rad/s]; each stop draws from its own seed."""
     import numpy as np
 
-    rows = sample_rows(controller)
+    rows, axles = sample_rows(controller), cases[0][0].axles
     draws = [
-        np.random.default_rng(np.random.SeedSequence([scenario.seed, 0])).standard_normal((rows, AXLES))
-        * (scenario.sensing.speed_noise / vehicle.wheel_radius)
-        for vehicle, scenario in cases
+        np.random.default_rng(np.random.SeedSequence([scenario.seed, 0])).standard_normal((rows, axles))
+        * (scenario.sensing.speed_noise / plant.vehicle.wheel_radius)
+        for plant, scenario in cases
     ]
-    return np.stack(draws, axis=2).reshape(rows, AXLES * len(cases))
+    return np.stack(draws, axis=2).reshape(rows, axles * len(cases))
 
 
 def sample_rows(controller: Controller) -> int:

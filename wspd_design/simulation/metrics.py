@@ -28,8 +28,9 @@ class Metrics:
     valve_switches: int  # changes of the valve state, mean of the wheelsets
     vented_air: float  # -, full brake cylinders let out, mean of the wheelsets
     adhesion_utilization: float  # -, creep force over the force at the adhesion peak, mean over time
-    bound: float  # m, no controller stops shorter; NaN where it is not known
-    efficiency: float  # -, bound over distance
+    ideal_stop: float  # m, distance of the brake that holds the best slip; NaN where there is none
+    ideal_ending: Ending | None  # of the ideal stop; None where it is not known
+    efficiency: float  # -, ideal stop over distance
     momentum_residual: float  # -, relative to the initial momentum
     energy_residual: float  # -, relative to the initial energy
 
@@ -52,7 +53,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     -------
     Metrics
         A run that did not come to a standstill gives NaN for lag and plateau; so does one that did not start
-        rolling with empty cylinders, which has no bound either.
+        rolling with empty cylinders, whose ideal stop is not known either.
     """
     totals, time = run.totals, float(run.time[-1])
     stopped = run.ending is Ending.STOPPED
@@ -63,7 +64,8 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         totals.slip_squared / judged - 2.0 * slip_reference * mean + slip_reference**2 if judged else math.nan
     )
     known = usual and not scenario.patches
-    bound = math.nan if not known else ideal_stop(vehicle, scenario, plant=run.plant).distance
+    ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
+    ideal_distance = math.nan if ideal is None else ideal.distance
     per_axle = [[(sample.fill, sample.vent) for sample in samples] for samples in run.axle_samples]
     commands = [command for axle in per_axle for command in axle]
     return Metrics(
@@ -82,8 +84,9 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         valve_switches=round(sum(_switches(axle) for axle in per_axle) / len(per_axle)),
         vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
-        bound=bound,
-        efficiency=bound / totals.distance if stopped else math.nan,
+        ideal_stop=ideal_distance,
+        ideal_ending=None if ideal is None else ideal.ending,
+        efficiency=ideal_distance / totals.distance if stopped else math.nan,
         momentum_residual=momentum_residual(run, vehicle),
         energy_residual=energy_residual(run, vehicle),
     )
@@ -108,7 +111,8 @@ def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> floa
 def momentum_residual(run: Run, vehicle: Vehicle) -> float:
     """What is missing in the balance behind Table 10, relative to the initial momentum.
 
-    sum of the torque integrals = R m (v0 - v) + 8 I (omega0 - omega) - R int f_d dt - 8 int B omega dt.
+    sum of the torque integrals = R m (v0 - v) + n I (omega0 - omega) - R int f_d dt - n int B omega dt for n
+    wheels.
     """
     radius, inertia = vehicle.wheel_radius, vehicle.wheelset_inertia
     turning = float(run.wheel_speed[0, 0])  # all wheelsets start alike

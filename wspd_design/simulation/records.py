@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
@@ -14,9 +14,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Trace = NDArray[np.float64]
-
-PLANTS = ("four-axle", "quarter")
-"""The four-axle plant transfers load; the quarter locomotive is its case without heights and with equal rails."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +44,7 @@ class LoadIrregularity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
-    """State of all wheelsets at the begin of a stop; by default they roll and the brake is applied now.
+    """State of all wheelsets at the start of a stop; by default they roll and the brake is applied now.
 
     The supply (8), the vibration of the pads and the damping of the wheels are as far on as ``braking_time`` says.
     Load transfer begins with the stop.
@@ -58,7 +55,7 @@ class Start:
     braking_time: float = 0.0  # s, since the brake was applied
 
     def __post_init__(self) -> None:
-        """Refuse what is no state of a turning wheel."""
+        """Refuse what is not a state of a turning wheel."""
         if not 0.0 <= self.slip < 1.0:
             raise UserError(
                 f"slip = {self.slip:g} of the start must lie in [0, 1): 0 for rolling wheels; a stop cannot "
@@ -80,7 +77,7 @@ class Scenario:
     initial_speed: float  # m/s
     start: Start = Start()
     seed: int = 0
-    axle_rails: tuple[Rail, Rail, Rail, Rail] | None = None  # front axle first, in place of ``rail``
+    axle_rails: tuple[Rail, ...] | None = None  # front axle first, in place of ``rail``
     patches: tuple[Patch, ...] = ()
     grade: float = 0.0  # -, rise over run, positive uphill
     pad_vibration: bool = False  # T_d of Section 7
@@ -88,7 +85,7 @@ class Scenario:
     load_irregularity: LoadIrregularity | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no stop."""
+        """Refuse what is not a stop."""
         if not 0.0 < self.initial_speed < 150.0:
             raise UserError(
                 f"initial speed = {self.initial_speed:g} m/s must be above 0 and below 150 m/s (540 km/h); "
@@ -116,8 +113,7 @@ class Ending(Enum):
     )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sample:
+class Sample(NamedTuple):
     """What one controller did at one sampling instant."""
 
     time: float  # s
@@ -169,7 +165,7 @@ class Run:
     wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
     axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset
     totals: Totals
-    final_wheel_speeds: tuple[float, ...]  # rad/s, of four wheelsets
+    final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
 

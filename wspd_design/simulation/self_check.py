@@ -9,8 +9,10 @@ from dataclasses import dataclass, replace
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import Vehicle
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
+from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import Run, Scenario
-from wspd_design.simulation.stop import simulate
+from wspd_design.simulation.stop import simulate_on
 
 DISTANCE_TOLERANCE = 1e-6  # relative
 SLIP_TOLERANCE = 1e-4
@@ -38,14 +40,14 @@ class StepCheck:
 
 
 def simulate_checked(
-    vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str = "four-axle"
+    vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str = DEFAULT_PLANT
 ) -> tuple[Run, StepCheck]:
     """Simulate a stop with steps that are short enough, as far as that is possible.
 
     Parameters
     ----------
     vehicle, controller, scenario, plant
-        As in :func:`simulate`.
+        As in :func:`~wspd_design.simulation.stop.simulate`.
 
     Returns
     -------
@@ -54,9 +56,10 @@ def simulate_checked(
     check : StepCheck
         How far it can be trusted.
     """
-    run = simulate(vehicle, controller, scenario, plant=plant)
+    braked = plant_of(plant, vehicle)
+    run = simulate_on(braked, controller, scenario)
     for refinement in REFINEMENTS:
-        finer = simulate(vehicle, controller, scenario, plant=plant, refinement=2 * refinement)
+        finer = simulate_on(braked, controller, scenario, refinement=2 * refinement)
         check = StepCheck(
             distance=abs(finer.totals.distance / run.totals.distance - 1.0),
             slip=slip_difference(vehicle, run, finer),
@@ -67,20 +70,19 @@ def simulate_checked(
         if check.passed:
             return run, check
         run = finer
-    spread = perturbed_spread(vehicle, controller, scenario, plant=plant)
+    spread = perturbed_spread(braked, controller, scenario)
     # A stop from a speed that is higher by a share is longer by twice that share.
     expected = 2.0 * PERTURBATION * PERTURBED_RUNS * run.totals.distance
     return run, replace(check, chaotic=spread > AMPLIFICATION * expected, spread=spread)
 
 
-def perturbed_spread(vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str) -> float:
+def perturbed_spread(plant: Plant, controller: Controller, scenario: Scenario) -> float:
     """Range of the distance over slightly different initial speeds [m]."""
     distances = [
-        simulate(
-            vehicle,
+        simulate_on(
+            plant,
             controller,
             replace(scenario, initial_speed=scenario.initial_speed * (1.0 + PERTURBATION * k)),
-            plant=plant,
         ).totals.distance
         for k in range(PERTURBED_RUNS + 1)
     ]

@@ -1,8 +1,8 @@
 """One stop: from the records to the numbers of the closed loop and back.
 
-The closed loop is compiled once for each controller and run by the machine. A controller that cannot be traced
-runs in Python on the compiled plant; without a C compiler plant and controller run in CasADi's virtual machine
-and in Python, slower, with the same numbers.
+The closed loop is compiled once for each law, whatever its gains are, and run by the machine. A controller that
+cannot be traced runs in Python on the compiled plant; without a C compiler plant and controller run in CasADi's
+virtual machine and in Python, slower, with the same numbers.
 """
 
 import math
@@ -10,19 +10,18 @@ import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from wspd_design.codegen.closed_loop import (
-    LoopInput,
-    LoopOutput,
-    load_closed_loop,
-)
+from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
+from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND
 from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
-from wspd_design.plants.four_axle import AXLES
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
+from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import RECORD_INTERVAL, first_slip, loop_input, sample_rows
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
 
@@ -36,7 +35,7 @@ def simulate(
     controller: Controller,
     scenario: Scenario,
     *,
-    plant: str = "four-axle",
+    plant: str = DEFAULT_PLANT,
     refinement: int = 1,
 ) -> Run:
     """Brake from the initial speed to standstill.
@@ -65,27 +64,32 @@ def simulate(
         If the controller returns a command outside [0, 1] or one that is not a number, if there is no such
         plant, or if the scenario asks for what the plant does not have.
     """
-    given = loop_input([(vehicle, scenario)], controller, plant=plant, refinement=refinement)
+    return simulate_on(plant_of(plant, vehicle), controller, scenario, refinement=refinement)
+
+
+def simulate_on(plant: Plant, controller: Controller, scenario: Scenario, *, refinement: int = 1) -> Run:
+    """Brake a plant from the initial speed to standstill; otherwise as :func:`simulate`."""
+    given = loop_input([(plant, scenario)], controller, refinement=refinement)
     given = replace(given, trace_rows=math.ceil(1.1 * constants().time_limit / RECORD_INTERVAL))
-    output, engine = run_loop(vehicle, controller, scenario, given)
+    output, engine = run_loop(plant, controller, scenario, given)
     if output.result == BAD_COMMAND:
         time, fill, vent = output.bad_command
         raise UserError(
             f"controller {controller.name} commanded fill = {fill:g}, vent = {vent:g} at t = {time:.3f} s; "
             "both must lie in [0, 1] and their sum must not exceed 1: limit the command in its step function"
         )
-    return _run_record(vehicle, controller, scenario, plant, output, engine)
+    return _run_record(plant, controller, scenario, output, engine)
 
 
 def run_loop(
-    vehicle: Vehicle, controller: Controller, scenario: Scenario, given: LoopInput
+    plant: Plant, controller: Controller, scenario: Scenario, given: LoopInput
 ) -> tuple[LoopOutput, str]:
     """Run a single stop on the fastest engine that can; returns also its name."""
     rows = sample_rows(controller)
     disturbed = scenario.pad_vibration
     try:
         try:
-            loop = load_closed_loop(vehicle, scenario.rail, controller, disturbed=disturbed)
+            loop = load_closed_loop(plant, controller, disturbed=disturbed)
             return loop.run(given, sample_rows=rows), "compiled"
         except UntraceableError as error:
             warnings.warn(
@@ -93,39 +97,34 @@ def run_loop(
                 "functions of wspd_design.model.number in place of if, max and math",
                 stacklevel=3,
             )
-            loop = load_closed_loop(vehicle, scenario.rail, None, disturbed=disturbed)
+            loop = load_closed_loop(plant, None, disturbed=disturbed)
             return loop.run_with(given, controller, sample_rows=rows), "compiled plant, controller in Python"
     except NoCompilerError as error:
         from wspd_design.codegen.virtual_machine import run_virtual
 
         _notice(str(error))
-        output = run_virtual(vehicle, scenario.rail, controller, given, sample_rows=rows, disturbed=disturbed)
+        output = run_virtual(plant, controller, given, sample_rows=rows, disturbed=disturbed)
         return output, "CasADi virtual machine"
 
 
 def _run_record(
-    vehicle: Vehicle,
-    controller: Controller,
-    scenario: Scenario,
-    plant: str,
-    output: LoopOutput,
-    engine: str,
+    plant: Plant, controller: Controller, scenario: Scenario, output: LoopOutput, engine: str
 ) -> Run:
     import numpy as np
 
-    columns = 1 if plant == "quarter" else AXLES
+    axles = plant.axles
+    columns = 1 if plant.alike else axles
     lane, stop = output.lane_totals, {name: float(x[0]) for name, x in output.stop_totals.items()}
-    start = _first_row(vehicle, scenario, output)
+    start = _first_row(plant, scenario, output)
     trace = np.vstack([start, output.trace])
-    wheel, slip, passed, load = (trace[:, 3 + k * AXLES : 3 + k * AXLES + columns] for k in range(4))
-    states = (output.samples.shape[1] - 1) // AXLES - 5
-    by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 5, AXLES)
-    times = output.samples[:, 0]
+    wheel, slip, passed, load = (trace[:, 3 + k * axles : 3 + k * axles + columns] for k in range(4))
+    states = (output.samples.shape[1] - 1) // axles - 5
+    by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 5, axles)
     return Run(
         controller=controller.name,
-        vehicle=vehicle.name,
+        vehicle=plant.vehicle.name,
         rail=scenario.rail.name,
-        plant=plant,
+        plant=plant.name,
         sample_time=controller.sample_time,
         initial_speed=scenario.initial_speed,
         ending=Ending.STOPPED if output.stopped[0] else Ending.TIME_LIMIT,
@@ -137,17 +136,7 @@ def _run_record(
         torque=passed,
         wheel_load=load,
         axle_samples=tuple(
-            tuple(
-                Sample(
-                    time=t,
-                    fill=row[states],
-                    vent=row[states + 1],
-                    state=tuple(row[:states]),
-                    seen=Measurement(*row[states + 2 :]),
-                )
-                for t, row in zip(times.tolist(), by_axle[:, :, axle].tolist(), strict=True)
-            )
-            for axle in range(columns)
+            _samples(output.samples[:, 0], by_axle[:, :, axle], states) for axle in range(columns)
         ),
         totals=Totals(
             distance=stop["distance"],
@@ -170,17 +159,29 @@ def _run_record(
     )
 
 
-def _first_row(vehicle: Vehicle, scenario: Scenario, output: LoopOutput) -> "NDArray[np.float64]":
+def _samples(times: "NDArray[np.float64]", rows: "NDArray[np.float64]", states: int) -> tuple[Sample, ...]:
+    """Samples of one wheelset from rows of its states, fill, vent and what it saw."""
+    columns = (
+        times.tolist(),
+        rows[:, states].tolist(),
+        rows[:, states + 1].tolist(),
+        map(tuple, rows[:, :states].tolist()),
+        map(Measurement._make, rows[:, states + 2 :].tolist()),
+    )
+    return tuple(map(Sample._make, zip(*columns, strict=True)))
+
+
+def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray[np.float64]":
     """Row of the traces at t = 0, where the load is static."""
     import numpy as np
 
-    speed, slip = scenario.initial_speed, scenario.start.slip
-    static = vehicle.mass * constants().gravity / (2 * AXLES)
+    speed, slip, axles = scenario.initial_speed, scenario.start.slip, plant.axles
+    static = static_wheel_load(plant.vehicle)
     referred = slip * min(speed / constants().slip_regularization_speed, 1.0)
-    alike = (speed * (1.0 - slip) / vehicle.wheel_radius, referred)
-    torques = output.samples[0, -AXLES:]  # as the first sample saw them
+    alike = (speed * (1.0 - slip) / plant.vehicle.wheel_radius, referred)
+    torques = output.samples[0, -axles:]  # as the first sample saw them
     return np.concatenate(
-        [(0.0, speed, 0.0), np.repeat(alike, AXLES), torques, np.full(AXLES, static), torques]
+        [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques]
     )
 
 

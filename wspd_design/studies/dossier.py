@@ -5,6 +5,7 @@ import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
+from pathlib import Path
 
 from wspd_design.analysis.linearization import Linearization, linearize
 from wspd_design.certificates.records import Certificate
@@ -21,6 +22,7 @@ from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
+from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
@@ -64,7 +66,7 @@ class Dossier:
     trials: tuple[Trial, ...]  # the design's own stop first
     lag_distances: tuple[float, ...]  # m, of each trial: the part of the distance that the build-up costs
     phase_plane: PhasePlane | None  # of laws with a sliding surface
-    initial_speed: float  # m/s
+    scenario: Scenario  # of the stops
     provenance: Provenance
 
 
@@ -73,11 +75,11 @@ def dossier(
     *,
     vehicle_name: str,
     rail_name: str,
-    initial_speed: float,
+    scenario: Scenario,
     baselines: Sequence[str],
     command: str,
-    plant: str = "four-axle",
-    seed: int = 0,
+    plant: str = DEFAULT_PLANT,
+    stored: Path | None = None,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
     """Compute everything about a design.
@@ -88,16 +90,16 @@ def dossier(
         The design.
     vehicle_name, rail_name : str
         Names or paths of the vehicle and of the rail of the stops.
-    initial_speed : float
-        Of the stops [m/s].
+    scenario : Scenario
+        The stops, on this rail; its seed is that of the sampled checks, too.
     baselines : sequence of str
         Controllers to compare with.
     command : str
         The command line, for the record.
     plant : {"four-axle", "quarter"}
         Of the stops; the certificates speak about the quarter locomotive.
-    seed : int
-        Of the sampled checks.
+    stored : Path, optional
+        Folder of certificate files; what the checkers accept of it for this design is not searched again.
     progress : callable, optional
         Told each stage before it starts.
 
@@ -112,12 +114,11 @@ def dossier(
     own = controller_of(made, vehicle, rail)
     specification = made.specification
     progress("linearization")
-    speeds = np.geomspace(1.0, max(specification.speeds[1], initial_speed), POLE_SPEEDS)
+    speeds = np.geomspace(1.0, max(specification.speeds[1], scenario.initial_speed), POLE_SPEEDS)
     linearizations = tuple(linearize(vehicle, rail, slip=specification.slip, speed=float(v)) for v in speeds)
-    problem = stability_problem(vehicle, rail, own, specification, seed=seed)
-    certificates = verify(problem, progress=progress)
+    problem = stability_problem(vehicle, rail, own, specification, seed=scenario.seed)
+    certificates = verify(problem, progress=progress, stored=stored)
     others = [_baseline(name, vehicle, rail, specification) for name in baselines]
-    scenario = Scenario(rail=rail, initial_speed=initial_speed, seed=seed)
     controllers = [own, *(law for law, _ in others)]
     trials = compare(
         vehicle,
@@ -137,13 +138,13 @@ def dossier(
         linearizations=linearizations,
         certificates=certificates,
         trials=trials,
-        lag_distances=tuple(initial_speed * each.metrics.lag for each in trials),
+        lag_distances=tuple(scenario.initial_speed * each.metrics.lag for each in trials),
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
-        initial_speed=initial_speed,
+        scenario=scenario,
         provenance=Provenance(
             command=command,
             versions=versions(),
-            seed=seed,
+            seed=scenario.seed,
             input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
         ),
     )

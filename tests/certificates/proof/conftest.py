@@ -4,21 +4,24 @@ import json
 
 import pytest
 
-from wspd_design.certificates.checks.sliding import reaching
+from wspd_design.certificates.kernel.checker import Work
+from wspd_design.certificates.kernel.obligation import Inequality
+from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search.settle import settle
+from wspd_design.certificates.theorems.sliding import gain_claims
 
 
 @pytest.fixture(scope="session")
 def reference_claim(make_reference_problem):
-    """(abs(r) + eta)/rho <= 30 m/s2; its supremum is 25.094."""
-    problem = make_reference_problem(30.0)
-    return reaching.claims(problem, problem.controller)[0]
+    """(r + eta)/rho <= 30 m/s2 for the axle at static load; its supremum is 25.094."""
+    return gain_claims(make_reference_problem(30.0), uses=PLANT)[0].claim
 
 
 @pytest.fixture(scope="session")
 def proved(reference_claim):
-    found = settle(reference_claim, tolerance=0.01)
+    obligation = Inequality(key="gain", claim=reference_claim)
+    found = obligation.decide(settle(reference_claim, tolerance=0.01), Work())
     assert found.status is Status.PROVED
     return found
 

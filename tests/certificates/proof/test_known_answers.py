@@ -9,8 +9,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from wspd_design.certificates.checks.sliding import reaching
-from wspd_design.certificates.kernel.checker import check, value
+from wspd_design.certificates.kernel.checker import Work, decide, value
+from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search import outward
 from wspd_design.certificates.search import settle as engine
@@ -19,6 +19,7 @@ from wspd_design.certificates.search.progress import listening
 from wspd_design.certificates.search.prover import extreme, prove
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.model_error import mismatch
+from wspd_design.certificates.theorems.sliding import reserve
 
 TRUE_SUPREMUM = 24.79297  # m/s2, enclosed by 24.79296 and 24.79298
 
@@ -26,7 +27,7 @@ TRUE_SUPREMUM = 24.79297  # m/s2, enclosed by 24.79296 and 24.79298
 def test_supremum_to_five_digits(make_reference_problem, reference_claim):
     problem = make_reference_problem(30.0)
     found = extreme(reference_claim, tolerance=1e-5)
-    eta = reaching.reserve(problem)
+    eta = reserve(problem)
     assert found.low <= TRUE_SUPREMUM + eta + 1e-5
     assert found.high >= TRUE_SUPREMUM + eta - 1e-5
     assert found.high - found.low < 1e-5
@@ -36,9 +37,9 @@ def test_supremum_to_five_digits(make_reference_problem, reference_claim):
 def test_sampling_stays_below(make_reference_problem, proved):
     problem = make_reference_problem(30.0)
     points = np.random.default_rng(0).uniform(*domain.box(problem), (100_000, 5))
-    sampled = np.abs(mismatch(problem, problem.controller, points).residual).max() + reaching.reserve(problem)
-    assert sampled < proved.extreme.low - 0.5
-    assert proved.extreme.low <= proved.extreme.high < proved.extreme.low + 0.02
+    sampled = np.abs(mismatch(problem, problem.controller, points).residual).max() + reserve(problem)
+    assert sampled < proved.low - 0.5
+    assert proved.low <= proved.high < proved.low + 0.02
 
 
 def test_fast_enough(reference_claim, proved):
@@ -46,7 +47,7 @@ def test_fast_enough(reference_claim, proved):
     started = time.process_time()
     extreme(reference_claim, tolerance=1e-3)
     prover = time.process_time() - started
-    assert check(reference_claim, proved.proof.certificate).accepted
+    assert decide(dict(proved.stated.proof), Work()).leaves > 100
     checker = time.process_time() - started - prover
     assert prover < 2.0
     assert checker < 10.0
@@ -54,9 +55,13 @@ def test_fast_enough(reference_claim, proved):
 
 def test_fallback_arithmetic_finds_the_same(reference_claim, proved):
     found = extreme(reference_claim, tolerance=0.01, backend=outward)
-    assert found.low <= proved.extreme.high
-    assert found.high >= proved.extreme.low
+    assert found.low <= proved.high
+    assert found.high >= proved.low
     assert found.high - found.low <= 0.01
+
+
+def _decided(claim, tolerance):
+    return Inequality(key="gain", claim=claim).decide(engine.settle(claim, tolerance=tolerance), Work())
 
 
 @pytest.mark.parametrize("distance", [1e-2, 1e-3, 1e-4, 1e-5])
@@ -64,24 +69,25 @@ def test_verdict_near_the_supremum(reference_claim, distance):
     """Just above it is proved, just below refuted, although the enclosure is asked for within 0.01 only."""
     supremum = extreme(reference_claim, tolerance=1e-6)
     above, below = (
-        engine.settle(replace(reference_claim, bound=Fraction(bound)), tolerance=0.01)
+        _decided(replace(reference_claim, bound=Fraction(bound)), tolerance=0.01)
         for bound in (supremum.high + distance, supremum.low - distance)
     )
     assert (above.status, below.status) == (Status.PROVED, Status.REFUTED)
     assert 0.0 <= above.margin.low <= above.margin.high
     assert below.margin.low <= below.margin.high < 0.0
-    exact = value(reference_claim, {v.name: Fraction(below.place[v.name]) for v in reference_claim.free})
+    place = {v.name: Fraction(below.place[v.name]) for v in reference_claim.free}
+    exact = value(reference_claim.statement(), place, Work())
     assert exact[0] > Fraction(supremum.low - distance)
 
 
 def test_used_up_budget_is_undecided(reference_claim):
-    with within(Budget(boxes=100)):
-        found = engine.settle(reference_claim, tolerance=1e-6)
+    with within(Budget(effort=100 / 60_000)):
+        found = _decided(reference_claim, tolerance=1e-6)
     assert found.status is Status.UNDECIDED
-    assert found.proof is None
-    assert 0.0 < found.undecided <= 1.0
-    assert found.extreme.low <= TRUE_SUPREMUM + 0.31 <= found.extreme.high
-    assert "undecided" in found.reason
+    assert not found.proved
+    assert found.effort.cut
+    assert 0.0 < found.effort.undecided <= 1.0
+    assert found.low <= TRUE_SUPREMUM + 0.31 <= found.high
 
 
 def test_progress_rises_to_one(reference_claim):
@@ -105,4 +111,4 @@ def test_checker_needs_no_prover():
 
 def test_the_same_claim_gives_the_same_text(reference_claim):
     first, second = (engine.settle(reference_claim, tolerance=1e-3).proof for _ in range(2))
-    assert first.certificate == second.certificate
+    assert first == second

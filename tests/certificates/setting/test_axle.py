@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from wspd_design.plants.four_axle import Pitch, train_motion, wheel_loads
 
 from wspd_design.certificates.kernel.arb import above, below
 from wspd_design.certificates.outside import OutsideModel
@@ -13,7 +14,6 @@ from wspd_design.certificates.setting import axle
 from wspd_design.certificates.setting.axle import Pitching
 from wspd_design.model.slip import resistance, static_wheel_load
 from wspd_design.parameters.bounds import Bounds
-from wspd_design.plants.four_axle import Pitch, train_motion, wheel_loads
 
 GRAVITY = 9.81
 

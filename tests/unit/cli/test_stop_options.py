@@ -2,16 +2,18 @@
 
 import pytest
 
-from wspd_design.cli.stop_options import StopOptions, disturbances_of, rails_of, scenario
+from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.stop_options import scenario
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
+from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Patch, Scenario, Sensing
 
 WET, DRY = load_rail("polach-wet"), load_rail("polach-dry")
 
 
 def made(**words):
-    return scenario(WET, StopOptions(speed="120 km/h", seed=3, **words))
+    return scenario(WET, StopOptions(**words), speed="120 km/h", seed=3)
 
 
 def test_nothing_written_disturbs_nothing():
@@ -45,14 +47,14 @@ def test_what_is_no_grade(text):
 
 @pytest.mark.parametrize("text", ["50 m polach-dry", "50m polach-dry", " 5e4 mm  polach-dry "])
 def test_patch(text):
-    assert made(patches=[text]).patches == (Patch(start=50.0, rail=DRY),)
+    assert made(patch=[text]).patches == (Patch(start=50.0, rail=DRY),)
 
 
 def test_patch_on_an_own_rail_in_a_folder_with_a_blank(tmp_path):
     folder = tmp_path / "my rails"
     folder.mkdir()
     (folder / "icy.toml").write_text('base = "polach-wet"\n')
-    (patch,) = made(patches=[f"50 m {folder / 'icy.toml'}"]).patches
+    (patch,) = made(patch=[f"50 m {folder / 'icy.toml'}"]).patches
     assert (patch.start, patch.rail.name) == (50.0, "icy")
 
 
@@ -61,7 +63,7 @@ def test_patch_on_an_own_rail_in_a_folder_with_a_blank(tmp_path):
 )
 def test_what_is_no_patch(text):
     with pytest.raises(UserError, match="50 m"):
-        made(patches=[text])
+        made(patch=[text])
 
 
 def test_axle_rails_are_front_first():
@@ -79,7 +81,7 @@ def test_sensing():
 def test_all_is_said_to_the_reader():
     stop = made(
         axle_rails="polach-wet,polach-wet,polach-dry,polach-dry",
-        patches=["50 m low-adhesion"],
+        patch=["50 m low-adhesion"],
         grade="-5 permille",
         pad_vibration=True,
         speed_noise="0.05 m/s",

@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from wspd_design.codegen.hoisting import hoist
-from wspd_design.codegen.kernels import PARAMETERS, Surroundings, closed_loop_kernels, parameter_values
+from wspd_design.codegen.kernels import PARAMETERS, Surroundings, parameter_values, plant_kernels
 from wspd_design.model import adhesion
 from wspd_design.parameters.loading import load_rail
+from wspd_design.plants.planar import Planar
 
 
 def operations(function):
@@ -53,7 +54,7 @@ def test_only_what_moves_is_left():
 
 
 def test_the_creep_force_divides_three_times(er24pc):
-    kernels = closed_loop_kernels(er24pc, load_rail("polach-wet"), None, disturbed=False)
+    kernels = plant_kernels(Planar(er24pc), disturbed=False)
     # slip, area of adhesion, and angle
     assert operations(kernels.axle).count(ca.OP_DIV) + operations(kernels.axle).count(ca.OP_ATAN2) == 3
     assert ca.OP_DIV not in operations(kernels.train)
@@ -63,7 +64,7 @@ def test_the_creep_force_divides_three_times(er24pc):
 @pytest.mark.parametrize("rail_name", ["polach-dry", "polach-wet", "table10-dry"])
 def test_the_axle_kernel_is_the_model(er24pc, rail_name):
     rail = load_rail(rail_name)
-    kernels = closed_loop_kernels(er24pc, load_rail("low-adhesion"), None, disturbed=False)
+    kernels = plant_kernels(Planar(er24pc), disturbed=False)
     values = parameter_values(er24pc, rail, Surroundings())
     assert len(values) == len(PARAMETERS)
     constants = kernels.lane_constants(values)

@@ -9,7 +9,10 @@ import pytest
 from wspd_design.codegen import compiler
 from wspd_design.codegen.closed_loop import ClosedLoop, closed_loop_source, load_closed_loop
 from wspd_design.codegen.compiler import load_library
+from wspd_design.codegen.kernels import plant_kernels
+from wspd_design.codegen.laws import law_kernels
 from wspd_design.parameters.loading import load_rail
+from wspd_design.plants.planar import Planar
 from wspd_design.simulation.loop_input import loop_input, sample_rows
 from wspd_design.simulation.records import Scenario, Sensing, Start
 
@@ -33,30 +36,31 @@ def results(output, stop=0, stops=1):
 
 
 def cases(vehicle, scenario, speeds):
-    return [(vehicle, replace(scenario, initial_speed=speed, seed=7 * k)) for k, speed in enumerate(speeds)]
+    return [
+        (Planar(vehicle), replace(scenario, initial_speed=speed, seed=7 * k))
+        for k, speed in enumerate(speeds)
+    ]
 
 
 @pytest.mark.parametrize("stops", [2, 8])
 def test_a_stop_does_not_depend_on_the_stops_beside_it(er24pc, law, scenario, stops):
     noisy = replace(scenario, sensing=Sensing(speed_noise=0.01, dead_time=0.03))
     several = cases(er24pc, noisy, SPEEDS[:stops])
-    beside = load_closed_loop(er24pc, noisy.rail, law, stops=stops).run(
-        loop_input(several, law, plant="four-axle")
-    )
-    alone = load_closed_loop(er24pc, noisy.rail, law)
+    beside = load_closed_loop(Planar(er24pc), law, stops=stops).run(loop_input(several, law))
+    alone = load_closed_loop(Planar(er24pc), law)
     assert beside.stopped.all()
     for stop, case in enumerate(several):
-        single = alone.run(loop_input([case], law, plant="four-axle"))
+        single = alone.run(loop_input([case], law))
         np.testing.assert_array_equal(results(beside, stop, stops), results(single))
 
 
 def test_stops_side_by_side_start_where_each_of_them_starts(er24pc, law, scenario):
     starts = (Start(), Start(slip=0.3, torque=10e3, braking_time=1.0))
-    several = [(er24pc, replace(scenario, start=start)) for start in starts]
-    loop = load_closed_loop(er24pc, scenario.rail, law, stops=2)
-    beside = loop.run(loop_input(several, law, plant="four-axle"))
-    alone = load_closed_loop(er24pc, scenario.rail, law)
-    singles = [results(alone.run(loop_input([case], law, plant="four-axle"))) for case in several]
+    several = [(Planar(er24pc), replace(scenario, start=start)) for start in starts]
+    loop = load_closed_loop(Planar(er24pc), law, stops=2)
+    beside = loop.run(loop_input(several, law))
+    alone = load_closed_loop(Planar(er24pc), law)
+    singles = [results(alone.run(loop_input([case], law))) for case in several]
     for stop, single in enumerate(singles):
         np.testing.assert_array_equal(results(beside, stop, 2), single)
     assert not np.array_equal(*singles)
@@ -65,22 +69,20 @@ def test_stops_side_by_side_start_where_each_of_them_starts(er24pc, law, scenari
 def test_samples_of_stops_side_by_side(er24pc, law, scenario):
     several = cases(er24pc, scenario, SPEEDS[:2])
     rows = sample_rows(law)
-    loop = load_closed_loop(er24pc, scenario.rail, law, stops=2)
-    beside = loop.run(loop_input(several, law, plant="four-axle"), sample_rows=rows).samples
+    loop = load_closed_loop(Planar(er24pc), law, stops=2)
+    beside = loop.run(loop_input(several, law), sample_rows=rows).samples
     for stop, case in enumerate(several):
-        single = load_closed_loop(er24pc, scenario.rail, law).run(
-            loop_input([case], law, plant="four-axle"), sample_rows=rows
-        )
+        single = load_closed_loop(Planar(er24pc), law).run(loop_input([case], law), sample_rows=rows)
         mine = beside[: len(single.samples), 1:].reshape(len(single.samples), -1, 4, 2)[:, :, :, stop]
         np.testing.assert_array_equal(mine.reshape(len(mine), -1), single.samples[:, 1:])
 
 
 def test_two_runs_and_threads_are_the_same(er24pc, law, scenario):
-    loop = load_closed_loop(er24pc, scenario.rail, law)
+    loop = load_closed_loop(Planar(er24pc), law)
     several = cases(er24pc, scenario, SPEEDS)
 
     def run(case):
-        return results(loop.run(loop_input([case], law, plant="four-axle")))
+        return results(loop.run(loop_input([case], law)))
 
     first, second = [run(case) for case in several], [run(case) for case in several]
     with ThreadPoolExecutor(max_workers=4) as pool:
@@ -100,11 +102,12 @@ def test_two_runs_and_threads_are_the_same(er24pc, law, scenario):
 )
 def test_compiler_options_do_not_change_a_bit(er24pc, make_controller, scenario, flags, cache, monkeypatch):  # noqa: ARG001
     law = make_controller("afsmc")
-    given = loop_input([(er24pc, replace(scenario, initial_speed=3.0))], law, plant="four-axle")
-    usual = load_closed_loop(er24pc, scenario.rail, law).run(given)
+    given = loop_input([(Planar(er24pc), replace(scenario, initial_speed=3.0))], law)
+    usual = load_closed_loop(Planar(er24pc), law).run(given)
     kept = tuple(flag for flag in compiler.PORTABLE_FLAGS if not flag.startswith("-O"))
     monkeypatch.setattr(compiler, "FLAGS", (*flags, *kept))
-    source, states = closed_loop_source(er24pc, scenario.rail, law, stops=1, disturbed=False)
-    other = ClosedLoop(load_library(source), 1, states).run(given)
+    kernels, traced = plant_kernels(Planar(er24pc), disturbed=False), law_kernels(law)
+    source = closed_loop_source(kernels, traced, stops=1)
+    other = ClosedLoop(load_library(source), kernels, traced, 1).run(given)
     assert other.steps == usual.steps
     np.testing.assert_array_equal(results(other), results(usual))

@@ -5,16 +5,17 @@ from dataclasses import replace
 import numpy as np
 
 from wspd_design.analysis.linearization import Linearization
-from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Series, Status
+from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
-from wspd_design.parameters.loading import load_entries
+from wspd_design.parameters.loading import load_entries, load_rail
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.metrics import Metrics
-from wspd_design.simulation.records import Ending, Run, Sample, Totals
+from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
 from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
 
+LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
 
 
@@ -35,7 +36,14 @@ def certificate(name: str, status: Status, **changes) -> Certificate:
         model_hash="0123456789abcdef" * 4,
         seconds=0.123,
         series=(
-            Series(name="V", x_label="time [s]", y_label="V [-]", x=(0.0, 1.0), y=(2.0, 1.0)),
+            Series(
+                name="V",
+                x_label="time [s]",
+                y_label="V [-]",
+                x=(0.0, 1.0),
+                y=(2.0, 1.0),
+                role=Role.LYAPUNOV if name in LYAPUNOV else Role.CURVE,
+            ),
             Series(name="slip", x_label="time [s]", y_label="slip [-]", x=(0.0, 1.0), y=(0.0, 0.14)),
         ),
     )
@@ -95,7 +103,8 @@ def trial(
         valve_switches=99,
         vented_air=3.21,
         adhesion_utilization=0.81,
-        bound=174.25,
+        ideal_stop=174.25,
+        ideal_ending=Ending.STOPPED,
         efficiency=0.9286,
         momentum_residual=1.2e-9,
         energy_residual=-3.4e-8,
@@ -162,7 +171,7 @@ def sample_dossier(
         phase_plane=PhasePlane(
             integral=(0.0, 0.014, 0.02), error=(0.14, 0.06, -0.05), surface_rate=0.38, layer=0.025
         ),
-        initial_speed=INITIAL_SPEED,
+        scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
         provenance=Provenance(
             command="wspd report mine.toml",
             versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),

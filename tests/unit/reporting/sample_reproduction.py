@@ -9,7 +9,7 @@ from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_track_spectrum, load_vehicle
 from wspd_design.studies.dossier import Provenance
 from wspd_design.studies.paper.conclusions import conclusions
-from wspd_design.studies.paper.disturbances import Disturbance, TrackChannel
+from wspd_design.studies.paper.disturbances import CHANNELS, Disturbance, TrackChannel
 from wspd_design.studies.paper.evidence import (
     CONTROLLERS,
     RAILS,
@@ -60,7 +60,7 @@ def sample_evidence(**changes) -> Evidence:
                     distance=200.0 + 10.0 * place,
                     lag=1.2,
                     efficiency=0.98 - 0.05 * place,
-                    bound=180.0,
+                    ideal_stop=180.0,
                     slip_max=0.6 if wet else 0.25,
                     saturated_share=0.1,
                     vented_air=3.2,
@@ -106,7 +106,7 @@ def sample_evidence(**changes) -> Evidence:
             for rail in RAILS
         ),
         yardsticks=tuple(
-            Yardstick(rail=rail, bound=150.0, bound_time=9.0, bound_at_once=120.0, constant_slip=160.0)
+            Yardstick(rail=rail, ideal_stop=150.0, ideal_time=9.0, ideal_at_once=120.0, constant_slip=160.0)
             for rail in RAILS
         ),
         ideal_fill_time=0.01,
@@ -147,6 +147,7 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
         track=tuple(
             TrackChannel(
                 channel=channel,
+                kind=CHANNELS[channel],
                 sigma=1.6e-3,
                 found_sigma=1.5e-3,
                 ratio=1.01,
@@ -156,14 +157,14 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
                 distance=distance,
                 profile=1e-3 * np.sin(distance),
             )
-            for channel in ("lateral-high", "vertical-high", "cross-level-high")
+            for channel in CHANNELS
         ),
         disturbances=tuple(
             Disturbance(controller=name, rail=rail, spread=0.0, by_pads=1e-4, by_track=-0.62)
             for name in CONTROLLERS
             for rail in RAILS
         ),
-        bound_changes=(0.01, -0.02, 0.03, 0.0),
+        ideal_changes=(0.01, -0.02, 0.03, 0.0),
         provenance=Provenance(
             command="wspd reproduce -o reports/paper",
             versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),

@@ -12,7 +12,7 @@ from matplotlib.text import Text
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
 from tests.unit.reporting.test_maps import SHOWN
-from wspd_design.certificates.records import Series, Status
+from wspd_design.certificates.records import Role, Series, Status
 from wspd_design.reporting.blocks import Figure
 from wspd_design.reporting.figure_style import INK, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
@@ -90,9 +90,9 @@ def test_distances_show_both_parts_and_the_paper():
     for index, (trial, lag) in enumerate(zip(DOSSIER.trials, DOSSIER.lag_distances, strict=True)):
         assert widths[2 * index] == pytest.approx(lag)
         assert widths[2 * index] + widths[2 * index + 1] == pytest.approx(trial.metrics.distance)
-    mark, bound = axes.get_lines()
+    mark, ideal = axes.get_lines()
     assert set(mark.get_xdata()) == {184.63}
-    assert set(bound.get_xdata()) == {174.25}
+    assert set(ideal.get_xdata()) == {174.25}
 
 
 @pytest.mark.parametrize("count", [2, 8])
@@ -140,8 +140,8 @@ def test_pictures_are_reproducible():
 
 
 def test_a_lyapunov_function_over_decades_is_drawn_on_a_logarithmic_scale():
-    steep = Series(name="V", x_label="time [s]", y_label="V [-]", x=(0.0, 1.0), y=(1e-3, 10.0))
-    flat = Series(name="speed", x_label="time [s]", y_label="speed [km/h]", x=(0.0, 1.0), y=(1e-3, 10.0))
+    steep = _series("V", "V [-]", x=(0.0, 1.0), y=(1e-3, 10.0), role=Role.LYAPUNOV)
+    flat = _series("Vexing speed", "V of the train [km/h]", x=(0.0, 1.0), y=(1e-3, 10.0))
     with figure_style():
         figure = certificate_curves(
             new_figure(height=4.0), certificate("one", Status.PROVED, series=(steep, flat))
@@ -151,8 +151,8 @@ def test_a_lyapunov_function_over_decades_is_drawn_on_a_logarithmic_scale():
 
 def test_below_its_limit_a_lyapunov_function_may_vanish():
     values = (1.0, 0.1, 1e-9, 0.0)
-    falling = Series(name="V", x_label="time [s]", y_label="V [-]", x=(0.0, 1.0, 2.0, 3.0), y=values)
-    edge = Series(name="edge of the layer", x_label="time [s]", y_label="V [-]", x=(0.0, 3.0), y=(1e-3,) * 2)
+    falling = _series("V", "V [-]", x=(0.0, 1.0, 2.0, 3.0), y=values, role=Role.LYAPUNOV)
+    edge = _series("edge of the layer", "V [-]", x=(0.0, 3.0), y=(1e-3,) * 2, role=Role.LIMIT)
     axes = _curves(falling, edge).axes[0]
     assert axes.get_yscale() == "log"
     assert axes.get_ylim() == pytest.approx((1e-4, 2.0))
@@ -167,12 +167,12 @@ def _curves(*series, title="Check one"):
     return figure
 
 
-def _series(name, y_label, x_label="time [s]", x=(0.0, 1.0, 2.0), y=(1.0, 2.0, 3.0)):
-    return Series(name=name, x_label=x_label, y_label=y_label, x=x, y=y)
+def _series(name, y_label, x_label="time [s]", x=(0.0, 1.0, 2.0), y=(1.0, 2.0, 3.0), role=Role.CURVE):
+    return Series(name=name, x_label=x_label, y_label=y_label, x=x, y=y, role=role)
 
 
 def test_limits_are_drawn_in_ink_and_named():
-    limit = _series("1/tau", "pole [1/s]", x=(0.0, 2.0), y=(1.67, 1.67))
+    limit = _series("1/tau", "pole [1/s]", x=(0.0, 2.0), y=(1.67, 1.67), role=Role.LIMIT)
     axes = _curves(_series("nominal", "pole [1/s]"), limit).axes[0]
     drawn, line = axes.get_lines()
     assert (drawn.get_color() == INK, line.get_color()) == (False, INK)
@@ -193,10 +193,10 @@ def test_panels_over_the_same_quantity_share_its_axis():
 
 
 def test_an_outline_becomes_a_region():
-    square = _series("set", "torque [kN m]", "slip [-]", (0.1, 0.2, 0.2, 0.1, 0.1), (1.0, 1.0, 2.0, 2.0, 1.0))
-    axes = _curves(square, _series("reference", "torque [kN m]", "slip [-]", (0.14, 0.14), (0.0, 60.0))).axes[
-        0
-    ]
+    corners = (0.1, 0.2, 0.2, 0.1, 0.1), (1.0, 1.0, 2.0, 2.0, 1.0)
+    square = _series("set", "torque [kN m]", "slip [-]", *corners, role=Role.OUTLINE)
+    line = _series("reference", "torque [kN m]", "slip [-]", (0.14, 0.14), (0.0, 60.0), role=Role.LIMIT)
+    axes = _curves(square, line).axes[0]
     (patch,) = axes.patches
     assert patch.get_extents().width > 0.0
     assert axes.get_lines()[1].get_color() == INK

@@ -32,7 +32,7 @@ def test_nominal_runs_are_the_single_stop(er24pc, make_controller, scenario):
     assert many.complete
     assert many.table["stopped"].all()
     np.testing.assert_allclose(many.table["distance_m"], single.totals.distance, rtol=1e-9)
-    np.testing.assert_allclose(many.table["torque_integral_kNms"], single.totals.torque / 1e3, rtol=1e-9)
+    np.testing.assert_allclose(many.table["torque_integral_Nms"], single.totals.torque, rtol=1e-9)
 
 
 def test_parameters_are_drawn_within_their_bounds_and_used(er24pc, make_controller, scenario, bounds):
@@ -53,6 +53,18 @@ def test_parameters_are_drawn_within_their_bounds_and_used(er24pc, make_controll
     rail_values = {n.partition(".")[2]: float(row[n]) for n in many.sampled if n.startswith("rail.")}
     own = replace(scenario, rail=replace(scenario.rail, **rail_values))
     assert simulate(vehicle, controller, own).totals.distance == pytest.approx(row["distance_m"], rel=1e-6)
+
+
+@pytest.mark.parametrize("mass", [61473.0, 92209.0])
+def test_the_body_takes_up_what_a_drawn_mass_adds(er24pc, make_controller, scenario, mass):
+    """The parts weigh what the whole does; the load transfer, and with it the distance, is that of the heavy body."""
+    changed = campaign._vehicle_with(er24pc, {"mass": mass})
+    assert changed.mass == mass
+    assert changed.body_mass + 2.0 * changed.bogie_mass == pytest.approx(mass)
+    light = replace(changed, body_mass=er24pc.body_mass)
+    controller = make_controller("trenitalia", RAIL)
+    heavy, kept = (simulate(each, controller, scenario).totals.distance for each in (changed, light))
+    assert heavy != pytest.approx(kept, rel=1e-6)
 
 
 def test_same_seed_same_table(er24pc, make_controller, scenario, bounds):
@@ -78,3 +90,9 @@ def test_an_interrupt_keeps_what_is_done(er24pc, make_controller, scenario):
 def test_no_runs_are_refused(er24pc, make_controller, scenario):
     with pytest.raises(UserError, match="runs = 0 must be at least 1"):
         simulate_many(er24pc, make_controller("none", RAIL), scenario, runs=0)
+
+
+def test_a_drawn_mass_is_carried_by_the_body(er24pc):
+    heavy = campaign._vehicle_with(er24pc, {"mass": 1.1 * er24pc.mass})
+    assert heavy.body_mass == pytest.approx(er24pc.body_mass + 0.1 * er24pc.mass, rel=1e-12)
+    assert heavy.bogie_mass == er24pc.bogie_mass

@@ -108,9 +108,9 @@ def test_a_lock_that_is_held_too_long_is_seen(monkeypatch, er24pc, rail, locked_
     condition = "loop->torque[l] < 2.0 * radius[l] * last->force[l]"
 
     def faulty(*arguments, **options):
-        source, states = true(*arguments, **options)
+        source = true(*arguments, **options)
         assert condition in source
-        return source.replace(condition, condition.replace("2.0", "1.0")), states
+        return source.replace(condition, condition.replace("2.0", "1.0"))
 
     monkeypatch.setattr(closed_loop, "closed_loop_source", faulty)
     named = replace(er24pc, name="held too long")  # so that the loop is made anew

@@ -148,10 +148,10 @@ def test_vented_air_is_what_the_samples_let_out(stop, judged, name, rail):
 
 @pytest.mark.parametrize("rail", ["table10-dry", "polach-dry", "polach-wet"])
 @pytest.mark.parametrize("name", ["trenitalia", "afsmc", "mitsubishi", "none"])
-def test_nobody_beats_the_bound_or_the_adhesion(judged, name, rail):
+def test_nobody_beats_the_ideal_stop_or_the_adhesion(judged, name, rail):
     found = judged(name, rail)
-    assert 0.0 < found.bound < found.distance * (1.0 + 1e-6)
-    assert found.efficiency == found.bound / found.distance
+    assert 0.0 < found.ideal_stop < found.distance * (1.0 + 1e-6)
+    assert found.efficiency == found.ideal_stop / found.distance
     assert 0.3 < found.adhesion_utilization < 1.0
 
 

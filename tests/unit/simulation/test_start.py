@@ -11,10 +11,11 @@ from wspd_design.model.brake import torque_disturbance
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
+from wspd_design.plants.names import PLANTS
 from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.metrics import energy_residual, metrics, momentum_residual
-from wspd_design.simulation.records import PLANTS, Scenario, Start
+from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.start import available_torque, full_supply_time, holding_torque, leaving_time
 from wspd_design.simulation.stop import simulate
 
@@ -200,7 +201,7 @@ def test_when_the_slip_has_left_its_start(er24pc):
     assert math.isnan(leaving_time(runs[1.0], 1.0))
 
 
-def test_a_stop_from_a_state_has_neither_lag_nor_bound(er24pc, make_controller):
+def test_a_stop_from_a_state_has_neither_lag_nor_ideal_stop(er24pc, make_controller):
     figures = {
         name: metrics(simulate(er24pc, law, stop), er24pc, stop, slip_reference=0.14)
         for name, law, stop in (
@@ -208,7 +209,7 @@ def test_a_stop_from_a_state_has_neither_lag_nor_bound(er24pc, make_controller):
             ("rolling", make_controller("none"), scenario(Start())),
         )
     }
-    for name in ("lag", "plateau", "bound", "efficiency"):
+    for name in ("lag", "plateau", "ideal_stop", "efficiency"):
         assert math.isnan(getattr(figures["state"], name))
         assert math.isfinite(getattr(figures["rolling"], name))
     assert 0.0 < figures["state"].adhesion_utilization < 1.0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Finding, Stated
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation
-from wspd_design.certificates.records import Certificate, Map, Problem, Series
+from wspd_design.certificates.records import Certificate, Map, Problem, Role, Series
 from wspd_design.certificates.search.memory import recall, remembering
 from wspd_design.certificates.theorems.theorem import Theorem, silent, told
 
@@ -92,7 +92,12 @@ def illustrated(check: Check, problem: Problem, certificate: Certificate) -> Cer
 
 
 def series(
-    name: str, x_label: str, y_label: str, x: "NDArray[np.float64]", y: "NDArray[np.float64]"
+    name: str,
+    x_label: str,
+    y_label: str,
+    x: "NDArray[np.float64]",
+    y: "NDArray[np.float64]",
+    role: Role = Role.CURVE,
 ) -> Series:
     """Keep as many samples of a curve as a plot can show."""
     step = max(1, -(-len(x) // MOST_PLOT_POINTS))
@@ -103,6 +108,7 @@ def series(
         y_label=y_label,
         x=tuple(float(x[i]) for i in keep),
         y=tuple(float(y[i]) for i in keep),
+        role=role,
     )
 
 
@@ -111,5 +117,10 @@ def level(
 ) -> Series:
     """Return a horizontal line, the limit that a curve must respect."""
     return Series(
-        name=name, x_label=x_label, y_label=y_label, x=(float(x[0]), float(x[-1])), y=(value, value)
+        name=name,
+        x_label=x_label,
+        y_label=y_label,
+        x=(float(x[0]), float(x[-1])),
+        y=(value, value),
+        role=Role.LIMIT,
     )

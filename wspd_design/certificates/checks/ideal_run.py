@@ -1,22 +1,12 @@
-"""The closed loop in the setting of the proofs: torque equal to command, no sampling, no limits, no valve.
-
-Speed, slip, the integral of the error and what the law adapts are integrated as one smooth system.
-"""
+"""Runs of the idealized loop: speed, slip, the integral of the error and what the law adapts, as one smooth system."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING
 
-from wspd_design.certificates.records import Status
-from wspd_design.controllers.adaptive_fuzzy import (
-    AdaptiveFuzzyGains,
-    adaptation,
-    sliding_variable,
-    torque_demand,
-)
-from wspd_design.controllers.sliding_mode import SlidingMode, sliding_torque
-from wspd_design.model.generated import sliding_surface
-from wspd_design.model.slip import slip_dynamics
+from wspd_design.certificates.theorems.ideal_loop import Flow, adaptive_flow, sliding_flow
+from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzyGains
+from wspd_design.controllers.sliding_mode import SlidingMode
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -28,15 +18,6 @@ if TYPE_CHECKING:
 
 RELATIVE_TOLERANCE = 1e-8
 ABSOLUTE_TOLERANCE = 1e-10
-ASSUMPTIONS = (
-    "T = u: torque equals command, without valve lag, sampling or limits of the brake",
-    "quarter locomotive with static wheel load and nominal parameters",
-    "slip reference constant",
-)
-
-State = Any  # (speed, slip, integral of e, what the law adapts ...), one instant or arrays over time
-Flow: TypeAlias = Callable[[State], list[Any]]
-"""Time derivatives of the states, in whatever numbers the states are."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,40 +49,6 @@ class ProofRun:
         """Integral of the slip error [s]."""
         row: Array = self.states[2]
         return row
-
-
-def adaptive_flow(vehicle: Vehicle, rail: Rail, gains: AdaptiveFuzzyGains) -> Flow:
-    """Return the loop of the adaptive fuzzy law with continuous adaptation."""
-
-    def rates(state: State) -> list[Any]:
-        speed, slip, integral, *weights, bound = state
-        error = sliding_surface.slip_error(gains.slip_reference, slip)
-        surface = sliding_variable(gains, error, integral)
-        torque = torque_demand(gains, surface, tuple(weights), bound)
-        plant = slip_dynamics(vehicle, rail, slip, speed)
-        adapted = adaptation(gains, surface, speed)
-        return [
-            -plant.deceleration,
-            plant.drift + plant.gain * torque,
-            error,
-            *adapted.weights,
-            adapted.bound,
-        ]
-
-    return rates
-
-
-def sliding_flow(vehicle: Vehicle, rail: Rail, law: SlidingMode) -> Flow:
-    """Return the loop of the sliding-mode law."""
-
-    def rates(state: State) -> list[Any]:
-        speed, slip, integral = state
-        plant = slip_dynamics(vehicle, rail, slip, speed)
-        torque = sliding_torque(law, slip, speed, integral)
-        error = sliding_surface.slip_error(law.gains.slip_reference, slip)
-        return [-plant.deceleration, plant.drift + plant.gain * torque, error]
-
-    return rates
 
 
 def adaptive_run(
@@ -187,23 +134,6 @@ def largest_rise(values: "Array") -> tuple[float, int, int]:
     end = int(np.argmax(values - lowest))
     start = int(np.argmin(values[: end + 1]))
     return float(values[end] - values[start]), start, end
-
-
-def verdict(rises: bool, shown: bool, runs: Iterable[ProofRun]) -> Status:
-    """Verdict on a function that must not rise.
-
-    Parameters
-    ----------
-    rises : bool
-        Whether it does along a run, in floats.
-    shown : bool
-        Whether its derivative is positive for certain at a state of that run.
-    runs : iterable of ProofRun
-        A run that was cut short can refute, but not support.
-    """
-    if rises:
-        return Status.REFUTED if shown else Status.UNDECIDED
-    return Status.UNDECIDED if any(run.cut for run in runs) else Status.EVIDENCE
 
 
 def cut_short(runs: Iterable[ProofRun]) -> str:

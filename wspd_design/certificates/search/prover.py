@@ -5,6 +5,7 @@ lies below the threshold; otherwise it is reduced to a face where the expression
 slope matters most. Internally every claim is an upper bound; one from below is turned around.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
@@ -27,6 +28,7 @@ BATCH = 512
 DENIED_BOXES = 2048  # that are looked at when a claim is known to be false
 SAMPLES = 2048  # of the first look at the box
 POLISH = 12  # rounds of narrowing around the best sample
+BEST = 8  # samples of a round that are enclosed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,11 +157,15 @@ class _Search:
         )
 
     def _look_around(self, size: int) -> None:
-        """Find a good point by sampling and narrowing, so that most boxes are decided at first sight."""
+        """Find a good point by sampling and narrowing, so that most boxes are decided at first sight.
+
+        Doubles choose the points; intervals say what is reached there.
+        """
         import numpy as np
 
         generator = np.random.default_rng(0)
         center, width = np.full((size, 1), 0.5), 0.5
+        hint = self._hint()
         for _ in range(POLISH):
             offsets = generator.uniform(-1.0, 1.0, (size, SAMPLES))
             # A third of the samples keeps each coordinate or goes to an end of the box, where extremes like to be.
@@ -167,10 +173,27 @@ class _Search:
             points = np.clip(center + width * offsets, 0.0, 1.0)
             points = np.where(choice == 0, center, points)
             points = np.where(choice == 1, np.round(np.clip(center, 0.0, 1.0)), points)
-            self._try(points)
+            self._try(points[:, np.argsort(-hint(points), kind="stable")[:BEST]])
             if self.best_place is not None:
                 center = self.best_place[:, None]
             width *= 0.45
+
+    def _hint(self) -> "Callable[[Array], Array]":
+        """Return the expression in doubles, turned so that the largest value is sought; undefined ones come last."""
+        import numpy as np
+
+        function, variables = self.claim.function(), self.claim.variables
+        low = np.array([float(v.low) for v in variables])[:, None]
+        span = np.array([float(v.high - v.low) for v in variables])[:, None]
+        free = [k for k, v in enumerate(variables) if v.free]
+
+        def hint(points: "Array") -> "Array":
+            at = np.repeat(low, points.shape[1], axis=1)
+            at[free] += span[free] * points
+            found = self.sign * np.asarray(function(at), dtype=np.float64).ravel()
+            return np.where(np.isfinite(found), found, -inf)
+
+        return hint
 
     def _try(self, points: "Array") -> None:
         """Keep the best of some points."""

@@ -1,6 +1,6 @@
 """The range of the load on one axle and of the common deceleration, from the load transfer of the vehicle.
 
-Body and bogies pitch as in :mod:`wspd_design.plants.four_axle`. With B and G the transfer by body and bogie over the
+Body and bogies pitch as in :mod:`wspd_design.plants.planar`. With B and G the transfer by body and bogie over the
 static wheel load, the loads of the four axles are 1 + B + G, 1 + B - G, 1 - B + G, 1 - B - G. Without inertia of the
 pitch, at a deceleration d,
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
-from wspd_design.certificates.kernel.claim import Claim, Expression
+from wspd_design.certificates.kernel.claim import Claim, Expression, formula
 from wspd_design.certificates.quantities import AXLE, QUANTITIES
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting import domain
@@ -15,10 +15,14 @@ def used(claim: Claim) -> tuple[str, ...]:
     A variable whose symbol is missing in the expression or in its arranged form does not matter, since the two are
     the same function.
     """
-    symbols = {symbol.name for symbol in claim.definition().free_symbols}
+    symbols = _symbols(claim.expression, claim)
     if claim.form is not None:
-        symbols &= {symbol.name for symbol in claim.formula().free_symbols}
+        symbols &= _symbols(claim.form, claim)
     return tuple(v.name for v in claim.variables if v.name in symbols)
+
+
+def _symbols(expression: Expression, claim: Claim) -> set[str]:
+    return {step[1] for step in formula(expression, claim.variables) if step[0] == "x"}
 
 
 def trimmed(claim: Claim) -> Claim:

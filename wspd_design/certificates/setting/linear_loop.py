@@ -41,6 +41,7 @@ from wspd_design.parameters.records import Rail, Vehicle
 PRECISION = 128  # bits, of enclosed poles
 BRAKE = ("max torque", "fill time", "vent time")
 SHARE = "share of T_max that holds the slip"
+DECAY, RATE = "valve rate a", "valve rate b"
 
 
 class Valve(NamedTuple):
@@ -91,6 +92,12 @@ def one_time(problem: Problem) -> bool:
     return fill == vent and fill[0] == fill[1]
 
 
+def any_rates(problem: Problem) -> bool:
+    """Whether both rates may be any between the same ends: filling and venting have one range, and any share counts."""
+    fill, vent = problem.span("fill time"), problem.span("vent time")
+    return fill == vent and fill[0] < fill[1]
+
+
 def on_brake(law: Linear, gains: Feedback, max_torque: Number) -> Feedback:
     """Return the gains of a law on a brake with another T_max [N m] than its own: a duty is worth that torque."""
     return Feedback(*(gain * max_torque / law.max_torque for gain in gains))
@@ -122,16 +129,22 @@ def slips(problem: Problem) -> float | Ends:
 def variables(problem: Problem) -> tuple[Variable, ...]:
     """Quantities of the loop where it rests, for claims: plant and brake on the domain, law as it is."""
     law = law_of(problem)
-    plant = plant_variables(
-        problem, uses=(*PLANT, *BRAKE), hold=OTHERS, ranges={"slip": slips(problem)}
-    )
+    uses = (*PLANT, "max torque") if any_rates(problem) else (*PLANT, *BRAKE)
+    plant = plant_variables(problem, uses=uses, hold=OTHERS, ranges={"slip": slips(problem)})
     numbers = tuple(
         variable(name, (below(number), above(number)), "N m")
         for name, number in law.linear_numbers(point(0.0)).items()
     )
     model = law.linear_model
-    share = variable(SHARE, 0.0 if one_time(problem) else (0.0, 1.0), "-")
-    return (*plant, share, *(model_variables(*model) if model else ()), *numbers)
+    return (*plant, *_valve_variables(problem), *(model_variables(*model) if model else ()), *numbers)
+
+
+def _valve_variables(problem: Problem) -> tuple[Variable, ...]:
+    if any_rates(problem):
+        fast, slow = problem.span("fill time")
+        ends = below(1 / point(slow)), above(1 / point(fast))
+        return variable(DECAY, ends, "1/s"), variable(RATE, ends, "1/s")
+    return (variable(SHARE, 0.0 if one_time(problem) else (0.0, 1.0), "-"),)
 
 
 def loop_at(problem: Problem, values: Values, *, arranged: bool = False) -> tuple[SlipModel, Valve, Feedback]:
@@ -156,10 +169,15 @@ def loop_at(problem: Problem, values: Values, *, arranged: bool = False) -> tupl
             gain = slip_gain(speed, vehicle.wheel_inertia, vehicle.wheel_radius)
             model = SlipModel(pole=forces(vehicle, rail, problem.slip, speed).pole, gain=gain)
     gains = on_brake(law, law.linear_form(speed, model=model, numbers=numbers), values["max torque"])
-    rates = valve(values["fill time"], values["vent time"], values[SHARE])
+    return plant, _rates(problem, values), gains
+
+
+def _rates(problem: Problem, values: Values) -> Valve:
+    if DECAY in values:
+        return Valve(decay=values[DECAY], rate=values[RATE])
     if one_time(problem):
-        rates = Valve(decay=1.0 / values["fill time"], rate=1.0 / values["fill time"])
-    return plant, rates, gains
+        return Valve(decay=1.0 / values["fill time"], rate=1.0 / values["fill time"])
+    return valve(values["fill time"], values["vent time"], values[SHARE])
 
 
 def nominal_values(problem: Problem, speed: float) -> dict[str, Ball]:
@@ -169,7 +187,9 @@ def nominal_values(problem: Problem, speed: float) -> dict[str, Ball]:
     found |= {name: point(problem.nominal(name)) for name in names}
     found |= {"slip": point(problem.slip), "speed": point(speed)}
     at = plant_dynamics(problem, found)
-    return found | {SHARE: -at.drift / at.gain / found["max torque"]}
+    found[SHARE] = -at.drift / at.gain / found["max torque"]
+    found[DECAY], found[RATE] = valve(found["fill time"], found["vent time"], found[SHARE])
+    return found
 
 
 def outermost(problem: Problem, speed: float, *, sampled: bool) -> float:

@@ -130,9 +130,10 @@ def complete(problem: Problem, values: Values) -> dict[str, Number]:
 
     For numbers, arrays and balls; a claim names all its quantities instead.
     """
-    known = known_variables(problem.vehicle, problem.rail, "")
-    nominal = {v.name: float(v.low) for v in known} | {"nominal mass": problem.vehicle.mass}
-    return {**nominal, **values}
+    vehicle, rail = problem.vehicle, problem.rail
+    records: dict[Record, object] = {"vehicle": vehicle, "contact": vehicle.contact, "rail": rail}
+    nominal = {row.name: getattr(records[row.record], row.field) for row in TABLE if row.record in records}
+    return {**nominal, "nominal mass": vehicle.mass, **values}
 
 
 def plant_with(problem: Problem, values: Values) -> tuple[Vehicle, Rail]:

@@ -13,7 +13,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.graph_field import PRIME, UndecidedError, element, values
 from wspd_design.certificates.setting.written_laws import WRITTEN, WrittenLaw
 from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.kernels import controller_kernels
+from wspd_design.codegen.laws import law_constants
 from wspd_design.controllers import offers
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Controller, Measurement
@@ -69,11 +69,19 @@ def trace(law: Controller) -> TracedLaw | str:
     TracedLaw or str
         The graphs, or the reason why there are none.
     """
+    import casadi as ca
+
     try:
-        start, step, states = controller_kernels(law)
+        made = law_constants(law)
     except UntraceableError as reason:
         return f"the step of {law.name} cannot be traced ({reason})"
-    return TracedLaw(name=law.name, start=start, step=step, states=states)
+    x, m, none = ca.SX.sym("x", made.states), ca.SX.sym("m", len(Measurement._fields)), ca.SX(0, 1)
+    return TracedLaw(
+        name=law.name,
+        start=ca.Function("start", [m], [made.start(m, none)]),
+        step=ca.Function("step", [x, m], [made.step(x, m, none)]),
+        states=made.states,
+    )
 
 
 def same_function(one: TracedLaw, other: TracedLaw) -> bool:

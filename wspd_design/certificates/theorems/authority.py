@@ -250,8 +250,8 @@ def _lower_side(release: Finding) -> str:
 def _upper_side(apply: Finding, friction: tuple[float, float] | None, limit: float) -> str:
     """Say where the brake is the limit, and up to which friction it is not."""
     if apply.status is Status.PROVED:
-        most = f"{apply.high / 1e3:.4g} kN m"
-        return f"The brake is never the limit: at most {most} are needed, at {_spot(apply.values)}."
+        needed = f"{apply.high / 1e3:.4g} kN m"
+        return f"The brake is never the limit: at most {needed} are needed, at {_spot(apply.values)}."
     if apply.status is not Status.REFUTED:
         return f"Whether the brake is ever the limit is open: {left_open([apply]) or 'it comes within the tolerance'}."
     least = "that it never is, is shown for no friction of the domain"

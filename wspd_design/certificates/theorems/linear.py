@@ -17,6 +17,8 @@ from wspd_design.certificates.records import Certificate, Point, Problem, Range,
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.linear_loop import (
     BRAKE,
+    DECAY,
+    RATE,
     SHARE,
     law_of,
     linear_law,
@@ -55,12 +57,20 @@ def conditions(problem: Problem) -> dict[str, Claim]:
         return found, scale, rates.decay + rates.rate * abs(gains.torque), gains
 
     def third(values: Values, arranged: bool) -> Number:
-        found, _, back, _ = parts(values, arranged)
-        return found.third / back
+        found, _, back, gains = parts(values, arranged)
+        if not arranged:
+            return found.third / back
+        plant, rates, gains = loop_at(problem, values, arranged=True)
+        # (a + b K - p)/(a + b abs(K)), with a K below zero in one place more.
+        return 1.0 - (plant.pole + rates.rate * (abs(gains.torque) - gains.torque)) / back
 
     def second(values: Values, arranged: bool) -> Number:
         found, scale, _, _ = parts(values, arranged)
-        return found.second / scale
+        if not arranged:
+            return found.second / scale
+        plant, rates, gains = loop_at(problem, values, arranged=True)
+        share = plant.gain * (abs(gains.proportional) + LEAST_GAIN * top)
+        return (plant.gain * gains.proportional - (rates.decay / rates.rate + gains.torque) * plant.pole) / share
 
     def determinant(values: Values, arranged: bool) -> Number:
         found, scale, back, gains = parts(values, arranged)
@@ -131,8 +141,9 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
         at = dict(worst.values)
         plant, _, gains = loop_at(problem, at)
         where = (
-            *place(at, [each for each in (*PLANT, *BRAKE)]),
-            *(() if one_time(problem) else (Point(name=SHARE, value=at[SHARE], unit="-"),)),
+            *place(at, [each for each in (*PLANT, *BRAKE) if each in at]),
+            *(Point(name=each, value=at[each], unit="-") for each in (SHARE,) if at.get(each)),
+            *(Point(name=each, value=at[each], unit="1/s") for each in (DECAY, RATE) if each in at),
             Point(name="slip pole", value=plant.pole, unit="1/s"),
             Point(name="G P", value=plant.gain * gains.proportional, unit="1/s"),
         )

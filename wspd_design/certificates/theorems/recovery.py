@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.claim import Claim, Variable, variable
-from wspd_design.certificates.kernel.finding import Place
+from wspd_design.certificates.kernel.finding import Finding, Place, below
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation, OnPart, Special
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import PLANT
@@ -38,6 +38,7 @@ from wspd_design.certificates.setting.plant import (
     records_of,
 )
 from wspd_design.certificates.theorems.invariant_sets.ball_plant import BallPlant
+from wspd_design.certificates.theorems.rounding import few_digits
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothesis
 from wspd_design.model.generated import adhesion as generated
 from wspd_design.model.number import Number, atan, exp
@@ -322,29 +323,28 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
 def _tell(problem: Problem, findings: Findings) -> Certificate:
     torque, growth, share, escape = (findings[key] for key in ("torque", "growth", "share", "escape"))
     sound = torque.status is Status.PROVED
-    lowest = share.part[0] if sound and share.part and share.status is Status.PROVED else None
+    lowest = _lowest(problem, share) if sound else None
     everywhere = lowest == problem.speeds[0]
     refuted = sound and escape.status is Status.REFUTED
     status = Status.REFUTED if refuted else Status.PROVED if everywhere else Status.UNDECIDED
-    known = DEVIATION / share.high if everywhere else 0.0
+    known = below(Fraction(DEVIATION) / Fraction(share.high)) if everywhere else 0.0
     grown = max(growth.high, 1.0)
     growing = (
         f"Until it is seen a deviation grows by a factor of at most {grown:.4g}." if growth.proved else ""
     )
     fast = escape.place["speed"] * KMH if refuted else None
     passing = (
-        "" if fast is None else f"At {fast:.3g} km/h, frozen, no law keeps it below {problem.slips[1]:g}. "
+        ""
+        if fast is None
+        else f"At {few_digits(fast, up=False)} km/h, frozen, no law keeps it below {problem.slips[1]:g}. "
     )
     if everywhere:
-        reached = f"A deviation of {known:.3g} is proved to be recoverable."
+        reached = f"A deviation of {few_digits(known, up=False)} is proved to be recoverable."
     elif lowest is None:
         reached = "The recovery is proved from no speed on."
     else:
-        between = (
-            f"is at most {lowest * KMH:.3g}"
-            if fast is None
-            else f"lies between {fast:.3g} and {lowest * KMH:.3g}"
-        )
+        slow = few_digits(lowest * KMH, up=True)
+        between = f"lies between {fast} and {slow}" if refuted else f"is at most {slow}"
         reached = f"The lowest controllable speed {between} km/h; from there on the recovery is proved."
     held = tuple(name for name in HELD if problem.span(name)[0] < problem.span(name)[1])
     described = domain.described(problem, ("speed", *USED), held)
@@ -365,7 +365,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"{problem.slips[1]:g}; {STATIC}, on {described}. Where it is not, "
         "no law can do it: venting is all that a brake can do.",
         status=status,
-        explanation=" ".join(f"{passing}{growing} {reached}".split()),
+        explanation=" ".join(f"{passing} {growing} {reached}".split()),
         method="interval branch and bound of a sufficient condition, replayed by the independent checker; a "
         "counterexample is integrated in balls",
         margin=Range(low=known - DEVIATION, high=None, unit="-"),
@@ -376,7 +376,11 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             *(
                 ()
                 if lowest is None
-                else (hypothesis(f"the condition holds from {lowest * KMH:.3g} km/h on", share),)
+                else (
+                    hypothesis(
+                        f"the condition holds from {few_digits(lowest * KMH, up=True)} km/h on", share
+                    ),
+                )
             ),
         ),
         assumptions=(
@@ -390,6 +394,13 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         held=held,
         reference="eqs. (9), (19); docs/theory.md#hard-limits",
     )
+
+
+def _lowest(problem: Problem, share: Finding) -> float | None:
+    """Return the speed from which up to the highest one the condition is proved [m/s]."""
+    if share.status is not Status.PROVED or share.part is None or share.part[1] < problem.speeds[1]:
+        return None
+    return share.part[0]
 
 
 def _always(problem: Problem) -> str:  # noqa: ARG001 - whatever the law does, venting is the most it can do

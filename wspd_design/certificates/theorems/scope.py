@@ -38,7 +38,12 @@ def scope(problem: Problem, uses: Sequence[str], hold: Iterable[str] = ()) -> Sc
     wide = tuple(name for name in domain.uncertain(problem) if name in uses)
     varied = tuple(name for name in wide if name not in kept)
     held = tuple(name for name in wide if name in kept)
-    who = "every axle" if set(AXLE) <= set(uses) else "the axle at static load"
-    return Scope(
-        text=f"for {who}, {domain.described(problem, (*STATE, *varied), held)}", varied=varied, held=held
+    state = tuple(name for name in STATE if name in uses)
+    who = (
+        "for every axle, with a load transfer that follows the deceleration without delay, "
+        if set(AXLE) <= set(uses)
+        else "for the axle at static load, "
+        if "mu0" in uses
+        else "for "
     )
+    return Scope(text=f"{who}{domain.described(problem, (*state, *varied), held)}", varied=varied, held=held)

@@ -2,23 +2,54 @@
 
 from collections.abc import Mapping
 
+<<<<<<< HEAD
 from wspd_design.certificates.theorems import authority, foundations, linear, recovery, region, sliding, valve
+=======
+from wspd_design.certificates.theorems import (
+    afsmc_energy,
+    authority,
+    barbalat,
+    equations,
+    foundations,
+    lyapunov_adaptive,
+    lyapunov_surface,
+    recovery,
+    signs,
+    simulated_stop,
+    sliding,
+    surface,
+    valve,
+)
+>>>>>>> kernel
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
     each.name: each
     for each in (
+        equations.DERIVATION,
+        surface.SURFACE_HURWITZ,
         foundations.GAIN_POSITIVE,
+        signs.WELL_POSED,
         authority.SLIDING_EXISTS,
         sliding.REACHING,
         sliding.BOUNDARY_LAYER,
+        lyapunov_surface.LYAPUNOV_SURFACE,
+        lyapunov_adaptive.LYAPUNOV_PRINTED,
+        lyapunov_adaptive.LYAPUNOV_REPAIRED,
+        afsmc_energy.AFSMC_ENERGY,
+        barbalat.BARBALAT,
         valve.OPEN_LOOP_POLE,
         valve.NO_GO,
         recovery.HARD_LIMITS,
         valve.SAMPLING,
+<<<<<<< HEAD
         linear.ROUTH_LAG,
         linear.MARGINS_THEOREM,
         region.LPV_LYAPUNOV,
+=======
+        simulated_stop.TRACKING,
+        simulated_stop.CONSERVATION,
+>>>>>>> kernel
     )
 }
 """By name; a check without a row here does not exist."""

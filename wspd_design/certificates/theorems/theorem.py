@@ -8,6 +8,7 @@ from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.kernel.obligation import Obligation
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Hypothesis, Problem, Range, Status
+from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.fingerprint import model_hash
 
 Findings: TypeAlias = Mapping[str, Finding]
@@ -80,7 +81,15 @@ def told(theorem: Theorem, problem: Problem, findings: Findings) -> Certificate:
 
 
 def _complete(theorem: Theorem, problem: Problem, certificate: Certificate) -> Certificate:
-    return replace(certificate, name=theorem.name, title=theorem.title, model_hash=model_hash(problem))
+    uncertain = domain.uncertain(problem)
+    return replace(
+        certificate,
+        name=theorem.name,
+        title=theorem.title,
+        model_hash=model_hash(problem),
+        varied=tuple(name for name in certificate.varied if name in uncertain),
+        held=tuple(name for name in certificate.held if name in uncertain),
+    )
 
 
 ORDER = (Status.REFUTED, Status.UNDECIDED, Status.VACUOUS, Status.EVIDENCE, Status.PROVED)

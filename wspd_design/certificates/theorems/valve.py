@@ -1,11 +1,19 @@
 """Theorems about what the lag of the valve leaves possible to feedback of the slip.
 
 At an equilibrium the poles of the loop sum to p - r + trace(A_c): p the slip pole, r the rate of the valve, which lies
-between 1/T_F and 1/T_V, and A_c the dynamics of the law's own memory. A law whose command does not read the torque and
-whose memory holds integrals alone has trace(A_c) = 0, whatever its gains.
+between 1/T_F and 1/T_V, and A_c the dynamics of the law's own memory. A law that does not read the torque and whose
+memory holds integrals alone has trace(A_c) = 0, whatever its gains. With p >= r not all poles are then in the left half
+plane.
 
-Behind a zero-order hold the plant 1/((s - p)(tau s + 1)) is (b1 z + b0)/((z - alpha)(z - beta)), alpha = exp(p h),
-beta = exp(-h/tau). With a gain K the polynomial of the loop is z^2 - (alpha + beta) z + alpha beta + K (b1 z + b0).
+Nor is a sampled law of this class stable. Behind a zero-order hold the plant r/((s - p)(s + r)) is
+(b1 z + b0)/((z - alpha)(z - beta)), alpha = exp(p h), beta = exp(-r h), with b1 > 0 and, see below, b0 > 0. A law
+N(z)/(z - 1)^n gives the polynomial Q(z) = (z - 1)^n (z - alpha)(z - beta) + N(z) (b1 z + b0). At the zero of the plant,
+z = -c with c = b0/b1 > 0, abs(Q) = (1 + c)^n (c + alpha)(c + beta) >= (1 + c)^(n + 2), since alpha beta >= 1 for p >= r
+and alpha + beta >= 2. Were all roots inside the unit circle, abs(Q) would be less than (1 + c)^(n + 2). An integral
+of the torque breaks this argument: with it a sampled law can be stable.
+
+For proportional feedback let T_F = T_V = tau, r = 1/tau. With a gain K the polynomial of the loop is
+z^2 - (alpha + beta) z + alpha beta + K (b1 z + b0).
 
 * Its value at z = 1 is positive only for K > p, since the plant has the static gain -1/p.
 * At K = p its roots are 1 and r = (beta + p tau alpha)/(1 + p tau), whose product is alpha beta + p b0.
@@ -32,13 +40,15 @@ from wspd_design.certificates.setting.plant import (
     plant_variables,
 )
 from wspd_design.certificates.setting.traced_law import memory
+from wspd_design.certificates.theorems.rounding import few_digits
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothesis, left_open
 from wspd_design.model.number import Number
 from wspd_design.parameters.bounds import Ends
-from wspd_design.parameters.units import KMH
 
 LAG = "valve time"
 STATIC = "axle at static load, all axles alike"
+MEMBERS = "law that does not read the torque, is differentiable at its equilibrium and has a memory of integrals alone"
+SMOOTH = "the law is differentiable at the equilibrium: nothing in it switches there"
 PRECISION = 120  # bits, so that the doubles around p_max are neighbors
 
 USED = tuple(name for name in PLANT if name != "slip")
@@ -50,7 +60,7 @@ def integrals_of_slip(problem: Problem) -> str:
     found = memory(problem.controller)
     if isinstance(found, str):
         return f"is not bound by this, or was not shown to be: {found}"
-    if found.command_reads_torque:
+    if found.command_reads_torque or found.memory_reads_torque:
         return "reads the braking torque and is not bound by this"
     if not found.integrals_alone:
         names = ", ".join(found.own_dynamics)
@@ -133,9 +143,9 @@ def _tell_pole(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         name="open_loop_pole",
         title="Slip pole against the valve",
-        claim=f"At every frozen speed the open-loop slip pole p at slip {problem.slip:g} stays below the rate of the "
-        "valve, as a law needs whose command does not read the torque and whose memory holds integrals alone; for fill "
-        f"and vent times up to {slowest_valve(problem):g} s, {STATIC}, on {domain.described(problem, USED)}.",
+        claim=f"At every frozen speed the open-loop slip pole p at slip {problem.slip:g} does not exceed the rate of "
+        f"the valve, as the equilibrium of a {MEMBERS} needs to be asymptotically stable; for fill and vent times up "
+        f"to {slowest_valve(problem):g} s, {STATIC}, on {domain.described(problem, USED)}.",
         status=status,
         explanation=meaning,
         method="interval branch and bound, replayed by the independent checker",
@@ -151,16 +161,21 @@ def _tell_pole(problem: Problem, findings: Findings) -> Certificate:
                 f"p tau <= 1 with tau = {slow:g} s, which fill and vent time may both have or exceed", some
             ),
         ),
-        assumptions=("frozen train speed", "averaged valve: its rate lies between 1/T_F and 1/T_V", STATIC),
+        assumptions=(
+            "frozen train speed",
+            "averaged valve: its rate lies between 1/T_F and 1/T_V",
+            SMOOTH,
+            STATIC,
+        ),
         varied=(*USED[1:], "fill time", "vent time"),
         reference="eqs. (14), (19); docs/theory.md#no-go",
     )
 
 
 def valve_rate(problem: Problem) -> tuple[float, float]:
-    """Return the largest nominal rate of the valve, rounded down to stay below and up to exceed [1/s]."""
+    """Return two numbers around the largest nominal rate of the valve, the second above it for certain [1/s]."""
     rate = 1 / point(min(problem.nominal("fill time"), problem.nominal("vent time")))
-    return below(rate), above(rate)
+    return below(rate), math.nextafter(above(rate), math.inf)
 
 
 def interval_claim(problem: Problem, limit: float, speeds: Ends, relation: Relation) -> Claim:
@@ -187,25 +202,24 @@ def _tell_no_go(problem: Problem, findings: Findings) -> Certificate:
     limit = valve_rate(problem)[1]
     proved = beyond.status is Status.PROVED
     low, high = (beyond.part if proved and beyond.part else None) or problem.speeds
-    where = f"from {low:.4g} to {high:.4g} m/s ({low * KMH:.3g} to {high * KMH:.3g} km/h)"
+    where = f"from {few_digits(low, up=True)} to {few_digits(high, up=False)} m/s"
     vacuous = nowhere.status is Status.PROVED
     status = Status.LIMITATION if proved else Status.VACUOUS if vacuous else Status.UNDECIDED
     shown = beyond if proved else nowhere
-    members = "law whose command does not read the torque and whose memory holds integrals alone"
+    valve = f"with the nominal parameters, {STATIC}, and a valve whose faster time constant is {1.0 / limit:.6g} s"
     return Certificate(
         name="no_go",
         title="Speeds that feedback of the slip cannot master",
-        claim=f"No {members} is asymptotically stable at slip {problem.slip:g}, at any frozen speed {where}, with the "
-        f"nominal parameters and a valve whose faster time constant is {1.0 / limit:.6g} s."
+        claim=f"At no frozen speed {where} is an equilibrium at slip {problem.slip:g} asymptotically stable under a "
+        f"{MEMBERS}, {valve}."
         if not vacuous
-        else f"At some frozen speed {where} no {members} is asymptotically stable at slip {problem.slip:g}, with the "
-        f"nominal parameters and a valve whose faster time constant is {1.0 / limit:.6g} s.",
+        else f"At no frozen speed {where} at which the slip pole exceeds 1/tau is an equilibrium at slip "
+        f"{problem.slip:g} asymptotically stable under a {MEMBERS}, {valve}. There is no such speed.",
         status=status,
         explanation={
-            Status.LIMITATION: "There the poles of the loop have a positive sum: every equilibrium at this slip is "
-            "unstable, whatever the gains. A law with dynamics of its own, such as a lead filter, or one that reads "
-            "the torque is not bound by this.",
-            Status.VACUOUS: "There is no such speed: the nominal slip pole stays below 1/tau throughout.",
+            Status.LIMITATION: "There the poles of the loop have a positive sum, whatever the gains. A law with "
+            "dynamics of its own, such as a lead filter, or one that reads the torque is not bound by this.",
+            Status.VACUOUS: "The nominal slip pole does not exceed 1/tau at any of these speeds.",
             Status.UNDECIDED: f"Open: {left_open(findings.values()) or 'the search found no range of speeds'}.",
         }[status],
         method="crossings by bisection, then interval branch and bound, replayed by the independent checker",
@@ -216,7 +230,12 @@ def _tell_no_go(problem: Problem, findings: Findings) -> Certificate:
             if not vacuous
             else hypothesis(f"p <= 1/tau = {limit:.4g} 1/s {where}", nowhere),
         ),
-        assumptions=("frozen train speed", "averaged valve: its rate is at most 1/min(T_F, T_V)", STATIC),
+        assumptions=(
+            "frozen train speed",
+            "averaged valve: its rate is at most 1/min(T_F, T_V)",
+            SMOOTH,
+            STATIC,
+        ),
         held=(*USED[1:], "fill time", "vent time"),
         reference="eqs. (14), (19); docs/theory.md#no-go",
     )
@@ -263,7 +282,7 @@ def _sampled(problem: Problem) -> str:
     reason = integrals_of_slip(problem)
     if reason or common_lag(problem):
         return reason
-    return "has a valve that never fills as fast as it vents, about which the theorem does not speak"
+    return "drives a valve that never fills as fast as it vents, about which the theorem does not speak"
 
 
 def _lag(problem: Problem) -> float:
@@ -296,8 +315,8 @@ def _tell_sampling(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         name="sampling",
         title="Slip pole against sampling and valve",
-        claim=f"At every frozen speed the slip pole at slip {problem.slip:g} stays below p_max, the largest that "
-        f"proportional feedback of the slip, sampled every {problem.sample_time * 1e3:g} ms, stabilizes through a "
+        claim=f"At every frozen speed the slip pole at slip {problem.slip:g} does not exceed p_max, up to which "
+        f"proportional feedback of the slip, sampled every {problem.sample_time * 1e3:g} ms, stabilizes it through a "
         f"valve that fills and vents with one time constant of {times}; p_max = {limit:.3g} 1/s at {lag:g} s; "
         f"{STATIC}, on {domain.described(problem, USED)}.",
         status=status,
@@ -325,8 +344,8 @@ def _tell_sampling(problem: Problem, findings: Findings) -> Certificate:
 OPEN_LOOP_POLE = Theorem(
     name="open_loop_pole",
     title="Slip pole against the valve",
-    claim="The slip pole stays below the rate of the valve, for a law whose command does not read the torque and whose "
-    "memory holds integrals alone.",
+    claim=f"The slip pole does not exceed the rate of the valve, as the equilibrium of a {MEMBERS} needs to be "
+    "asymptotically stable.",
     speaks_about=integrals_of_slip,
     obligations=_pole_obligations,
     tell=_tell_pole,
@@ -335,8 +354,8 @@ OPEN_LOOP_POLE = Theorem(
 NO_GO = Theorem(
     name="no_go",
     title="Speeds that feedback of the slip cannot master",
-    claim="No law whose command does not read the torque and whose memory holds integrals alone is asymptotically "
-    "stable where the slip pole exceeds the rate of the valve.",
+    claim=f"Where the slip pole exceeds the rate of the valve, no equilibrium under a {MEMBERS} is asymptotically "
+    "stable.",
     speaks_about=integrals_of_slip,
     obligations=_no_go_obligations,
     tell=_tell_no_go,

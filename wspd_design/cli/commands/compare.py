@@ -1,41 +1,44 @@
 """``wspd compare``: the same stop with several controllers."""
 
-from collections.abc import Callable
-
-from rich.text import Text
-
 from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant
-from wspd_design.cli.console import console, print_json, progress, spaced, table
-from wspd_design.cli.json_objects import comparison_object, stop_object
-from wspd_design.cli.stop_figures import CHAOTIC, number
-from wspd_design.cli.stop_options import StopOptions, disturbances_of, rails_of, scenario
+from wspd_design.cli.console import console, print_json, progress, spaced
+from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.json_objects import comparison_object
+from wspd_design.cli.stop_figures import CHAOTIC
+from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import CaseOptions, load_cases
+from wspd_design.exchange.objects import stop_object
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.comparison import Trial, trial
-from wspd_design.simulation.metrics import Metrics
+from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.records import Ending, Scenario
 
 _ALL_COLUMNS = 78
 """Columns of a terminal from which on the table shows everything."""
 
-_COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
-    ("d\n[m]", lambda figures: f"{figures.distance:.1f}"),
-    ("t\n[s]", lambda figures: f"{figures.stopping_time:.2f}"),
-    ("lag\n[s]", lambda figures: number(figures.lag, ".2f")),
-    ("eff\n[%]", lambda figures: number(100.0 * figures.efficiency, ".0f")),
-    ("slip\nrms", lambda figures: number(figures.slip_rms, ".3f")),
-    ("slip\nmax", lambda figures: number(figures.slip_max, ".3f")),
-    ("lock\n[s]", lambda figures: f"{figures.lock_time:.1f}"),
+_COLUMNS: tuple[ColumnOf[Trial], ...] = (
+    ColumnOf(title="d", unit="m", decimals=1, read=lambda made: made.metrics.distance),
+    ColumnOf(title="t", unit="s", decimals=2, read=lambda made: made.metrics.stopping_time),
+    ColumnOf(title="lag", unit="s", decimals=2, read=lambda made: made.metrics.lag),
+    ColumnOf(title="eff", unit="%", decimals=0, read=lambda made: 100.0 * made.metrics.efficiency),
+    ColumnOf(title="slip\nrms", decimals=3, read=lambda made: made.metrics.slip_rms),
+    ColumnOf(title="slip\nmax", decimals=3, read=lambda made: made.metrics.slip_max),
+    ColumnOf(title="lock", unit="s", decimals=1, read=lambda made: made.metrics.lock_time),
 )
-_MORE_COLUMNS: tuple[tuple[str, Callable[[Metrics], str]], ...] = (
-    ("valve\n[-]", lambda figures: f"{figures.valve_switches}"),
-    ("air\n[-]", lambda figures: f"{figures.vented_air:.1f}"),
-    ("adh\n[%]", lambda figures: number(100.0 * figures.adhesion_utilization, ".0f")),
+_MORE_COLUMNS: tuple[ColumnOf[Trial], ...] = (
+    ColumnOf(title="valve", unit="-", decimals=0, read=lambda made: made.metrics.valve_switches),
+    ColumnOf(title="air", unit="-", decimals=1, read=lambda made: made.metrics.vented_air),
+    ColumnOf(title="adh", unit="%", decimals=0, read=lambda made: 100.0 * made.metrics.adhesion_utilization),
 )
 
 
+@takes_stop_options
 def compare(
+    *,
     names: options.ControllersArgument = None,
     vehicle: options.VehicleOption = None,
     plant: options.PlantOption = options.PLANT,
@@ -44,14 +47,7 @@ def compare(
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
-    axle_rails: options.AxleRailsOption = None,
-    patch: options.PatchOption = None,
-    grade: options.GradeOption = None,
-    pad_vibration: options.PadVibrationOption = False,
-    speed_noise: options.SpeedNoiseOption = None,
-    pulses: options.PulsesOption = None,
-    reference_error: options.ReferenceErrorOption = None,
-    dead_time: options.DeadTimeOption = None,
+    disturbances: StopOptions,
     as_json: options.JsonOption = False,
 ) -> None:
     """Simulate the same stop with several controllers, side by side.
@@ -64,18 +60,9 @@ def compare(
     cases = load_cases(names or list(FAMILIES), wanted)
     stop = scenario(
         cases[0].rail,
-        StopOptions(
-            speed=speed,
-            seed=seed,
-            axle_rails=axle_rails,
-            patches=patch,
-            grade=grade,
-            pad_vibration=pad_vibration,
-            speed_noise=speed_noise,
-            pulses=pulses,
-            reference_error=reference_error,
-            dead_time=dead_time,
-        ),
+        disturbances,
+        speed=speed,
+        seed=seed,
     )
     trials: list[tuple[Trial, float]] = []
     with progress() as tell:
@@ -102,29 +89,26 @@ def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> N
     if disturbances:
         out.print(f"With {disturbances}.", markup=False)
     complete = out.width >= _ALL_COLUMNS
-    columns = _COLUMNS + _MORE_COLUMNS * complete
-    headers = [header for header, _ in columns]
-    shown = table("Controller", *headers, numeric=tuple(headers))
     stopped = [made.metrics.distance for made in trials if made.run.ending is Ending.STOPPED]
-    for made in trials:
-        still_moving = made.run.ending is not Ending.STOPPED
-        best = bool(stopped) and not still_moving and made.metrics.distance == min(stopped)
-        shown.add_row(
-            Text(made.run.controller + " *" * still_moving + " ~" * made.check.chaotic),
-            *(cell(made.metrics) for _, cell in columns),
-            style="bold" if best else "",
-        )
-    out.print(spaced(shown))
-    bound = first.metrics.bound
-    known = f" (bound {bound:.1f} m)" if bound == bound else ""
+    shown = build(
+        trials,
+        (ColumnOf(title="Controller", read=_marked), *_COLUMNS, *(_MORE_COLUMNS * complete)),
+        caption="",
+    )
+    styles = ["bold" if stopped and _is_best(made, min(stopped)) else "" for made in trials]
+    out.print(spaced(terminal_table(shown, styles=styles)))
+    ideal = first.metrics.ideal_stop
+    known = f" ({ideal:.1f} m, best slip held)" if ideal == ideal else ""
     more = (
         "; valve: changes of its state; air: brake cylinders vented; adh: adhesion used" if complete else ""
     )
     out.print(
-        f"d distance, t time, lag 2 d/v0 - t, eff efficiency: bound over distance{known}; slip above 10 km/h, "
+        f"d distance, t time, lag 2 d/v0 - t, eff efficiency: ideal stop{known} over distance; slip above 10 km/h, "
         f"rms about {_references(trials, references)}; lock: how long the wheels were locked{more}.",
         style="dim",
     )
+    if first.metrics.ideal_ending is Ending.TIME_LIMIT:
+        out.print(f"No ideal stop: {NO_IDEAL_STOP}.", style="bold yellow")
     if len(stopped) < len(trials):
         out.print(f"* {Ending.TIME_LIMIT.value}.", style="yellow")
     spreads = [f"{made.run.controller} {made.check.spread:.2g} m" for made in trials if made.check.chaotic]
@@ -143,3 +127,12 @@ def _references(trials: list[Trial], references: list[float]) -> str:
         return f"{references[0]:g}"
     own = (f"{made.run.controller} {slip:g}" for made, slip in zip(trials, references, strict=True))
     return f"the slip that each law holds ({', '.join(own)})"
+
+
+def _marked(made: Trial) -> str:
+    """Return the name of a controller with the marks of a stop that did not end and of one that is chaotic."""
+    return made.run.controller + " *" * (made.run.ending is not Ending.STOPPED) + " ~" * made.check.chaotic
+
+
+def _is_best(made: Trial, shortest: float) -> bool:
+    return made.run.ending is Ending.STOPPED and made.metrics.distance == shortest

@@ -18,10 +18,11 @@ from importlib.util import find_spec
 import typer
 from rich.text import Text
 
-from wspd_design.cli.console import console, is_interactive, program_version, spaced, table
+from wspd_design.cli.console import console, is_interactive, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED
 from wspd_design.cli.tables import PARQUET_INSTALLATION
 from wspd_design.codegen.compiler import NoCompilerError, cache_folder, find_compiler, load_library
+from wspd_design.exchange.version import program_version
 
 _INSTALL_COMPILER = (
     "Without one, stops run in CasADi's virtual machine, many times slower. Install gcc or clang, or set CC."

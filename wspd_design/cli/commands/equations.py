@@ -8,10 +8,15 @@ import typer
 from rich.text import Text
 
 from wspd_design.cli.console import console, spaced, table
-from wspd_design.parameters.equations import Equation, load_equations
+from wspd_design.parameters.equations import VERDICTS, Equation, load_equations
 from wspd_design.parameters.errors import UserError
 
-_STYLES = {"holds": "green", "misprint": "red", "gap": "yellow", "definition": "cyan"}
+_STYLES = dict(zip(VERDICTS, ("green", "red", "yellow", "cyan", "dim"), strict=True))
+_CERTAINTY = {
+    "proved": "proved from the paper's other equations or from units",
+    "inferred": "inferred: our reading, others are possible",
+    "scan": "one glyph, which the scan at hand may have lost",
+}
 
 
 def equations(
@@ -19,7 +24,7 @@ def equations(
         str | None, typer.Argument(metavar="NUMBER", help='For example 19, B_W or "Table 5".')
     ] = None,
     verdict: Annotated[
-        str | None, typer.Option("--verdict", metavar="WORD", help=f"Only {', '.join(_STYLES)}.")
+        str | None, typer.Option("--verdict", metavar="WORD", help=f"Only {', '.join(VERDICTS)}.")
     ] = None,
 ) -> None:
     """Show every equation of the paper with its verdict, or all about one of them."""
@@ -27,11 +32,11 @@ def equations(
     if number is not None:
         _show_one(_find(number, known))
         return
-    if verdict is not None and verdict not in _STYLES:
-        near = get_close_matches(verdict, _STYLES, n=1)
+    if verdict is not None and verdict not in VERDICTS:
+        near = get_close_matches(verdict, VERDICTS, n=1)
         offer = f' (did you mean "{near[0]}"?)' if near else ""
-        raise UserError(f'--verdict "{verdict}" is unknown{offer}; choose {", ".join(_STYLES)}')
-    _show_all([equation for equation in known if verdict in (None, equation.verdict)])
+        raise UserError(f'--verdict "{verdict}" is unknown{offer}; choose {", ".join(VERDICTS)}')
+    _show_all([equation for equation in known if verdict is None or verdict in equation.verdicts])
 
 
 def _find(number: str, known: tuple[Equation, ...]) -> Equation:
@@ -42,7 +47,7 @@ def _find(number: str, known: tuple[Equation, ...]) -> Equation:
     numbers = {equation.number.lower(): equation.number for equation in known}
     near = get_close_matches(wanted, numbers, n=1, cutoff=0.7)
     offer = f' (did you mean "{numbers[near[0]]}"?)' if near else ""
-    raise UserError(f'the paper has no equation "{number}"{offer}; "wspd equations" lists all of them')
+    raise UserError(f'the map has no entry "{number}"{offer}; "wspd equations" lists all of them')
 
 
 def _label(number: str) -> str:
@@ -56,26 +61,36 @@ def _show_all(chosen: list[Equation]) -> None:
         content = Text(equation.title)
         if equation.corrected:
             content.append(f"\n{equation.corrected}", style="dim")
-        shown.add_row(
-            _label(equation.number), Text(equation.verdict, style=_STYLES[equation.verdict]), content
-        )
+        shown.add_row(_label(equation.number), _verdicts(equation), content)
     out.print(spaced(shown))
-    counts = Counter(equation.verdict for equation in chosen)
-    out.print(", ".join(f"{counts[word]} {word}" for word in _STYLES if counts[word]), style="bold")
+    counts = Counter(verdict for equation in chosen for verdict in equation.verdicts)
+    told = ", ".join(f"{counts[word]} {word}" for word in VERDICTS if counts[word])
+    out.print(f"{len(chosen)} entries: {told}", style="bold", highlight=False)
+    out.print("A misprint of one glyph may be the scan's: see its certainty.", style="dim", markup=False)
     out.print('Details: "wspd equations 19".', style="dim", markup=False)
+
+
+def _verdicts(equation: Equation, weight: str = "") -> Text:
+    parts = (Text(word, style=f"{weight}{_STYLES[word]}") for word in equation.verdicts)
+    return Text(", ").join(parts)
 
 
 def _show_one(equation: Equation) -> None:
     out = console()
     heading = Text(f"{_label(equation.number)} {equation.title}: ", style="bold")
-    out.print(heading.append(equation.verdict, style=f"bold {_STYLES[equation.verdict]}"))
+    out.print(heading.append_text(_verdicts(equation, "bold ")))
     shown = table("", "")
     shown.show_header = False
     for name, content in (
         ("printed", equation.printed),
         ("corrected", equation.corrected),
+        ("certainty", "; ".join(_CERTAINTY[word] for word in equation.certainty)),
+        ("domain", equation.domain),
+        ("unit", equation.unit),
+        ("units differ", equation.unit_fault),
         ("residual", equation.residual),
         ("assumption", equation.assumption),
+        ("left over without it", equation.gap),
         ("remark", equation.remark),
         ("file", equation.file),
         ("functions", ", ".join(equation.functions)),

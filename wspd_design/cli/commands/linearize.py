@@ -3,14 +3,15 @@
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.text import Text
 
 from wspd_design.cli import options
 from wspd_design.cli.arguments import check_quarter, parse_speed
-from wspd_design.cli.console import console, print_json, spaced, table
+from wspd_design.cli.console import console, print_json, spaced
 from wspd_design.cli.json_objects import linearization_object
+from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.reporting.tables import ColumnOf, build
 
 if TYPE_CHECKING:
     from wspd_design.analysis.linearization import Linearization
@@ -49,7 +50,7 @@ def linearize(
     points = [linearization.linearize(locomotive, friction, slip=reference, speed=v) for v in speeds]
     beyond = [point.slip_pole > 1.0 / point.time_constant for point in points]
     if as_json:
-        print_json(linearization_object(points, plant=plant, beyond_lag=beyond))
+        print_json(linearization_object(points, plant=plant))
     else:
         _show(points, beyond)
 
@@ -57,24 +58,28 @@ def linearize(
 def _show(points: "list[Linearization]", beyond: list[bool]) -> None:
     out, first = console(), points[0]
     out.print(f"{first.vehicle} on {first.rail} at slip {first.slip:g}", style="bold", markup=False)
-    headers = (
-        "speed\n[km/h]",
-        "slip pole\n[1/s]",
-        "gain G\n[1/(MN m s)]",
-        "with valve\n[1/s]",
-        "torque\n[kN m]",
+    shown = build(
+        list(zip(points, beyond, strict=True)),
+        (
+            ColumnOf(
+                title="speed", unit="km/h", flush_right=True, read=lambda row: f"{row[0].speed * 3.6:g}"
+            ),
+            ColumnOf(title="slip pole", unit="1/s", decimals=3, read=lambda row: row[0].slip_pole),
+            ColumnOf(title="gain G", unit="1/(MN m s)", decimals=1, read=lambda row: row[0].gain * 1e6),
+            ColumnOf(
+                title="with valve",
+                unit="1/s",
+                flush_right=True,
+                read=lambda row: ", ".join(f"{pole:.2f}" for pole in row[0].poles()),
+            ),
+            ColumnOf(
+                title="torque", unit="kN m", decimals=1, read=lambda row: row[0].equilibrium_torque / 1e3
+            ),
+            ColumnOf(title="", read=lambda row: "!" if row[1] else ""),
+        ),
+        caption="",
     )
-    shown = table(*headers, "", numeric=headers)
-    for point, marked in zip(points, beyond, strict=True):
-        shown.add_row(
-            f"{point.speed * 3.6:g}",
-            f"{point.slip_pole:.3f}",
-            f"{point.gain * 1e6:.1f}",
-            ", ".join(f"{pole:.2f}" for pole in point.poles()),
-            f"{point.equilibrium_torque / 1e3:.1f}",
-            Text("!" if marked else "", style="yellow"),
-        )
-    out.print(spaced(shown))
+    out.print(spaced(terminal_table(shown)))
     limit = 1.0 / first.time_constant
     verdict = (
         f"!: at {sum(beyond)} of {len(points)} speeds the slip pole exceeds 1/tau = {limit:.3g} 1/s of the "

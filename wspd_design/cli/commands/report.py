@@ -8,9 +8,12 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.arguments import check_plant, chosen, parse_speed
+from wspd_design.cli.arguments import check_plant, chosen
 from wspd_design.cli.console import console, progress
+from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.output import check_output
+from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.verification import stored_beside
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.records import Design
@@ -18,7 +21,9 @@ from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
 
 
+@takes_stop_options
 def report(
+    *,
     name: options.ControllerArgument = None,
     controller: options.ControllerOption = None,
     vehicle: options.VehicleOption = None,
@@ -28,6 +33,7 @@ def report(
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
+    disturbances: StopOptions,
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Report to write, .html or .pdf.")
     ] = Path("report.html"),
@@ -47,17 +53,17 @@ def report(
     chosen_name = chosen(name, controller)
     case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
     made = _design(chosen_name, case)
-    initial_speed = parse_speed(speed)
+    stop = scenario(case.rail, disturbances, speed=speed, seed=seed)
     with progress() as tell:
         computed = dossier(
             made,
             vehicle_name=case.vehicle_name,
             rail_name=case.rail_name,
-            initial_speed=initial_speed,
+            scenario=stop,
             baselines=[other for other in FAMILIES if other != made.name],
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
-            seed=seed,
+            stored=stored_beside(chosen_name),
             progress=tell,
         )
         tell("typesetting")

@@ -10,15 +10,18 @@ from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, chosen
 from wspd_design.cli.campaign import simulate_campaign
 from wspd_design.cli.console import console, print_json, progress
-from wspd_design.cli.from_witness import check_words, origin, read, show_leaving, show_origin
-from wspd_design.cli.json_objects import stop_object
+from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
+from wspd_design.cli.json_objects import witness_object
 from wspd_design.cli.stop_figures import show_stop
-from wspd_design.cli.stop_options import StopOptions, scenario
+from wspd_design.cli.stop_options import scenario
 from wspd_design.cli.tables import check_table, write_table
 from wspd_design.design.case import CaseOptions, load_case
+from wspd_design.exchange.objects import stop_object
 from wspd_design.parameters.errors import UserError
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.records import Run
+from wspd_design.simulation.start import leaving_time
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +29,9 @@ if TYPE_CHECKING:
 _MANY = "Many stops"
 
 
+@takes_stop_options
 def simulate(
+    *,
     name: options.ControllerArgument = None,
     controller: options.ControllerOption = None,
     vehicle: options.VehicleOption = None,
@@ -37,14 +42,7 @@ def simulate(
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
-    axle_rails: options.AxleRailsOption = None,
-    patch: options.PatchOption = None,
-    grade: options.GradeOption = None,
-    pad_vibration: options.PadVibrationOption = False,
-    speed_noise: options.SpeedNoiseOption = None,
-    pulses: options.PulsesOption = None,
-    reference_error: options.ReferenceErrorOption = None,
-    dead_time: options.DeadTimeOption = None,
+    disturbances: StopOptions,
     runs: Annotated[
         int | None,
         typer.Option(
@@ -80,7 +78,7 @@ def simulate(
 ) -> None:
     """Simulate one stop and show its figures, or many with --runs and show their spread.
 
-    A train that does not stop is no error: the ending says so, and the exit code is 0.
+    A train that does not stop is not an error: the ending says so, and the exit code is 0.
     """
     if plant is None:
         plant = options.PLANT if from_witness is None else options.QUARTER
@@ -92,32 +90,25 @@ def simulate(
     witness = None
     if from_witness is not None:
         draws = runs is not None and not nominal
-        check_words(named=bool(name or controller), speed=speed, axle_rails=axle_rails, draws=draws)
+        check_words(
+            named=bool(name or controller), speed=speed, axle_rails=disturbances.axle_rails, draws=draws
+        )
         witness = read(from_witness)
     case = load_case(
         chosen(name, controller), CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     )
     stop = scenario(
         case.rail,
-        StopOptions(
-            speed=options.SPEED if speed is None else speed,
-            seed=seed,
-            axle_rails=axle_rails,
-            patches=patch,
-            grade=grade,
-            pad_vibration=pad_vibration,
-            speed_noise=speed_noise,
-            pulses=pulses,
-            reference_error=reference_error,
-            dead_time=dead_time,
-        ),
+        disturbances,
+        speed=options.SPEED if speed is None else speed,
+        seed=seed,
     )
     start = None
     if witness is not None:
-        start = origin(case, stop, witness)
+        start = witness_start(case, stop, witness)
         case, stop = replace(case, vehicle=start.vehicle, rail=start.rail), start.scenario
         if not as_json:
-            show_origin(start)
+            show_start(start)
     if runs is not None:
         simulate_campaign(
             case,
@@ -128,7 +119,7 @@ def simulate(
             output=output,
             force=force,
             as_json=as_json,
-            origin=start,
+            start=start,
         )
         return
     reference = case.specification.slip
@@ -138,7 +129,8 @@ def simulate(
     if output is not None:
         write_table(output, traces(made.run), force=force)
     if as_json:
-        print_json(stop_object(made, stop, slip_reference=reference, origin=start))
+        named = None if start is None else witness_object(start, leaving_time(made.run, LEFT))
+        print_json(stop_object(made, stop, slip_reference=reference, witness=named))
         return
     show_stop(made, stop, reference)
     if start is not None:
@@ -155,7 +147,7 @@ def traces(run: Run) -> "NDArray[Any]":
     for name, trace in (
         ("wheel_speed_rad_s", run.wheel_speed),
         ("slip", run.slip),
-        ("torque_N_m", run.torque),
+        ("torque_Nm", run.torque),
         ("wheel_load_N", run.wheel_load),
     ):
         columns += [(f"{name}_{k + 1}", column) for k, column in enumerate(trace.T)]

@@ -35,7 +35,7 @@ def read_draft(path: Path, steps: tuple[Step, ...]) -> dict[str, str]:
     """
     document = read_toml(path, str(path))
     if document.get("schema") != SCHEMA or not isinstance(document.get("answers"), dict):
-        raise UserError(f'{path} is no draft of the wizard; start again with "wspd new"')
+        raise UserError(f'{path} is not a draft of the wizard; start again with "wspd new"')
     known = [step.key for step in steps]
     for key, value in document["answers"].items():
         if key not in known:

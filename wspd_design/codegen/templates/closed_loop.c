@@ -1,4 +1,4 @@
-/* Closed loop of four-axle vehicles with one sampled controller per wheelset: steps, their ends, samples, results. */
+/* Closed loop of vehicles with one sampled controller per wheelset: steps, their ends, samples, results. */
 
 static void write_trace(Loop *loop, const Stage *stage)
 {
@@ -53,11 +53,15 @@ static int advance(Loop *loop)
             if (loop->active[s] != 0.0 && reached.speed[s] < stop_speed)
                 step[s] *= (loop->now.speed[s] - stop_speed) / (loop->now.speed[s] - reached.speed[s]);
     }
-    #define WHEEL(k) stage[k].wheel[l]
-    EACH_LANE reached.wheel[l] = loop->now.wheel[l] + lane_step[l] * (1.0 / 6.0) * SUM(WHEEL);
-    for (int k = 0; k < PITCH; k++) {
-        #define PITCHED(j) stage[j].pitch[k * STOPS + s]
-        EACH_STOP reached.pitch[k * STOPS + s] = loop->now.pitch[k * STOPS + s] + step[s] * (1.0 / 6.0) * SUM(PITCHED);
+    for (int k = 0; k < AXLE_STATES; k++) {
+        #define TURNED(j) stage[j].wheel[k * LANES + l]
+        EACH_LANE reached.wheel[k * LANES + l] =
+            loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
+    }
+    for (int k = 0; k < TRANSFER_STATES; k++) {
+        #define TRANSFERRED(j) stage[j].transfer[k * STOPS + s]
+        EACH_STOP reached.transfer[k * STOPS + s] =
+            loop->now.transfer[k * STOPS + s] + step[s] * (1.0 / 6.0) * SUM(TRANSFERRED);
     }
     const Motion *const points[4] = {&loop->now, &at[0], &at[1], &at[2]};
     integrate(loop, points, stage, lane_step);
@@ -240,10 +244,10 @@ int wspd_run(Loop *loop, double *samples, long sample_rows)
     WIDE double state[STATES * LANES + 1], command[(STATES + 2) * LANES], in[3 * LANES];
     int result = GOOD;
     wspd_measure(loop, in);
-    start_kernel(in, state);
+    start_kernel(in, loop->gains, state);
     while (result == GOOD && wspd_running(loop)) {
         wspd_measure(loop, in);
-        step_kernel(state, in, command);
+        step_kernel(state, in, loop->gains, command);
         for (int k = 0; k < STATES; k++)
             for (int l = 0; l < LANES; l++) {
                 int s = l % STOPS;

@@ -1,13 +1,13 @@
-/* Motion of four-axle vehicles over one step; STOPS stops side by side. The closed loop follows.
+/* Motion of vehicles with AXLES axles over one step; STOPS stops side by side. The closed loop follows.
 
    Lane a * STOPS + s is axle a of stop s; element k of a vector over lanes stands at k * LANES + lane. Every stop
    has its own time, so that its numbers do not depend on the stops beside it. Between two samples the cylinder
-   pressure has a closed form; speed, wheel speeds and pitch are integrated by Runge-Kutta of order four with a step
-   that the creep stiffness allows and that ends at every valve edge. Wheel lock is a state: a locked wheel passes
-   on what the rail gives, until the brake gives less. A stop ends with a step that is cut at the stop speed. */
-#define AXLES 4
+   pressure has a closed form; speed, states of the axles and load transfers are integrated by Runge-Kutta of order
+   four with a step that the creep stiffness allows and that ends at every valve edge. Wheel lock is a state: a locked
+   wheel passes on what the rail gives, until the brake gives less. A stop ends with a step that is cut at the stop
+   speed. */
 #define LANES (AXLES * STOPS)
-#define PITCH 6
+#define TRANSFER_STATES (2 * TRANSFERS) /* the load transfers, then their rates */
 #define SHORTEST 1e-9 /* s: edges closer together than this are one */
 #define RAIL 5 /* numbers of a rail, side by side in the parameter vector from FIRST_RAIL on */
 #define WIDE __attribute__((aligned(64)))
@@ -27,14 +27,14 @@ typedef struct {
 
 typedef struct {
     WIDE double speed[STOPS];
-    WIDE double wheel[LANES];
-    WIDE double pitch[PITCH * STOPS];
+    WIDE double wheel[AXLE_STATES * LANES]; /* and the further states of the axle */
+    WIDE double transfer[TRANSFER_STATES * STOPS];
 } Motion;
 
 typedef struct {
     WIDE double acceleration[STOPS]; /* rates of Motion */
-    WIDE double wheel[LANES];
-    WIDE double pitch[PITCH * STOPS];
+    WIDE double wheel[AXLE_STATES * LANES];
+    WIDE double transfer[TRANSFER_STATES * STOPS];
     WIDE double force[LANES];
     WIDE double slip[LANES];
     WIDE double damping[LANES];
@@ -59,6 +59,7 @@ typedef struct {
     long trace_rows, trace_used;
     double quantum;             /* rad/s, resolution of the measured wheel speed; 0 for none */
     double reference_factor;    /* measured over true train speed */
+    const double *gains;        /* numbers of the law */
     /* from here on: the state of the loop */
     WIDE double lp[PARAMETERS * LANES], lp2[PARAMETERS * 2 * LANES]; /* the second twice, for middle and end of a step */
     WIDE double stop_fixed[STOP_CONSTANTS * STOPS];        /* constants of the kernels */
@@ -104,10 +105,10 @@ static double load_at(const Loop *loop, int lane, double distance)
     return row[0] + (place - (double)k) * (row[1] - row[0]);
 }
 
-/* Wheel loads at a share of the step; the pitch is that of the same moment. */
-static inline void load_wheels(const Loop *loop, double share, const double *pitch, double *load)
+/* Wheel loads at a share of the step; the load transfer is that of the same moment. */
+static inline void load_wheels(const Loop *loop, double share, const double *transfer, double *load)
 {
-    loads_kernel(loop->stop_fixed, pitch, load);
+    loads_kernel(loop->stop_fixed, transfer, load);
     for (int l = 0; loop->load_factor && l < LANES; l++) {
         int s = l % STOPS;
         load[l] *= load_at(loop, l, loop->stop[DISTANCE * STOPS + s] + share * loop->step[s] * loop->now.speed[s]);
@@ -142,11 +143,11 @@ static INLINE void evaluate(const Loop *loop, double share, const Motion *at, co
                             const double *condition, Stage *out)
 {
     WIDE double speed[LANES];
-    load_wheels(loop, share, at->pitch, out->load);
+    load_wheels(loop, share, at->transfer, out->load);
     spread(at->speed, speed);
     axle_kernel(loop->lane_fixed, speed, at->wheel, out->load, torque, loop->locked, condition,
                 out->force, out->wheel, out->slip, out->damping, out->passed);
-    train_kernel(loop->stop_fixed, at->speed, out->force, at->pitch, out->acceleration, out->resistance, out->pitch);
+    train_kernel(loop->stop_fixed, at->speed, out->force, at->transfer, out->acceleration, out->resistance, out->transfer);
     if (loop->hold) hold_wheels(loop, at, out);
 }
 
@@ -155,11 +156,15 @@ static INLINE void move(const Motion *from, const Stage *rates, const double *st
                         double share, Motion *to)
 {
     EACH_STOP to->speed[s] = FMA(share * step[s], rates->acceleration[s], from->speed[s]);
-    EACH_LANE to->wheel[l] = FMA(share * lane_step[l], rates->wheel[l], from->wheel[l]);
-    for (int k = 0; k < PITCH; k++)
+    for (int k = 0; k < AXLE_STATES; k++)
+        EACH_LANE {
+            int j = k * LANES + l;
+            to->wheel[j] = FMA(share * lane_step[l], rates->wheel[j], from->wheel[j]);
+        }
+    for (int k = 0; k < TRANSFER_STATES; k++)
         EACH_STOP {
             int j = k * STOPS + s;
-            to->pitch[j] = FMA(share * step[s], rates->pitch[j], from->pitch[j]);
+            to->transfer[j] = FMA(share * step[s], rates->transfer[j], from->transfer[j]);
         }
 }
 
@@ -265,17 +270,17 @@ static INLINE void choose_steps(Loop *loop, double *next)
 static INLINE void prepare(const Loop *loop, const double *next, double *pressure, double *torque, double *filled,
                            double *condition)
 {
-    WIDE double when[2 * LANES], pitch[PITCH * STOPS], load[LANES];
+    WIDE double when[2 * LANES], transfer[TRANSFER_STATES * STOPS], load[LANES];
     for (int a = 0; a < AXLES; a++)
         EACH_STOP {
             when[a * STOPS + s] = loop->time[s] + 0.5 * loop->step[s];
             when[LANES + a * STOPS + s] = next[s];
         }
     actuator_kernel(loop->window_fixed, when, pressure, torque, filled);
-    for (int k = 0; k < PITCH / 2; k++)
-        EACH_STOP pitch[k * STOPS + s] = loop->now.pitch[k * STOPS + s]
-            + 0.5 * loop->step[s] * loop->now.pitch[(PITCH / 2 + k) * STOPS + s];
-    load_wheels(loop, 0.5, pitch, load);
+    for (int k = 0; k < TRANSFERS; k++)
+        EACH_STOP transfer[k * STOPS + s] = loop->now.transfer[k * STOPS + s]
+            + 0.5 * loop->step[s] * loop->now.transfer[(TRANSFERS + k) * STOPS + s];
+    load_wheels(loop, 0.5, transfer, load);
     condition_kernel(loop->lane_fixed, when, load, condition);
 }
 

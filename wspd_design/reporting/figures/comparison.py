@@ -10,6 +10,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.figure_style import INK, MUTED, SERIES
 from wspd_design.reporting.figures.drawing import note
 from wspd_design.reporting.figures.stop import slip_panel
+from wspd_design.reporting.yardsticks import ideal_distance
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.paper.published import PublishedStop
@@ -68,9 +69,9 @@ def distance_bars(
             axes.plot(
                 [theirs.distance_m] * 2, [row - 0.42, row + 0.42], color=INK, linestyle="-", linewidth=1.6
             )
-    bound = trials[0].metrics.bound
-    if math.isfinite(bound):
-        axes.axvline(bound, color=MUTED, linestyle="--", linewidth=1.0, label="bound")
+    ideal = trials[0].metrics.ideal_stop
+    if math.isfinite(ideal):
+        axes.axvline(ideal, color=MUTED, linestyle="--", linewidth=1.0, label="ideal stop")
     axes.set_yticks(range(len(trials)), [trial.run.controller for trial in trials])
     axes.invert_yaxis()
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.0)
@@ -117,7 +118,7 @@ def distances_alt(trials: Sequence[Trial], lag_distances: Sequence[float]) -> st
         + (f", {lag:.1f} m of it brake build-up" if trial.run.ending is Ending.STOPPED else ", still moving")
         for trial, lag in zip(trials, lag_distances, strict=True)
     )
-    return f"Stopping distances: {'; '.join(said)}; bound {trials[0].metrics.bound:.1f} m."
+    return f"Stopping distances: {'; '.join(said)}; ideal stop {ideal_distance(trials[0].metrics)}."
 
 
 def slips_alt(trials: Sequence[Trial], specification: Specification) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.records import Certificate, Series
+from wspd_design.certificates.records import Certificate, Role, Series
 from wspd_design.reporting.figure_style import INK, LINE_STYLES, SERIES
 from wspd_design.reporting.figures.drawing import curve
 from wspd_design.reporting.numbers import listing, significant, unit
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LOGARITHMIC_SPAN = {"V": 1e3, "k": 10.0}
+LOGARITHMIC_SPAN = {Role.LYAPUNOV: 1e3, Role.LOOP_GAIN: 10.0}
 """A positive Lyapunov function or gain of the layer that spans more is drawn on a logarithmic scale."""
 
 FRAME_HEIGHT, PANEL_HEIGHT, STACKED_HEIGHT, REGION_HEIGHT = 0.5, 2.0, 1.55, 3.0  # in
@@ -34,7 +34,7 @@ def panels(series: Sequence[Series]) -> dict[tuple[str, str], list[Series]]:
 def curves_height(series: Sequence[Series]) -> float:
     """Return the height of the figure of :func:`certificate_curves` [in]."""
     groups = panels(series)
-    if any(map(_is_loop, series)):
+    if any(each.role is Role.OUTLINE for each in series):
         return FRAME_HEIGHT + REGION_HEIGHT * len(groups)
     return FRAME_HEIGHT + (STACKED_HEIGHT if _stacked(groups) else PANEL_HEIGHT) * len(groups)
 
@@ -72,12 +72,13 @@ def lyapunov_functions(figure: "Figure", certificates: Sequence[Certificate]) ->
     figure : Figure
         Empty figure.
     certificates : sequence of Certificate
-        Each with a first series that is its Lyapunov function.
+        Each with at least one series that is a Lyapunov function.
     """
     columns = figure.subplots(1, len(certificates), squeeze=False)[0]
     for axes, certificate in zip(columns, certificates, strict=True):
-        (x_label, y_label), group = next(iter(panels(certificate.series).items()))
-        _panel(axes, group)
+        drawn = lyapunov_series(certificate)
+        x_label, y_label = drawn[0].x_label, drawn[0].y_label
+        _panel(axes, panels(certificate.series)[x_label, y_label])
         axes.set(
             xlabel=axis_label(x_label),
             ylabel=axis_label(y_label),
@@ -85,6 +86,11 @@ def lyapunov_functions(figure: "Figure", certificates: Sequence[Certificate]) ->
         )
         axes.legend(loc="best")
     return figure
+
+
+def lyapunov_series(certificate: Certificate) -> tuple[Series, ...]:
+    """Return the curves of a certificate that are Lyapunov functions."""
+    return tuple(each for each in certificate.series if each.role is Role.LYAPUNOV)
 
 
 def series_alt(series: Sequence[Series]) -> str:
@@ -113,7 +119,7 @@ def _symbols(text: str) -> str:
 
 def _words(each: Series) -> str:
     y, x = (re.sub(r" \[-\]$", "", label) for label in (each.y_label, each.x_label))
-    if _is_line(each):
+    if each.role is Role.LIMIT:
         place = (
             f"{y} {significant(each.y[0], 4)}"
             if each.y[0] == each.y[1]
@@ -121,7 +127,7 @@ def _words(each: Series) -> str:
         )
         return f"{each.name}: a line at {place}"
     extremes = f"lowest {significant(min(each.y), 3)}, highest {significant(max(each.y), 3)}"
-    if _is_loop(each):
+    if each.role is Role.OUTLINE:
         return (
             f"{each.name}: a closed region with {x} from {significant(min(each.x), 3)} to "
             f"{significant(max(each.x), 3)}, {y} {extremes}"
@@ -142,27 +148,17 @@ def _stacked(groups: dict[tuple[str, str], list[Series]]) -> bool:
     return len({x_label for x_label, _ in groups}) == 1
 
 
-def _is_line(each: Series) -> bool:
-    """Whether a curve is the line of a limit, as :func:`wspd_design.certificates.checks.frame.level` makes it."""
-    return len(each.x) == 2 and (each.y[0] == each.y[1] or each.x[0] == each.x[1])
-
-
-def _is_loop(each: Series) -> bool:
-    """Whether a curve closes and so is the outline of a region."""
-    return len(each.x) > 3 and (each.x[0], each.y[0]) == (each.x[-1], each.y[-1])
-
-
 def _panel(axes: "Axes", group: Sequence[Series]) -> None:
     import numpy as np
 
     for index, each in enumerate(group):
         x, y = np.array(each.x), np.array(each.y)
         name = _symbols(each.name)
-        if _is_line(each):
+        if each.role is Role.LIMIT:
             axes.plot(x, y, color=INK, linestyle=LINE_STYLES[index], linewidth=1.0, label=name)
             continue
         curve(axes, x, y, index, label=name)
-        if _is_loop(each):
+        if each.role is Role.OUTLINE:
             axes.fill(x, y, color=SERIES[index], alpha=0.12, linewidth=0)
     _scale(axes, group)
 
@@ -172,9 +168,10 @@ def _scale(axes: "Axes", group: Sequence[Series]) -> None:
     import numpy as np
 
     values = np.concatenate([each.y for each in group])
-    limits = [each.y[0] for each in group if _is_line(each)]
+    limits = [each.y[0] for each in group if each.role is Role.LIMIT]
     lowest = max(float(values.min()), min(limits, default=0.0) / 10.0)
-    if lowest > 0.0 and values.max() > LOGARITHMIC_SPAN.get(group[0].y_label[0], np.inf) * lowest:
+    span = min((LOGARITHMIC_SPAN.get(each.role, np.inf) for each in group), default=np.inf)
+    if lowest > 0.0 and values.max() > span * lowest:
         axes.set_yscale("log")
         if values.min() < lowest:
             axes.set_ylim(lowest, 2.0 * values.max())

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from wspd_design.reporting.figure_style import SERIES
 from wspd_design.reporting.figures.drawing import KILO, curve
-from wspd_design.studies.paper.disturbances import TrackChannel
+from wspd_design.studies.paper.disturbances import ChannelKind, TrackChannel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,7 +33,7 @@ def spectra(figure: "Figure", channels: Sequence[TrackChannel]) -> "Figure":
         axes.xaxis.set_major_locator(FixedLocator([0.3, 0.5, 1.0, 2.0]))
         axes.xaxis.set_major_formatter(ScalarFormatter())
         axes.xaxis.set_minor_locator(NullLocator())
-        unit = "rad²" if is_angle(each.channel) else "m²"
+        unit = "rad²" if each.kind is ChannelKind.ANGLE else "m²"
         axes.set_ylabel(f"density [{unit}/(rad/m)]")
     row[0].legend(loc="lower left")
     return figure
@@ -44,18 +44,11 @@ def profiles(figure: "Figure", channels: Sequence[TrackChannel]) -> "Figure":
     rows = figure.subplots(len(channels), 1, sharex=True)
     for axes, each in zip(rows, channels, strict=True):
         curve(axes, each.distance, each.profile * KILO, 0, most=MOST, linewidth=0.9)
-        axes.set(
-            title=each.channel,
-            ylabel="angle [mrad]"
-            if is_angle(each.channel)
-            else "height [mm]"
-            if each.channel.startswith("v")
-            else "offset [mm]",
-        )
+        axes.set(title=each.channel, ylabel=f"{each.kind.value} [{milli_unit(each)}]")
     rows[-1].set(xlabel="distance [m]", xlim=(0.0, float(channels[0].distance[-1])))
     return figure
 
 
-def is_angle(channel: str) -> bool:
-    """Tell whether a channel is an angle: the cross level."""
-    return channel.startswith("cross-level")
+def milli_unit(channel: TrackChannel) -> str:
+    """Return the unit of a thousandth of a channel's profile."""
+    return "mrad" if channel.kind is ChannelKind.ANGLE else "mm"

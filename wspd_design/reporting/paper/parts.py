@@ -1,9 +1,28 @@
 """What in the paper's law does the work: the law with its parts taken out."""
 
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Column, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import Block, Heading, Paragraph
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
+from wspd_design.studies.paper.evidence import Ablation
 from wspd_design.studies.paper.reproduction import Reproduction
+
+LAWS = (
+    ("printed, u in kN m", "printed"),
+    ("printed, u as share of the maximum", "as_share"),
+    ("the same without adaptation", "unadapted"),
+    ("a relay: fill where s > 0, else vent", "relay"),
+    ("u in kN m without adaptation", "unadapted_printed"),
+)
+"""Each law in words, and the field of its distance."""
+
+OUTCOMES = (
+    ("largest weight, in maximum torques", "largest_weight", 0),
+    ("bound, in its initial values", "bound_growth", 0),
+    ("late ripple of the slip", "ripple", 3),
+    ("late ripple, near-ideal actuator", "ideal_ripple", 3),
+)
+"""Each outcome in words, its field and its decimals."""
 
 
 def parts(made: Reproduction) -> tuple[Block, ...]:
@@ -20,40 +39,20 @@ def parts(made: Reproduction) -> tuple[Block, ...]:
                 "the distance with each part taken out."
             )
         ),
-        Table(
-            columns=(
-                Column(title="Law"),
-                *(Column(title=each.rail, unit="m", align="right") for each in ablations),
-            ),
-            rows=(
-                ("printed, u in kN m", *(_distance(each.printed) for each in ablations)),
-                ("printed, u as share of the maximum", *(_distance(each.as_share) for each in ablations)),
-                ("the same without adaptation", *(_distance(each.unadapted) for each in ablations)),
-                ("a relay: fill where s > 0, else vent", *(_distance(each.relay) for each in ablations)),
-                ("u in kN m without adaptation", *(_distance(each.unadapted_printed) for each in ablations)),
+        build(
+            LAWS,
+            (
+                ColumnOf(title="Law", read=lambda law: law[0]),
+                *(_distance(each) for each in ablations),
             ),
             caption="Distances of the law and of its parts.",
             anchor="parts-distances",
         ),
-        Table(
-            columns=(
-                Column(title="At the end of the stop"),
-                *(Column(title=each.rail, align="right") for each in ablations),
-            ),
-            rows=(
-                (
-                    "largest weight, in maximum torques",
-                    *(numbers.decimals(each.largest_weight, 0) for each in ablations),
-                ),
-                (
-                    "bound, in its initial values",
-                    *(numbers.decimals(each.bound_growth, 0) for each in ablations),
-                ),
-                ("late ripple of the slip", *(numbers.decimals(each.ripple, 3) for each in ablations)),
-                (
-                    "late ripple, near-ideal actuator",
-                    *(numbers.decimals(each.ideal_ripple, 3) for each in ablations),
-                ),
+        build(
+            OUTCOMES,
+            (
+                ColumnOf(title="At the end of the stop", read=lambda outcome: outcome[0]),
+                *(_outcome(each) for each in ablations),
             ),
             caption="What the adaptation arrives at, and the ripple of the slip in the second half of the time above "
             f"10 km/h: with the valve of {evidence.fill_time:g} s at 100 ms, and with one of "
@@ -63,5 +62,15 @@ def parts(made: Reproduction) -> tuple[Block, ...]:
     )
 
 
-def _distance(value: float) -> str:
-    return numbers.decimals(value, 1)
+def _distance(ablation: Ablation) -> ColumnOf[tuple[str, str]]:
+    return ColumnOf(
+        title=ablation.rail, unit="m", decimals=1, read=lambda law: float(getattr(ablation, law[1]))
+    )
+
+
+def _outcome(ablation: Ablation) -> ColumnOf[tuple[str, str, int]]:
+    return ColumnOf(
+        title=ablation.rail,
+        flush_right=True,
+        read=lambda outcome: numbers.decimals(getattr(ablation, outcome[1]), outcome[2]),
+    )

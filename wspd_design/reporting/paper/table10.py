@@ -1,10 +1,11 @@
 """Table 10 beside our stops, taken apart into build-up and plateau, and the same stops on other friction."""
 
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Column, Equation, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import Block, Equation, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO
-from wspd_design.reporting.text import Text, rich
-from wspd_design.studies.paper.evidence import CONTROLLERS, RAILS, UNPROTECTED, StopFigures
+from wspd_design.reporting.tables import ColumnOf, Uncertain, build
+from wspd_design.reporting.text import rich
+from wspd_design.studies.paper.evidence import CONTROLLERS, RAILS, UNPROTECTED, Evidence
 from wspd_design.studies.paper.reproduction import Reproduction
 from wspd_design.studies.paper.table10 import Table10Row, largest, relative_range, root_mean_square
 
@@ -52,7 +53,7 @@ def table10(made: Reproduction) -> tuple[Block, ...]:
         Paragraph(
             text=rich(
                 "The same controllers on the friction of Polach (2005), which the paper cites and which falls "
-                "with the sliding speed, and beside stops that no controller can beat."
+                "with the sliding speed, and beside ideal stops, simulations of a brake that holds the slip."
             )
         ),
         _ranking(made),
@@ -60,31 +61,44 @@ def table10(made: Reproduction) -> tuple[Block, ...]:
 
 
 def _numbers(rows: tuple[Table10Row, ...]) -> Table:
-    return Table(
-        columns=(
-            Column(title="Controller"),
-            Column(title="Rail"),
-            *(
-                Column(title=title, unit=unit, align="right")
-                for quantity, spelled in (("Distance", "m"), ("Time", "s"), ("Torque integral", "kN m s"))
-                for title, unit in ((f"{quantity}, paper", spelled), ("here", spelled), ("off by", "%"))
+    def off(index: int) -> ColumnOf[Table10Row]:
+        return ColumnOf(
+            title="off by", unit="%", decimals=2, read=lambda each: 100.0 * each.deviations[index]
+        )
+
+    return build(
+        rows,
+        (
+            ColumnOf(title="Controller", read=lambda each: each.published.controller),
+            ColumnOf(title="Rail", read=lambda each: each.published.rail.removeprefix("table10-")),
+            ColumnOf(
+                title="Distance, paper", unit="m", decimals=2, read=lambda each: each.published.distance_m
             ),
-        ),
-        rows=tuple(
-            (
-                each.published.controller,
-                each.published.rail.removeprefix("table10-"),
-                numbers.decimals(each.published.distance_m, 2),
-                numbers.uncertain(each.metrics.distance, each.spread, 2),
-                _percent(each.deviations[0]),
-                numbers.decimals(each.published.stopping_time_s, 1),
-                numbers.decimals(each.metrics.stopping_time, 2),
-                _percent(each.deviations[1]),
-                numbers.decimals(each.published.torque_integral_kNms, 2),
-                numbers.decimals(each.metrics.torque_integral / KILO, 1),
-                _percent(each.deviations[2]),
-            )
-            for each in rows
+            ColumnOf(
+                title="here",
+                unit="m",
+                decimals=2,
+                read=lambda each: Uncertain(value=each.metrics.distance, spread=each.spread),
+            ),
+            off(0),
+            ColumnOf(
+                title="Time, paper", unit="s", decimals=1, read=lambda each: each.published.stopping_time_s
+            ),
+            ColumnOf(title="here", unit="s", decimals=2, read=lambda each: each.metrics.stopping_time),
+            off(1),
+            ColumnOf(
+                title="Torque integral, paper",
+                unit="kN m s",
+                decimals=2,
+                read=lambda each: each.published.torque_integral_kNms,
+            ),
+            ColumnOf(
+                title="here",
+                unit="kN m s",
+                decimals=1,
+                read=lambda each: each.metrics.torque_integral / KILO,
+            ),
+            off(2),
         ),
         caption=f"The 24 numbers of Table 10, {len(rows)} stops of the four-axle locomotive. Deviations: "
         f"{numbers.decimals(100.0 * root_mean_square(rows), 2)} % rms, "
@@ -96,25 +110,20 @@ def _numbers(rows: tuple[Table10Row, ...]) -> Table:
 
 def _parts(made: Reproduction) -> Table:
     speed = made.evidence.initial_speed
-    return Table(
-        columns=(
-            Column(title="Controller"),
-            Column(title="Rail"),
-            Column(title="Lag, paper", unit="s", align="right"),
-            Column(title="here", unit="s", align="right"),
-            Column(title="Plateau, paper", unit="m/s²", align="right"),
-            Column(title="here", unit="m/s²", align="right"),
-        ),
-        rows=tuple(
-            (
-                each.published.controller,
-                each.published.rail.removeprefix("table10-"),
-                numbers.decimals(each.published.lag(speed), 2),
-                numbers.decimals(each.metrics.lag, 2),
-                numbers.decimals(each.published.plateau(speed), 2),
-                numbers.decimals(each.metrics.plateau, 2),
-            )
-            for each in made.table10
+    return build(
+        made.table10,
+        (
+            ColumnOf(title="Controller", read=lambda each: each.published.controller),
+            ColumnOf(title="Rail", read=lambda each: each.published.rail.removeprefix("table10-")),
+            ColumnOf(title="Lag, paper", unit="s", decimals=2, read=lambda each: each.published.lag(speed)),
+            ColumnOf(title="here", unit="s", decimals=2, read=lambda each: each.metrics.lag),
+            ColumnOf(
+                title="Plateau, paper",
+                unit="m/s²",
+                decimals=2,
+                read=lambda each: each.published.plateau(speed),
+            ),
+            ColumnOf(title="here", unit="m/s²", decimals=2, read=lambda each: each.metrics.plateau),
         ),
         caption="Lag and plateau. The plateaus on one rail are nearly equal: the friction gives no more and no less.",
         anchor="table10-parts",
@@ -122,25 +131,29 @@ def _parts(made: Reproduction) -> Table:
 
 
 def _momentum(rows: tuple[Table10Row, ...]) -> Table:
-    return Table(
-        columns=(
-            Column(title="Controller"),
-            Column(title="Rail"),
-            Column(title="Paper", unit="kN m s", align="right"),
-            Column(title="Integrated", unit="kN m s", align="right"),
-            Column(title="From momentum", unit="kN m s", align="right"),
-            Column(title="Air vented", unit="cylinders", align="right"),
-        ),
-        rows=tuple(
-            (
-                each.published.controller,
-                each.published.rail.removeprefix("table10-"),
-                numbers.decimals(each.published.torque_integral_kNms, 1),
-                numbers.decimals(each.metrics.torque_integral / KILO, 1),
-                numbers.decimals(each.momentum / KILO, 1),
-                numbers.decimals(each.metrics.vented_air, 2),
-            )
-            for each in rows
+    return build(
+        rows,
+        (
+            ColumnOf(title="Controller", read=lambda each: each.published.controller),
+            ColumnOf(title="Rail", read=lambda each: each.published.rail.removeprefix("table10-")),
+            ColumnOf(
+                title="Paper",
+                unit="kN m s",
+                decimals=1,
+                read=lambda each: each.published.torque_integral_kNms,
+            ),
+            ColumnOf(
+                title="Integrated",
+                unit="kN m s",
+                decimals=1,
+                read=lambda each: each.metrics.torque_integral / KILO,
+            ),
+            ColumnOf(
+                title="From momentum", unit="kN m s", decimals=1, read=lambda each: each.momentum / KILO
+            ),
+            ColumnOf(
+                title="Air vented", unit="cylinders", decimals=2, read=lambda each: each.metrics.vented_air
+            ),
         ),
         caption="Torque integral, what the momentum leaves for it (to standstill), and the air that is really "
         "let out: full brake cylinders per wheelset.",
@@ -150,38 +163,30 @@ def _momentum(rows: tuple[Table10Row, ...]) -> Table:
 
 def _ranking(made: Reproduction) -> Table:
     evidence = made.evidence
-    rows: list[tuple[Text, ...]] = [
-        (
-            name,
-            *(
-                _place(evidence.stop(name, rail), [each.controller for each in evidence.ranking(rail)])
-                for rail in RAILS
-            ),
-        )
-        for name in (*CONTROLLERS, UNPROTECTED)
-    ]
+    rows = [(name, [_place(evidence, name, rail) for rail in RAILS]) for name in (*CONTROLLERS, UNPROTECTED)]
     for title, field in (
         ("slip held at the reference", "constant_slip"),
-        ("bound: adhesion peak", "bound"),
-        ("the same, full torque at once", "bound_at_once"),
+        ("ideal stop: adhesion peak held", "ideal_stop"),
+        ("the same, full torque at once", "ideal_at_once"),
     ):
         values = [getattr(evidence.yardstick(rail), field) for rail in RAILS]
-        rows.append((title, *(numbers.decimals(value, 1) for value in values)))
-    return Table(
-        columns=(Column(title="Stop"), *(Column(title=rail, unit="m", align="right") for rail in RAILS)),
-        rows=tuple(rows),
+        rows.append((title, [numbers.decimals(value, 1) for value in values]))
+
+    def on(index: int) -> ColumnOf[tuple[str, list[str]]]:
+        return ColumnOf(title=RAILS[index], unit="m", flush_right=True, read=lambda row: row[1][index])
+
+    return build(
+        rows,
+        (ColumnOf(title="Stop", read=lambda row: row[0]), *map(on, range(len(RAILS)))),
         caption="Distances, and in brackets the place among the four controllers of the paper. ±: half the spread of "
         "a chaotic closed loop over initial speeds that differ by millionths.",
         anchor="distances",
     )
 
 
-def _place(stop: StopFigures, ranking: list[str]) -> str:
+def _place(evidence: Evidence, name: str, rail: str) -> str:
+    """Write a distance, and among the controllers of the paper its place."""
+    stop = evidence.stop(name, rail)
+    ranking = [each.controller for each in evidence.ranking(rail)]
     distance = numbers.uncertain(stop.metrics.distance, stop.check.spread, 1)
-    if stop.controller not in ranking:
-        return distance
-    return f"{distance} ({ranking.index(stop.controller) + 1})"
-
-
-def _percent(share: float) -> str:
-    return numbers.decimals(100.0 * share, 2)
+    return f"{distance} ({ranking.index(name) + 1})" if name in ranking else distance

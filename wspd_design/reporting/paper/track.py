@@ -1,14 +1,16 @@
 """Table 9, a synthesized track with its spectrum checked, and what the disturbances change."""
 
+import math
+from collections.abc import Callable
 from functools import partial
 
-from wspd_design.parameters.records import SpectrumCoefficients
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Column, Equation, Figure, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import Block, Equation, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO, picture
-from wspd_design.reporting.figures.track import is_angle, profiles, spectra
+from wspd_design.reporting.figures.track import milli_unit, profiles, spectra
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
-from wspd_design.studies.paper.disturbances import LOAD_SPREAD, largest_change
+from wspd_design.studies.paper.disturbances import LOAD_SPREAD, TrackChannel, largest_change
 from wspd_design.studies.paper.reproduction import Reproduction
 
 PRINTED = {
@@ -24,7 +26,7 @@ def track(made: Reproduction) -> tuple[Block, ...]:
     ratios = [each.ratio for each in made.track]
     changes = made.disturbances
     calm, chaotic = (numbers.decimals(largest_change(changes, chaotic=which), 1) for which in (False, True))
-    bound = numbers.decimals(max(map(abs, made.bound_changes)), 2)
+    ideal = numbers.decimals(max(map(abs, made.ideal_changes)), 2)
     return (
         Heading(text="Table 9 and the track", anchor="track"),
         Equation(
@@ -62,8 +64,7 @@ def track(made: Reproduction) -> tuple[Block, ...]:
             f"25 m, seed {made.provenance.seed}.",
             alt="Irregularity over distance: "
             + "; ".join(
-                f"{each.channel} within ±{abs(each.profile).max() * KILO:.1f} "
-                f"{'mrad' if is_angle(each.channel) else 'mm'}"
+                f"{each.channel} within ±{abs(each.profile).max() * KILO:.1f} {milli_unit(each)}"
                 for each in made.track
             )
             + ".",
@@ -74,8 +75,9 @@ def track(made: Reproduction) -> tuple[Block, ...]:
             text="The paper adds a vibration of the pads and an irregular track to its stops. How a wheel load "
             "follows the track depends on a suspension that the paper does not print. Here the load of each wheelset "
             "has the shape of the vertical profile, as each axle meets it, with an assumed standard deviation of "
-            f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. The bound "
-            f"changes by {bound} m at most: what the track costs a perfect brake. A real law switches at other "
+            f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. The ideal "
+            f"stop changes by {ideal} m at most: what the track costs a brake that holds the best slip. "
+            "A real law switches at other "
             f"moments than before, and its distance changes by up to {calm} m"
             + (f", that of a chaotic loop by up to {chaotic} m." if any(d.spread for d in changes) else ".")
         ),
@@ -84,29 +86,31 @@ def track(made: Reproduction) -> tuple[Block, ...]:
 
 
 def _coefficients(made: Reproduction) -> Table:
-    def row(channel: str, used: SpectrumCoefficients, sigma: float, found: float) -> tuple[str, ...]:
-        unit = "mrad" if is_angle(channel) else "mm"
-        coefficients = (used.beta0, used.beta2, used.gamma0, used.gamma2, used.gamma4, used.gamma6)
-        return (
-            PRINTED[channel],
-            channel,
-            *(numbers.significant(value, 7) for value in coefficients),
-            f"{numbers.decimals(sigma * KILO, 2)} {unit}",
-            f"{numbers.decimals(found * KILO, 2)} {unit}",
+    def coefficient(title: str, field: str) -> ColumnOf[TrackChannel]:
+        return ColumnOf(
+            title=title, significant=7, read=lambda each: getattr(made.spectra.rows[each.channel], field)
         )
 
-    names = ("β0", "β2", "γ0", "γ2", "γ4", "γ6")
-    return Table(
-        columns=(
-            Column(title="In Table 9"),
-            Column(title="What it is"),
-            *(Column(title=name, align="right") for name in names),
-            Column(title="σ of (49)", align="right"),
-            Column(title="σ found", align="right"),
-        ),
-        rows=tuple(
-            row(each.channel, made.spectra.rows[each.channel], each.sigma, each.found_sigma)
-            for each in made.track
+    def deviation(title: str, read: Callable[[TrackChannel], float]) -> ColumnOf[TrackChannel]:
+        return ColumnOf(
+            title=title,
+            flush_right=True,
+            read=lambda each: f"{numbers.decimals(read(each) * KILO, 2)} {milli_unit(each)}",
+        )
+
+    return build(
+        made.track,
+        (
+            ColumnOf(title="In Table 9", read=lambda each: PRINTED[each.channel]),
+            ColumnOf(title="What it is", read=lambda each: each.channel),
+            coefficient("β0", "beta0"),
+            coefficient("β2", "beta2"),
+            coefficient("γ0", "gamma0"),
+            coefficient("γ2", "gamma2"),
+            coefficient("γ4", "gamma4"),
+            coefficient("γ6", "gamma6"),
+            deviation("σ of (49)", lambda each: each.sigma),
+            deviation("σ found", lambda each: each.found_sigma),
         ),
         caption="Coefficients of eq. (49) as used, and the standard deviation for wavelengths of 3 to 25 m: from the "
         "spectrum, and of the synthesized profile.",
@@ -115,23 +119,19 @@ def _coefficients(made: Reproduction) -> Table:
 
 
 def _disturbances(made: Reproduction) -> Table:
-    return Table(
-        columns=(
-            Column(title="Controller"),
-            Column(title="Rail"),
-            Column(title="Vibrating pads", unit="m", align="right"),
-            Column(title="Irregular track", unit="m", align="right"),
-            Column(title="Chaotic spread", unit="m", align="right"),
-        ),
-        rows=tuple(
-            (
-                each.controller,
-                each.rail,
-                numbers.significant(each.by_pads, 2),
-                numbers.decimals(each.by_track, 2),
-                numbers.decimals(each.spread, 1) if each.spread else numbers.NONE,
-            )
-            for each in made.disturbances
+    return build(
+        made.disturbances,
+        (
+            ColumnOf(title="Controller", read=lambda each: each.controller),
+            ColumnOf(title="Rail", read=lambda each: each.rail),
+            ColumnOf(title="Vibrating pads", unit="m", significant=2, read=lambda each: each.by_pads),
+            ColumnOf(title="Irregular track", unit="m", decimals=2, read=lambda each: each.by_track),
+            ColumnOf(
+                title="Chaotic spread",
+                unit="m",
+                decimals=1,
+                read=lambda each: each.spread or math.nan,
+            ),
         ),
         caption="Change of the distance with each disturbance alone.",
         anchor="disturbances-table",

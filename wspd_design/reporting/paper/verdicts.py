@@ -6,7 +6,6 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Block,
     Cell,
-    Column,
     Definition,
     Definitions,
     Heading,
@@ -14,9 +13,9 @@ from wspd_design.reporting.blocks import (
     KeyNumbers,
     Paragraph,
     Status,
-    Table,
     Verdict,
 )
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Link
 from wspd_design.studies.paper.conclusions.records import Conclusion
 from wspd_design.studies.paper.conclusions.records import Verdict as Finding
@@ -83,15 +82,15 @@ def summary(made: Reproduction) -> tuple[Block, ...]:
             ),
         )
     )
-    table = Table(
-        columns=(Column(title="Conclusion of the paper"), Column(title="Finding"), Column(title="Where")),
-        rows=tuple(
-            (
-                (Link(anchor=_anchor(each), text=each.claim),),
-                Cell(status=Status[each.verdict.name]),
-                each.place,
-            )
-            for each in made.conclusions
+    table = build(
+        made.conclusions,
+        (
+            ColumnOf(
+                title="Conclusion of the paper",
+                read=lambda each: (Link(anchor=_anchor(each), text=each.claim),),
+            ),
+            ColumnOf(title="Finding", read=lambda each: Cell(status=Status[each.verdict.name])),
+            ColumnOf(title="Where", read=lambda each: each.place),
         ),
         caption="What the paper concludes from its simulations, and whether our stops say so too.",
         anchor="conclusions-table",

@@ -7,6 +7,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.text import Text, rich
+from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.studies.dossier import Dossier
 
 
@@ -31,7 +32,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Rotating inertia", f"{_value(vehicle, 'wheelset_inertia')} per wheelset"),
         ("Wheel radius", _value(vehicle, "wheel_radius")),
         ("Brake", brake),
-        ("Rail of the stops", friction),
+        ("Rail", friction),
         (
             "Controller",
             f"{family.heading}, {family.origin}; design {design.name}, made on rail {design.rail}",
@@ -40,6 +41,8 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),
         ("Sample time", format_quantity(specification.sample_time, "ms")),
         ("Plant of the stops", f"{dossier.trials[0].run.plant} locomotive"),
+        ("Rails of the stops", rails_of(dossier.scenario)),
+        ("Disturbances of the stops", disturbances_of(dossier.scenario) or "none"),
     )
     return (
         Heading(text="Vehicle, rail and controller", anchor="case"),

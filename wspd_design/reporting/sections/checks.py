@@ -4,7 +4,7 @@ import shlex
 from functools import partial
 
 from wspd_design.certificates.kernel.file import certificate_text, file_name
-from wspd_design.certificates.records import Certificate, Map, Proof
+from wspd_design.certificates.records import Certificate, Map
 from wspd_design.certificates.records import Status as Finding
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
@@ -12,7 +12,6 @@ from wspd_design.reporting.blocks import (
     Block,
     Cell,
     Code,
-    Column,
     Definition,
     Definitions,
     Figure,
@@ -30,6 +29,7 @@ from wspd_design.reporting.figures.series import (
     series_alt,
     series_caption,
 )
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 
@@ -37,7 +37,7 @@ MAP_HEIGHT = 2.6  # in
 
 MEANINGS = {
     Status.REFUTED: Finding.REFUTED.value,
-    Status.LIMIT: f"{Finding.PROVED.value}, and says what the closed loop cannot do",
+    Status.LIMITATION: Finding.LIMITATION.value,
     Status.UNDECIDED: Finding.UNDECIDED.value,
     Status.EVIDENCE: Finding.EVIDENCE.value,
     Status.PROVED: Finding.PROVED.value,
@@ -48,10 +48,13 @@ MEANINGS = {
 
 
 def status_of(certificate: Certificate) -> Status:
-    """Return the finding as the report shows it: a limitation that is proved is no good news."""
-    if certificate.limitation and certificate.status is Finding.PROVED:
-        return Status.LIMIT
+    """Return the finding as the report shows it."""
     return Status[certificate.status.name]
+
+
+def is_bad_news(certificate: Certificate) -> bool:
+    """Tell whether a verdict speaks against the closed loop: a claim refuted, or a limitation proved."""
+    return status_of(certificate) in (Status.REFUTED, Status.LIMITATION)
 
 
 def check_anchor(certificate: Certificate) -> str:
@@ -66,7 +69,7 @@ def certificate_files(dossier: Dossier) -> tuple[Attachment, ...]:
             name=file_name(certificate),
             media_type="application/json",
             content=certificate_text(certificate),
-            description=f"{'proofs' if certificate.proofs else 'witness'} of the check {certificate.name}",
+            description=f"certificate of the check {certificate.name}",
         )
         for certificate in _kept(dossier)
     )
@@ -74,7 +77,7 @@ def certificate_files(dossier: Dossier) -> tuple[Attachment, ...]:
 
 def _kept(dossier: Dossier) -> tuple[Certificate, ...]:
     """Return the certificates that have a file, as ``wspd certify`` writes them."""
-    return tuple(each for each in dossier.certificates if each.proofs or each.status is Finding.REFUTED)
+    return tuple(each for each in dossier.certificates if each.status is not Finding.NOT_APPLICABLE)
 
 
 def checks(dossier: Dossier) -> tuple[Block, ...]:
@@ -129,10 +132,11 @@ def _check(certificate: Certificate) -> list[Block]:
     ]
     if certificate.hypotheses:
         found.append(
-            Table(
-                columns=(Column(title="Hypothesis"), Column(title="Finding")),
-                rows=tuple(
-                    (each.text, Cell(status=Status[each.status.name])) for each in certificate.hypotheses
+            build(
+                certificate.hypotheses,
+                (
+                    ColumnOf(title="Hypothesis", read=lambda each: each.text),
+                    ColumnOf(title="Finding", read=lambda each: Cell(status=Status[each.status.name])),
                 ),
                 caption="What the claim needs.",
                 anchor=f"{anchor}-hypotheses",
@@ -140,7 +144,7 @@ def _check(certificate: Certificate) -> list[Block]:
         )
     if certificate.status is not Finding.NOT_APPLICABLE:
         found.append(Definitions(rows=_details(certificate)))
-    if certificate.proofs:
+    if certificate.proved:
         found.append(_proofs(certificate))
     if certificate.status is not Finding.NOT_APPLICABLE:
         found += _figures(certificate, anchor)
@@ -177,22 +181,16 @@ def _map(shown: Map, anchor: str) -> Figure:
 
 def _proofs(certificate: Certificate) -> Table:
     """List what the checker accepted; times are left out, because they change from run to run."""
-    return Table(
-        columns=(
-            Column(title="Proved"),
-            Column(title="Boxes", align="right"),
-            Column(title="Size", unit="bytes", align="right"),
-            Column(title="SHA-256"),
+    return build(
+        tuple(certificate.proved.values()),
+        (
+            ColumnOf(title="Proved", read=lambda each: each.shown),
+            ColumnOf(title="Boxes", decimals=0, read=lambda each: each.leaves),
         ),
-        rows=tuple(_proof(each) for each in certificate.proofs),
-        caption="What the independent checker accepted; boxes that it decided, size of the proof and SHA-256 of "
-        f"the claim. Attached as {file_name(certificate)}.",
+        caption="What the independent checker accepted, and the boxes that it decided. Attached as "
+        f"{file_name(certificate)}.",
         anchor=f"{check_anchor(certificate)}-proofs",
     )
-
-
-def _proof(proof: Proof) -> tuple[str, ...]:
-    return proof.statement, str(proof.leaves), str(len(proof.certificate.encode())), proof.claim_hash[:16]
 
 
 def _details(certificate: Certificate) -> tuple[Definition, ...]:
@@ -202,10 +200,11 @@ def _details(certificate: Certificate) -> tuple[Definition, ...]:
         ("Tightest point", numbers.point(certificate.worst_point)),
         ("Witness", numbers.point(certificate.witness)),
         ("Assumptions", "; ".join(certificate.assumptions)),
-        ("Left open", open_share if certificate.proofs or certificate.undecided else ""),
+        ("Left open", open_share if certificate.undecided else ""),
+        ("Search", "ended by its budget" if certificate.cut else ""),
+        ("Samples", certificate.remark),
+        ("Held", ", ".join(certificate.held)),
         ("Method", certificate.method),
-        ("Engine", certificate.engine),
-        ("Resolution", certificate.resolution),
         ("Reference", certificate.reference),
         ("Name, model", f"{certificate.name}, {certificate.model_hash[:16]}"),
     )

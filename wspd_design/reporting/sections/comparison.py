@@ -1,12 +1,12 @@
 """The same stop with every controller, and the paper's Table 10 where it applies."""
 
+import math
 from functools import partial
 
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Block,
     Cell,
-    Column,
     Figure,
     Heading,
     Paragraph,
@@ -15,9 +15,12 @@ from wspd_design.reporting.blocks import (
 )
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all, slips_alt
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
-from wspd_design.reporting.text import CodeSpan, Text
+from wspd_design.reporting.sections.checks import check_anchor
+from wspd_design.reporting.tables import ColumnOf, Uncertain, build
+from wspd_design.reporting.text import CodeSpan, Link, Text
+from wspd_design.reporting.yardsticks import ideal_distance, ideal_sentence, proved_bound
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.paper.published import PublishedStop, load_table10
 
@@ -38,11 +41,12 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
         Figure(
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
             caption="Stopping distances. Dark: initial speed times lag, what the brake build-up costs; "
-            f"light: the rest, at the plateau deceleration. Dashed: the bound of "
-            f"{numbers.decimals(trials[0].metrics.bound, 1)} m, which no controller can beat.{marked}",
+            f"light: the rest, at the plateau deceleration. Dashed: the ideal stop, "
+            f"{ideal_distance(trials[0].metrics)}, a simulation of a brake that holds the best slip.{marked}",
             alt=distances_alt(trials, dossier.lag_distances),
             anchor="distances",
         ),
+        Paragraph(text=_yardsticks(dossier)),
         Paragraph(text=_ranking(dossier)),
         _stops(trials),
         _efforts(trials),
@@ -65,11 +69,23 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
     return tuple(found)
 
 
+def _yardsticks(dossier: Dossier) -> Text:
+    """Set the simulated yardstick and the proved one side by side, each under its own name."""
+    ideal = ideal_sentence(dossier.trials[0].metrics)
+    proved = proved_bound(dossier.certificates)
+    if proved is None:
+        return f"{ideal} No bound on the distance is proved."
+    link = Link(anchor=check_anchor(proved.certificate), text=proved.certificate.name)
+    return (f"{ideal} Proved, in the check ", link, f": {proved.certificate.claim}")
+
+
 def _published(dossier: Dossier) -> dict[str, PublishedStop]:
-    """Return the paper's stops, if the rail is one that reproduces them and the stops start alike."""
+    """Return the paper's stops, if the rail is one that reproduces them, the stops start alike and undisturbed."""
     table10 = load_table10()
-    same_start = abs(dossier.initial_speed * KMH - table10.initial_speed_kmh) < 1e-6
-    return table10.on(dossier.trials[0].run.rail) if same_start else {}
+    same_start = abs(dossier.scenario.initial_speed * KMH - table10.initial_speed_kmh) < 1e-6
+    made = dossier.scenario
+    plain = made == Scenario(rail=made.rail, initial_speed=made.initial_speed, seed=made.seed)
+    return table10.on(dossier.trials[0].run.rail) if same_start and plain else {}
 
 
 def _ranking(dossier: Dossier) -> Text:
@@ -112,36 +128,34 @@ def _ranking(dossier: Dossier) -> Text:
 
 
 def _stops(trials: tuple[Trial, ...]) -> Table:
-    return Table(
-        columns=(
-            Column(title="Controller"),
-            Column(title="Distance", unit="m", align="right"),
-            Column(title="Efficiency", unit="%", align="right"),
-            Column(title="Time", unit="s", align="right"),
-            Column(title="Lag", unit="s", align="right"),
-            Column(title="Plateau", unit="m/s²", align="right"),
-            Column(title="Slip rms", unit="-", align="right"),
-            Column(title="Mean", unit="-", align="right"),
-            Column(title="Largest", unit="-", align="right"),
-            Column(title="Locked", unit="s", align="right"),
+    return build(
+        trials,
+        (
+            ColumnOf(
+                title="Controller",
+                read=lambda each: (
+                    each.run.controller + ("" if each.run.ending is Ending.STOPPED else ", still moving")
+                ),
+            ),
+            ColumnOf(
+                title="Distance",
+                unit="m",
+                decimals=1,
+                read=lambda each: Uncertain(value=each.metrics.distance, spread=each.check.spread),
+            ),
+            ColumnOf(
+                title="Efficiency", unit="%", decimals=1, read=lambda each: 100.0 * each.metrics.efficiency
+            ),
+            ColumnOf(title="Time", unit="s", decimals=2, read=lambda each: each.metrics.stopping_time),
+            ColumnOf(title="Lag", unit="s", decimals=2, read=lambda each: each.metrics.lag),
+            ColumnOf(title="Plateau", unit="m/s²", decimals=2, read=lambda each: each.metrics.plateau),
+            ColumnOf(title="Slip rms", unit="-", decimals=3, read=lambda each: each.metrics.slip_rms),
+            ColumnOf(title="Mean", unit="-", decimals=3, read=lambda each: each.metrics.slip_mean),
+            ColumnOf(title="Largest", unit="-", decimals=3, read=lambda each: each.metrics.slip_max),
+            ColumnOf(title="Locked", unit="s", decimals=2, read=lambda each: each.metrics.lock_time),
         ),
-        rows=tuple(
-            (
-                each.run.controller + ("" if each.run.ending is Ending.STOPPED else ", still moving"),
-                numbers.uncertain(each.metrics.distance, each.check.spread, 1),
-                numbers.decimals(100.0 * each.metrics.efficiency, 1),
-                numbers.decimals(each.metrics.stopping_time, 2),
-                numbers.decimals(each.metrics.lag, 2),
-                numbers.decimals(each.metrics.plateau, 2),
-                numbers.decimals(each.metrics.slip_rms, 3),
-                numbers.decimals(each.metrics.slip_mean, 3),
-                numbers.decimals(each.metrics.slip_max, 3),
-                numbers.decimals(each.metrics.lock_time, 2),
-            )
-            for each in trials
-        ),
-        caption=f"Stops of the {trials[0].run.plant} locomotive; this design first. The bound is "
-        f"{numbers.decimals(trials[0].metrics.bound, 1)} m, efficiency is bound over distance. Slip of all "
+        caption=f"Stops of the {trials[0].run.plant} locomotive; this design first. The ideal stop: "
+        f"{ideal_distance(trials[0].metrics)}; efficiency is ideal stop over distance. Slip of all "
         "wheelsets about its reference above 10 km/h; locked: the wheelset that is locked longest. Lag "
         "2 d/v0 − t and plateau v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
         anchor="stops-table",
@@ -149,25 +163,32 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
 
 
 def _efforts(trials: tuple[Trial, ...]) -> Table:
-    return Table(
-        columns=(
-            Column(title="Controller"),
-            Column(title="Adhesion used", unit="%", align="right"),
-            Column(title="Torque integral", unit="kN m s", align="right"),
-            Column(title="Air vented", unit="cylinders", align="right"),
-            Column(title="Saturated samples", unit="%", align="right"),
-            Column(title="Valve switches", align="right"),
-        ),
-        rows=tuple(
-            (
-                each.run.controller,
-                numbers.decimals(100.0 * each.metrics.adhesion_utilization, 1),
-                numbers.decimals(each.metrics.torque_integral / KILO, 1),
-                numbers.decimals(each.metrics.vented_air, 2),
-                numbers.decimals(100.0 * each.metrics.saturated_share, 0),
-                str(each.metrics.valve_switches),
-            )
-            for each in trials
+    return build(
+        trials,
+        (
+            ColumnOf(title="Controller", read=lambda each: each.run.controller),
+            ColumnOf(
+                title="Adhesion used",
+                unit="%",
+                decimals=1,
+                read=lambda each: 100.0 * each.metrics.adhesion_utilization,
+            ),
+            ColumnOf(
+                title="Torque integral",
+                unit="kN m s",
+                decimals=1,
+                read=lambda each: each.metrics.torque_integral / KILO,
+            ),
+            ColumnOf(
+                title="Air vented", unit="cylinders", decimals=2, read=lambda each: each.metrics.vented_air
+            ),
+            ColumnOf(
+                title="Saturated samples",
+                unit="%",
+                decimals=0,
+                read=lambda each: 100.0 * each.metrics.saturated_share,
+            ),
+            ColumnOf(title="Valve switches", decimals=0, read=lambda each: each.metrics.valve_switches),
         ),
         caption="Effort of the same stops. Adhesion used: creep force over that of the adhesion peak, over the "
         "whole stop with its build-up. Air vented: full brake cylinders per wheelset. Torque integral: sum of "
@@ -177,29 +198,43 @@ def _efforts(trials: tuple[Trial, ...]) -> Table:
 
 
 def _accuracy(trials: tuple[Trial, ...]) -> Table:
-    return Table(
-        columns=(
-            Column(title="Controller"),
-            Column(title="Steps"),
-            Column(title="Distance, half steps", unit="relative", align="right"),
-            Column(title="Slip, half steps", unit="-", align="right"),
-            Column(title="Spread", unit="m", align="right"),
-            Column(title="Momentum residual", unit="-", align="right"),
-            Column(title="Energy residual", unit="-", align="right"),
-        ),
-        rows=tuple(
-            (
-                each.run.controller,
-                Cell(status=Status.UNDECIDED, text="chaotic")
-                if each.check.chaotic
-                else Cell(status=Status.GOOD, text=f"1/{each.check.refinement}"),
-                numbers.significant(each.check.distance, 2),
-                numbers.significant(each.check.slip, 2),
-                numbers.significant(each.check.spread, 2) if each.check.chaotic else numbers.NONE,
-                numbers.significant(each.metrics.momentum_residual, 2),
-                numbers.significant(each.metrics.energy_residual, 2),
-            )
-            for each in trials
+    return build(
+        trials,
+        (
+            ColumnOf(title="Controller", read=lambda each: each.run.controller),
+            ColumnOf(
+                title="Steps",
+                read=lambda each: (
+                    Cell(status=Status.UNDECIDED, text="chaotic")
+                    if each.check.chaotic
+                    else Cell(status=Status.GOOD, text=f"1/{each.check.refinement}")
+                ),
+            ),
+            ColumnOf(
+                title="Distance, half steps",
+                unit="relative",
+                significant=2,
+                read=lambda each: each.check.distance,
+            ),
+            ColumnOf(title="Slip, half steps", unit="-", significant=2, read=lambda each: each.check.slip),
+            ColumnOf(
+                title="Spread",
+                unit="m",
+                significant=2,
+                read=lambda each: each.check.spread if each.check.chaotic else math.nan,
+            ),
+            ColumnOf(
+                title="Momentum residual",
+                unit="-",
+                significant=2,
+                read=lambda each: each.metrics.momentum_residual,
+            ),
+            ColumnOf(
+                title="Energy residual",
+                unit="-",
+                significant=2,
+                read=lambda each: each.metrics.energy_residual,
+            ),
         ),
         caption="How far the simulation can be trusted: what half as long steps change in the distance and at "
         "most in the slip at any sample above 0.3 m/s, after steps of the usual length divided as stated. A "
@@ -211,32 +246,33 @@ def _accuracy(trials: tuple[Trial, ...]) -> Table:
 
 
 def _table10(trials: tuple[Trial, ...], published: dict[str, PublishedStop]) -> Table:
-    rows = []
-    for each in trials:
-        theirs = published.get(each.run.controller)
-        if theirs is not None:
-            rows.append(
-                (
-                    each.run.controller,
-                    numbers.decimals(theirs.distance_m, 2),
-                    numbers.uncertain(each.metrics.distance, each.check.spread, 2),
-                    numbers.decimals(theirs.stopping_time_s, 1),
-                    numbers.decimals(each.metrics.stopping_time, 1),
-                    numbers.decimals(theirs.torque_integral_kNms, 2),
-                    numbers.decimals(each.metrics.torque_integral / KILO, 2),
-                )
-            )
-    return Table(
-        columns=(
-            Column(title=f"Controller on {trials[0].run.rail}"),
-            Column(title="Distance, paper", unit="m", align="right"),
-            Column(title="here", unit="m", align="right"),
-            Column(title="Time, paper", unit="s", align="right"),
-            Column(title="here", unit="s", align="right"),
-            Column(title="Torque integral, paper", unit="kN m s", align="right"),
-            Column(title="here", unit="kN m s", align="right"),
+    pairs = [(each, published[each.run.controller]) for each in trials if each.run.controller in published]
+    return build(
+        pairs,
+        (
+            ColumnOf(title=f"Controller on {trials[0].run.rail}", read=lambda pair: pair[0].run.controller),
+            ColumnOf(title="Distance, paper", unit="m", decimals=2, read=lambda pair: pair[1].distance_m),
+            ColumnOf(
+                title="here",
+                unit="m",
+                decimals=2,
+                read=lambda pair: Uncertain(value=pair[0].metrics.distance, spread=pair[0].check.spread),
+            ),
+            ColumnOf(title="Time, paper", unit="s", decimals=1, read=lambda pair: pair[1].stopping_time_s),
+            ColumnOf(title="here", unit="s", decimals=1, read=lambda pair: pair[0].metrics.stopping_time),
+            ColumnOf(
+                title="Torque integral, paper",
+                unit="kN m s",
+                decimals=2,
+                read=lambda pair: pair[1].torque_integral_kNms,
+            ),
+            ColumnOf(
+                title="here",
+                unit="kN m s",
+                decimals=2,
+                read=lambda pair: pair[0].metrics.torque_integral / KILO,
+            ),
         ),
-        rows=tuple(rows),
         caption="Table 10 of the paper beside the same stops here. The friction of this rail and the "
         "baselines were fitted to that table, so that agreement confirms the fit and nothing else.",
         anchor="table10",

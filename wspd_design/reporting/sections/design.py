@@ -2,7 +2,8 @@
 
 from wspd_design.design.records import Design, GainValue
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Column, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import Block, Heading, Paragraph, Table
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 
@@ -25,11 +26,13 @@ def design(dossier: Dossier) -> tuple[Block, ...]:
 
 def gain_table(design: Design, *, caption: str, anchor: str) -> Table:
     """Return the gains of a design as a table."""
-    return Table(
-        columns=(Column(title="Gain"), Column(title="Value"), Column(title="Unit"), Column(title="Why")),
-        rows=tuple(
-            (gain.name.replace("_", " "), value_text(gain.value), numbers.unit(gain.unit) or "-", gain.why)
-            for gain in design.gains
+    return build(
+        design.gains,
+        (
+            ColumnOf(title="Gain", read=lambda gain: gain.name.replace("_", " ")),
+            ColumnOf(title="Value", read=lambda gain: value_text(gain.value)),
+            ColumnOf(title="Unit", read=lambda gain: numbers.unit(gain.unit) or "-"),
+            ColumnOf(title="Why", read=lambda gain: gain.why),
         ),
         caption=caption,
         anchor=anchor,

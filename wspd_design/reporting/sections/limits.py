@@ -1,18 +1,16 @@
 """What the report does not show, and how to make it again."""
 
+from dataclasses import replace
+
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
 from wspd_design.reporting.text import CodeSpan, Text, rich
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.description import disturbances_of
+from wspd_design.simulation.records import Run, Scenario, Sensing
 from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (
-    "Level, straight track in one condition from end to end; no patches, no cleaning of the rail by the "
-    "wheels ahead, no sand.",
-    "Train and wheel speed are measured without error, delay or quantization, and the train speed is known.",
-    "The valve follows its time constants; dead times, leakage, and a limit of the air supply are not "
-    "modeled.",
     "Friction of the pads is constant; heat, wear and flats are not modeled.",
     "Stops and checks sit on reconstructed data: the agreement with a real locomotive is unknown.",
     "EN 15595 and other standards are not checked: no statement about conformity is made.",
@@ -30,11 +28,36 @@ OF_PLANT = {
 def limits(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about limits."""
     run: Run = dossier.trials[0].run
-    items: list[Text] = [OF_PLANT[run.plant], *_chaos(dossier.trials)]
+    items: list[Text] = [OF_PLANT[run.plant], *_chaos(dossier.trials), *_of_scenario(dossier.scenario)]
     return (
         Heading(text="What this report does not show", anchor="limits"),
         Bullets(items=(*items, *EVERYWHERE)),
     )
+
+
+def _of_scenario(scenario: Scenario) -> list[str]:
+    """Say what the stops leave out of track, measurement and valve, and that the checks know no disturbance."""
+    track = [
+        "straight",
+        *(["level"] if scenario.grade == 0.0 else []),
+        *([] if scenario.patches or scenario.axle_rails else ["in one condition from end to end"]),
+    ]
+    sensing = scenario.sensing
+    dead = "" if sensing.dead_time else "dead times, "
+    exact = replace(sensing, dead_time=0.0) == Sensing()
+    disturbances = disturbances_of(scenario)
+    return [
+        f"The track is {numbers.listing(track)}; no cleaning of the rail by the wheels ahead, no sand.",
+        "Train and wheel speed are measured without error, delay or quantization, and the train speed is known."
+        if exact
+        else "Train and wheel speed have the stated disturbances of their measurement and no other ones.",
+        f"The valve follows its time constants; {dead}leakage, and a limit of the air supply are not modeled.",
+        *(
+            [f"The stops are disturbed ({disturbances}); the checks know nothing of it."]
+            if disturbances
+            else []
+        ),
+    ]
 
 
 def _chaos(trials: tuple[Trial, ...]) -> list[Text]:

@@ -4,9 +4,10 @@ from functools import partial
 
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Column, Figure, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 
@@ -53,25 +54,25 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
 def _table(points: tuple[Linearization, ...]) -> Table:
     last = len(points) - 1
     rows = dict.fromkeys(round(last * row / (TABLE_ROWS - 1)) for row in range(TABLE_ROWS))
-    return Table(
-        columns=(
-            Column(title="At a train speed of"),
-            Column(title="Slip pole", unit="1/s", align="right"),
-            Column(title="Poles with valve", unit="1/s", align="right"),
-            Column(title="Gain G", unit="1/(MN m s)", align="right"),
-            Column(title="Torque", unit="kN m", align="right"),
-            Column(title="Duty", unit="-", align="right"),
-        ),
-        rows=tuple(
-            (
-                f"{numbers.decimals(point.speed * KMH, 1)} km/h",
-                numbers.decimals(point.slip_pole, 3),
-                "; ".join(numbers.decimals(pole, 3) for pole in point.poles()),
-                numbers.decimals(point.gain * MEGA, 1),
-                numbers.decimals(point.equilibrium_torque / KILO, 2),
-                numbers.decimals(point.equilibrium_duty, 3),
-            )
-            for point in (points[row] for row in rows)
+    return build(
+        (points[row] for row in rows),
+        (
+            ColumnOf(
+                title="At a train speed of",
+                read=lambda point: f"{numbers.decimals(point.speed * KMH, 1)} km/h",
+            ),
+            ColumnOf(title="Slip pole", unit="1/s", decimals=3, read=lambda point: point.slip_pole),
+            ColumnOf(
+                title="Poles with valve",
+                unit="1/s",
+                flush_right=True,
+                read=lambda point: "; ".join(numbers.decimals(pole, 3) for pole in point.poles()),
+            ),
+            ColumnOf(title="Gain G", unit="1/(MN m s)", decimals=1, read=lambda point: point.gain * MEGA),
+            ColumnOf(
+                title="Torque", unit="kN m", decimals=2, read=lambda point: point.equilibrium_torque / KILO
+            ),
+            ColumnOf(title="Duty", unit="-", decimals=3, read=lambda point: point.equilibrium_duty),
         ),
         caption="Linearization at the slip reference. The torque per wheelset and the duty hold the slip "
         "there; a duty above 1 is beyond the brake.",

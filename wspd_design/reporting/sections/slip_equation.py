@@ -3,14 +3,15 @@
 from wspd_design.controllers.family import designed_family
 from wspd_design.parameters.equations import Equation as PaperEquation
 from wspd_design.parameters.equations import load_equations
-from wspd_design.reporting.blocks import Block, Cell, Column, Equation, Heading, Paragraph, Status, Table
+from wspd_design.reporting.blocks import Block, Cell, Equation, Heading, Paragraph, Status
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
 
 PLANT = ("1", "2", "3", "5", "6", "7", "8", "9", "10", "13", "14", "15", "19", "B_W")
 """Numbers of the equations that every design rests on."""
 
-TONES = {"holds": Status.GOOD, "definition": Status.NEUTRAL, "misprint": Status.BAD, "gap": Status.UNDECIDED}
+TONES = {"misprint": Status.BAD, "gap": Status.UNDECIDED}  # of the first verdict
 
 
 def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
@@ -19,7 +20,7 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
     slip = next(each for each in equations if each.number == "19")
     numbers = (*PLANT, *designed_family(dossier.design.law).equations)
     used = [each for each in equations if each.number in numbers]
-    faulty = [each for each in used if each.verdict in ("misprint", "gap")]
+    faulty = [each for each in used if set(each.verdicts) & set(TONES)]
     return (
         Heading(text="The slip dynamics", anchor="slip-equation"),
         Paragraph(
@@ -48,21 +49,18 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
             "misprinted or true only under an assumption that the paper does not state. The program uses the "
             "corrected forms."
         ),
-        Table(
-            columns=(
-                Column(title="Eq."),
-                Column(title="Subject"),
-                Column(title="Verdict"),
-                Column(title="What is wrong, and what is assumed instead"),
-            ),
-            rows=tuple(
-                (
-                    each.number,
-                    each.title,
-                    Cell(status=TONES[each.verdict], text=each.verdict),
-                    _explained(each),
-                )
-                for each in faulty
+        build(
+            faulty,
+            (
+                ColumnOf(title="Eq.", read=lambda each: each.number),
+                ColumnOf(title="Subject", read=lambda each: each.title),
+                ColumnOf(
+                    title="Verdict",
+                    read=lambda each: Cell(status=TONES[each.verdicts[0]], text=each.verdict),
+                ),
+                ColumnOf(
+                    title="What is wrong, and what is assumed instead", read=lambda each: _explained(each)
+                ),
             ),
             caption="Misprints and gaps that matter for this design; wspd equations prints all equations.",
             anchor="misprints",

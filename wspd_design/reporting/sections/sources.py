@@ -3,8 +3,9 @@
 from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Column, Definition, Definitions, Heading, Paragraph, Table
+from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph, Table
 from wspd_design.reporting.sections.design import gain_table
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.studies.dossier import Dossier
 
 WEAK = ("calibrated", "assumed")
@@ -53,25 +54,18 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
 
 
 def _table(parameters: ParameterSet) -> Table:
-    return Table(
-        columns=(
-            Column(title="Number"),
-            Column(title="Value"),
-            Column(title="Bounds"),
-            Column(title="Unit"),
-            Column(title="Status"),
-            Column(title="Source, place"),
-        ),
-        rows=tuple(
-            (
-                _name(entry.name),
-                _value(entry.value, entry.unit),
-                _bounds(entry),
-                numbers.unit(entry.unit) or "-",
-                entry.status,
-                f"{entry.source}: {entry.at}" + (f". {entry.note}" if entry.note else ""),
-            )
-            for entry in parameters.entries.values()
+    return build(
+        parameters.entries.values(),
+        (
+            ColumnOf(title="Number", read=lambda entry: _name(entry.name)),
+            ColumnOf(title="Value", read=lambda entry: _value(entry.value, entry.unit)),
+            ColumnOf(title="Bounds", read=lambda entry: _bounds(entry)),
+            ColumnOf(title="Unit", read=lambda entry: numbers.unit(entry.unit) or "-"),
+            ColumnOf(title="Status", read=lambda entry: entry.status),
+            ColumnOf(
+                title="Source, place",
+                read=lambda entry: f"{entry.source}: {entry.at}" + (f". {entry.note}" if entry.note else ""),
+            ),
         ),
         caption=f"{' '.join(dict.fromkeys((parameters.kind, parameters.name))).capitalize()}: "
         f"{parameters.title}.",

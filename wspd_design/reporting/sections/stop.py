@@ -8,15 +8,12 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
-from wspd_design.reporting.figures.series import lyapunov_functions, series_alt
+from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
-from wspd_design.reporting.sections.checks import check_anchor
-from wspd_design.reporting.text import Inline, Link
+from wspd_design.reporting.yardsticks import ideal_sentence
+from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.studies.dossier import Dossier
-
-LYAPUNOV = "lyapunov"
-"""Checks of a Lyapunov function have names that begin so; the function is their first series."""
 
 
 def stop(dossier: Dossier) -> tuple[Block, ...]:
@@ -30,12 +27,10 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"The {run.plant} locomotive from {start} km/h on {run.rail}, sampled every "
+            text=f"The {run.plant} locomotive from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
             f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
             f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
-            f"{numbers.decimals(figures.stopping_time, 2)} s. The bound is "
-            f"{numbers.decimals(figures.bound, 1)} m: what a brake with the same build-up needs that holds "
-            "every wheelset at the adhesion peak. Above "
+            f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
             f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
             f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
             f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
@@ -69,23 +64,15 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
 
 
 def _lyapunov(certificates: tuple[Certificate, ...]) -> tuple[Block, ...]:
-    shown = [each for each in certificates if each.name.startswith(LYAPUNOV) and each.series]
-    silent = [each for each in certificates if each.name.startswith(LYAPUNOV) and not each.series]
-    left_out: list[Inline] = []
-    for each in silent:
-        link = Link(anchor=check_anchor(each), text=each.title)
-        left_out += [" Not drawn: ", link, f" ({each.status.value})."]
+    shown = [each for each in certificates if lyapunov_series(each)]
     if not shown:
         return ()
     return (
         Figure(
             svg=picture(partial(lyapunov_functions, certificates=shown), height=2.8),
-            caption=(
-                "Lyapunov functions over time, each in the setting of its proof, not in the stop above. "
-                "Each check says where its function must not rise.",
-                *left_out,
-            ),
-            alt=" ".join(series_alt(each.series[:1]) for each in shown),
+            caption="Lyapunov functions over time, each in the setting of its proof, not in the stop above. "
+            "Each check says where its function must not rise.",
+            alt=" ".join(series_alt(lyapunov_series(each)[:1]) for each in shown),
             anchor="lyapunov",
         ),
     )

@@ -1,20 +1,26 @@
 """Page one: the verdict in one sentence, four key numbers and the table of checks."""
 
+import math
 from collections import Counter
 
 from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Cell, Column, KeyNumber, KeyNumbers, Status, Table, Verdict
+from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.sections.checks import check_anchor, status_of
+from wspd_design.reporting.sections.checks import check_anchor, is_bad_news, status_of
+from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
+from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
+from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
+from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
 
 COUNTED = {
     Status.REFUTED: "refuted",
-    Status.LIMIT: "proved to be a limit",
+    Status.LIMITATION: "proved to be a limitation",
     Status.UNDECIDED: "undecided",
     Status.EVIDENCE: "sampled only",
     Status.PROVED: "proved",
@@ -31,9 +37,9 @@ def verdict(dossier: Dossier) -> Verdict:
     total = len(certificates)
     stop, stop_is_good = _stop(dossier)
     spoken: tuple[Inline, ...]
-    if named := _of(certificates, Status.REFUTED, Status.LIMIT):
+    if named := [each for each in certificates if is_bad_news(each)]:
         status = Status.REFUTED
-        limits = " or proved to be a limit" if counts[Status.LIMIT] else ""
+        limits = " or proved to be a limitation" if counts[Status.LIMITATION] else ""
         spoken = (
             f"Not fit as it stands: {len(named)} of {total} checks refuted{limits} (",
             *_links(named),
@@ -45,7 +51,7 @@ def verdict(dossier: Dossier) -> Verdict:
     elif named := _of(certificates, Status.UNDECIDED):
         status = Status.UNDECIDED
         spoken = (
-            f"Not decided: {len(named)} of {total} checks neither shown nor refuted (",
+            f"Not decided: {len(named)} of {total} checks neither proved nor refuted (",
             *_links(named),
             "). ",
         )
@@ -90,7 +96,7 @@ def _stop(dossier: Dossier) -> tuple[str, bool]:
     run, figures = own.run, own.metrics
     start = (
         f"The simulated stop of the {run.plant} locomotive from "
-        f"{numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+        f"{numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
     )
     if run.ending is not Ending.STOPPED:
         return f"{start} does not end: {run.ending.value}.", False
@@ -113,7 +119,7 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
     stopped = run.ending is Ending.STOPPED
-    start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {run.rail}"
+    start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
     in_range = [
         point
         for point in dossier.linearizations
@@ -125,15 +131,13 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             label="Stopping distance" if stopped else "Distance, still moving",
             value=numbers.uncertain(figures.distance, own.check.spread, 1),
             unit="m",
-            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 2)} s: "
-            f"{numbers.decimals(figures.lag, 2)} s of build-up, then "
-            f"{numbers.decimals(figures.plateau, 2)} m/s²",
+            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 2)} s{_build_up(figures)}",
         ),
         KeyNumber(
             label="Efficiency",
             value=numbers.decimals(100.0 * figures.efficiency, 1),
-            unit="%",
-            note=f"of the bound, {numbers.decimals(figures.bound, 1)} m: no controller stops shorter",
+            unit="%" if math.isfinite(figures.efficiency) else "",
+            note=_yardsticks(dossier),
         ),
         KeyNumber(
             label=f"Slip rms above {numbers.quantity_in(JUDGING_SPEED, 'km/h')}",
@@ -150,24 +154,34 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
     )
 
 
+def _build_up(figures: Metrics) -> str:
+    """Part a stop into build-up and plateau; where the deceleration falls so much that no lag is left, say nothing."""
+    if not figures.lag > 0.0:
+        return ""
+    lag, plateau = (numbers.decimals(value, 2) for value in (figures.lag, figures.plateau))
+    return f": {lag} s of build-up, then {plateau} m/s²"
+
+
+def _yardsticks(dossier: Dossier) -> Text:
+    """Say what the efficiency is a share of, and what is proved, each under its own name."""
+    ideal = f"ideal stop, simulated: {ideal_distance(dossier.trials[0].metrics)}"
+    proved = proved_bound(dossier.certificates)
+    if proved is None:
+        return f"{ideal}; no bound is proved"
+    start = numbers.significant(dossier.design.specification.speeds[1] * KMH)
+    link = Link(anchor=check_anchor(proved.certificate), text="proved bound")
+    return (f"{ideal}; ", link, f" from {start} km/h: {adhesion_peaks.rounded_down(proved.distance)} m")
+
+
 def _checks(certificates: tuple[Certificate, ...]) -> Table:
-    rows: list[tuple[Text | Cell, ...]] = [
+    return build(
+        certificates,
         (
-            (Link(anchor=check_anchor(each), text=each.name),),
-            Cell(status=status_of(each)),
-            each.title,
-            numbers.margin(each.margin),
-        )
-        for each in certificates
-    ]
-    return Table(
-        columns=(
-            Column(title="Check"),
-            Column(title="Finding"),
-            Column(title="What is checked"),
-            Column(title="Margin", align="right"),
+            ColumnOf(title="Check", read=lambda each: (Link(anchor=check_anchor(each), text=each.name),)),
+            ColumnOf(title="Finding", read=lambda each: Cell(status=status_of(each))),
+            ColumnOf(title="What is checked", read=lambda each: each.title),
+            ColumnOf(title="Margin", flush_right=True, read=lambda each: numbers.margin(each.margin)),
         ),
-        rows=tuple(rows),
         caption="All checks. A margin is positive where the claim holds; ≤: sampling bounds it from above "
         "only.",
         anchor="checks",

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import Enum
 from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import TrackSpectrum, Vehicle
+from wspd_design.plants.planar import Planar
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.ideal import ideal_stop
-from wspd_design.simulation.loop_input import axle_offsets
 from wspd_design.simulation.records import LoadIrregularity, Scenario
 from wspd_design.simulation.stop import simulate
 from wspd_design.simulation.track import (
@@ -26,7 +27,20 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-CHANNELS = ("lateral-high", "vertical-high", "cross-level-high")
+
+class ChannelKind(Enum):
+    """What a channel of the track measures."""
+
+    OFFSET = "offset"
+    HEIGHT = "height"
+    ANGLE = "angle"
+
+
+CHANNELS = {
+    "lateral-high": ChannelKind.OFFSET,
+    "vertical-high": ChannelKind.HEIGHT,
+    "cross-level-high": ChannelKind.ANGLE,
+}
 """The rows of Table 9, in its order: horizontal, vertical and "lateral", which is the cross level."""
 
 LOAD_SPREAD = 0.04
@@ -43,6 +57,7 @@ class TrackChannel:
     """A synthesized channel and its spectrum, stated by eq. (49) and estimated from the profile."""
 
     channel: str
+    kind: ChannelKind
     sigma: float  # m or rad, from the spectrum, in the band
     found_sigma: float  # of the profile
     ratio: float  # estimated over stated density, mean over the band
@@ -78,6 +93,7 @@ def track_channel(track: TrackSpectrum, channel: str, *, seed: int) -> TrackChan
     distance = np.arange(0.0, SHOWN, SPACING)
     return TrackChannel(
         channel=channel,
+        kind=CHANNELS[channel],
         sigma=standard_deviation(track, channel),
         found_sigma=float(values.std()),
         ratio=float(np.mean(found[inside] / stated)),
@@ -107,7 +123,7 @@ def irregular_load(vehicle: Vehicle, vertical: Irregularity, *, sigma: float) ->
     import numpy as np
 
     # The profile fades in and the last axle begins behind the first one.
-    offsets = axle_offsets(vehicle, "four-axle")
+    offsets = Planar(vehicle).offsets
     distance = np.arange(0.0, vertical.period, SPACING)
     rows = (
         1.0 + LOAD_SPREAD / sigma * vertical.profile(np.maximum(distance - offset, 0.0)) for offset in offsets
@@ -133,8 +149,8 @@ def disturbance(
     )
 
 
-def bound_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity) -> float:
-    """Change of the bound by irregular wheel loads: what the track costs a perfect brake [m]."""
+def ideal_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity) -> float:
+    """Change of the ideal stop by irregular wheel loads: what the track costs a perfect brake [m]."""
     disturbed = ideal_stop(vehicle, replace(scenario, load_irregularity=load))
     return disturbed.distance - ideal_stop(vehicle, scenario).distance
 

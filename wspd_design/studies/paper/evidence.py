@@ -53,9 +53,9 @@ class Yardstick:
     """Idealized stops on one rail, with the same build-up of the brake unless said otherwise; distances in m."""
 
     rail: str
-    bound: float  # at the adhesion peak: no controller stops shorter
-    bound_time: float  # s
-    bound_at_once: float  # at the adhesion peak with full torque from the start
+    ideal_stop: float  # at the adhesion peak
+    ideal_time: float  # s
+    ideal_at_once: float  # at the adhesion peak with full torque from the start
     constant_slip: float  # with the slip held at the reference
 
 

@@ -24,8 +24,8 @@ from wspd_design.studies.paper.disturbances import (
     CHANNELS,
     Disturbance,
     TrackChannel,
-    bound_change,
     disturbance,
+    ideal_change,
     irregular_load,
     track_channel,
 )
@@ -76,7 +76,7 @@ class Reproduction:
     spectra: TrackSpectrum
     track: tuple[TrackChannel, ...]
     disturbances: tuple[Disturbance, ...]
-    bound_changes: tuple[float, ...]  # m, of the bound by the track, for each rail
+    ideal_changes: tuple[float, ...]  # m, of the ideal stop by the track, for each rail
     provenance: Provenance
 
 
@@ -148,7 +148,7 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
         spectra=spectra,
         track=tuple(track_channel(spectra, channel, seed=seed) for channel in CHANNELS),
         disturbances=tuple(disturbances),
-        bound_changes=tuple(bound_change(vehicle, each, load) for each in scenarios.values()),
+        ideal_changes=tuple(ideal_change(vehicle, each, load) for each in scenarios.values()),
         provenance=Provenance(
             command=command,
             versions=versions(),
@@ -173,9 +173,9 @@ def _yardstick(vehicle: Vehicle, scenario: Scenario, specification: Specificatio
     peak = ideal_stop(vehicle, scenario)
     return Yardstick(
         rail=scenario.rail.name,
-        bound=peak.distance,
-        bound_time=peak.stopping_time,
-        bound_at_once=ideal_stop(vehicle, scenario, instantaneous=True).distance,
+        ideal_stop=peak.distance,
+        ideal_time=peak.stopping_time,
+        ideal_at_once=ideal_stop(vehicle, scenario, instantaneous=True).distance,
         constant_slip=ideal_stop(vehicle, scenario, slip=specification.slip).distance,
     )
 

@@ -1,152 +1,17 @@
-"""The equations that the program runs on follow from the laws of motion: identities of the functions themselves.
+"""The equations that the program runs on follow from the laws of motion: identities of the functions themselves."""
 
-The derivations prove them at development time. Here the functions that are installed are executed on SymPy symbols,
-so that a changed sign or constant in any of them is found where the numbers are made. Both sides of an identity are
-compared in a prime field (``proof/identity.py``); nothing is simplified.
-"""
+from collections.abc import Mapping
 
-from collections.abc import Callable
-from typing import Any
-
-from wspd_design.certificates.checks.frame import certified
-from wspd_design.certificates.kernel import exact
-from wspd_design.certificates.kernel.exact import Identity
-from wspd_design.certificates.records import Certificate, Problem, Status
-from wspd_design.certificates.search.settle import versions
-from wspd_design.model.generated import adaptive_fuzzy, brake, motion, sliding_surface, slip
-from wspd_design.parameters.equations import load_equations
-
-NAME, TITLE = "derivation", "Equations of the model"
-
-Symbols = Callable[[str], Any]
-"""Makes a positive SymPy symbol of a name."""
+from wspd_design.certificates.checks.frame import Check
+from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.search.settle import settle_all
+from wspd_design.certificates.theorems.equations import DERIVATION
 
 
-def slip_equation(symbol: Symbols) -> tuple[Any, Any]:
-    """Eq. (19): the rate of the slip ratio by eqs. (1) to (3), and F + G T."""
-    import sympy as sp
-
-    v, lam, m, i, r, b, f, f_d, torque = map(symbol, ("v", "lam", "m", "I", "R", "B", "f", "f_d", "T"))
-    wheel = symbol("omega")
-    ratio = slip.slip_ratio(v, wheel, r, v)
-    rate = sp.diff(ratio, v) * motion.train_acceleration(f, f_d, m)
-    rate += sp.diff(ratio, wheel) * motion.wheel_acceleration(f, wheel, torque, i, r, b)
-    stated = slip.slip_drift(lam, v, f, f_d, m, i, r, b) + slip.slip_gain(v, i, r) * torque
-    return rate.subs(wheel, slip.wheel_speed_at_slip(lam, v, r)), stated
+def search(problem: Problem) -> Mapping[str, Stated]:
+    """State the identities, which exact arithmetic decides."""
+    return settle_all({each.key: each for each in DERIVATION.obligations(problem)}, {})
 
 
-def brake_lag(symbol: Symbols) -> tuple[Any, Any]:
-    """Eq. (14): the rate of torque of the filling law (9) under full supply, and that of the first-order lag."""
-    pressure, full, most, duty, tau = map(symbol, ("P", "P_max", "T_max", "u", "tau"))
-    rate = brake.cylinder_pressure_rate(pressure, full, duty, 1 - duty, tau, tau)
-    torque = brake.braking_torque(pressure, most, full)
-    return brake.braking_torque(rate, most, full), brake.torque_rate(torque, duty, most, tau)
-
-
-def filling(symbol: Symbols) -> tuple[Any, Any]:
-    """Eqs. (8) to (10): the rate of the exact filling law, and what the equation of the cylinder asks for."""
-    import sympy as sp
-
-    t, t0, start, full, rate, tau = map(symbol, ("t", "t_0", "P_0", "P_max", "r", "T_F"))
-    pressure = brake.filled_pressure(t, t0, start, full, rate, tau)
-    supply = brake.supply_pressure(t, full, rate)
-    return sp.diff(pressure, t), brake.cylinder_pressure_rate(pressure, supply, 1, 0, tau, tau)
-
-
-def error_dynamics(symbol: Symbols) -> tuple[Any, Any]:
-    """Eq. (39): e' + c e, and G (u* - u) with the equivalent torque of eq. (23) as u*."""
-    drift, gain, reference_rate, e, c, u = map(symbol, ("F", "G", "lam_d_rate", "e", "c", "u"))
-    ideal = sliding_surface.equivalent_torque(drift, gain, reference_rate, e, c)
-    return reference_rate - (drift + gain * u) + c * e, gain * (ideal - u)
-
-
-def printed_energy(symbol: Symbols) -> tuple[Any, Any]:
-    """Eq. (44) corrected: the rate of V2 along the loop for s > 0, and (44) with the terms of G'."""
-    import sympy as sp
-
-    s, gain, gain_rate, k_p, xi, psi = map(symbol, ("s", "G", "G_rate", "K_P", "xi", "psi"))
-    b2, bound, a1, a2, b_w = map(symbol, ("b2", "psi_error", "alpha_1", "alpha_2", "b_w"))
-    energy = adaptive_fuzzy.lyapunov_printed(s, gain, b2, bound, k_p, a1, a2)
-    moves = {
-        s: k_p * gain * (b_w + xi - (psi - bound)),
-        b2: -2 * a1 * s * b_w,
-        bound: -a2 * s,
-        gain: gain_rate,
-    }
-    rate = sum(sp.diff(energy, x) * moved for x, moved in moves.items())
-    return rate, adaptive_fuzzy.lyapunov_printed_rate_true(s, gain, gain_rate, xi, psi, b2, bound, a1, a2)
-
-
-def repaired_energy(symbol: Symbols) -> tuple[Any, Any]:
-    """Eq. (44) of the repaired V: its rate along the loop for s_D > 0, outside the layer, and the stated one."""
-    import sympy as sp
-
-    s, v, a, g, xi, psi = map(symbol, ("s_D", "v", "a", "g", "xi", "psi"))
-    b2, bound, a1, a2, b_w = map(symbol, ("b2", "psi_error", "alpha_1", "alpha_2", "b_w"))
-    energy = adaptive_fuzzy.lyapunov_repaired(s, v, g, b2, bound, a1, a2)
-    moves = {s: g / v * (b_w + xi - (psi - bound)), v: -a, b2: -2 * a1 * s * b_w, bound: -a2 * s}
-    rate = sum(sp.diff(energy, x) * moved for x, moved in moves.items())
-    return rate, adaptive_fuzzy.lyapunov_repaired_rate(s, a, g, xi, psi)
-
-
-IDENTITIES: tuple[tuple[str, Callable[[Symbols], tuple[Any, Any]]], ...] = (
-    ("(19) slip' = F + G T from (1) to (3)", slip_equation),
-    ("(14) tau T' + T = T_max u from (9), (12)", brake_lag),
-    ("(10) exact with the supply of (8)", filling),
-    ("(39) e' + c e = G (u* - u)", error_dynamics),
-    ("(44) V2' of the printed V2, with the terms of G' that the paper omits", printed_energy),
-    ("(44) V' of the repaired V", repaired_energy),
-)
-
-
-def claims() -> tuple[Identity, ...]:
-    """Execute the installed functions on symbols and return what is claimed about them."""
-    import sympy as sp
-
-    def symbol(name: str) -> Any:
-        return sp.Symbol(name, positive=True)
-
-    sides = ((name, *made(symbol)) for name, made in IDENTITIES)
-    return tuple(Identity(name=name, left=left, right=right) for name, left, right in sides)
-
-
-@certified(name=NAME, title=TITLE)
-def check(problem: Problem) -> Certificate:  # noqa: ARG001 - the identities hold for all numbers
-    """Decide the identities of the installed functions."""
-    import sympy as sp
-
-    settled = [(claim, exact.prove(claim)) for claim in claims()]
-    wrong = next((claim for claim, proof in settled if proof is None), None)
-    return Certificate(
-        name=NAME,
-        title=TITLE,
-        claim="The functions that compute slip, brake, error and energy satisfy (19), (14), (10), (39) and (44) in "
-        "its corrected and in its repaired form as identities.",
-        status=Status.PROVED if wrong is None else Status.REFUTED,
-        explanation=(
-            f"All residuals are 0. {misprints()}"
-            if wrong is None
-            else f"{wrong.name} leaves {sp.simplify(sp.nsimplify(wrong.left - wrong.right))}: a function of the "
-            "model is wrong."
-        ),
-        hypotheses=tuple(exact.hypothesis(claim, proof) for claim, proof in settled),
-        assumptions=(
-            "all symbols positive",
-            "s > 0 for the printed (44); outside the boundary layer, s_D > 0, for the repaired one",
-        ),
-        method="the installed functions on SymPy symbols; both sides compared in a prime field",
-        resolution="exact; two different functions would agree with a probability below 1e-60",
-        reference="eqs. (1)-(3), (8)-(10), (14), (19), (39), (43), (44); docs/theory.md#slip-equation",
-        engine=f"sympy {versions()['sympy']}",
-        proofs=tuple(proof for _, proof in settled if proof is not None),
-    )
-
-
-def misprints() -> str:
-    """List the equations that the paper prints otherwise, each with what SymPy finds left over."""
-    listed = (
-        f"{entry.number if entry.number[0].isalpha() else f'({entry.number})'}: {entry.residual}"
-        for entry in load_equations()
-        if entry.verdict == "misprint"
-    )
-    return f"Printed otherwise in the paper, with what the printed form leaves over: {'; '.join(listed)}."
+CHECK = Check(theorem=DERIVATION, search=search)

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import level, series
-from wspd_design.certificates.records import Series
+from wspd_design.certificates.records import Role, Series
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.controllers.offers import SlipModel
 from wspd_design.controllers.sliding_mode import SlidingMode
@@ -52,9 +52,13 @@ def region(law: AdaptiveFuzzy | SlidingMode, lag: float, speeds: "Array", plant:
     shown = np.concatenate([own, paper])
     bottom, top = float(shown.min()) / MARGIN, float(shown.max()) * MARGIN
     axes = ("c = K_I/K_P [1/s]", "k [1/s]")
-    curves = [series("the law over speed", *axes, np.full(len(speeds), rate), own)]
+    curves = [series("the law over speed", *axes, np.full(len(speeds), rate), own, Role.LOOP_GAIN)]
     if (rate, *own[:1]) != (paper_rate, *paper[:1]):
-        curves.append(series("the paper's gains over speed", *axes, np.full(len(speeds), paper_rate), paper))
+        curves.append(
+            series(
+                "the paper's gains over speed", *axes, np.full(len(speeds), paper_rate), paper, Role.LOOP_GAIN
+            )
+        )
     for index in (int(plant.pole.argmax()), int(plant.pole.argmin())):
         pole, at = float(plant.pole[index]), f"{speeds[index] * KMH:.3g} km/h"
         side, border = _border(law, pole, lag, rates)
@@ -63,7 +67,7 @@ def region(law: AdaptiveFuzzy | SlidingMode, lag: float, speeds: "Array", plant:
             curves.append(level(f"{side} at {at}, p tau = {pole * lag:.3g}", *axes, rates, bottom))
         else:
             line = np.clip(border[drawn], bottom, top)
-            curves.append(series(f"stable {side} this at {at}", *axes, rates[drawn], line))
+            curves.append(series(f"stable {side} this at {at}", *axes, rates[drawn], line, Role.LOOP_GAIN))
     return curves
 
 

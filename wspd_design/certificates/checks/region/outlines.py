@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from wspd_design.certificates.checks.frame import level, series
-from wspd_design.certificates.records import Problem, Series
+from wspd_design.certificates.records import Problem, Role, Series
 from wspd_design.certificates.search.invariant_sets.search import Found
 from wspd_design.parameters.units import KMH
 
@@ -33,7 +33,7 @@ def outlines(problem: Problem, found: Sequence[Found], kind: str) -> tuple[Serie
     slips = [slip for each in sets for slip in each.x]
     return (
         *sets,
-        series("reference", *AXES, np.array([problem.slip] * 2), np.array([0.0, full])),
+        series("reference", *AXES, np.array([problem.slip] * 2), np.array([0.0, full]), Role.LIMIT),
         level("full torque", *AXES, (min(slips), max(slips)), full),
     )
 
@@ -52,4 +52,4 @@ def _outline(problem: Problem, found: Found, kind: str) -> Series:
     lower, upper = (full * np.clip(edge - held, 0.0, 1.0) for edge in (lowest, highest))
     x = np.concatenate([middle, middle[::-1], middle[:1]])
     y = np.concatenate([lower, upper[::-1], lower[:1]])
-    return series(f"{kind} at {cells.window.high * KMH:.3g} km/h", *AXES, x, y)
+    return series(f"{kind} at {cells.window.high * KMH:.3g} km/h", *AXES, x, y, Role.OUTLINE)

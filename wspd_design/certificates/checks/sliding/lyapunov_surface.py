@@ -1,133 +1,140 @@
 """V = s^2/2 of (24) along the loop of the sliding-mode law: it must not rise outside the boundary layer."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
 from itertools import product
-from typing import TypeAlias
+from typing import TYPE_CHECKING
 
-from wspd_design.certificates.checks.certain_rise import (
-    Rise,
-    certain_rise,
-    certainty,
-    exact_law,
-    rising_state,
-)
-from wspd_design.certificates.checks.frame import certified, level, series
+from wspd_design.certificates.checks.certain_rise import certain_rise
+from wspd_design.certificates.checks.frame import Check, Figures, level, series
 from wspd_design.certificates.checks.ideal_run import (
-    ASSUMPTIONS,
-    RELATIVE_TOLERANCE,
     ProofRun,
-    State,
     cut_short,
     largest_rise,
     numeric_rate,
-    sliding_flow,
     sliding_run,
-    verdict,
 )
-from wspd_design.certificates.records import Certificate, Point, Problem, Range
-from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.plant import exact_plant, place, plant_with
-from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.records import Certificate, Problem, Role
+from wspd_design.certificates.search.memory import recall
+from wspd_design.certificates.setting.domain import PARAMETERS
+from wspd_design.certificates.setting.fingerprint import model_hash
+from wspd_design.certificates.setting.plant import plant_with
+from wspd_design.certificates.theorems.lyapunov_surface import (
+    INTEGRAL,
+    LYAPUNOV_SURFACE,
+    TOLERANCE,
+    exact_loop,
+    outside_layer,
+    surface_energy,
+)
+from wspd_design.certificates.theorems.whom import sliding_law
 from wspd_design.model.generated import sliding_surface
-from wspd_design.model.number import Number
-from wspd_design.parameters.units import KMH
 
-RisingRun: TypeAlias = tuple[ProofRun, dict[str, float], int, int]
-"""A run, its parameters, and the instants between which V rises."""
-
-NAME, TITLE = "lyapunov_surface", "V of the sliding mode"
-TOLERANCE = 100.0 * RELATIVE_TOLERANCE  # of the largest V
+if TYPE_CHECKING:
+    from wspd_design.certificates.checks.ideal_run import Array
 
 
-@certified(name=NAME, title=TITLE)
-def check(problem: Problem) -> Certificate:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SurfaceRun:
+    """A run with its V, and how far that rises outside the layer."""
+
+    run: ProofRun
+    slip: float  # at the start
+    parameters: Mapping[str, float]
+    values: "Array"
+    rise: float  # of the largest V
+    start: int
+    end: int
+
+
+def surface_runs(problem: Problem) -> list[SurfaceRun]:
     """Run the idealized loop from both ends of the slip range, with nominal and extreme parameters."""
+    return recall(["runs of V = s^2/2", model_hash(problem)], lambda: _runs(problem))
+
+
+def _runs(problem: Problem) -> list[SurfaceRun]:
     import numpy as np
 
-    law = problem.controller
-    if not isinstance(law, SlidingMode):
-        reason = "is no sliding mode with a friction model; (24) does not speak about it"
-        return laws.not_applicable(
-            problem, NAME, "V = s^2/2 does not rise outside the boundary layer.", reason
-        )
-    domain.box(problem)
-    names = domain.PARAMETERS
-    nominal = {name: problem.nominal(name) for name in names}
-    corners = (dict(zip(names, ends, strict=True)) for ends in product(*map(problem.span, names)))
-    parameters = [nominal, *(corner for corner in corners if corner != nominal)]
+    law = sliding_law(problem)
+    nominal = tuple(problem.nominal(name) for name in PARAMETERS)
+    corners = product(*(problem.span(name) for name in PARAMETERS))
     edge = float(sliding_surface.lyapunov_surface(law.gains.boundary_layer))
-    curves, runs = [], []
-    worst: tuple[float, *RisingRun] | None = None
-    for chosen, slip in product(parameters, problem.slips):
-        vehicle, rail = plant_with(problem, chosen)
-        run = sliding_run(vehicle, rail, law, speeds=problem.speeds, slip=slip)
-        runs.append(run)
-        values = sliding_surface.lyapunov_surface(_surface(law, run.states))
+    found = []
+    for chosen, slip in product(dict.fromkeys([nominal, *corners]), problem.slips):
+        parameters = dict(zip(PARAMETERS, chosen, strict=True))
+        run = sliding_run(*plant_with(problem, parameters), law, speeds=problem.speeds, slip=slip)
+        values = surface_energy(law, run.states)
         # Inside the layer V may do as it likes, below the value at its edge.
         rise, start, end = largest_rise(np.maximum(values, edge))
-        rise /= max(float(values.max()), edge)
-        if worst is None or rise > worst[0]:
-            worst = rise, run, chosen, start, end
-        if chosen == nominal:
-            curves.append(series(f"V from slip {slip:g}", "time [s]", "V [-]", run.time, values))
-    assert worst is not None
-    rise, run, chosen, start, end = worst
-    rises = not rise <= TOLERANCE
-    shown = _certain_rise(problem, law, worst[1:]) if rises else None
-    where: tuple[Point, ...] = (
-        *place(chosen, names),
-        Point(name="rising since", value=float(run.time[start]), unit="s"),
-        Point(name="rising until", value=float(run.time[end]), unit="s"),
-    )
-    if shown is not None:
-        where = (*rising_state(run, shown, "dV/dt", "1/s"), *where)
-    return Certificate(
-        name=NAME,
-        title=TITLE,
-        claim=f"V = sbar^2/2, sbar = s/K_P, does not rise while abs(sbar) > {law.gains.boundary_layer:g}, "
-        f"from slip {problem.slips[0]:g} and {problem.slips[1]:g} at {problem.speeds[1] * KMH:.3g} km/h down "
-        f"to {problem.speeds[0] * KMH:.3g} km/h.",
-        status=verdict(rises, shown is not None, runs),
-        explanation=(
-            f"V rises by {rise:.3g} of its maximum between {run.time[start]:.3g} s and "
-            f"{run.time[end]:.3g} s: the switching gain does not outweigh the model error there. "
-            f"{certainty(run, shown, 'dV/dt', '1/s')}"
-            if rises
-            else f"In all {len(runs)} runs the distance to the surface only shrinks until the layer is "
-            "reached, and the state stays inside."
+        found.append(
+            SurfaceRun(
+                run=run,
+                slip=slip,
+                parameters=parameters,
+                values=values,
+                rise=rise / max(float(values.max()), edge),
+                start=start,
+                end=end,
+            )
         )
-        + cut_short(runs),
-        margin=Range(low=None, high=TOLERANCE - rise, unit="of max V"),
-        worst_point=where,
-        witness=where if shown is not None else (),
-        assumptions=(ASSUMPTIONS[0], "quarter locomotive with static wheel load", ASSUMPTIONS[2]),
-        method=f"integration with Radau's method, relative tolerance {RELATIVE_TOLERANCE:g}; at a witness the "
-        "derivative by forward derivatives in balls",
-        resolution=f"{len(runs)} runs: nominal parameters and all corners of their bounds, each from two "
-        f"slips; a rise below {TOLERANCE:g} of the maximum counts as rounding",
-        reference="eqs. (24), (25); docs/theory.md#reaching",
-        series=(*curves, level("edge of the layer", "time [s]", "V [-]", run.time, edge)),
-    )
+    return found
 
 
-def _surface(law: SlidingMode, states: State) -> Number:
-    """Return sbar of states in whatever numbers."""
-    _, slip, integral = states
-    error = sliding_surface.slip_error(law.gains.slip_reference, slip)
-    return sliding_surface.sliding_variable(error, integral, 1.0, law.gains.surface_rate)
+def search(problem: Problem) -> Mapping[str, Stated]:
+    """Run the loop, and look for a state at which V rises for certain."""
+    runs = surface_runs(problem)
+    worst = max(runs, key=lambda each: each.rise)
+    if not worst.rise <= TOLERANCE:
+        index = _certain(problem, worst)
+        if index is not None:
+            speed, slip, integral = worst.run.states[:, index].tolist()
+            place = {"speed": speed, "slip": slip, INTEGRAL: integral, **worst.parameters}
+            return {"rise": Stated(place=place)}
+    numbers = {
+        "rise": worst.rise,
+        "since": float(worst.run.time[worst.start]),
+        "until": float(worst.run.time[worst.end]),
+        **worst.parameters,
+        "runs": float(len(runs)),
+        "cut short": float(sum(bool(each.run.cut) for each in runs)),
+    }
+    return {"runs": Stated(numbers=numbers)}
 
 
-def _certain_rise(problem: Problem, law: SlidingMode, worst: RisingRun) -> Rise | None:
-    """Look for a state outside the layer at which V rises for certain, in the span of a run in which it rises."""
+def _certain(problem: Problem, worst: SurfaceRun) -> int | None:
+    """Look for a state in the domain and outside the layer, in the span of a run in which V rises."""
     import numpy as np
 
-    run, parameters, start, end = worst
+    law = sliding_law(problem)
+    energy, flow = exact_loop(problem, worst.parameters)
+    rates = numeric_rate(partial(surface_energy, law), worst.run)[worst.start : worst.end + 1]
+    (low, high), (slow, fast) = problem.slips, problem.speeds
+    order = [
+        index
+        for index in (worst.start + np.argsort(-rates)).tolist()
+        if low <= worst.run.slip[index] <= high and slow <= worst.run.speed[index] <= fast
+    ]
+    return certain_rise(energy, flow, worst.run, order, speaks=partial(outside_layer, law))
 
-    def candidate(states: State) -> Number:
-        return sliding_surface.lyapunov_surface(_surface(law, states))
 
-    def outside(state: State) -> bool:
-        return bool(abs(_surface(law, state)) > law.gains.boundary_layer)
+def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG001 - the runs show more
+    """V over time in the runs with nominal parameters."""
+    runs = surface_runs(problem)
+    nominal = [each for each in runs if each.parameters == {n: problem.nominal(n) for n in PARAMETERS}]
+    edge = float(sliding_surface.lyapunov_surface(sliding_law(problem).gains.boundary_layer))
+    axes = ("time [s]", "V [-]")
+    return Figures(
+        series=(
+            *(
+                series(f"V from slip {each.slip:g}", *axes, each.run.time, each.values, Role.LYAPUNOV)
+                for each in nominal
+            ),
+            level("edge of the layer", *axes, runs[-1].run.time, edge),
+        ),
+        remark=cut_short([each.run for each in runs]).strip(),
+    )
 
-    flow = sliding_flow(*exact_plant(problem, parameters), exact_law(law))
-    order = start + np.argsort(-numeric_rate(candidate, run)[start : end + 1])
-    return certain_rise(candidate, flow, run, order.tolist(), speaks=outside)
+
+CHECK = Check(theorem=LYAPUNOV_SURFACE, search=search, figures=figures)

@@ -31,7 +31,7 @@ TIGHT = 0.95  # share up to which a proof is tried: it costs the more the closer
 SPARED, LEAST_TOLERANCE = 0.75, 0.04  # of the enclosed share: part of its distance from 1, and least
 GROWTH_TOLERANCE, TORQUE_TOLERANCE = 0.05, 100.0  # -, N m
 TRIALS = 12  # of a counterexample
-SPEEDS = 24  # at which the lowest one of a proof is sought
+SPEEDS = 12  # at which the lowest one of a proof is sought
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:

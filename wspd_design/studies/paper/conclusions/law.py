@@ -39,7 +39,7 @@ def adaptation(evidence: Evidence) -> Conclusion:
     return Conclusion(
         name="adaptation",
         topic=Topic.LAW,
-        claim="The bound of the uncertainty is estimated and the rules learned online.",
+        claim="The bound on the uncertainty is estimated and the rules learned online.",
         place="Sections 6 and 8",
         verdict=verdict(useful),
         rule=f"without adaptation the distance changes by more than 1 %, and the weights stay below "

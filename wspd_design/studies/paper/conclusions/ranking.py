@@ -112,6 +112,6 @@ def robustness(evidence: Evidence) -> Conclusion:
         claim="The law is more robust against the condition of the rail than the others.",
         place="Sections 7 and 8",
         verdict=verdict(good),
-        rule="the lower of its efficiencies (bound over distance) on dry and wet is the highest of the four",
+        rule="the lower of its efficiencies (ideal stop over distance) on dry and wet is the highest of the four",
         finding="; ".join(said) + ".",
     )

@@ -34,9 +34,9 @@ def friction(evidence: Evidence) -> Conclusion:
     for rail, falling in zip(CONSTANT_RAILS, FALLING_RAILS, strict=True):
         ideal = evidence.yardstick(falling)
         printed = min(each.distance_m for each in evidence.published.on(rail).values())
-        good.append(printed >= ideal.bound)
+        good.append(printed >= ideal.ideal_stop)
         said.append(
-            f"{falling}: shortest printed stop {printed:.1f} m, bound {ideal.bound:.1f} m, slip held at "
+            f"{falling}: shortest printed stop {printed:.1f} m, ideal stop {ideal.ideal_stop:.1f} m, slip held at "
             f"{evidence.slip_reference:g} {ideal.constant_slip:.1f} m"
         )
     return Conclusion(

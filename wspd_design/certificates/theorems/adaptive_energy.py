@@ -3,13 +3,11 @@
 import math
 from dataclasses import dataclass
 
-from wspd_design.certificates.checks import verdict
 from wspd_design.certificates.kernel.arb import Ball, above, point
-from wspd_design.certificates.records import Problem, Status
-from wspd_design.certificates.search.settle import Finding
+from wspd_design.certificates.kernel.obligation import Condition
+from wspd_design.certificates.records import Problem
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzyGains
 
-TORQUE_TOLERANCE, DECELERATION_TOLERANCE = 50.0, 0.05  # N m, m/s2
 CHOICES = 401  # of the constant ideal weight
 
 
@@ -104,11 +102,33 @@ def smallest_gain(gains: AdaptiveFuzzyGains) -> float:
     return -math.inf if any(math.isnan(each) for each in needed) else min(needed)
 
 
-def inside(low: Finding, high: Finding, limit: float) -> Status:
-    """Whether u* stays inside the range of the brake by eta/g."""
-    if verdict.status(low, high) is Status.PROVED and low.claim.bound >= 0 and high.claim.bound <= limit:
-        return Status.PROVED
-    return Status.REFUTED if low.ends[1] < 0.0 or high.ends[0] > limit else Status.UNDECIDED
+def adaptation_conditions(gains: AdaptiveFuzzyGains, *, scheduled: bool) -> tuple[Condition, ...]:
+    """Return what the repaired Lyapunov function asks of the law.
+
+    Parameters
+    ----------
+    gains : AdaptiveFuzzyGains
+        Of the law.
+    scheduled : bool
+        Whether the rates of adaptation have to be alpha/v, or must not depend on the speed.
+    """
+    rates = "are alpha/v" if scheduled else "do not depend on the speed"
+    return (
+        Condition(
+            key="gains",
+            text="K_P, K_I, Phi and both adaptation rates are positive",
+            holds=smallest_gain(gains) > 0.0,
+        ),
+        Condition(key="dead zone", text="the law adapts with s_D alone", holds=gains.dead_zone),
+        Condition(
+            key="rates", text=f"the adaptation rates {rates}", holds=gains.scheduled_rates is scheduled
+        ),
+        Condition(
+            key="hold",
+            text="the adaptation is held while the command pushes beyond the brake",
+            holds=gains.hold_when_saturated,
+        ),
+    )
 
 
 def rounded_up(bound: float) -> str:

@@ -1,0 +1,230 @@
+"""Attacks on what is said about loops behind a sampled valve: recovery, poles, Lyapunov functions, invariant sets."""
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from tests.attack import linear, motion
+from tests.attack.case import Case, Stated
+from tests.attack.laws import feedback_duty
+from tests.attack.plant import Plant, holding_torque
+from tests.attack.search import Attack, Points
+from tests.attack.statements import box, plant_at
+
+DEVIATION = 0.05  # of the slip that full venting has to bring back
+SETTLED = 1e-3  # of the slip from sample to sample, at the end of a run
+NEVER = -1.0  # margin where the thing that is spoken about does not exist
+
+
+def hard_limits(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
+    """A deviation is held for a sample at frozen speed, then vented away."""
+
+    def margin(x: Points) -> Any:
+        plant = plant_at(case, x)
+        torque = np.clip(holding_torque(plant, case.slip, x["speed"]), 0.0, plant.max_torque)
+        state = motion.wheels(case.slip + DEVIATION, x["speed"], torque)
+        motion.hold(plant, state, case.sample_time, steps=12, frozen=True)
+        motion.vent(plant, state, 3.0, steps=90, frozen=True)
+        back = case.slip - state.slip
+        return np.minimum(case.slips[1] - state.highest, back + 0.02)
+
+    return [
+        Attack(
+            check=stated.check,
+            statement=f"full venting brings a deviation of {DEVIATION:g} back below {case.slips[1]:g}",
+            box=box(case, names, speed=case.speeds),
+            margin=margin,
+            cost=100,
+        )
+    ]
+
+
+def _equilibrium(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
+    def margin(x: Points) -> Any:
+        slip, _ = linear.equilibrium(case, plant_at(case, x), x["speed"])
+        return np.where(np.isnan(slip), NEVER, case.tolerance - abs(slip - case.slip))
+
+    return Attack(
+        check=stated.check,
+        statement=f"the loop has an equilibrium within {case.tolerance:g} of slip {case.slip:g}",
+        box=box(case, names, speed=case.speeds),
+        margin=margin,
+        cost=40,
+    )
+
+
+def _resting_point(case: Case, plant: Plant, speed: Any, *, sampled: bool) -> tuple[Any, Any, Any]:
+    """Slip and duty at rest, and where there are none; a law that knows its torque rests at the reference.
+
+    Where the brake cannot hold the reference such a law saturates, and nothing is said: not a number.
+    """
+    if not case.exact_torque:
+        slip, duty = linear.equilibrium(case, plant, speed, sampled=sampled)
+        lost = np.isnan(slip)
+        return np.where(lost, case.slip, slip), np.where(lost, 0.5, duty), lost
+    slip = np.full(np.shape(speed), case.slip)
+    share = holding_torque(plant, slip, speed) / plant.max_torque
+    share = np.where((share > 0.0) & (share < 1.0), share, np.nan)
+    duty = linear.duty_of(plant, share, case.sample_time)
+    return slip, np.where(np.isnan(share), np.nan, duty), np.zeros(np.shape(speed), bool)
+
+
+def lpv_lyapunov(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
+    """V of the file falls over a sample by its factor, about the equilibrium that the plant has."""
+    found = []
+    for proof in stated.quadratics:
+        p = tuple(float(Fraction(each)) for each in proof["sampled"])
+        found.append(sampled_fall(case, stated, names, p, float(Fraction(proof["contraction"]))))
+    if case.exact_torque:
+        return found
+    return [_equilibrium(case, stated, names), *found, _settles(case, stated, names)]
+
+
+def sampled_fall(
+    case: Case, stated: Stated, names: tuple[str, ...], p: tuple[float, ...], factor: float
+) -> Attack:
+    """V falls by a factor squared per sample with true pulses."""
+
+    def margin(x: Points) -> Any:
+        plant = plant_at(case, x)
+        slip, duty, lost = _resting_point(case, plant, x["speed"], sampled=True)
+        silent = np.isnan(duty)
+        matrix = linear.sampled_map(case, plant, slip, x["speed"], np.where(silent, 0.5, duty))
+        fall = factor - linear.contraction(matrix, p)
+        return np.where(lost, NEVER, np.where(silent, np.nan, fall))
+
+    return Attack(
+        check=stated.check,
+        statement=f"V falls by the factor {factor:.4g}^2 per sample with true pulses, about the equilibrium",
+        box=box(case, names, speed=case.speeds),
+        margin=margin,
+        cost=60,
+    )
+
+
+def _settles(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
+    """The nonlinear loop with true pulses, from its equilibrium with a small deviation, comes to rest."""
+
+    def margin(x: Points) -> Any:
+        plant = plant_at(case, x)
+        slip, _ = linear.equilibrium(case, plant, x["speed"])
+        lost = np.isnan(slip)
+        slip = np.where(lost, case.slip, slip)
+        torque = np.clip(holding_torque(plant, slip, x["speed"]), 0.0, plant.max_torque)
+        state = motion.wheels(slip + 0.002, x["speed"], torque)
+        seen = motion.sampled_run(case, plant, state, 300)
+        swing = abs(np.diff(seen[-20:], axis=0)).max(axis=0)
+        return np.where(lost, NEVER, SETTLED - swing)
+
+    return Attack(
+        check=stated.check,
+        statement="the loop with true pulses settles at frozen speed",
+        box=box(case, names, speed=case.speeds),
+        margin=margin,
+        cost=2000,
+    )
+
+
+def routh_lag(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
+    """Poles of the loop with the averaged valve at frozen speed, about the equilibrium."""
+    if case.law == "torque-feedback":
+
+        def margin(x: Points) -> Any:
+            plant = plant_at(case, x)
+            slip, _, lost = _resting_point(case, plant, x["speed"], sampled=False)
+            matrix = linear.continuous_rates(case, plant, slip, x["speed"], frozen=True)
+            return np.where(lost, NEVER, -linear.abscissa(matrix))
+
+    else:
+
+        def margin(x: Points) -> Any:
+            return -linear.surface_poles(case, plant_at(case, x), x["speed"])
+
+    found = Attack(
+        check=stated.check,
+        statement="all poles behind the averaged valve lie in the left half-plane",
+        box=box(case, names, speed=case.speeds),
+        margin=margin,
+        unit="1/s",
+        cost=20,
+    )
+    moves = case.law == "torque-feedback" and not case.exact_torque
+    return [found, *([_equilibrium(case, stated, names)] if moves else [])]
+
+
+def sampled_invariance(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
+    """One sample with true pulses, from the sets of the file: slip and torque stay in the sets of their speed."""
+    return [_stays(case, stated, names, [Cells(each) for each in sets]) for sets in stated.sets]
+
+
+class Cells:
+    """One window of speed with its cells of (slip, level), level = torque over T_max + tilt (slip - reference)."""
+
+    def __init__(self, window: dict[str, Any]) -> None:
+        self.low, self.high, self.tilt = (float(window[key]) for key in ("low", "high", "tilt"))
+        self.size = int(window["per_unit"])
+        self.cells = np.array(
+            [
+                (int(slip), level)
+                for slip, flat in window["columns"].items()
+                for start, end in zip(flat[::2], flat[1::2], strict=True)
+                for level in range(start, end)
+            ]
+        )
+        self.codes = np.sort(self._code(self.cells[:, 0], self.cells[:, 1]))
+
+    def _code(self, slip: Any, level: Any) -> Any:
+        return slip.astype(np.int64) * 2**32 + level.astype(np.int64)
+
+    def holds(self, slip: Any, level: Any) -> Any:
+        """Whether states are in the set; those on an edge by rounding count as inside."""
+        found = np.zeros(np.shape(slip), bool)
+        for dx in (-1e-7, 1e-7):
+            for dy in (-1e-7, 1e-7):
+                code = self._code(np.floor(slip * self.size + dx), np.floor(level * self.size + dy))
+                place = np.minimum(np.searchsorted(self.codes, code), len(self.codes) - 1)
+                found |= self.codes[place] == code
+        return found
+
+
+def _stays(case: Case, stated: Stated, names: tuple[str, ...], windows: list[Cells]) -> Attack:
+    def margin(x: Points) -> Any:
+        plant, full = plant_at(case, x), case.model.max_torque
+        index = np.minimum((x["window"] * len(windows)).astype(int), len(windows) - 1)
+        result = np.full(np.shape(x["window"]), np.inf)
+        for k in np.unique(index):
+            here, chosen = windows[k], index == k
+            cell = here.cells[np.minimum((x["cell"] * len(here.cells)).astype(int), len(here.cells) - 1)]
+            slip = (cell[:, 0] + x["along"]) / here.size
+            level = (cell[:, 1] + x["across"]) / here.size
+            share = level - here.tilt * (slip - case.slip)
+            chosen = chosen & (share >= 0.0) & (share <= 1.0)  # others are torques that no brake has
+            speed = here.low + (here.high - here.low) * x["place"]
+            state = motion.wheels(slip, speed, np.clip(share, 0.0, 1.0) * full)
+            duty = feedback_duty(case, slip, speed, state.torque)
+            motion.pulse(plant, state, duty, case.sample_time, steps=8, frozen=False)
+            inside = state.speed < windows[-1].low  # below the lowest window nothing is said
+            for each in windows:
+                moved = state.torque / full + each.tilt * (state.slip - case.slip)
+                within = (state.speed >= each.low) & (state.speed <= each.high)
+                inside |= within & each.holds(state.slip, moved)
+            distance = abs(state.slip - case.slip)
+            result = np.where(chosen, np.where(inside, 1.0 - distance, -distance - 1e-3), result)
+        return result
+
+    return Attack(
+        check=stated.check,
+        statement="a sample maps the sets of slip and torque into themselves",
+        box=box(
+            case,
+            names,
+            window=(0.0, 1.0),
+            cell=(0.0, 1.0),
+            along=(0.0, 1.0),
+            across=(0.0, 1.0),
+            place=(0.0, 1.0),
+        ),
+        margin=margin,
+        cost=20,
+    )

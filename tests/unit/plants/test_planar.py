@@ -1,0 +1,123 @@
+"""The planar vehicle for any number of bogies: loads, load transfer, and the special case without heights."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import constants, load_rail
+from wspd_design.plants.names import PLANTS, plant_of
+from wspd_design.plants.planar import Planar
+from wspd_design.plants.quarter import Quarter
+
+RNG = np.random.default_rng(4)
+
+
+def with_axles(vehicle, axles):
+    return replace(vehicle, wheelsets=axles)
+
+
+@pytest.mark.parametrize("axles", [4, 6, 8, 12])
+def test_the_wheels_carry_the_vehicle(er24pc, axles):
+    plant = Planar(with_axles(er24pc, axles))
+    loads = plant.wheel_loads(tuple(RNG.normal(scale=1e4, size=2 * plant.transfers)))
+    assert len(loads) == axles == len(plant.offsets)
+    assert 2.0 * sum(loads) == pytest.approx(er24pc.mass * constants().gravity, rel=1e-12)
+
+
+@pytest.mark.parametrize("axles", [4, 6, 8, 12])
+def test_the_transfer_of_the_body_balances_its_moment(er24pc, axles):
+    plant = Planar(with_axles(er24pc, axles))
+    none = (0.0,) * (2 * plant.transfers)
+    body = (1e4, *none[1:])
+    changes = np.subtract(plant.wheel_loads(body), plant.wheel_loads(none))
+    moment = -2.0 * float(
+        changes @ np.array(plant.offsets)
+    )  # about the first axle; the loads add up to nothing
+    assert moment == pytest.approx(1e4 * er24pc.bogie_spacing, rel=1e-12)
+    by_bogie = changes.reshape(-1, 2)
+    np.testing.assert_allclose(by_bogie[:, 0], by_bogie[:, 1])
+    np.testing.assert_allclose(
+        np.diff(by_bogie[:, 0]), np.diff(by_bogie[:, 0])[0]
+    )  # a rigid body on equal springs
+
+
+@pytest.mark.parametrize("axles", [4, 6])
+def test_the_transfer_within_a_bogie_stays_within_it(er24pc, axles):
+    plant = Planar(with_axles(er24pc, axles))
+    none = (0.0,) * (2 * plant.transfers)
+    for bogie in range(plant.bogies):
+        values = list(none)
+        values[1 + bogie] = 3e3
+        changes = np.subtract(plant.wheel_loads(tuple(values)), plant.wheel_loads(none)).reshape(-1, 2)
+        np.testing.assert_allclose(changes[bogie], [1.5e3, -1.5e3], rtol=1e-9)
+        assert not np.delete(changes, bogie, axis=0).any()
+
+
+def test_four_axles_stand_where_they_stood(er24pc):
+    base, spacing = er24pc.wheelbase, er24pc.bogie_spacing
+    assert Planar(er24pc).offsets == (0.0, base, spacing, spacing + base)
+    assert Quarter(er24pc).offsets == (0.0,) * 4
+
+
+@pytest.mark.parametrize("axles", [4, 6])
+def test_the_transfers_settle_where_the_moments_balance(er24pc, axles):
+    plant = Planar(with_axles(er24pc, axles))
+    forces = tuple(RNG.uniform(3e3, 9e3, axles))
+    still = plant.train_motion(speed=20.0, creep_forces=forces, transfers=(0.0,) * (2 * plant.transfers))
+    deceleration = -still.acceleration
+    assert deceleration == pytest.approx((2.0 * sum(forces) + still.resistance) / er24pc.mass, rel=1e-12)
+    rod, own = er24pc.traction_rod_height, er24pc.bogie_mass * deceleration
+    pulled = np.array(forces).reshape(-1, 2).sum(axis=1) * 2.0
+    settled = (
+        er24pc.body_mass * deceleration * (er24pc.body_height - rod) / er24pc.bogie_spacing,
+        *((own * er24pc.bogie_height + (pulled - own) * rod) / er24pc.wheelbase),
+    )
+    rest = (0.0,) * plant.transfers
+    there = plant.train_motion(speed=20.0, creep_forces=forces, transfers=(*settled, *rest))
+    np.testing.assert_allclose(there.transfer_rates, 0.0, atol=1e-6)
+    omega = 2.0 * math.pi * er24pc.body_pitch_frequency
+    assert still.transfer_rates[plant.transfers] == pytest.approx(omega**2 * settled[0], rel=1e-12)
+
+
+@pytest.mark.parametrize("axles", [1, 2, 3, 5, 7])
+def test_what_stands_on_no_two_bogies_is_refused(er24pc, axles):
+    vehicle = with_axles(er24pc, axles)
+    with pytest.raises(
+        UserError, match=rf"wheelsets = {axles} of vehicle er24pc .* take the plant \"quarter\""
+    ):
+        plant_of("four-axle", vehicle)
+    assert plant_of("quarter", vehicle).axles == axles
+
+
+def test_plants_by_name(er24pc):
+    assert PLANTS == ("four-axle", "quarter")
+    for name in PLANTS:
+        plant = plant_of(name, er24pc)
+        assert (plant.name, plant.vehicle, plant.on(er24pc)) == (name, er24pc, plant)
+    with pytest.raises(UserError, match='unknown plant "half"; available: four-axle, quarter'):
+        plant_of("half", er24pc)
+
+
+@pytest.mark.parametrize("axles", [1, 2, 6])
+def test_a_wheelset_of_the_quarter_locomotive_does_not_know_the_others(er24pc, axles):
+    # As many wheelsets carry as much more train.
+    rail, share = load_rail("polach-wet"), axles / er24pc.wheelsets
+    other = replace(
+        er24pc,
+        wheelsets=axles,
+        mass=share * er24pc.mass,
+        resistance_constant=share * er24pc.resistance_constant,
+        resistance_linear=share * er24pc.resistance_linear,
+        resistance_quadratic=share * er24pc.resistance_quadratic,
+    )
+    one, same = Quarter(er24pc), Quarter(other)
+    assert same.wheel_loads(()) == pytest.approx((one.wheel_loads(())[0],) * axles, rel=1e-14)
+    assert same.creep_rate(rail, 3.0) == pytest.approx(one.creep_rate(rail, 3.0), rel=1e-14)
+    mine, theirs = (
+        plant.train_motion(speed=20.0, creep_forces=(5e3,) * plant.axles).acceleration
+        for plant in (one, same)
+    )
+    assert theirs == pytest.approx(mine, rel=1e-14)

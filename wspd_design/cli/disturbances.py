@@ -1,0 +1,94 @@
+"""The options that disturb a stop: one record with their names, help and defaults, for every command that stops.
+
+A command takes a parameter ``disturbances: StopOptions`` and the decorator :func:`takes_stop_options`, which puts the
+fields of the record into its signature.
+"""
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import wraps
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+PANEL = "Disturbances, all off by default"
+PARAMETER = "disturbances"
+
+
+def _described(flag: str, metavar: str | None, meaning: str, *, least: int | None = None) -> Any:
+    return typer.Option(
+        flag, metavar=metavar, help=meaning, min=least, show_default=False, rich_help_panel=PANEL
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopOptions:
+    """What the user wrote about the disturbances of a stop; None where nothing was written."""
+
+    axle_rails: Annotated[
+        str | None,
+        _described(
+            "--axle-rails",
+            "R1,R2,R3,R4",
+            "Rail below each axle, front first; --rail stays the one that controllers are designed for.",
+        ),
+    ] = None
+    patch: Annotated[
+        list[str] | None,
+        _described(
+            "--patch", '"START RAIL"', 'From START on another rail: "50 m polach-wet". Repeat it for several.'
+        ),
+    ] = None
+    grade: Annotated[
+        str | None, _described("--grade", "GRADE", 'Positive uphill: "5 permille" or "-0.5 %".')
+    ] = None
+    pad_vibration: Annotated[
+        bool,
+        _described("--pad-vibration", None, "Vibration of the brake pads, T_d in Section 7 of the paper."),
+    ] = False
+    speed_noise: Annotated[
+        str | None, _described("--speed-noise", "SPEED", 'Of the measured rim speed, rms: "0.05 m/s".')
+    ] = None
+    pulses: Annotated[
+        int | None,
+        _described(
+            "--pulses", "NUMBER", "Pulses per turn of the wheel that measures the speed, such as 80.", least=1
+        ),
+    ] = None
+    reference_error: Annotated[
+        str | None,
+        _described("--reference-error", "SHARE", 'Of the train speed that the controller knows: "2 %".'),
+    ] = None
+    dead_time: Annotated[
+        str | None,
+        _described("--dead-time", "TIME", 'From command to valve, at most one sample time: "40 ms".'),
+    ] = None
+
+
+def takes_stop_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of :class:`StopOptions` in place of its parameter ``disturbances``."""
+    hints = get_type_hints(StopOptions, include_extras=True)
+    own = get_type_hints(command, include_extras=True)
+    parameters = []
+    for parameter in inspect.signature(command).parameters.values():
+        if parameter.name == PARAMETER:
+            parameters += [
+                _parameter(each.name, hints[each.name], each.default) for each in fields(StopOptions)
+            ]
+        else:
+            parameters.append(_parameter(parameter.name, own[parameter.name], parameter.default))
+
+    @wraps(command)
+    def with_options(**given: Any) -> None:
+        written = {each.name: given.pop(each.name, each.default) for each in fields(StopOptions)}
+        command(**given, **{PARAMETER: StopOptions(**written)})
+
+    del with_options.__wrapped__  # its hints are not those of this signature
+    with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    with_options.__annotations__ = {each.name: each.annotation for each in parameters}
+    return with_options
+
+
+def _parameter(name: str, annotation: Any, default: Any) -> inspect.Parameter:
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)

@@ -1,0 +1,111 @@
+"""What goes into the closed loop and what comes out of it, as arrays of numbers.
+
+Arrays over lanes or stops have them as their last axis; lane ``axle * stops + stop`` is one wheelset of one stop.
+"""
+
+import ctypes
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+LANE_TOTALS = (
+    "torque",
+    "damping_impulse",
+    "brake_work",
+    "sliding_work",
+    "damping_work",
+    "slip",
+    "slip_squared",
+    "lock_time",
+    "slip_max",
+    "vented_pressure",
+)
+STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
+RAIL_NUMBERS = 5
+DOUBLES = ctypes.POINTER(ctypes.c_double)
+
+
+class Settings(ctypes.Structure):
+    """Numbers of the run that are the same for all stops, in SI units."""
+
+    _fields_ = tuple(
+        (name, ctypes.c_double)
+        for name in (
+            "sample_time",
+            "dead_time",
+            "longest_step",
+            "creep_rate",
+            "stop_speed",
+            "regularization_speed",
+            "time_limit",
+            "judging_speed",
+            "record_interval",
+        )
+    )
+
+
+class Head(ctypes.Structure):
+    """What the caller sets in the C structure ``Loop``; its state follows."""
+
+    _fields_ = (
+        ("set", Settings),
+        ("measured", DOUBLES),
+        ("patch_start", DOUBLES),
+        ("patch_rail", DOUBLES),
+        ("patches", ctypes.c_long),
+        ("load_factor", DOUBLES),
+        ("load_points", ctypes.c_long),
+        ("load_spacing", ctypes.c_double),
+        ("hold", DOUBLES),
+        ("hold_points", ctypes.c_long),
+        ("hold_first", ctypes.c_double),
+        ("hold_spacing", ctypes.c_double),
+        ("trace", DOUBLES),
+        ("trace_rows", ctypes.c_long),
+        ("trace_used", ctypes.c_long),
+        ("quantum", ctypes.c_double),
+        ("reference_factor", ctypes.c_double),
+        ("gains", DOUBLES),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopInput:
+    """Everything that the loop takes, as numbers."""
+
+    stop_parameters: "Array"  # (PARAMETERS, stops)
+    lane_parameters: "Array"  # (PARAMETERS, lanes)
+    speeds: "Array"  # (stops,), initial [m/s]
+    wheel_speeds: "Array"  # (lanes,), initial [rad/s]
+    pressures: "Array"  # (lanes,), of the cylinders, initial [Pa]
+    settings: Settings
+    patch_starts: "Array | None" = None  # (patches,) [m]
+    patch_rails: "Array | None" = None  # (patches, axles, RAIL_NUMBERS)
+    wheel_noise: "Array | None" = None  # (samples, lanes) [rad/s]
+    quantum: float = 0.0  # rad/s
+    reference_factor: float = 1.0
+    load_factors: "Array | None" = None  # (axles, points)
+    load_spacing: float = 1.0  # m
+    held_slips: "Array | None" = None  # (axles, points), what an ideal brake never exceeds
+    held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
+    trace_rows: int = 0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopOutput:
+    """What the loop gives back, as numbers."""
+
+    result: int
+    stopped: "NDArray[np.bool_]"  # (stops,)
+    lane_totals: dict[str, "Array"]  # (lanes,) each
+    stop_totals: dict[str, "Array"]  # (stops,) each
+    wheel_speeds: "Array"  # (lanes,)
+    trace: "Array"  # (rows, 3 + 5 axles), of the first stop
+    samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
+    bad_command: tuple[float, float, float]  # time, fill, vent
+    steps: int

@@ -1,0 +1,185 @@
+"""Records of a stop, a check, a design and a set of parameters as plain data, in the forms of the vocabulary."""
+
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from wspd_design.certificates.kernel.file import file_name
+from wspd_design.certificates.kernel.finding import Finding
+from wspd_design.certificates.records import Certificate
+from wspd_design.design.records import Design
+from wspd_design.exchange.stop_forms import STOP
+from wspd_design.exchange.version import program_version
+from wspd_design.parameters.records import ParameterSet
+from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.records import Scenario
+
+if TYPE_CHECKING:
+    from wspd_design.analysis.linearization import Linearization
+
+
+def stop_object(
+    trial: Trial, scenario: Scenario, *, slip_reference: float, witness: dict[str, Any] | None = None
+) -> dict[str, Any]:
+    """Return the figures of one stop; the witness is there if it starts at one."""
+    run, figures, check = trial.run, trial.metrics, trial.check
+    return {
+        "schema": STOP.schema,
+        "controller": run.controller,
+        "vehicle": run.vehicle,
+        "rail": run.rail,
+        "plant": run.plant,
+        "sample_time_s": run.sample_time,
+        "initial_speed_m_s": run.initial_speed,
+        "scenario": scenario_object(scenario),
+        "witness": witness,
+        "slip_reference": slip_reference,
+        "ending": run.ending.name.lower(),
+        "distance_m": figures.distance,
+        "stopping_time_s": figures.stopping_time,
+        "torque_integral_Nms": figures.torque_integral,
+        "ideal_stop_m": figures.ideal_stop,
+        "ideal_ending": None if figures.ideal_ending is None else figures.ideal_ending.name.lower(),
+        "efficiency": figures.efficiency,
+        "adhesion_utilization": figures.adhesion_utilization,
+        "lag_s": figures.lag,
+        "lag_distance_m": run.initial_speed * figures.lag,
+        "plateau_m_s2": figures.plateau,
+        "slip_rms": figures.slip_rms,
+        "slip_mean": figures.slip_mean,
+        "slip_max": figures.slip_max,
+        "lock_time_s": figures.lock_time,
+        "valve_switches": figures.valve_switches,
+        "vented_air": figures.vented_air,
+        "saturated_share": figures.saturated_share,
+        "momentum_residual": figures.momentum_residual,
+        "energy_residual": figures.energy_residual,
+        "step_check": {
+            "distance_change": check.distance,
+            "slip_change": check.slip,
+            "refinement": check.refinement,
+            "chaotic": check.chaotic,
+            "spread_m": check.spread,
+        },
+        "engine": run.engine,
+        "seed": scenario.seed,
+        "version": program_version(),
+    }
+
+
+def scenario_object(scenario: Scenario) -> dict[str, Any]:
+    """Return where a stop starts and what disturbs it."""
+    rails, sensing, start = scenario.axle_rails, scenario.sensing, scenario.start
+    return {
+        "start": {
+            "slip": start.slip,
+            "torque_Nm": start.torque,
+            "braking_time_s": start.braking_time,
+        },
+        "axle_rails": None if rails is None else [rail.name for rail in rails],
+        "patches": [{"from_m": patch.start, "rail": patch.rail.name} for patch in scenario.patches],
+        "grade": scenario.grade,
+        "pad_vibration": scenario.pad_vibration,
+        "speed_noise_m_s": sensing.speed_noise,
+        "pulses_per_turn": sensing.pulses_per_turn,
+        "reference_error": sensing.reference_error,
+        "dead_time_s": sensing.dead_time,
+    }
+
+
+def check_object(certificate: Certificate) -> dict[str, Any]:
+    """Return a certificate without what is for plots and without times, which change from run to run."""
+    return {
+        "name": certificate.name,
+        "title": certificate.title,
+        "claim": certificate.claim,
+        "status": certificate.status.name,
+        "explanation": certificate.explanation,
+        "margin": None if certificate.margin is None else asdict(certificate.margin),
+        "worst_point": [asdict(point) for point in certificate.worst_point],
+        "witness": [asdict(point) for point in certificate.witness],
+        "hypotheses": [
+            {"text": hypothesis.text, "status": hypothesis.status.name}
+            for hypothesis in certificate.hypotheses
+        ],
+        "assumptions": list(certificate.assumptions),
+        "method": certificate.method,
+        "reference": certificate.reference,
+        "model_hash": certificate.model_hash,
+        "undecided_share": certificate.undecided,
+        "varied": list(certificate.varied),
+        "held": list(certificate.held),
+        "searched_boxes": certificate.boxes,
+        "search_cut": certificate.cut,
+        "proofs": [
+            _proof(key, found) | {"file": file_name(certificate)} for key, found in certificate.proved.items()
+        ],
+    }
+
+
+def timed_check_object(certificate: Certificate) -> dict[str, Any]:
+    """Return a certificate with its computing times and, in place of files, the text of its proofs."""
+    proofs = [
+        _proof(key, found) | {"certificate": json.dumps(found.stated.proof)}
+        for key, found in certificate.proved.items()
+    ]
+    return check_object(certificate) | {"proofs": proofs, "computing_time_s": certificate.seconds}
+
+
+def _proof(key: str, found: Finding) -> dict[str, Any]:
+    return {"obligation": key, "statement": found.shown, "leaves": found.leaves}
+
+
+def linearization_point_object(point: "Linearization") -> dict[str, Any]:
+    """Return the slip linearized at one speed."""
+    return {
+        "speed_m_s": point.speed,
+        "slip_pole_per_s": point.slip_pole,
+        "gain_per_Nms": point.gain,
+        "poles_with_lag_per_s": list(point.poles()),
+        "equilibrium_torque_Nm": point.equilibrium_torque,
+        "equilibrium_duty": point.equilibrium_duty,
+        "pole_beyond_lag": bool(point.slip_pole > 1.0 / point.time_constant),
+    }
+
+
+def design_object(design: Design) -> dict[str, Any]:
+    """Return a design with its specification and the reasons of its gains."""
+    wanted = design.specification
+    return {
+        "name": design.name,
+        "law": design.law,
+        "vehicle": design.vehicle,
+        "vehicle_hash": design.vehicle_hash,
+        "rail": design.rail,
+        "specification": {
+            "slip_reference": wanted.slip,
+            "slip_tolerance": wanted.slip_tolerance,
+            "slips": list(wanted.slips),
+            "speeds_m_s": list(wanted.speeds),
+            "sample_time_s": wanted.sample_time,
+        },
+        "gains": [asdict(gain) for gain in design.gains],
+    }
+
+
+def parameters_object(parameters: ParameterSet) -> dict[str, Any]:
+    """Return a set of parameters with the source of each number."""
+    return {
+        "kind": parameters.kind,
+        "name": parameters.name,
+        "title": parameters.title,
+        "entries": [
+            {
+                "name": entry.name,
+                "value_si": entry.value,
+                "bounds_si": entry.bounds,
+                "unit_of_file": entry.unit,
+                "source": entry.source,
+                "at": entry.at,
+                "status": entry.status,
+                "note": entry.note,
+            }
+            for entry in parameters.entries.values()
+        ],
+    }

@@ -1,0 +1,246 @@
+"""Forms of one stop, of many and of several side by side."""
+
+from wspd_design.exchange.common_keys import (
+    ANY,
+    CONTROLLER_KEY,
+    ENDINGS,
+    PLANT_KEY,
+    RAIL_KEY,
+    REFERENCE_KEY,
+    SAMPLE_TIME_KEY,
+    SCHEMA_KEY,
+    SEED_KEY,
+    SPEED_KEY,
+    STATUSES,
+    VEHICLE_KEY,
+    VERSION_KEY,
+    nullable,
+)
+from wspd_design.exchange.forms import Form, Key
+
+START = Form(
+    name="start",
+    keys=(
+        Key(name="slip", kind="number", meaning="share by which the rims are slower than the train"),
+        Key(name="torque_Nm", kind="number", meaning="per wheelset, of the cylinder pressure"),
+        Key(
+            name="braking_time_s",
+            kind="number",
+            meaning="since the brake was applied: supply, vibration of the pads and damping are as far on",
+        ),
+    ),
+)
+PATCH = Form(
+    name="patch",
+    keys=(
+        Key(name="from_m", kind="number", meaning="where the rail changes"),
+        Key(name="rail", kind="text", meaning="name of the rail from there on"),
+    ),
+)
+SCENARIO = Form(
+    name="scenario",
+    keys=(
+        Key(name="start", kind=START, meaning="state of all wheelsets at the start"),
+        Key(
+            name="axle_rails",
+            kind="text",
+            many=ANY,
+            nullable=True,
+            meaning="rails below the axles, front first, in place of rail; null for one rail",
+        ),
+        Key(name="patches", kind=PATCH, many=ANY, meaning="changes of rail along the track"),
+        Key(name="grade", kind="number", meaning="rise over run, positive uphill"),
+        Key(name="pad_vibration", kind="flag", meaning="T_d of Section 7"),
+        Key(name="speed_noise_m_s", kind="number", meaning="rms, of the measured rim speed"),
+        Key(name="pulses_per_turn", kind="integer", meaning="of the pulse wheel; 0 for an exact measurement"),
+        Key(
+            name="reference_error",
+            kind="number",
+            meaning="relative error of the train speed that the controller knows",
+        ),
+        Key(name="dead_time_s", kind="number", meaning="from the command to the valve"),
+    ),
+)
+WITNESS = Form(
+    name="witness",
+    keys=(
+        Key(name="check", kind="text", meaning="name of the check"),
+        Key(name="status", kind="text", words=STATUSES, meaning="what the certificate says it is"),
+        Key(
+            name="same_problem",
+            kind="flag",
+            meaning="whether the certificate is about the numbers of this design, vehicle and rail",
+        ),
+        Key(name="mass_kg", kind="number", meaning="of the simulated plant; the controller keeps its own"),
+        Key(name="wheelset_inertia_kg_m2", kind="number", meaning="of the simulated plant"),
+        Key(name="mu0", kind="number", meaning="friction without sliding of the simulated plant"),
+        Key(
+            name="holding_torque_Nm",
+            kind="number",
+            meaning="torque per wheelset that holds the slip at the start, whether the brake has it or not",
+        ),
+        Key(
+            name="left_after_s",
+            kind="number",
+            nullable=True,
+            meaning="until the slip is 0.05 away from where it began; null if never, and for many stops",
+        ),
+    ),
+)
+STEP_CHECK = Form(
+    name="step_check",
+    keys=(
+        Key(name="distance_change", kind="number", meaning="of the distance with half steps, relative"),
+        Key(
+            name="slip_change",
+            kind="number",
+            meaning="largest change of a slip above 0.3 m/s with half steps",
+        ),
+        Key(
+            name="refinement",
+            kind="integer",
+            meaning="by which the steps were divided until they were short enough",
+        ),
+        Key(
+            name="chaotic",
+            kind="flag",
+            meaning="no step is short enough: the closed loop amplifies the last digits",
+        ),
+        Key(
+            name="spread_m",
+            kind="number",
+            meaning="range of the distance over slightly different initial speeds; 0 unless chaotic",
+        ),
+    ),
+)
+
+STOP = Form(
+    name="stop",
+    schema="wspd-stop/2",
+    keys=(
+        SCHEMA_KEY,
+        CONTROLLER_KEY,
+        VEHICLE_KEY,
+        RAIL_KEY,
+        PLANT_KEY,
+        SAMPLE_TIME_KEY,
+        SPEED_KEY,
+        Key(name="scenario", kind=SCENARIO, meaning="where the stop starts and what disturbs it"),
+        Key(name="witness", kind=WITNESS, nullable=True, meaning="the witness that the stop starts at"),
+        REFERENCE_KEY,
+        Key(
+            name="ending",
+            kind="text",
+            words=ENDINGS,
+            meaning="stopped, or time_limit for a train that was still moving",
+        ),
+        Key(name="distance_m", kind="number", meaning="to standstill or to the time limit"),
+        Key(name="stopping_time_s", kind="number", meaning="to standstill or to the time limit"),
+        Key(
+            name="torque_integral_Nms",
+            kind="number",
+            meaning="transmitted braking torque over time, sum over the wheelsets",
+        ),
+        nullable(
+            "ideal_stop_m",
+            "distance of the ideal stop, a simulation of a brake that holds the best slip; nothing is proved by it. "
+            "null where ideal_ending is not stopped",
+        ),
+        Key(
+            name="ideal_ending",
+            kind="text",
+            words=ENDINGS,
+            nullable=True,
+            meaning="of the ideal stop; time_limit for a train that no brake of this vehicle stops in time. null where "
+            "it is not known: changes of rail along the track, starts from a witness",
+        ),
+        nullable("efficiency", "ideal stop over distance"),
+        nullable("adhesion_utilization", "impulse of the creep forces over that of the adhesion peak"),
+        nullable("lag_s", "2 d/v0 - t: what the build-up of the brake costs"),
+        nullable("lag_distance_m", "initial speed times lag"),
+        nullable("plateau_m_s2", "v0/(2 (t - d/v0)): deceleration after the build-up"),
+        nullable("slip_rms", "above 10 km/h, about the reference"),
+        nullable("slip_mean", "above 10 km/h"),
+        nullable("slip_max", "above 10 km/h"),
+        Key(name="lock_time_s", kind="number", meaning="of the wheelset that is locked longest"),
+        Key(
+            name="valve_switches",
+            kind="integer",
+            meaning="changes of the valve state, mean of the wheelsets",
+        ),
+        Key(name="vented_air", kind="number", meaning="full brake cylinders let out, mean of the wheelsets"),
+        Key(
+            name="saturated_share",
+            kind="number",
+            meaning="share of the samples that fill or vent all the time",
+        ),
+        Key(
+            name="momentum_residual",
+            kind="number",
+            meaning="what is missing in the balance, relative to the initial value",
+        ),
+        Key(
+            name="energy_residual",
+            kind="number",
+            meaning="what is missing in the balance, relative to the initial value",
+        ),
+        Key(name="step_check", kind=STEP_CHECK, meaning="what half the integration steps change"),
+        Key(
+            name="engine",
+            kind="text",
+            meaning="what computed it: compiled, compiled plant with controller in Python, or CasADi virtual machine",
+        ),
+        SEED_KEY,
+        VERSION_KEY,
+    ),
+)
+SPREAD = Form(
+    name="spread",
+    keys=(
+        nullable("min", "smallest"),
+        nullable("p05", "quantile 5 %"),
+        nullable("median", "quantile 50 %"),
+        nullable("p95", "quantile 95 %"),
+        nullable("max", "largest"),
+    ),
+)
+CAMPAIGN = Form(
+    name="campaign",
+    schema="wspd-campaign/1",
+    keys=(
+        SCHEMA_KEY,
+        CONTROLLER_KEY,
+        VEHICLE_KEY,
+        RAIL_KEY,
+        PLANT_KEY,
+        SAMPLE_TIME_KEY,
+        SPEED_KEY,
+        Key(name="scenario", kind=SCENARIO, meaning="as of one stop"),
+        Key(name="witness", kind=WITNESS, nullable=True, meaning="as of one stop"),
+        Key(name="runs", kind="integer", meaning="stops that are done"),
+        Key(name="runs_wanted", kind="integer", meaning="stops that were asked for"),
+        Key(name="complete", kind="flag", meaning="false after an interrupt, exit code 130"),
+        nullable("not_stopped_share", "share of the stops that did not come to a standstill"),
+        Key(
+            name="sampled",
+            kind="text",
+            many=ANY,
+            meaning="parameters that were drawn evenly within their bounds",
+        ),
+        *(
+            Key(name=name, kind=SPREAD, meaning="over the stops that came to a standstill")
+            for name in ("distance_m", "stopping_time_s", "lock_time_s")
+        ),
+        Key(name="seed", kind="integer", meaning="of the first stop and of the drawing"),
+        VERSION_KEY,
+    ),
+)
+COMPARISON = Form(
+    name="comparison",
+    schema="wspd-comparison/2",
+    keys=(
+        SCHEMA_KEY,
+        Key(name="stops", kind=STOP, many=(1, None), meaning="in the order of the command line"),
+        VERSION_KEY,
+    ),
+)

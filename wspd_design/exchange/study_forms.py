@@ -1,0 +1,149 @@
+"""Forms of linearizations, designs, parameters and a whole report."""
+
+from wspd_design.exchange.check_forms import CHECK
+from wspd_design.exchange.common_keys import (
+    ANY,
+    PAIR,
+    PLANT_KEY,
+    RAIL_KEY,
+    REFERENCE_KEY,
+    SAMPLE_TIME_KEY,
+    SCHEMA_KEY,
+    SEED_KEY,
+    VEHICLE_KEY,
+    VERSION_KEY,
+)
+from wspd_design.exchange.forms import Form, Key
+from wspd_design.exchange.stop_forms import STOP
+
+LINEARIZATION_POINT = Form(
+    name="linearization_point",
+    keys=(
+        Key(name="speed_m_s", kind="number", meaning="of the train"),
+        Key(name="slip_pole_per_s", kind="number", meaning="open-loop pole of the slip without the valve"),
+        Key(name="gain_per_Nms", kind="number", meaning="G of eq. (19)"),
+        Key(
+            name="poles_with_lag_per_s",
+            kind="number",
+            many=ANY,
+            meaning="with the valve, fastest growing first",
+        ),
+        Key(
+            name="equilibrium_torque_Nm",
+            kind="number",
+            meaning="torque per wheelset that holds the slip",
+        ),
+        Key(
+            name="equilibrium_duty",
+            kind="number",
+            meaning="the same as share of the largest torque; above 1 the brake cannot hold it",
+        ),
+        Key(name="pole_beyond_lag", kind="flag", meaning="whether the slip pole exceeds 1/tau"),
+    ),
+)
+LINEARIZATION = Form(
+    name="linearization",
+    schema="wspd-linearization/1",
+    keys=(
+        SCHEMA_KEY,
+        VEHICLE_KEY,
+        RAIL_KEY,
+        PLANT_KEY,
+        REFERENCE_KEY,
+        Key(name="valve_time_constant_s", kind="number", meaning="tau"),
+        Key(name="points", kind=LINEARIZATION_POINT, many=(1, None), meaning="one object for each speed"),
+        VERSION_KEY,
+    ),
+)
+SPECIFICATION = Form(
+    name="specification",
+    keys=(
+        REFERENCE_KEY,
+        Key(name="slip_tolerance", kind="number", meaning="width of the band about the reference"),
+        Key(name="slips", kind="number", many=PAIR, meaning="range of slip of the checks"),
+        Key(name="speeds_m_s", kind="number", many=PAIR, meaning="range of operation"),
+        SAMPLE_TIME_KEY,
+    ),
+)
+GAIN = Form(
+    name="gain",
+    keys=(
+        Key(name="name", kind="text", meaning="of the gain"),
+        Key(
+            name="value",
+            kind="value",
+            meaning="number, list of numbers, true or false, in the unit beside it",
+        ),
+        Key(name="unit", kind="text", meaning="of the value"),
+        Key(name="why", kind="text", meaning="the rule that chose it"),
+    ),
+)
+DESIGN = Form(
+    name="design",
+    keys=(
+        Key(name="name", kind="text", meaning="of the design"),
+        Key(name="law", kind="text", meaning="family of the control law"),
+        VEHICLE_KEY,
+        Key(name="vehicle_hash", kind="text", meaning="fingerprint of the vehicle that it was made for"),
+        Key(name="rail", kind="text", meaning="name of the rail that it was made for"),
+        Key(name="specification", kind=SPECIFICATION, meaning="what was asked for"),
+        Key(name="gains", kind=GAIN, many=ANY, meaning="with their reasons"),
+    ),
+)
+ENTRY = Form(
+    name="entry",
+    keys=(
+        Key(name="name", kind="text", meaning="of the number"),
+        Key(name="value_si", kind="value", meaning="in SI units; words stay as they are"),
+        Key(
+            name="bounds_si",
+            kind="number",
+            many=PAIR,
+            nullable=True,
+            meaning="in SI units; null where the number is exact",
+        ),
+        Key(name="unit_of_file", kind="text", meaning="that the parameter file states"),
+        Key(name="source", kind="text", meaning="key of the source"),
+        Key(name="at", kind="text", meaning="place in the source"),
+        Key(name="status", kind="text", meaning="how far the number can be trusted"),
+        Key(name="note", kind="text", meaning="remark"),
+    ),
+)
+PARAMETERS = Form(
+    name="parameters",
+    keys=(
+        Key(name="kind", kind="text", meaning="vehicle, rail, controller or constants"),
+        Key(name="name", kind="text", meaning="of the set"),
+        Key(name="title", kind="text", meaning="what it describes"),
+        Key(name="entries", kind=ENTRY, many=ANY, meaning="its numbers"),
+    ),
+)
+PROVENANCE = Form(
+    name="provenance",
+    keys=(
+        Key(name="command", kind="text", meaning="the command line"),
+        Key(name="versions", kind="value", meaning="object: package to version"),
+        SEED_KEY,
+        Key(name="input_hash", kind="text", meaning="SHA-256 of design, vehicle, rail and scenario"),
+    ),
+)
+REPORT = Form(
+    name="report",
+    schema="wspd-report/2",
+    keys=(
+        SCHEMA_KEY,
+        Key(name="provenance", kind=PROVENANCE, meaning="how to make the report again"),
+        Key(name="design", kind=DESIGN, meaning="what the report is about"),
+        Key(
+            name="compared_designs",
+            kind=DESIGN,
+            many=ANY,
+            meaning="of each other controller that has gains",
+        ),
+        Key(name="linearizations", kind=LINEARIZATION_POINT, many=ANY, meaning="over speed"),
+        Key(name="checks", kind=CHECK, many=ANY, meaning="one object for each claim"),
+        Key(name="stops", kind=STOP, many=(1, None), meaning="the design's own stop first"),
+        Key(name="parameters", kind=PARAMETERS, many=ANY, meaning="each set that was used"),
+        VERSION_KEY,
+    ),
+)

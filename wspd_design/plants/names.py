@@ -1,0 +1,31 @@
+"""The plants by name: the one place that turns the name of an option into a plant."""
+
+from collections.abc import Callable
+from typing import Final
+
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.records import Vehicle
+from wspd_design.plants.planar import Planar
+from wspd_design.plants.protocol import Plant
+from wspd_design.plants.quarter import Quarter
+
+_PLANTS: Final[dict[str, Callable[[Vehicle], Plant]]] = {kind.name: kind for kind in (Planar, Quarter)}
+
+PLANTS: Final = tuple(_PLANTS)
+"""The first transfers load; the quarter locomotive is its case without heights and with equal rails."""
+
+DEFAULT_PLANT: Final = Planar.name
+"""The plant of a stop that names none."""
+
+
+def plant_of(name: str, vehicle: Vehicle) -> Plant:
+    """Return the plant of a name with the numbers of a vehicle.
+
+    Raises
+    ------
+    UserError
+        If there is no such plant, or it does not know how the vehicle carries its load.
+    """
+    if name not in _PLANTS:
+        raise UserError(f'unknown plant "{name}"; available: {", ".join(PLANTS)}')
+    return _PLANTS[name](vehicle)

@@ -1,0 +1,23 @@
+"""A scenario in words."""
+
+from wspd_design.simulation.records import Scenario
+
+
+def rails_of(stop: Scenario) -> str:
+    """Say on which rails a stop runs."""
+    names = "/".join(rail.name for rail in stop.axle_rails) if stop.axle_rails else stop.rail.name
+    return ", ".join((names, *(f"{patch.rail.name} from {patch.start:g} m" for patch in stop.patches)))
+
+
+def disturbances_of(stop: Scenario) -> str:
+    """Say what disturbs a stop besides its rails; empty for nothing."""
+    sensing = stop.sensing
+    said = (
+        (stop.grade, f"grade {1e3 * stop.grade:g} permille"),
+        (stop.pad_vibration, "pad vibration"),
+        (sensing.speed_noise, f"speed noise {sensing.speed_noise:g} m/s rms"),
+        (sensing.pulses_per_turn, f"{sensing.pulses_per_turn} pulses per turn"),
+        (sensing.reference_error, f"reference error {100.0 * sensing.reference_error:g} %"),
+        (sensing.dead_time, f"dead time {1e3 * sensing.dead_time:g} ms"),
+    )
+    return ", ".join(words for present, words in said if present)
