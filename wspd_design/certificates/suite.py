@@ -18,14 +18,10 @@ from wspd_design.certificates.checks.foundations import (
     well_posed,
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
-<<<<<<< HEAD
 from wspd_design.certificates.checks.linear import margins, routh_lag
 from wspd_design.certificates.checks.region import lpv_lyapunov
-from wspd_design.certificates.checks.sliding import boundary_layer, reaching, sliding_exists
-=======
 from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
 from wspd_design.certificates.checks.stop import tracking
->>>>>>> kernel
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
@@ -55,14 +51,11 @@ CHECKS: Mapping[str, Check] = {
         no_go.CHECK,
         hard_limits.CHECK,
         sampling.CHECK,
-<<<<<<< HEAD
         routh_lag.CHECK,
         margins.CHECK,
         lpv_lyapunov.CHECK,
-=======
         tracking.CHECK,
         conservation.CHECK,
->>>>>>> kernel
     )
 }
 NAMES = tuple(THEOREMS)

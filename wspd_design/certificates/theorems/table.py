@@ -2,25 +2,23 @@
 
 from collections.abc import Mapping
 
-<<<<<<< HEAD
-from wspd_design.certificates.theorems import authority, foundations, linear, recovery, region, sliding, valve
-=======
 from wspd_design.certificates.theorems import (
     afsmc_energy,
     authority,
     barbalat,
     equations,
     foundations,
+    linear,
     lyapunov_adaptive,
     lyapunov_surface,
     recovery,
+    region,
     signs,
     simulated_stop,
     sliding,
     surface,
     valve,
 )
->>>>>>> kernel
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
@@ -42,14 +40,11 @@ THEOREMS: Mapping[str, Theorem] = {
         valve.NO_GO,
         recovery.HARD_LIMITS,
         valve.SAMPLING,
-<<<<<<< HEAD
         linear.ROUTH_LAG,
         linear.MARGINS_THEOREM,
         region.LPV_LYAPUNOV,
-=======
         simulated_stop.TRACKING,
         simulated_stop.CONSERVATION,
->>>>>>> kernel
     )
 }
 """By name; a check without a row here does not exist."""
