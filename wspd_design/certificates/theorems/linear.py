@@ -21,6 +21,7 @@ from wspd_design.certificates.setting.linear_loop import (
     RATE,
     SHARE,
     law_of,
+    Quartic,
     linear_law,
     loop_at,
     one_time,
@@ -31,6 +32,7 @@ from wspd_design.certificates.setting.linear_loop import (
 )
 from wspd_design.certificates.setting.plant import OTHERS, Values, place
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis, left_open
+from wspd_design.controllers.offers import Feedback
 from wspd_design.model.number import Number
 from wspd_design.parameters.units import KMH
 
@@ -49,28 +51,33 @@ def conditions(problem: Problem) -> dict[str, Claim]:
     at_top = law.linear_form(problem.speeds[1])
     top = problem.vehicle.brake.max_torque
 
-    def parts(values: Values, arranged: bool) -> tuple[Number, ...]:
+    # Any positive scale serves: the gain on the slip, if it has one sign at all speeds, else a little more than it.
+    steady = at_top.proportional != 0.0 and law.linear_model is None
+    slow = law.linear_form(0.5 * problem.speeds[1])
+    by_speed = steady and 2.0 * slow.proportional == at_top.proportional
+    sides = [-1.0 if each < 0.0 else 1.0 for each in (at_top.proportional, at_top.torque)]
+
+    def parts(values: Values, arranged: bool) -> tuple[Quartic, Number, Number, Feedback]:
         plant, rates, gains = loop_at(problem, values, arranged=arranged)
-        found = quartic(plant, rates, gains)
-        # Any positive scale serves; the small part keeps it positive for a law without feedback.
-        scale = rates.rate * plant.gain * (abs(gains.proportional) + LEAST_GAIN * top)
-        return found, scale, rates.decay + rates.rate * abs(gains.torque), gains
+        size = gains.proportional * sides[0] if steady else abs(gains.proportional) + LEAST_GAIN * top
+        back = rates.decay + rates.rate * gains.torque * sides[1]
+        return quartic(plant, rates, gains), rates.rate * plant.gain * size, back, gains
 
     def third(values: Values, arranged: bool) -> Number:
-        found, _, back, gains = parts(values, arranged)
-        if not arranged:
-            return found.third / back
-        plant, rates, gains = loop_at(problem, values, arranged=True)
-        # (a + b K - p)/(a + b abs(K)), with a K below zero in one place more.
-        return 1.0 - (plant.pole + rates.rate * (abs(gains.torque) - gains.torque)) / back
+        found, _, back, _ = parts(values, arranged)
+        if arranged and sides[1] > 0.0:
+            return 1.0 - loop_at(problem, values, arranged=True)[0].pole / back
+        return found.third / back
 
     def second(values: Values, arranged: bool) -> Number:
         found, scale, _, _ = parts(values, arranged)
-        if not arranged:
-            return found.second / scale
-        plant, rates, gains = loop_at(problem, values, arranged=True)
-        share = plant.gain * (abs(gains.proportional) + LEAST_GAIN * top)
-        return (plant.gain * gains.proportional - (rates.decay / rates.rate + gains.torque) * plant.pole) / share
+        if arranged and by_speed:
+            plant, rates, gains = loop_at(problem, values, arranged=True)
+            drifting = (rates.decay / rates.rate + gains.torque) * plant.pole
+            # The speed cancels in G P; both are taken at 1 m/s.
+            unit = loop_at(problem, {**values, "speed": 1.0}, arranged=True)
+            return sides[0] * (1.0 - drifting / (unit[0].gain * unit[2].proportional))
+        return found.second / scale
 
     def determinant(values: Values, arranged: bool) -> Number:
         found, scale, back, gains = parts(values, arranged)
