@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import partial
 
 from wspd_design.certificates.kernel.checker import Refused, Work
-from wspd_design.certificates.kernel.claim import Claim, Expression
+from wspd_design.certificates.kernel.claim import Claim, Expression, variable
 from wspd_design.certificates.kernel.finding import Finding, Place
 from wspd_design.certificates.kernel.obligation import Inequality, Numbers, Obligation, Sampled, Special
 from wspd_design.certificates.quantities import PLANT
@@ -38,6 +38,7 @@ from wspd_design.parameters.units import KMH
 
 LEAST = Fraction(1, 10**6)
 """What is shown is a bound above zero, so that the expression is positive and not only not negative."""
+UNIT = "unit of speed"
 LEAST_GAIN = 1e-3  # of the brake torque per slip
 STATIC = "axle at static load, all axles alike"
 VARIED = tuple(name for name in (*PLANT, *BRAKE) if name not in ("slip", *OTHERS))
@@ -47,7 +48,7 @@ WORK_OF_POLES = 20_000
 
 def conditions(problem: Problem) -> dict[str, Claim]:
     """Return what must be positive, by name, each in multiples of what it would be without slip pole and lag."""
-    law, quantities = law_of(problem), variables(problem)
+    law, quantities = law_of(problem), (*variables(problem), variable(UNIT, 1.0, "m/s"))
     at_top = law.linear_form(problem.speeds[1])
     top = problem.vehicle.brake.max_torque
 
@@ -75,7 +76,7 @@ def conditions(problem: Problem) -> dict[str, Claim]:
             plant, rates, gains = loop_at(problem, values, arranged=True)
             drifting = (rates.decay / rates.rate + gains.torque) * plant.pole
             # The speed cancels in G P; both are taken at 1 m/s.
-            unit = loop_at(problem, {**values, "speed": 1.0}, arranged=True)
+            unit = loop_at(problem, {**values, "speed": values[UNIT]}, arranged=True)
             return sides[0] * (1.0 - drifting / (unit[0].gain * unit[2].proportional))
         return found.second / scale
 

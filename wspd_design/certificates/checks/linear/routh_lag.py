@@ -1,15 +1,19 @@
 """Near its reference the valve lag must leave the loop stable: Routh's conditions at every speed."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import Check, Figures, level, series
 from wspd_design.certificates.checks.linear.routh_region import region
+from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.records import Certificate, Problem, Series
-from wspd_design.certificates.search.settle import settle_all
+from wspd_design.certificates.search.prover import prove
+from wspd_design.certificates.search.settle import stated_of
 from wspd_design.certificates.setting.linear_loop import law_of, nominal, on_brake, one_time, quartic, valve
-from wspd_design.certificates.theorems.linear import ROUTH_LAG
+from wspd_design.certificates.theorems.linear import ROUTH_LAG, conditions
 from wspd_design.controllers.offers import Surface
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.units import KMH
@@ -17,14 +21,23 @@ from wspd_design.parameters.units import KMH
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
 
-TOLERANCE = 0.1  # of the enclosed margins
+SHARE_SHOWN = 0.5  # of the smallest value that is found, to be shown
 PLOT_SPEEDS = 81
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:
-    """Settle all conditions."""
-    wanted = {each.key: each for each in ROUTH_LAG.obligations(problem)}
-    return settle_all(wanted, dict.fromkeys(wanted, TOLERANCE))
+    """Decide all conditions."""
+    return {name: _decided(claim) for name, claim in conditions(problem).items()}
+
+
+def _decided(claim: Claim) -> Stated:
+    """Show that a condition is positive, and if it can be that it is a good part of its smallest value."""
+    found = prove(claim)
+    if not found.tree:
+        return stated_of(claim, found)
+    tighter = replace(claim, bound=Fraction(SHARE_SHOWN * found.high))
+    shown = prove(tighter)
+    return stated_of(tighter, shown) if shown.tree else stated_of(claim, found)
 
 
 def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG001 - samples of the nominal loop
