@@ -19,7 +19,7 @@ from wspd_design.certificates.checks.foundations import (
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.linear import margins, routh_lag
-from wspd_design.certificates.checks.region import lpv_lyapunov
+from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance
 from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
 from wspd_design.certificates.checks.stop import tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
@@ -54,6 +54,7 @@ CHECKS: Mapping[str, Check] = {
         routh_lag.CHECK,
         margins.CHECK,
         lpv_lyapunov.CHECK,
+        sampled_invariance.CHECK,
         tracking.CHECK,
         conservation.CHECK,
     )

@@ -11,14 +11,18 @@ from wspd_design.certificates.kernel.arb import Ball, ball, below, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Finding, Place
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
+from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
 from wspd_design.certificates.setting.plant import complete, place, plant_forces
 from wspd_design.certificates.setting.pulsed_valve import Times, rates, sample_of
 from wspd_design.certificates.setting.traced_law import law_of_theorem
 from wspd_design.certificates.theorems import equilibrium, quadratic
-from wspd_design.certificates.theorems.quadratic import Law, Matrix, law_of, one_sample, ranges_of
+from wspd_design.certificates.theorems.equilibrium import BRAKE
+from wspd_design.certificates.theorems.invariant_sets import checker as invariance
+from wspd_design.certificates.theorems.quadratic import Matrix, law_of, one_sample
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
+from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.units import KMH
 
 SLOWEST, FASTEST, FUNCTION = "smallest slope", "largest slope", "functions"
@@ -216,6 +220,87 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         reference="eqs. (9), (14), (19); docs/theory.md#lpv",
     )
 
+
+SETS = "sets"
+VARIED_IN_SETS = ("mass", "wheelset inertia", "mu0")
+
+
+def _memoryless(problem: Problem) -> str:
+    memory = problem.controller.start(Measurement(problem.speeds[1], problem.speeds[1], 0.0))
+    if memory == ():
+        return ""
+    return (
+        f"remembers {len(memory)} numbers from sample to sample, so that slip and torque alone do not tell its next "
+        "command"
+    )
+
+
+def _set_obligations(problem: Problem) -> tuple[Obligation, ...]:
+    domain.box(problem)
+    return (
+        Special(
+            key=SETS,
+            text="one sample maps the sets of slip and torque into themselves at all speeds",
+            check=lambda proof, work: invariance.decide(problem, proof, work),
+        ),
+    )
+
+
+def _tell_sets(problem: Problem, findings: Findings) -> Certificate:
+    found = findings[SETS]
+    uncertain = domain.uncertain(problem)
+    varied = tuple(name for name in VARIED_IN_SETS if name in uncertain)
+    held = tuple(name for name in (*PLANT, *BRAKE) if name in uncertain and name not in VARIED_IN_SETS)
+    brake = problem.vehicle.brake
+    claim = (
+        f"Over {domain.described(problem, ('slip', 'speed', *varied), held)}, sampled every {problem.sample_time:g} s "
+        f"with pulses that fill with {brake.fill_time:g} s and vent with {brake.vent_time:g} s, "
+        f"{problem.controller.name} keeps slip and torque in a set around slip {problem.slip:g} once they are in it. "
+        f"{STATIC.capitalize()}."
+    )
+    explanation, margin, worst = "No sets were found for the whole range of speed.", None, ()
+    if found.status is Status.PROVED:
+        low, high = found.numbers["lowest slip"], found.numbers["highest slip"]
+        claim += f" The slip then stays within {low:.3f} and {high:.3f}, also between samples."
+        explanation = (
+            f"One set for each of {found.numbers['windows']:g} windows of speed; each also maps into that of the next "
+            "slower window, so that the whole stop is covered. The wheel does not lock."
+        )
+        margin = Range(low=1.0 - high, high=1.0 - problem.slip, unit="-")
+        worst = (Point(name="slip", value=high, unit="-"),)
+    return Certificate(
+        name="sampled_invariance",
+        title="Invariant set of the sampled loop",
+        claim=claim,
+        status=all_of(found),
+        explanation=explanation,
+        margin=margin,
+        worst_point=worst,
+        hypotheses=(hypothesis(found.asked, found),),
+        assumptions=(
+            "full supply pressure behind the valves",
+            "speeds and torque measured exactly, without dead time",
+            "no pad vibration",
+            STATIC,
+            "mass, inertia and mu0 may even change with time",
+            "says nothing about the way from rolling into the set, nor below the lowest speed",
+        ),
+        varied=varied,
+        held=held,
+        method="interval enclosure of the one-sample map on cells of slip and torque; cells with images that leave are "
+        "removed until none is left; an independent checker maps all cells again in Arb",
+        reference="eqs. (9), (14), (19); docs/theory.md#invariance",
+    )
+
+
+SAMPLED_INVARIANCE = Theorem(
+    name="sampled_invariance",
+    title="Invariant set of the sampled loop",
+    claim="In one sample the closed loop maps a set of slip and torque at every speed into itself.",
+    speaks_about=_memoryless,
+    obligations=_set_obligations,
+    tell=_tell_sets,
+)
 
 LPV_LYAPUNOV = Theorem(
     name="lpv_lyapunov",

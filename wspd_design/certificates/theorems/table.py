@@ -43,6 +43,7 @@ THEOREMS: Mapping[str, Theorem] = {
         linear.ROUTH_LAG,
         linear.MARGINS_THEOREM,
         region.LPV_LYAPUNOV,
+        region.SAMPLED_INVARIANCE,
         simulated_stop.TRACKING,
         simulated_stop.CONSERVATION,
     )
