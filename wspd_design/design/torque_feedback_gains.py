@@ -180,7 +180,9 @@ def _kept_per_sample(problem: Problem, poles: Poles, sample_time: float) -> floa
     fill, vent, *rest = ranges_of(problem, (Fraction(0), Fraction(0)))
     corners = gains(law, (fill, vent, *rest))
     matrices = []
-    for f, v, u, q in product(dict.fromkeys(fill), dict.fromkeys(vent), DUTIES, np.linspace(poles.low, poles.high, POLES)):
+    for f, v, u, q in product(
+        dict.fromkeys(fill), dict.fromkeys(vent), DUTIES, np.linspace(poles.low, poles.high, POLES)
+    ):
         at = sample_of(Times((f, f), (v, v)), (Fraction(q), Fraction(q)), law.sample_time, (u, u))
         matrices += [one_sample(at, g, torque) for g, torque in corners]
     found = np.array([[[float(each) for each in row] for row in matrix] for matrix in matrices])

@@ -96,9 +96,7 @@ def _piece(law: Law, box: Ranges) -> Piece | None:
     )
 
 
-def _best(
-    matrices: "Array", size: Callable[["Array"], "Array"], unit: float
-) -> tuple["Array", float]:
+def _best(matrices: "Array", size: Callable[["Array"], "Array"], unit: float) -> tuple["Array", float]:
     """Find the transform T that makes the largest size of all matrices smallest, and that size."""
     import numpy as np
     from scipy.optimize import minimize

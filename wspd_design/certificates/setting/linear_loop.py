@@ -238,10 +238,17 @@ def _sampled(problem: Problem, plant: SlipModel, gains: Feedback, duty: Ball) ->
     span = point(problem.sample_time)
     fill, vent = (Fraction(problem.nominal(name)) for name in BRAKE[1:])
     low, high = _fractions(plant.pole)
-    found = sample_of(Times((fill, fill), (vent, vent)), (low, high), Fraction(problem.sample_time), _fractions(duty))
+    found = sample_of(
+        Times((fill, fill), (vent, vent)), (low, high), Fraction(problem.sample_time), _fractions(duty)
+    )
     kept, forced, held, moved, delay = (ball(*each) for each in found)
     # Gains on (e, t, E, EE), t in the slip that it takes off per second; dU likewise.
-    row = [plant.gain * gains.proportional, -gains.torque, plant.gain * gains.integral, plant.gain * gains.twice]
+    row = [
+        plant.gain * gains.proportional,
+        -gains.torque,
+        plant.gain * gains.integral,
+        plant.gain * gains.twice,
+    ]
     first = [-moved * delay * each for each in row]
     second = [moved * each for each in row]
     return [

@@ -98,6 +98,14 @@ def sample_of(times: Times, poles: Interval, span: Fraction, duties: Interval = 
     )
 
 
+def may_hold(times: Times, span: Fraction, duties: Interval, share: Ball) -> bool:
+    """Whether a share of T_max may lie between foot and crest for some duty of a range; the times are known."""
+    fill, vent, h = point(times.fill[0]), point(times.vent[0]), point(span)
+    low, high = (point(each) for each in duties)
+    foot = _crest(fill, vent, low, h) * (-(1 - low) * h / vent).exp()
+    return not (foot > share or _crest(fill, vent, high, h) < share)
+
+
 def _crest(fill: Ball, vent: Ball, duty: Ball, h: Ball) -> Ball:
     """Largest share of T_max in a sample that repeats itself."""
     filling, venting = duty * h / fill, (1 - duty) * h / vent

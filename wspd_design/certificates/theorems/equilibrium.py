@@ -105,8 +105,8 @@ def rate_claim(problem: Problem, slip: float, relation: Relation) -> Claim:
 
     def arranged(x: Values) -> Number:
         at = {**x, "slip": problem.slip}
-        held = _holding(plant_forces(problem, x), x, "")
-        return _rate(problem, x, held, _holding(model_forces(at, law.vehicle, law.rail), at, "model "))
+        held = holding_torque(plant_forces(problem, x), x, "")
+        return _rate(problem, x, held, holding_torque(model_forces(at, law.vehicle, law.rail), at, "model "))
 
     return Claim(
         name=f"rate of the torque that holds slip {slip:.6g}",
@@ -135,8 +135,10 @@ def nowhere(problem: Problem, place: Place, work: Work) -> dict[str, float]:
         ends = (Fraction(low) + (Fraction(high) - Fraction(low)) * n / PARTS for n in (k, k + 1))
         x = {name: point(each) for name, each in values.items()} | known | {"slip": ball(*ends)}
         at = {**x, "slip": point(problem.slip)}
-        held = _holding(plant_forces(problem, x), x, "")
-        rates.append(_rate(problem, x, held, _holding(model_forces(at, law.vehicle, law.rail), at, "model ")))
+        held = holding_torque(plant_forces(problem, x), x, "")
+        rates.append(
+            _rate(problem, x, held, holding_torque(model_forces(at, law.vehicle, law.rail), at, "model "))
+        )
     if all(each > 0 for each in rates):
         return {"rate": min(map(below, rates))}
     if all(each < 0 for each in rates):
@@ -144,7 +146,7 @@ def nowhere(problem: Problem, place: Place, work: Work) -> dict[str, float]:
     raise Refused("an equilibrium may lie within the tolerance at this place")
 
 
-def _holding(at: Any, x: Values, prefix: str) -> Number:
+def holding_torque(at: Any, x: Values, prefix: str) -> Number:
     """Torque that holds a slip [N m]."""
     radius, inertia = x[f"{prefix}wheel radius"], x[f"{prefix}wheelset inertia"]
     rolling = inertia * at.deceleration - 2.0 * x["speed"] * x[f"{prefix}wheel damping"]
@@ -161,4 +163,3 @@ def _rate(problem: Problem, x: Values, held: Number, model_held: Number) -> Numb
     demand = demand - law.gains.torque_gain * held / law.max_torque
     duty = (abs(demand) - abs(demand - 1.0) + 1.0) * 0.5  # limited to 0 and 1
     return duty * (1.0 - share) / x["fill time"] - (1.0 - duty) * share / x["vent time"]
-

@@ -20,8 +20,8 @@ from wspd_design.certificates.setting.linear_loop import (
     DECAY,
     RATE,
     SHARE,
-    law_of,
     Quartic,
+    law_of,
     linear_law,
     loop_at,
     one_time,
@@ -142,7 +142,10 @@ def _worst(findings: Findings) -> str:
 def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
     law, name = law_of(problem), _worst(findings)
     worst = findings[name]
-    status = min((_status(each) for each in findings.values()), key=(Status.REFUTED, Status.UNDECIDED, Status.PROVED).index)
+    status = min(
+        (_status(each) for each in findings.values()),
+        key=(Status.REFUTED, Status.UNDECIDED, Status.PROVED).index,
+    )
     where: tuple[Point, ...] = ()
     spot = ""
     if worst.values:
@@ -182,7 +185,8 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
         worst_point=where,
         witness=where if status is Status.REFUTED else (),
         hypotheses=tuple(
-            hypothesis(each, Finding(status=_status(found), asked=found.asked)) for each, found in findings.items()
+            hypothesis(each, Finding(status=_status(found), asked=found.asked))
+            for each, found in findings.items()
         ),
         assumptions=(
             "frozen train speed",
@@ -217,7 +221,9 @@ def _held_of_law(problem: Problem) -> tuple[str, ...]:
             "psi_hat at its initial value; weights that differ from the initial ones by one common amount",
             "u* within the limits of the brake, so that the equilibrium is at the reference",
         )
-    return ("u* within the limits of the brake and of the layer, so that the equilibrium is at the reference",)
+    return (
+        "u* within the limits of the brake and of the layer, so that the equilibrium is at the reference",
+    )
 
 
 ROUTH_LAG = Theorem(
@@ -285,7 +291,9 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
             Point(name=kind, value=least, unit=unit),
         )
         meaning = (
-            f"At {found.place['speed'] * KMH:.3g} km/h the {kind} is at least {least:.4g} {unit}".removesuffix(" -")
+            f"At {found.place['speed'] * KMH:.3g} km/h the {kind} is at least {least:.4g} {unit}".removesuffix(
+                " -"
+            )
             + ", in exact arithmetic: there is no margin."
         )
     elif status is Status.EVIDENCE:
@@ -325,8 +333,8 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
         assumptions=(
             "frozen train speed",
             "nominal parameters, axle at static load",
-            "sampled loop: pulses of filling and venting around the duty that holds the torque on average, no computing "
-            "time",
+            "sampled loop: pulses of filling and venting around the duty that holds the torque on average, no "
+            "computing time",
             *_held_of_law(problem),
         ),
         held=held,

@@ -6,8 +6,8 @@ changes of it per second [m/s2], a static law with torque feedback makes x' = A 
     A = [[q, -1], [b g, -(a + b K)]],   q = p - a/v,   g = kappa R T_max / (inertia of the wheelset),
 
 kappa, K and R as the law counts them (K times T_max over its own T_max), a and b the rates of the averaged valve. The
-deceleration enters because v changes while the slip does; only the difference q of slip pole p and a/v matters. Sampled,
-with the numbers of :mod:`wspd_design.certificates.setting.pulsed_valve` and dU = g y - K w,
+deceleration enters because v changes while the slip does; only the difference q of slip pole p and a/v matters.
+Sampled, with the numbers of :mod:`wspd_design.certificates.setting.pulsed_valve` and dU = g y - K w,
 
     M = [[E - g j r, -D + K j r], [g j, AB - K j]].
 
@@ -234,7 +234,9 @@ def read(proof: Mapping[str, Any]) -> Quadratic:
         raise Refused("the proof has no steps or no pieces, or too many")
     if len(steps) != 2 * len(pieces) - 1:
         raise Refused("steps and pieces do not match")
-    return Quadratic(poles=(low, high), steps=steps, pieces=tuple(_piece(_numbers(each, 8)) for each in pieces))
+    return Quadratic(
+        poles=(low, high), steps=steps, pieces=tuple(_piece(_numbers(each, 8)) for each in pieces)
+    )
 
 
 def _piece(numbers: Sequence[Fraction]) -> Piece:

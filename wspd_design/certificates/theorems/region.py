@@ -15,7 +15,7 @@ from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
 from wspd_design.certificates.setting.plant import complete, place, plant_forces
-from wspd_design.certificates.setting.pulsed_valve import Times, rates, sample_of
+from wspd_design.certificates.setting.pulsed_valve import Times, may_hold, sample_of
 from wspd_design.certificates.setting.traced_law import law_of_theorem
 from wspd_design.certificates.theorems import equilibrium, quadratic
 from wspd_design.certificates.theorems.equilibrium import BRAKE
@@ -26,7 +26,7 @@ from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.units import KMH
 
 SLOWEST, FASTEST, FUNCTION = "smallest slope", "largest slope", "functions"
-DUTIES = 16  # parts of the range of the duty in which a loop must be unstable to be called so
+DUTIES = 64  # parts of the range of the duty in which a loop must be unstable to be called so
 WORK_OF_A_SAMPLE = 1_000
 STATIC = "axle at static load, all axles alike"
 NUMBERS = ("fill time", "vent time", "max torque")
@@ -82,12 +82,15 @@ def _unstable(problem: Problem, at: Place, work: Work) -> dict[str, float]:
         work.spend(WORK_OF_A_SAMPLE)
         continuous.append(_grows(_average(q, times, part, g, back)))
     found = []
+    held = equilibrium.holding_torque(plant, values, "") / values["max torque"]
     for part in parts:
         work.spend(WORK_OF_A_SAMPLE)
+        if not may_hold(times, law.sample_time, part, held):
+            continue
         sample = sample_of(times, poles, law.sample_time, part)
         balls = sample._make((ball(*each), ball(*each)) for each in sample)
         found.append(_leaves(one_sample(balls, point(g), point(back))))
-    if all(found) or all(continuous):
+    if (found and all(found)) or all(continuous):
         return {"pole": below(q)}
     raise Refused("the loop may be stable at this place")
 
@@ -172,7 +175,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         margin = Range(low=1.0 - contraction, high=None, unit="per sample")
         falling[Status.PROVED] = (
             f"the deviation, measured by the root of the function, falls at least as "
-            f"exp(-{function.numbers['decay']:.3g} t) in continuous time and by a factor of {contraction:.3g} per sample"
+            f"exp(-{function.numbers['decay']:.3g} t) in continuous time and by a factor of {contraction:.3g} "
+            "per sample"
         )
     uncertain = domain.uncertain(problem)
     varied = tuple(name for name in (*creep_slope.USED, *NUMBERS) if name in uncertain)

@@ -57,7 +57,9 @@ def search(problem: Problem) -> Mapping[str, Stated]:
             if not each.stable and (shown := _shown(wanted[key], float(speed))) is not None:
                 stated[key] = shown
                 break
-    worst, k = min(((each, k) for found in kinds.values() for k, each in enumerate(found)), key=lambda x: x[0].disk)
+    worst, k = min(
+        ((each, k) for found in kinds.values() for k, each in enumerate(found)), key=lambda x: x[0].disk
+    )
     numbers = {
         "speed": float(speeds[k]),
         "gain up": worst.gain_up,
@@ -155,9 +157,7 @@ def loop(problem: Problem, speed: float, *, sample_time: float | None = None) ->
         chain = np.array([[0.0, 0.0], [step, 0.0]]) + (np.eye(2) if sample_time else 0.0)
         enters = np.array([[step, 0.0], [0.0, 0.0]])
         size = 2 if summed[0, 1] else 1
-        law_block = control.ss(
-            chain[:size, :size], enters[:size], summed[:, :size], direct, sample_time or 0
-        )
+        law_block = control.ss(chain[:size, :size], enters[:size], summed[:, :size], direct, sample_time or 0)
     return law_block * plant
 
 

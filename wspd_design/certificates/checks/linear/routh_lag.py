@@ -52,7 +52,11 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG
     rates = valve(brake.fill_time, brake.vent_time, share)
     found = quartic(plant, rates, gains)
     back = rates.decay + rates.rate * gains.torque
-    lacking = found.third**2 * np.where(gains.integral, gains.twice, 0.0) / np.where(gains.integral, gains.integral, 1.0)
+    lacking = (
+        found.third**2
+        * np.where(gains.integral, gains.twice, 0.0)
+        / np.where(gains.integral, gains.integral, 1.0)
+    )
     margin = np.minimum(
         found.third / back,
         (found.third * found.second - found.first - lacking)

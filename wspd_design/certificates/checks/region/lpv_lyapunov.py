@@ -35,7 +35,11 @@ from wspd_design.parameters.units import KMH
 if TYPE_CHECKING:
     from wspd_design.certificates.setting.domain import Array
 
-SLACKS = (0.5, 2.0, 8.0)  # 1/s, between what p - a/v attains and the bound that is proved; the first that succeeds
+SLACKS = (
+    0.5,
+    2.0,
+    8.0,
+)  # 1/s, between what p - a/v attains and the bound that is proved; the first that succeeds
 FIRST_LOOK = 0.02  # of the effort, to find what is attained
 SPEEDS = 25
 
@@ -113,7 +117,9 @@ def _places(problem: Problem) -> Iterator[Mapping[str, float]]:
     ranges = loop_ranges(problem)
     nominal = {name: problem.nominal(name) for name in ranges if name not in ("slip", "speed")}
     narrow = ("fill time", "vent time", "max torque", "wheelset inertia")
-    corners = [dict(zip(narrow, ends, strict=True)) for ends in product(*(problem.span(name) for name in narrow))]
+    corners = [
+        dict(zip(narrow, ends, strict=True)) for ends in product(*(problem.span(name) for name in narrow))
+    ]
     for changed in ({}, *corners):
         shown = {name: each for name, each in changed.items() if name in nominal}
         for speed in np.geomspace(*problem.speeds, SPEEDS)[:: 1 if not changed else 4]:
@@ -145,7 +151,8 @@ def _radius(problem: Problem, pole: float) -> float:
 
     law = law_of(problem)
     fill, vent, top, inertia = (
-        Fraction(problem.nominal(name)) for name in ("fill time", "vent time", "max torque", "wheelset inertia")
+        Fraction(problem.nominal(name))
+        for name in ("fill time", "vent time", "max torque", "wheelset inertia")
     )
     half = Fraction(1, 2)
     q = Fraction(pole)

@@ -74,7 +74,7 @@ def _reasons(problem: Problem, found: Sequence[Found | None]) -> str:
     if apart:
         parts.append(f"The sets at {_ranges(apart, spans)} do not map into that of the next slower window")
     if spans[len(found) :]:
-        parts.append(f"The budget of the search ran out before {_ranges(spans[len(found):], spans)}")
+        parts.append(f"The budget of the search ran out before {_ranges(spans[len(found) :], spans)}")
     return ". ".join((*parts, _authority(problem))) + "."
 
 

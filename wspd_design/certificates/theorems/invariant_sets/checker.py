@@ -58,7 +58,9 @@ def decide(problem: Problem, document: Mapping[str, Any], work: Work) -> dict[st
             for here, slower in zip(sets, [*sets[1:], None], strict=True):
                 walk.window(here, slower)
     except (TypeError, ValueError, ArithmeticError) as error:  # of the law, on balls
-        raise error if isinstance(error, Refused) else Refused(f"the map cannot be enclosed: {error}") from None
+        raise (
+            error if isinstance(error, Refused) else Refused(f"the map cannot be enclosed: {error}")
+        ) from None
     return {
         "lowest slip": walk.low,
         "highest slip": walk.high,
