@@ -208,10 +208,8 @@ def outermost(problem: Problem, speed: float, *, sampled: bool) -> float:
     with ctx.workprec(PRECISION):
         values = nominal_values(problem, speed)
         plant, rates, gains = loop_at(problem, values)
-        if sampled:
-            matrix = _sampled(problem, plant, gains, _duty(values, rates))
-        else:
-            matrix = _continuous(plant, rates, gains)
+        duty = _duty(values, rates)
+        matrix = _sampled(problem, plant, gains, duty) if sampled else _continuous(plant, rates, gains)
         size = 2 + (gains.integral != 0.0) + (gains.twice != 0.0)
         matrix = [row[:size] for row in matrix[:size]]
         try:

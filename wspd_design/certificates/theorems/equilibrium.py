@@ -68,7 +68,8 @@ def status(findings: Findings) -> Status:
 
 def text(problem: Problem) -> str:
     """Return the hypothesis in words."""
-    return f"an equilibrium lies within {problem.slip_tolerance:g} of slip {problem.slip:g}, for all numbers of the domain"
+    tolerance = f"{problem.slip_tolerance:g} of slip {problem.slip:g}"
+    return f"an equilibrium lies within {tolerance}, for all numbers of the domain"
 
 
 def explained(problem: Problem, findings: Findings) -> str:

@@ -166,6 +166,7 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
         else f"any slip from {near[0]:.6g} to {near[1]:.6g}, taken as the equilibrium"
     )
     adapting = bool(law.linear_form(problem.speeds[1]).twice)
+    included = ", the adaptation of the weights included" if adapting else ""
     uncertain = domain.uncertain(problem)
     varied = tuple(each for each in VARIED if each in uncertain)
     held = tuple(each for each in OTHERS if each in uncertain)
@@ -173,7 +174,7 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
         name="routh_lag",
         title="Loop near its reference with valve lag",
         claim=f"At every frozen speed the loop near {rest}, with the averaged valve"
-        f"{'' if one_time(problem) else ' at any share of T_max'}{', the adaptation of the weights included' if adapting else ''}, is stable: "
+        f"{'' if one_time(problem) else ' at any share of T_max'}{included}, is stable: "
         f"{'; '.join(findings)}. {STATIC.capitalize()}; {domain.described(problem, ('speed', *varied), held)}.",
         status=status,
         explanation={
@@ -317,10 +318,11 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
     uncertain = domain.uncertain(problem)
     held = tuple(each for each in (*PLANT, *BRAKE) if each in uncertain)
     adapting = law_of(problem).linear_form(problem.speeds[1]).twice != 0.0
+    included = ", and the adaptation of the weights," if adapting else ""
     return Certificate(
         name="margins",
         title="Margins of the loop near its reference",
-        claim=f"With the nominal parameters{', and the adaptation of the weights,' if adapting else ''} the loop near "
+        claim=f"With the nominal parameters{included} the loop near "
         f"slip {problem.slip:g} is stable at every frozen speed from {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h, continuous with the averaged valve and sampled every "
         f"{problem.sample_time * 1e3:g} ms with its pulses, and bears changes of gain and phase at the valve.",
