@@ -15,7 +15,7 @@ from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
 from wspd_design.certificates.setting.plant import complete, place, plant_forces
-from wspd_design.certificates.setting.pulsed_valve import Times, may_hold, sample_of
+from wspd_design.certificates.setting.pulsed_valve import Sample, Times, may_hold, sample_of
 from wspd_design.certificates.setting.traced_law import law_of_theorem
 from wspd_design.certificates.theorems import equilibrium, quadratic
 from wspd_design.certificates.theorems.equilibrium import BRAKE
@@ -88,7 +88,7 @@ def _unstable(problem: Problem, at: Place, work: Work) -> dict[str, float]:
         if not may_hold(times, law.sample_time, part, held):
             continue
         sample = sample_of(times, poles, law.sample_time, part)
-        balls = sample._make((ball(*each), ball(*each)) for each in sample)
+        balls = Sample(*((ball(*each), ball(*each)) for each in sample))
         found.append(_leaves(one_sample(balls, point(g), point(back))))
     if (found and all(found)) or all(continuous):
         return {"pole": below(q)}
@@ -262,7 +262,8 @@ def _tell_sets(problem: Problem, findings: Findings) -> Certificate:
         f"{problem.controller.name} keeps slip and torque in a set around slip {problem.slip:g} once they are in it. "
         f"{STATIC.capitalize()}."
     )
-    explanation, margin, worst = "No sets were found for the whole range of speed.", None, ()
+    explanation, margin = "No sets were found for the whole range of speed.", None
+    worst: tuple[Point, ...] = ()
     if found.status is Status.PROVED:
         low, high = found.numbers["lowest slip"], found.numbers["highest slip"]
         claim += f" The slip then stays within {low:.3f} and {high:.3f}, also between samples."
