@@ -1,6 +1,8 @@
 """Whatever the suite says about a loop is accepted again from its file, and nothing else is."""
 
 import json
+import subprocess
+import sys
 from dataclasses import replace
 
 import pytest
@@ -246,3 +248,13 @@ def test_what_nothing_decides_cannot_be_called_proved(files):
     found = replay(kept.problem, json.dumps(kept.content))
     assert found.accepted
     assert found.unchecked
+
+
+def test_replay_loads_neither_search_nor_checks():
+    code = (
+        "import sys; import wspd_design.certificates.replay; "
+        "print([name for name in sys.modules if name.startswith(('wspd_design.certificates.search', "
+        "'wspd_design.certificates.checks')) or name in ('casadi', 'cvxpy', 'scipy', 'ival')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
