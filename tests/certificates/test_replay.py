@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from wspd_design.certificates.kernel.exact import FORMAT
+from wspd_design.certificates.theorems.obligations import OBLIGATIONS, obligations
 
 from wspd_design.certificates import suite
 from wspd_design.certificates.checks.sliding import sliding_exists
@@ -14,7 +15,6 @@ from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search import adhesion_peaks as peak_search
-from wspd_design.certificates.theorems.obligations import OBLIGATIONS, obligations
 from wspd_design.parameters.loading import load_rail
 
 SLOW = {"sampled_invariance", "hard_limits", "barbalat"}  # their files are checked in tests of their own
