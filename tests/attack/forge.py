@@ -1,6 +1,6 @@
 """Forge certificate files and see whether one is accepted: python -m tests.attack.forge DESIGN CERTIFICATES --count N.
 
-A mutant may be accepted only if it says what a genuine file says, under the same status, and shows the same statements.
+A mutant may be accepted only if it says what a genuine file says, under the same status, and the same is decided.
 Nothing but a refusal may answer to any other.
 """
 
@@ -10,8 +10,10 @@ import sys
 import time
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import redirect_stdout
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
+from io import StringIO
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -22,6 +24,10 @@ from tests.attack.mutators import KINDS
 MOST_SECONDS = 60.0  # of CPU per file
 ATTEMPTS = 40  # to find a file that a kind can change
 CONTROL = {"Cc", "Cf", "Cs", "Co", "Zl", "Zp"}  # categories that must not reach a terminal
+HEARSAY = (
+    "findings",
+    "made_by",
+)  # what a file does not say: one is decided about, nothing rests on the other
 FEW_WEIGHT = 400  # bytes of proofs that halve how often a file is taken: those take long to check
 
 
@@ -40,25 +46,32 @@ class Decision:
 
 def decide(problem: Any, text: str) -> Decision:
     """Ask the program; the only place that knows its interface."""
+    from wspd_design.certificates.kernel.file import sentences
     from wspd_design.certificates.replay import replay
+    from wspd_design.cli.commands.check import _show
 
     found = replay(problem, text)
-    shown = tuple(dict.fromkeys((*found.shown, *found.denied)))  # a statement shown twice is one
+    made = found.certificate
+    with redirect_stdout(StringIO()) as out:
+        _show(Path("forged.json"), "design.toml", found)
+    if made is None:
+        return Decision(accepted=found.accepted, status="", shown=(), printed=out.getvalue() + found.reason)
+    words = json.dumps(sentences(made), sort_keys=True, ensure_ascii=False)
+    decided = sorted(f"{key}: {each.status.name} {each.shown}" for key, each in made.findings.items())
     return Decision(
-        accepted=found.accepted and not found.empty,  # nothing to check is not accepted
-        status="" if found.status is None else found.status.name,
-        shown=shown,
-        printed="\n".join(shown if found.accepted else (found.reason,)),
+        accepted=found.accepted,
+        status=made.status.name,
+        shown=(words, *decided),
+        printed=out.getvalue() + "\n".join((words, *decided)),
     )
 
 
 def load_problem(design: Path, *, vehicle: str | None = None, rail: str | None = None) -> Any:
     """Load the closed loop that the files speak about."""
-    from wspd_design.cli.case import Wishes, resolve
-
     from wspd_design.cli.verification import problem_of
+    from wspd_design.design.case import CaseOptions, load_case
 
-    return problem_of(resolve(str(design), Wishes(vehicle=vehicle, rail=rail)))
+    return problem_of(load_case(str(design), CaseOptions(vehicle=vehicle, rail=rail)))
 
 
 # --- what a file says
@@ -69,7 +82,7 @@ class Ambiguous(ValueError):
 
 
 def says(text: str) -> Any:
-    """Return what a person reads in a file, proofs left out: one form for one content."""
+    """Return what a person reads in a file, what was found left out: one form for one content."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found: dict[str, Any] = {}
@@ -94,7 +107,7 @@ def says(text: str) -> Any:
         raise Ambiguous(str(error)) from None
     if not isinstance(content, dict):
         raise Ambiguous("no object")
-    return {key: value for key, value in content.items() if key != "proofs"}
+    return {key: value for key, value in content.items() if key not in HEARSAY}
 
 
 # --- mutants and their judge
@@ -122,13 +135,21 @@ def mutants(
         for _ in range(ATTEMPTS):
             name = rng.choices(names, weights)[0]
             text = kinds[kind](rng, files, name, others)
-            if text is not None and text != files[name]:
+            if text is not None and (kind == "layout" or _content(text) != _content(files[name])):
                 yield Mutant(kind=kind, name=name, text=text)
                 break
 
 
+def _content(text: str) -> str:
+    """Return a text without its layout, if it is JSON at all."""
+    try:
+        return json.dumps(json.loads(text))
+    except (ValueError, RecursionError):
+        return text
+
+
 def _proof_size(text: str) -> int:
-    return len(json.dumps(json.loads(text).get("proofs") or ""))
+    return len(json.dumps(json.loads(text).get("findings") or ""))
 
 
 @dataclass(slots=True)
@@ -150,10 +171,9 @@ class Judge:
         self.genuine = {}
         for name, text in files.items():
             content, decision = json.loads(text), ask(text)
-            if decision.accepted:
-                self.genuine[content["check"]] = (says(text), decision)
-            elif content["status"] == "PROVED":
+            if not decision.accepted:
                 raise ValueError(f"the genuine {name} is not accepted: {decision.printed}")
+            self.genuine[content["check"]] = (says(text), decision)
 
     def fault(self, mutant: Mutant) -> tuple[str, bool, float]:
         """Return what is wrong about the answer to a mutant, empty if nothing; whether accepted; seconds of CPU."""
@@ -184,7 +204,9 @@ class Judge:
             return f"accepted a check that has no genuine file: {check!a}"
         words, genuine = self.genuine[check]
         if (decision.status, decision.shown) != (genuine.status, genuine.shown):
-            return f"accepted as {decision.status} of {'; '.join(decision.shown)[:200]!a}"
+            new = [each for each in decision.shown if each not in genuine.shown]
+            gone = [each for each in genuine.shown if each not in decision.shown]
+            return f"accepted as {decision.status}, with {'; '.join(new)[:200]!a}, without {'; '.join(gone)[:200]!a}"
         if said != words:
             changed = sorted(key for key in said.keys() | words.keys() if said.get(key) != words.get(key))
             return f"accepted with another {', '.join(map(ascii, changed))}"

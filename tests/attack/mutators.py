@@ -2,16 +2,14 @@
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from random import Random
-from typing import Any
 
 from tests.attack.json_mutators import (
     HOSTILE,
     STATUSES,
     Files,
     Mutator,
-    Path,
     around,
     changed_value,
     double,
@@ -27,7 +25,9 @@ from tests.attack.json_mutators import (
     swap_part,
     text_of,
     value_at,
+    with_raw,
 )
+from tests.attack.proof_mutators import PROOF_KINDS
 
 UNITS = ("mph", "%", "km/h", "m/s", "", "-", "N m", "kg m²", "\x1b[31mm/s", None, 3)
 
@@ -40,7 +40,7 @@ def of_another_problem(rng: Random, files: Files, name: str, others: Files) -> s
     if content == other:
         return None
     keys = rng.choice(
-        (sorted(other), ["proofs"], ["proofs", "margin"], ["proofs", "model_sha256"], ["claim"])
+        (sorted(other), ["findings"], ["findings", "margin"], ["findings", "model_sha256"], ["claim"])
     )
     return text_of({**content, **{key: other[key] for key in keys if key in other}})
 
@@ -59,18 +59,18 @@ def status(rng: Random, files: Files, name: str, others: Files) -> str | None:
     elif choice == 2 and witnesses:
         forged["witness"] = rng.choice(witnesses)
     elif choice == 3:
-        forged["proofs"] = []
+        forged["findings"] = {}
     elif choice == 4:
         forged["witness"] = content.get("worst_point", [])
     return text_of(forged)
 
 
-def limitation(rng: Random, files: Files, name: str, _others: Files) -> str | None:
-    """Turn what a loop cannot do into good news, or the other way around."""
+def news(rng: Random, files: Files, name: str, _others: Files) -> str | None:
+    """Turn what a loop cannot do into good news, or the other way around, in the status and in the words."""
     content = json.loads(files[name])
-    forged = {**content, "limitation": not content.get("limitation", False)}
-    if content.get("status") in ("PROVED", "LIMITATION"):
-        forged["status"] = "PROVED" if content["status"] == "LIMITATION" else "LIMITATION"
+    forged = dict(content)
+    if content.get("status") in ("PROVED", "LIMITATION", "VACUOUS"):
+        forged["status"] = "PROVED" if content["status"] != "PROVED" else "LIMITATION"
     claim = content.get("claim")
     if isinstance(claim, str) and rng.random() < 0.5:
         forged["claim"] = claim.replace("No ", "Every ").replace("not ", "")
@@ -114,7 +114,7 @@ def words(rng: Random, files: Files, name: str, _others: Files) -> str | None:
         path
         for path in paths(content)
         if path
-        and path[0] != "proofs"
+        and path[0] not in ("findings", "made_by")
         and isinstance(value_at(content, path), str)
         and value_at(content, path)
     ]
@@ -148,105 +148,37 @@ def words(rng: Random, files: Files, name: str, _others: Files) -> str | None:
 def unsaid(rng: Random, files: Files, name: str, _others: Files) -> str | None:
     """Leave hypotheses, assumptions or the margin away."""
     content = json.loads(files[name])
-    lists = [key for key, value in content.items() if key != "proofs" and isinstance(value, list) and value]
+    lists = [key for key, value in content.items() if key != "findings" and isinstance(value, list) and value]
     if lists and rng.random() < 0.7:
         key = rng.choice(sorted(lists))
         kept = [each for each in content[key] if rng.random() < 0.5]
         return None if kept == content[key] else text_of({**content, key: kept})
-    key = rng.choice(sorted(key for key in content if key not in ("schema", "check", "status", "proofs")))
+    key = rng.choice(
+        sorted(key for key in content if key not in ("schema", "check", "status", "findings", "made_by"))
+    )
     return None if content[key] in (None, []) else text_of({**content, key: None})
 
 
-def in_proof(change: Callable[[Random, Any, Path], Any]) -> Mutator:
-    """Change something inside a proof, also where a proof holds proofs as text."""
-
-    def mutate(rng: Random, files: Files, name: str, _others: Files) -> str | None:
-        content = json.loads(files[name])
-        proofs = content.get("proofs")
-        if not proofs:
-            return None
-        index = rng.randrange(len(proofs))
-        changed = _inner(rng, proofs[index], change)
-        return None if changed is None else text_of(put(content, ("proofs", index), changed))
-
-    return mutate
-
-
-def _inner(rng: Random, proof: Any, change: Callable[[Random, Any, Path], Any]) -> Any:
-    held = proof.get("proofs") if isinstance(proof, dict) else None
-    if isinstance(held, list) and held and all(isinstance(each, str) for each in held) and rng.random() < 0.5:
-        index = rng.randrange(len(held))
-        changed = _inner(rng, json.loads(held[index]), change)
-        return None if changed is None else put(proof, ("proofs", index), json.dumps(changed))
-    return change(rng, proof, ())
-
-
-def bound(rng: Random, proof: Any, _path: Path) -> Any:
-    """Another bound, hash, matrix or other number in a proof."""
-    path = pick(rng, proof, number)
-    return None if path is None else put(proof, path, nudged(rng, value_at(proof, path)))
-
-
-def steps(rng: Random, proof: Any, _path: Path) -> Any:
-    """Steps of a tree or list left out, doubled, or put in."""
-    path = pick(rng, proof, lambda value: isinstance(value, str | list) and len(value) > 0)
-    if path is None:
-        return None
-    value = value_at(proof, path)
-    place, choice = rng.randrange(len(value)), rng.randrange(4)
-    piece = value[place : place + 1]
-    if choice == 0:
-        changed = value[:place] + value[place + 1 :]
-    elif choice == 1:
-        changed = value[:place] + piece + value[place:]
-    elif choice == 2:
-        changed = value[:place]
-    else:
-        new = rng.choice("abcdeABCDE.~!") if isinstance(value, str) else rng.choice(HOSTILE[:16])
-        changed = value[:place] + (new if isinstance(value, str) else [new]) + value[place:]
-    return put(proof, path, changed)
-
-
-def subdomain(rng: Random, proof: Any, _path: Path) -> Any:
-    """A wider, empty, turned or other part of the domain; where a proof has none, one is put in."""
-    part = proof.get("part") if isinstance(proof, dict) else None
-    if not isinstance(part, dict) or not part:
-        made = rng.choice(({"speed": ["3.0", "30.0"]}, {"slip": ["0.1", "0.2"]}, {"mu0": ["0.3", "0.3"]}, {}))
-        return {**proof, "part": made} if isinstance(proof, dict) else None
-    key = rng.choice(sorted(part))
-    low, high = part[key]
-    made = rng.choice(
-        (
-            [repr(0.5 * float(low)), high],
-            [low, repr(1.2 * float(high))],
-            [high, low],
-            [low, low],
-            [low, high, high],
-            [low, "inf"],
-            ["nan", high],
-            ["0.0", high],
-        )
-    )
-    return {**proof, "part": rng.choice(({key: made}, {**part, "mass": ["1.0", "2.0"]}))}
-
-
-def other_claim(rng: Random, files: Files, name: str, _others: Files) -> str | None:
-    """Put a proof of another statement in, give one twice, or leave one out."""
+def scope(rng: Random, files: Files, name: str, _others: Files) -> str | None:
+    """Say of a number that is held that it is varied, or the other way around; drop or invent one."""
     content = json.loads(files[name])
-    proofs = list(content.get("proofs") or ())
-    pool = [proof for text in files.values() for proof in json.loads(text).get("proofs") or ()]
-    if not pool:
-        return None
-    match rng.randrange(4):
-        case 0 if proofs:
-            del proofs[rng.randrange(len(proofs))]
-        case 1 if proofs:
-            proofs[rng.randrange(len(proofs))] = rng.choice(pool)
-        case 2:
-            proofs.append(rng.choice(pool))
-        case _:
-            proofs = proofs * 2 or [rng.choice(pool)]
-    return None if proofs == content.get("proofs") else text_of({**content, "proofs": proofs})
+    lists = {key: list(content.get(key) or ()) for key in ("varied", "held")}
+    one, other = rng.sample(sorted(lists), 2)
+    if lists[one] and rng.random() < 0.8:
+        moved = lists[one].pop(rng.randrange(len(lists[one])))
+        lists[other] += rng.choice(([moved], []))
+    else:
+        lists[one].append(rng.choice(("wheel radius", "fill time", "temperature", "mass", "")))
+    return text_of({**content, **lists})
+
+
+def depth(rng: Random, files: Files, name: str, _others: Files) -> str | None:
+    """Nest a value about as deep as the reader and the writer of JSON can go."""
+    content = json.loads(files[name])
+    path = pick(rng, content, lambda _value: True)
+    levels = rng.choice((100, 300, 450, 900, 980, 1000, 2000, 9000, 30_000))
+    opened, closed = rng.choice((("[", "]"), ('{"a": ', "}")))
+    return None if path is None else with_raw(content, path, opened * levels + "1" + closed * levels)
 
 
 KINDS: Mapping[str, Mutator] = {
@@ -257,16 +189,15 @@ KINDS: Mapping[str, Mutator] = {
     "key added": extra,
     "hostile value": changed_value(lambda _value: True, lambda rng, _value: rng.choice(HOSTILE)),
     "raw JSON": raw_value,
+    "nested deeply": depth,
     "number": changed_value(number, nudged),
     "field of another file": swap_part,
     "other problem": of_another_problem,
     "status": status,
-    "limitation": limitation,
+    "good and bad news": news,
     "witness": witness,
     "words": words,
     "unsaid": unsaid,
-    "bound in a proof": in_proof(bound),
-    "steps of a proof": in_proof(steps),
-    "part of the domain": in_proof(subdomain),
-    "proofs of other statements": other_claim,
+    "varied and held": scope,
+    **PROOF_KINDS,
 }

@@ -1,7 +1,7 @@
 """Random functions under random trees: whatever the checker accepts is true at every sample.
 
-The functions have kinks, poles and fractional powers inside their boxes, where the mean value form and monotony are easily
-used too boldly. The samples are evaluated on 200-bit balls, apart from the checker's program.
+The functions have kinks, poles and fractional powers inside their boxes, where the mean value form and monotony are
+easily used too boldly. The samples are evaluated on 200-bit balls, apart from the checker's program.
 """
 
 from fractions import Fraction

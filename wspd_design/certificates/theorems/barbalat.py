@@ -117,7 +117,11 @@ def _convergence(problem: Problem, findings: Findings) -> Certificate:
     if smallest_gain(gains) > 0.0 and low.proved and high.proved:
         found = energy(problem, gains, low.low, high.high, eta, 1.0)
         lightest, radius = point(problem.span("wheelset inertia")[0]), point(problem.vehicle.wheel_radius)
-        steepest = radius / lightest * point(max(Fraction(high.high), Fraction(limit) - Fraction(low.low)))
+        steepest = (
+            radius
+            / lightest
+            * point(max(Fraction(high.high), Fraction(torque_limits(problem)[1]) - Fraction(low.low)))
+        )
         where = (
             Point(name="V(0) in sigma", value=above(found.start), unit="N s2"),
             Point(name="bound on the integral of abs(s_D) d sigma", value=above(found.integral), unit="s2/m"),
