@@ -166,7 +166,7 @@ def _replay(given: _Inequality, tree: str, work: Work) -> int:
     for position, step in enumerate(tree):
         if not waiting:
             raise Refused(f"the tree goes on after its last leaf, at step {position}")
-        work.spend(1)
+        work.spend(2 + len(root) // 4)
         box, halvings, slopes = waiting.pop()
         if step in ".~":
             if not _holds(given, program, box, mean_value=step == "~"):
@@ -229,8 +229,7 @@ class Program:
         self.free = [k for k, (_, low, high) in enumerate(variables) if low < high]
         self.known: dict[int, Ends] = {}
         self.steps: list[tuple[int, str, Sequence[int], Any]] = []
-        self.result = len(formula) - 1
-        self.work = work
+        self.result, self.work = len(formula) - 1, work
         numbers = {name: k for k, (name, _, _) in enumerate(variables)}
         for place, (name, *operands) in enumerate(formula):
             extra: Any = None
@@ -248,10 +247,11 @@ class Program:
                 self.known[place], _ = _apply(name, [(self.known[k], {}) for k in operands], extra)
             else:
                 self.steps.append((place, name, operands, extra))
+        self.operations = sum(max(len(operands) - 1, 1) for _, _, operands, _ in self.steps)
 
     def run(self, ends: list[Ends], *, derivatives: bool = False) -> tuple[Ends, list[Ends]]:
         """Enclose the value and, if asked, the slope along every variable."""
-        self.work.spend(len(self.steps) * (1 + len(self.free) if derivatives else 1))
+        self.work.spend(self.operations * (1 + len(self.free) if derivatives else 1))
         done: dict[int, tuple[Ends, Slopes]] = {k: (found, {}) for k, found in self.known.items()}
         for place, name, operands, extra in self.steps:
             if name == "x":
