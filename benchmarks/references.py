@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 from wspd_design.controllers.protocol import Measurement
 
-AXLES = 4
+AXLES = VEHICLE.wheelsets
 STOP_SPEED = 0.005
 TOLERANCES = {"rtol": 1e-6, "atol": 1e-8}
 exp, atan, pi = math.exp, math.atan, math.pi

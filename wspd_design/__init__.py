@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from wspd_design.certificates.suite import verify
     from wspd_design.controllers.protocol import Command, Controller, Measurement
     from wspd_design.design.catalog import controller
+    from wspd_design.design.certification import certify, check
     from wspd_design.design.file import read_design, write_design
     from wspd_design.design.own_controller import load_controller
     from wspd_design.design.problem import stability_problem
@@ -44,6 +45,8 @@ _HOME = {
     "UserError": "parameters.errors",
     "Vehicle": "parameters.records",
     "WspdError": "parameters.errors",
+    "certify": "design.certification",
+    "check": "design.certification",
     "compare": "simulation.comparison",
     "controller": "design.catalog",
     "design_controller": "design.selection",
@@ -79,6 +82,8 @@ __all__ = [
     "UserError",
     "Vehicle",
     "WspdError",
+    "certify",
+    "check",
     "compare",
     "controller",
     "design_controller",

@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-from wspd_design.certificates.kernel.file import FOLDER
-from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.design.records import Design
+from wspd_design.certificates.records import Certificate, Point, Range, Status
+from wspd_design.design.certification import Loop, certify
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -13,7 +12,7 @@ _LEVELS = (Status.EVIDENCE, Status.PROVED)
 
 
 def assert_certified(
-    design: Design | Problem | str | Path,
+    design: Loop,
     *names: str,
     vehicle: Vehicle | str | Path | None = None,
     rail: Rail | str | Path | None = None,
@@ -29,7 +28,7 @@ def assert_certified(
     Parameters
     ----------
     design : Design, str, Path or Problem
-        A design, its file, or a problem that you made for a controller of your own.
+        A design, its file, a controller's name, ``FILE.py:NAME``, or a problem that you made.
     *names : str
         Checks, as ``wspd verify`` names them.
     vehicle, rail : Vehicle, Rail, str or Path, optional
@@ -57,11 +56,11 @@ def assert_certified(
     if at_least not in _LEVELS:
         raise UserError(f"at_least = {at_least.name} must be PROVED or EVIDENCE")
     allowed = (Status.LIMITATION,) if limitation else _LEVELS[_LEVELS.index(at_least) :]
-    return _expect(_problem(design, vehicle, rail), names, allowed, _stored(design), effort)
+    return _expect(design, names, allowed, vehicle, rail, effort)
 
 
 def assert_refuted(
-    design: Design | Problem | str | Path,
+    design: Loop,
     *names: str,
     vehicle: Vehicle | str | Path | None = None,
     rail: Rail | str | Path | None = None,
@@ -69,47 +68,27 @@ def assert_refuted(
 ) -> tuple[Certificate, ...]:
     """Assert that checks of a design are refuted; parameters and errors as in :func:`assert_certified`."""
     __tracebackhide__ = True
-    return _expect(_problem(design, vehicle, rail), names, (Status.REFUTED,), _stored(design), effort)
-
-
-def _stored(design: Design | Problem | str | Path) -> Path | None:
-    """Return where wspd certify keeps what is proved about a design file."""
-    return Path(design).with_suffix(FOLDER) if isinstance(design, (str, Path)) else None
+    return _expect(design, names, (Status.REFUTED,), vehicle, rail, effort)
 
 
 def _expect(
-    problem: Problem, names: tuple[str, ...], allowed: tuple[Status, ...], stored: Path | None, effort: float
+    design: Loop,
+    names: tuple[str, ...],
+    allowed: tuple[Status, ...],
+    vehicle: Vehicle | str | Path | None,
+    rail: Rail | str | Path | None,
+    effort: float,
 ) -> tuple[Certificate, ...]:
     from wspd_design.certificates import suite
-    from wspd_design.certificates.search.budget import Budget
 
     __tracebackhide__ = True
     if not names:
         raise UserError(f"no check is named; available: {', '.join(suite.NAMES)}")
-    certificates = suite.verify(problem, only=names, budget=Budget(effort=effort), stored=stored)
+    certificates = certify(design, only=names, vehicle=vehicle, rail=rail, effort=effort)
     failed = [_message(each, allowed) for each in certificates if each.status not in allowed]
     if failed:
         raise AssertionError("\n\n".join(failed))
     return certificates
-
-
-def _problem(
-    design: Design | Problem | str | Path,
-    vehicle: Vehicle | str | Path | None,
-    rail: Rail | str | Path | None,
-) -> Problem:
-    from wspd_design.design.case import CaseOptions, case_of
-    from wspd_design.design.file import read_design
-    from wspd_design.design.problem import stability_problem
-
-    if isinstance(design, Problem):
-        if vehicle is not None or rail is not None:
-            raise UserError("a problem has its own vehicle and rail; leave vehicle and rail out")
-        return design
-    options = CaseOptions(vehicle=vehicle, rail=rail)
-    made = design if isinstance(design, Design) else read_design(design)
-    case = case_of(made, options, where=made.name if isinstance(design, Design) else str(design))
-    return stability_problem(case.vehicle, case.rail, case.controller, case.specification)
 
 
 def _message(certificate: Certificate, allowed: tuple[Status, ...]) -> str:

@@ -2,11 +2,16 @@
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
-from wspd_design.certificates.quantities import TABLE
-from wspd_design.certificates.records import Problem
+from wspd_design.certificates.kernel.checker import Refused, Work, decide
+from wspd_design.certificates.kernel.obligation import Inequality, proof_of
+from wspd_design.certificates.quantities import PLANT, TABLE
+from wspd_design.certificates.records import Problem, Status
+from wspd_design.certificates.search.settle import settle
+from wspd_design.certificates.theorems.sliding import gain_claims
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
 from wspd_design.design.problem import stated_bounds
 from wspd_design.design.records import Specification
@@ -138,7 +143,7 @@ def make_adaptive_problem(er24pc, make_problem):
     designed = design_controller(er24pc, rail, Specification()).build(er24pc, rail)
 
     def make(**changes):
-        law = replace(designed, gains=replace(designed.gains, **changes))
+        law = replace(designed, gains=replace(designed.gains, **{"initial_bound": 12.0, **changes}))
         domain = {
             name: (low, high) for name, (low, high) in stated_bounds(er24pc, rail).items() if name in KEPT
         }
@@ -146,3 +151,54 @@ def make_adaptive_problem(er24pc, make_problem):
         return make_problem(law, rail="polach-wet", slips=(0.05, 0.3), bounds=bounds)
 
     return make
+
+
+@pytest.fixture(scope="session")
+def reference_claim(make_reference_problem):
+    """(r + eta)/rho <= 30 m/s2 for the axle at static load; its supremum is 25.094."""
+    return gain_claims(make_reference_problem(30.0), uses=PLANT)[-1].claim
+
+
+@pytest.fixture(scope="session")
+def settled():
+    """Search for a claim and let the checker decide."""
+
+    def found(claim, *, tolerance):
+        return Inequality(key="claim", claim=claim).decide(settle(claim, tolerance=tolerance), Work())
+
+    return found
+
+
+@pytest.fixture(scope="session")
+def proved(reference_claim, settled):
+    """What the checker finds about the reference claim, with its proof."""
+    found = settled(reference_claim, tolerance=0.01)
+    assert found.status is Status.PROVED
+    return found
+
+
+@pytest.fixture(scope="session")
+def proved_claim(reference_claim, proved):
+    """Return the reference claim with the bound that its proof states."""
+    return replace(reference_claim, bound=Fraction(float(proved.stated.proof["statement"]["bound"])))
+
+
+@pytest.fixture(scope="session")
+def tree(proved):
+    return proved.stated.proof["tree"]
+
+
+@pytest.fixture(scope="session")
+def refusal():
+    """Decide about a claim with any tree; return why it is refused, or nothing."""
+
+    def reason(claim, tree, **changes):
+        proof = proof_of(claim) | {"tree": tree}
+        proof["statement"] = proof["statement"] | changes
+        try:
+            decide(proof, Work())
+        except Refused as refused:
+            return str(refused)
+        return ""
+
+    return reason

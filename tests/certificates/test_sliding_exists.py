@@ -29,7 +29,8 @@ def _slack(problem, count=4000, seed=3):
     names = [name for name in domain.uncertain(problem) if name in (*PLANT, *AXLE) and name != "wheel radius"]
     spans = {name: domain.span(problem, name) for name in (*STATE, *names)}
     points = np.random.default_rng(seed).uniform(*np.array(list(spans.values())).T, (count, len(spans)))
-    values = dict(zip(spans, points.T, strict=True))
+    known = {name: ends[0] for name, ends in problem.bounds.items() if name in PLANT}
+    values = known | dict(zip(spans, points.T, strict=True))
     plant = plant_dynamics(problem, complete(problem, values))
     law = problem.controller
     ideal = (-plant.drift + law.surface_rate * (0.14 - values["slip"])) / plant.gain

@@ -82,7 +82,7 @@ COMMAND_LINES = {
     "vehicle file missing": (("simulate", "--vehicle", "missing.toml"), ("missing.toml", "check the path")),
     "design file with a typo": (("simulate", "typo.toml", *FAR), ("slip_tolerence", "slip_tolerance")),
     "rail file with a typo": (("simulate", "--rail", "rail.toml"), ("friction_ratoi", "friction_ratio")),
-    "design file that is no TOML": (("verify", "broken.toml"), ("broken.toml", "correct that place")),
+    "design file that is not TOML": (("verify", "broken.toml"), ("broken.toml", "correct that place")),
     "design for another vehicle": (
         ("simulate", "smc.toml", "--vehicle", "er24pc-service"),
         ("made for vehicle er24pc", "--vehicle er24pc"),
@@ -120,7 +120,7 @@ COMMAND_LINES = {
     "option unknown": (("simulate", "--spede", "3"), ("--spede", "--speed", "wspd simulate --help")),
     "option without value": (("simulate", "--slip"), ("--slip", "argument")),
     "command unknown": (("simulat",), ("simulat", "--help")),
-    "seed that is no number": (("simulate", "--seed", "x"), ("--seed", "--help")),
+    "seed that is not a number": (("simulate", "--seed", "x"), ("--seed", "--help")),
     "seed below zero": (("simulate", "--seed", "-1"), ("--seed", "--help")),
 }
 

@@ -26,8 +26,9 @@ def certificate(status):
         ((*GOOD, Status.UNDECIDED), 3),
         ((Status.REFUTED, *GOOD), 1),
         ((Status.UNDECIDED, Status.REFUTED), 1),
+        ((*GOOD, Status.UNDECIDED, Status.LIMITATION), 1),
     ],
-    ids=["good", "undecided", "refuted", "refuted wins"],
+    ids=["good", "undecided", "refuted", "refuted wins", "a limitation is bad news"],
 )
 @pytest.mark.parametrize("options", [(), ("--json",)], ids=["table", "json"])
 def test_verification(statuses, code, options, wspd, monkeypatch):
@@ -37,6 +38,14 @@ def test_verification(statuses, code, options, wspd, monkeypatch):
     assert (outcome.code, outcome.err) == (code, "")
     for status in statuses:
         assert status.name.replace("_", " ") in outcome.out.replace("_", " ")
+
+
+@pytest.mark.parametrize("status", Status)
+@pytest.mark.parametrize("options", [(), ("--json",)], ids=["table", "json"])
+def test_a_check_that_is_asked_for_is_open_unless_it_is_proved(status, options, wspd, monkeypatch):
+    monkeypatch.setattr(suite, "verify", lambda *_arguments, **_options: (certificate(status),))
+    code = {Status.PROVED: 0, Status.REFUTED: 1, Status.LIMITATION: 1}.get(status, 3)
+    assert wspd("verify", "none", "--only", "reaching", *options).code == code
 
 
 def test_a_law_without_torque_feedback_is_refuted_on_the_dry_rail(wspd):

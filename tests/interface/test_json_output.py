@@ -42,7 +42,7 @@ def closed(schema):
 
 
 def refuse_constants(name):
-    raise AssertionError(f"{name} is no JSON")
+    raise AssertionError(f"{name} is not JSON")
 
 
 def only_object(outcome):

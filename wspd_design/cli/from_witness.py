@@ -6,8 +6,8 @@ from pathlib import Path
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.witness import Witness, plant_at, read_witness, start_at
 from wspd_design.cli.console import console
-from wspd_design.cli.verification import problem_of
 from wspd_design.design.case import Case
+from wspd_design.design.certification import problem_of_case, read_certificate_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH
@@ -32,12 +32,7 @@ class WitnessStart:
 
 def read(path: Path) -> Witness:
     """Read the witness of a certificate file."""
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise UserError(
-            f"{path} cannot be read ({error.strerror}); name a file that wspd certify wrote"
-        ) from None
+    text = read_certificate_file(path)
     return read_witness(text, str(path))
 
 
@@ -85,7 +80,7 @@ def witness_start(case: Case, stop: Scenario, witness: Witness) -> WitnessStart:
     witness : Witness
         The point.
     """
-    problem = problem_of(case)
+    problem = problem_of_case(case)
     vehicle, rail = plant_at(problem, witness)
     start, holding = start_at(witness, vehicle, rail, grade=stop.grade)
     return WitnessStart(

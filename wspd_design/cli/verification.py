@@ -9,13 +9,9 @@ from rich.console import Group
 from rich.padding import Padding
 from rich.text import Text
 
-from wspd_design.certificates.kernel.file import FOLDER
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.cli.console import console, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
-from wspd_design.design.case import Case
-from wspd_design.design.catalog import is_design_file
-from wspd_design.design.own_controller import is_own_controller
 
 
 class _Shown(NamedTuple):
@@ -41,35 +37,18 @@ _SHOWN = {
 }
 
 
-def folder_beside(design: str) -> Path:
-    """Return the folder for what is kept about a design, beside its file if it has one."""
-    return Path(design.rpartition(":")[0] if is_own_controller(design) else design).with_suffix(FOLDER)
-
-
-def stored_beside(design: str) -> Path | None:
-    """Return the folder of certificates beside a design file, if there is one."""
-    folder = folder_beside(design)
-    return folder if is_design_file(design) and folder.is_dir() else None
-
-
-def problem_of(case: Case, *, seed: int = 0) -> Problem:
-    """Return the closed loop and domain that the checks of a case speak about."""
-    from wspd_design.design.problem import stability_problem
-
-    return stability_problem(case.vehicle, case.rail, case.controller, case.specification, seed=seed)
-
-
 def run_checks(
-    problem: Problem, only: Collection[str] | None, effort: float, stored: Path | None
+    problem: Problem,
+    only: Collection[str] | None,
+    effort: float,
+    stored: Path | None,
+    folder: Path | None = None,
 ) -> tuple[Certificate, ...]:
-    """Run the checks with their progress on standard error, or take what the folder keeps and the checkers accept."""
-    from wspd_design.certificates import suite
-    from wspd_design.certificates.search.budget import Budget
+    """Run the checks with their progress on standard error; write them if there is a folder."""
+    from wspd_design.design.certification import certify
 
     with progress() as tell:
-        return suite.verify(
-            problem, only=only or None, progress=tell, budget=Budget(effort=effort), stored=stored
-        )
+        return certify(problem, only=only, effort=effort, stored=stored, folder=folder, progress=tell)
 
 
 def exit_code(certificates: Sequence[Certificate], *, asked: bool) -> int:

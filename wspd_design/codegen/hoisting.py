@@ -1,4 +1,4 @@
-"""Take out of kernels what stays the same over many calls, and divide seldom.
+"""Hoist loop-invariant work out of kernels and avoid divisions.
 
 A kernel is called four times per step for every wheelset, its parameters never change: sums and products of
 parameters are computed once, and a division by one of them becomes a product with its reciprocal. A division

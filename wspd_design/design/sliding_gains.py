@@ -6,7 +6,8 @@ that goes with a gain repeats it with its numbers.
 
 import math
 
-from wspd_design.certificates.checks.sliding.reaching import required_gain, reserve
+from wspd_design.certificates.checks.sliding.reaching import required_gain
+from wspd_design.certificates.theorems.sliding import reserve
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Gain, Specification

@@ -1,8 +1,9 @@
 """All objects that the program writes: one vocabulary, from which schemas and documentation follow."""
 
+from wspd_design.exchange.certificate_forms import CERTIFICATE
 from wspd_design.exchange.check_forms import VERIFICATION
 from wspd_design.exchange.stop_forms import CAMPAIGN, COMPARISON, STOP
 from wspd_design.exchange.study_forms import LINEARIZATION, REPORT
 
-STANDING_ALONE = (STOP, CAMPAIGN, COMPARISON, VERIFICATION, LINEARIZATION, REPORT)
+STANDING_ALONE = (STOP, CAMPAIGN, COMPARISON, VERIFICATION, LINEARIZATION, REPORT, CERTIFICATE)
 """Forms of the objects that stand alone, each with a schema file."""

@@ -171,7 +171,7 @@ def parse_quantity(text: str, dimension: Dimension, *, what: str) -> float:
     Raises
     ------
     UserError
-        If the text is no finite number, or its unit is missing, unknown or of another dimension.
+        If the text is not a finite number, or its unit is missing, unknown or of another dimension.
     """
     match = _NUMBER.fullmatch(text.strip())
     allowed = _instruction(dimension)

@@ -1,4 +1,4 @@
-"""Numbers of a stop for the closed loop: what vehicle, rails, controller and scenario mean to the machine."""
+"""Convert vehicle, rails, controller and scenario to the numeric input of the closed loop."""
 
 import math
 from collections.abc import Sequence

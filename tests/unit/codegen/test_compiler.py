@@ -208,7 +208,7 @@ class TestCompilers:
 
     def test_what_the_compiler_says_is_told(self):
         with pytest.raises(NoCompilerError, match=r"failed: .*error: "):
-            load_library("this is no C\n")
+            load_library("this is not C\n")
 
     def test_a_compiler_that_does_not_know_the_machine_gets_plain_flags(
         self, monkeypatch, tmp_path, compilations

@@ -1,10 +1,13 @@
 """Schema files and documentation follow from the forms, and one key means one thing in all of them."""
 
+import json
 from pathlib import Path
 
 import pytest
-from jsonschema import Draft202012Validator
+from jsonschema import Draft202012Validator, ValidationError
 
+import wspd_design as wd
+from wspd_design.certificates.kernel.file import SCHEMA, certificate_text
 from wspd_design.exchange.documentation import documented_tables, with_tables
 from wspd_design.exchange.files import FOLDER, read_schema, schema_file, schema_text
 from wspd_design.exchange.forms import UNITS, Form, inner_forms, unit
@@ -62,3 +65,18 @@ def test_one_quantity_has_one_spelling():
 )
 def test_the_unit_ends_the_key(key, expected):
     assert unit(key) == expected
+
+
+@pytest.mark.parametrize("rail", ["polach-wet", "polach-dry"])
+def test_certificate_files_have_the_form_and_no_key_besides(rail):
+    """Proved, refuted with a witness, a limitation, evidence: every file that is written validates."""
+    checks = ("surface_hurwitz", "gain_positive", "open_loop_pole", "no_go", "conservation")
+    made = wd.certify("smc", rail=rail, only=checks)
+    assert len({each.status for each in made}) >= 3
+    schema = read_schema(SCHEMA)
+    for each in made:
+        content = json.loads(certificate_text(each))
+        assert content.keys() == schema["properties"].keys()
+        Draft202012Validator(schema).validate(content)
+    with pytest.raises(ValidationError):
+        Draft202012Validator(schema).validate(content | {"status": "GOOD"})

@@ -31,7 +31,7 @@ def certificate(name: str, status: Status, **changes) -> Certificate:
         hypotheses=(Hypothesis(text=f"the hypothesis of {name}", status=Status.EVIDENCE),),
         assumptions=("T = u",),
         method="sampling",
-        resolution="81 speeds",
+        remark="81 speeds were tried",
         reference="eq. (19)",
         model_hash="0123456789abcdef" * 4,
         seconds=0.123,

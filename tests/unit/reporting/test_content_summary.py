@@ -128,15 +128,15 @@ def test_the_table_names_every_check_with_its_finding():
 
 def test_a_limitation_that_is_proved_is_no_good_news():
     def dossier(status):
-        limit = replace(certificate("limit", status), limitation=True)
+        limit = certificate("limit", status)
         good = _good(Status.PROVED)
         return replace(good, certificates=(*good.certificates, limit))
 
-    said = verdict(dossier(Status.PROVED))
+    said = verdict(dossier(Status.LIMITATION))
     assert said.status is Shown.REFUTED
     assert "1 of 2 checks refuted or proved to be a limitation (" in plain(said.sentence)
     assert "1 proved to be a limitation and 1 proved" in plain(said.sentence)
-    (table,) = (block for block in summary(dossier(Status.PROVED)) if isinstance(block, Table))
+    (table,) = (block for block in summary(dossier(Status.LIMITATION)) if isinstance(block, Table))
     shown = [cell.status for row in table.rows for cell in row if isinstance(cell, Cell)]
     assert shown == [Shown.PROVED, Shown.LIMITATION]
     assert verdict(dossier(Status.VACUOUS)).status is Shown.PROVED

@@ -5,48 +5,70 @@ from dataclasses import replace
 from datetime import UTC, datetime
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
-from wspd_design.certificates.records import Proof, Status
+from wspd_design.certificates.kernel.finding import Effort, Finding, Stated
+from wspd_design.certificates.records import Status
 from wspd_design.reporting.blocks import Code, Definitions, Table
 from wspd_design.reporting.report import report_document
 from wspd_design.reporting.sections.checks import checks
 
 DATE = datetime(2026, 1, 2, tzinfo=UTC)
-TEXT = json.dumps({"format": "wspd-proof/1", "claim": "p", "tree": "a..", "prover": {"boxes": 3}})
-PROOF = Proof(
-    claim="p", statement="p <= 3.2 1/s", claim_hash="abcdef" * 10, certificate=TEXT, leaves=2, seconds=0.7
-)
+PROOF = {"format": "wspd-proof/2", "statement": {"kind": "inequality", "name": "p"}, "tree": "a.."}
 
 
-def dossier(**changes):
-    proved = certificate("pole", Status.PROVED, proofs=(PROOF,), engine="crival 1, flint 2")
-    certificates = (replace(proved, **changes), certificate("other", Status.EVIDENCE))
+def finding(**effort):
+    return Finding(
+        status=Status.PROVED,
+        asked="p <= 3.5 1/s",
+        shown="p <= 3.2 1/s",
+        leaves=2,
+        stated=Stated(proof=PROOF, effort=Effort(boxes=3, **effort)),
+    )
+
+
+def dossier(other=Status.EVIDENCE, **changes):
+    proved = certificate("pole", Status.PROVED, findings={"pole": finding()})
+    certificates = (replace(proved, **changes), certificate("other", other))
     return replace(sample_dossier(), certificates=certificates)
 
 
+def attached(document):
+    return {each.name: each for each in document.attachments}
+
+
+def details(dossier):
+    """Return what is said of each check, by its name."""
+    rows = (
+        {row.term: row.text for row in each.rows} for each in checks(dossier) if isinstance(each, Definitions)
+    )
+    return {each["Name, model"].partition(",")[0]: each for each in rows}
+
+
 def test_each_proof_has_a_row_with_its_size():
-    tables = [
+    (table,) = [
         each for each in checks(dossier()) if isinstance(each, Table) and each.anchor.endswith("-proofs")
     ]
-    (table,) = tables
-    assert table.rows == (("p <= 3.2 1/s", "2", str(len(TEXT)), "abcdefabcdefabcd"),)
+    assert table.rows == (("p <= 3.2 1/s", "2"),)
     assert "pole.json" in table.caption
 
 
-def test_open_share_and_engine_are_stated():
-    details = [each.rows for each in checks(dossier(undecided=0.034)) if isinstance(each, Definitions)]
-    sampled, shown = ({row.term: row.text for row in rows} for rows in details)
-    assert "Left open" not in sampled
-    assert shown["Left open"] == "3.4 % of the box"
-    assert shown["Engine"] == "crival 1, flint 2"
+def test_open_share_and_a_search_that_was_cut_are_stated():
+    said = details(dossier(findings={"pole": finding(undecided=0.034, cut=True)}))
+    assert said["pole"]["Left open"] == "3.4 % of the box"
+    assert said["pole"]["Search"] == "ended by its budget"
+    assert not {"Left open", "Search"} & said["other"].keys()
+
+
+def test_what_samples_say_and_what_is_held_are_stated():
+    said = details(dossier(held=("wheel radius", "max torque")))
+    assert said["pole"]["Held"] == "wheel radius, max torque"
+    assert said["other"]["Samples"] == "81 speeds were tried"
 
 
 def test_the_proof_is_attached_and_running_times_change_nothing():
     document = report_document(dossier(), DATE)
-    (attached,) = (each for each in document.attachments if each.name == "pole.json")
-    (kept,) = json.loads(attached.content)["proofs"]
-    assert kept["tree"] == "a.."
-    slower = replace(PROOF, seconds=9.0)
-    assert report_document(dossier(proofs=(slower,)), DATE) == document
+    kept = json.loads(attached(document)["pole.json"].content)
+    assert kept["findings"]["pole"]["proof"] == PROOF
+    assert report_document(dossier(seconds=9.0), DATE) == document
 
 
 def test_how_to_check_again_is_said_once():
@@ -54,16 +76,17 @@ def test_how_to_check_again_is_said_once():
     assert command == "wspd check pole.json --design design.toml --vehicle er24pc --rail polach-wet"
 
 
-def test_a_witness_is_attached_without_proofs():
-    document = report_document(dossier(proofs=(), status=Status.REFUTED), DATE)
-    (attached,) = (each for each in document.attachments if each.name == "pole.json")
-    content = json.loads(attached.content)
-    assert (content["status"], content["proofs"]) == ("REFUTED", [])
-    assert attached.description == "witness of the check pole"
+def test_every_check_that_speaks_about_the_law_is_attached():
+    document = report_document(dossier(findings={}, status=Status.REFUTED), DATE)
+    files = attached(document)
+    content = json.loads(files["pole.json"].content)
+    assert (content["status"], content["findings"]) == ("REFUTED", {})
+    assert files["pole.json"].description == "certificate of the check pole"
+    assert "other.json" in files
 
 
-def test_without_proofs_nothing_is_attached():
-    without = dossier(proofs=())
+def test_what_does_not_speak_about_the_law_is_not_attached():
+    without = dossier(Status.NOT_APPLICABLE, findings={}, status=Status.NOT_APPLICABLE)
     document = report_document(without, DATE)
-    assert [each.name for each in document.attachments] == ["design.toml", "report.json"]
+    assert list(attached(document)) == ["design.toml", "report.json"]
     assert not any(isinstance(each, Code) for each in checks(without))

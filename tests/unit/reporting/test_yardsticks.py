@@ -6,7 +6,6 @@ from dataclasses import replace
 import pytest
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
-from wspd_design.certificates.checks.stop import stop_bound
 from wspd_design.certificates.records import Point, Status
 from wspd_design.reporting.numbering import parts
 from wspd_design.reporting.sections.comparison import comparison
@@ -14,18 +13,18 @@ from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary
 from wspd_design.reporting.text import plain
-from wspd_design.reporting.yardsticks import proved_bound
+from wspd_design.reporting.yardsticks import DISTANCE, SHORTEST_STOP, proved_bound
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.records import Ending, Sensing
 
 
 def proof(status=Status.PROVED):
     return replace(
-        certificate(stop_bound.NAME, status),
+        certificate(SHORTEST_STOP, status),
         claim="No controller stops from 120 km/h within less than 170.19 m.",
         worst_point=(
             Point(name="bound on the time", value=9.5, unit="s"),
-            Point(name=stop_bound.DISTANCE, value=170.199, unit="m"),
+            Point(name=DISTANCE, value=170.199, unit="m"),
         ),
     )
 

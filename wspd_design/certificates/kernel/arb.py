@@ -1,4 +1,4 @@
-"""Numbers that are certain: balls of python-flint's ``arb`` and the doubles and fractions around them.
+"""Rigorous numbers: Arb balls (python-flint), and the doubles and fractions around them.
 
 A ball contains the exact result of the arithmetic on the stored numbers, so that a comparison that comes out true
 holds.

@@ -24,8 +24,9 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from functools import reduce
 from hashlib import sha256
-from math import floor, isfinite
+from math import ceil, isfinite
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -33,11 +34,11 @@ from flint import arb, ctx, fmpq
 
 FORMAT = "wspd-proof/2"
 PRECISION, PRIME = 80, 2**255 - 19  # bits of a ball; of the field of identities
-MOST_BYTES = 20_000_000  # of a file
+MOST_BYTES, MOST_DIGITS = 20_000_000, 2_000  # of a file, of a fraction
 MOST_FREE, MOST_HALVINGS = 26, 400  # variables with a range, one letter each; of one box
-MOST_DIGITS = 2_000  # of a fraction
-MOST_STEPS, MOST_EXPONENT = 20_000, 64  # of a formula, of a power in it
-MOST_WORK = 12_000_000  # operations on intervals, about 25 s
+MOST_STEPS, MOST_DEGREE, MOST_EXPONENT = 20_000, 10**9, 64  # of a formula, of a power in it
+MOST_WORK = 25_000_000  # operations on intervals, of 1 to 2 us each
+COSTS = {"n": 5, "abs": 2, "exp": 5, "atan": 5, "pow": 10}  # operations; of other steps one for each operand
 DECIMAL = re.compile(r"-?[0-9]{1,40}(\.[0-9]{1,40})?(e[-+]?[0-9]{1,3})?")
 RATIO = re.compile(rf"-?[0-9]{{1,{MOST_DIGITS}}}/[0-9]{{1,{MOST_DIGITS}}}")
 WORDS = re.compile(r"[ -~]{1,300}")  # printable ASCII: no byte of a file steers a terminal
@@ -85,34 +86,29 @@ def decide(proof: object, work: Work) -> Shown:
                 return Shown(given.words(), _replay(given, tree, work))
         case "identity":
             one, other = (_formula(statement.get(key)) for key in ("left", "right"))
-            work.spend(len(one) + len(other))
-            if not same(one, other):
+            if not same(one, other, work):
                 raise Refused("the two formulas are not the same function")
             return Shown(_words(statement.get("name"), "name"), 1)
         case "sign":
             name, unit = (_words(statement.get(key), key) for key in ("name", "unit"))
-            found = number(statement.get("value"))
-            if not found > 0:
+            if not (found := number(statement.get("value"))) > 0:
                 raise Refused(f"{name} = {float(found):.6g} is not positive")
             return Shown(f"{name} = {float(found):.6g} {unit} > 0".replace(" - ", " "), 1)
         case _:
             raise Refused("the statement is of no known kind")
 
 
-def value(
-    statement: Mapping[str, Any], point: Mapping[str, Fraction], work: Work
-) -> tuple[Fraction, Fraction]:
+def value(statement: Mapping[str, Any], at: Mapping[str, Fraction], work: Work) -> tuple[Fraction, Fraction]:
     """Enclose the model formula of an inequality at one point of its box; where it divides by zero, the form."""
     given = _Inequality(statement)
     box: Box = []
-    for name, low, high in given.variables:
-        at = point[name] if low < high else low
-        if not low <= at <= high:
-            raise Refused(f"{name} = {float(at):g} lies outside the box")
-        box.append((fmpq(*at.as_integer_ratio()),) * 2)
+    for name, low, high in given.free:
+        if not low <= at[name] <= high:
+            raise Refused(f"{name} = {float(at[name]):g} lies outside the box")
+        box.append((fmpq(*at[name].as_integer_ratio()),) * 2)
     with ctx.workprec(PRECISION):
         found, _ = Program(given.model, given.variables, work).run(_ends(box))
-        if not finite(found) and given.model is not given.form and same(given.form, given.model):
+        if not finite(found) and given.model is not given.form and same(given.form, given.model, work):
             found, _ = Program(given.form, given.variables, work).run(_ends(box))
         if not finite(found):
             raise Refused("the formula is not defined at this point")
@@ -130,43 +126,39 @@ class _Inequality:
         if self.relation not in ("<=", ">="):
             raise Refused("the statement has no relation")
         self.bound = number(statement.get("bound"))
-        rows = [
-            _typed(row, list, "variable") for row in _typed(statement.get("variables"), list, "variables")
-        ]
+        rows = [_typed(row, list, "row") for row in _typed(statement.get("variables"), list, "variables")]
         if any(len(row) != 4 for row in rows):
             raise Refused("a variable is not [name, low, high, unit]")
         self.variables = [(_words(row[0], "name"), number(row[1]), number(row[2])) for row in rows]
         names = {_words(row[0], "name") for row in rows if _words(row[3], "unit")}
         if len(names) < len(rows) or any(low > high for _, low, high in self.variables):
             raise Refused("two variables have the same name, or a range is reversed")
+        self.free = [(name, low, high) for name, low, high in self.variables if low < high]
+        if len(self.free) > MOST_FREE:
+            raise Refused(f"more than {MOST_FREE} variables have a range")
         self.model = _formula(statement.get("model"), names)
         self.form = _formula(statement["form"], names) if "form" in statement else self.model
 
     def words(self) -> str:
         """Return the inequality in words."""
-        ranges = [f"{name} {float(a):g} to {float(b):g}" for name, a, b in self.variables if a < b]
+        ranges = [f"{name} {float(a):g} to {float(b):g}" for name, a, b in self.free]
         where = f" for all {', '.join(ranges)}" if ranges else ""
         return f"{self.name} {self.relation} {float(self.bound):.17g} {self.unit}".removesuffix(" -") + where
 
 
 def _replay(given: _Inequality, tree: str, work: Work) -> int:
     """Walk the tree and return the number of leaves, or refuse."""
-    work.spend(len(given.model) + len(given.form))
-    if given.form is not given.model and not same(given.form, given.model):
+    if given.form is not given.model and not same(given.form, given.model, work):
         raise Refused("the arranged form of the formula is not the model's")
     program = Program(given.form, given.variables, work)
-    if len(program.free) > MOST_FREE:
-        raise Refused(f"more than {MOST_FREE} variables have a range")
-    letters = {chr(ord("a") + i): k for i, k in enumerate(program.free)}
-    root: Box = [
-        (fmpq(*low.as_integer_ratio()), fmpq(*high.as_integer_ratio())) for _, low, high in given.variables
-    ]
+    letters = {chr(ord("a") + k): k for k in range(len(given.free))}
+    root: Box = [(fmpq(*a.as_integer_ratio()), fmpq(*b.as_integer_ratio())) for _, a, b in given.free]
     waiting: list[tuple[Box, int, list[Ends] | None]] = [(root, 0, None)]
     leaves = 0
     for position, step in enumerate(tree):
         if not waiting:
             raise Refused(f"the tree goes on after its last leaf, at step {position}")
-        work.spend(2 + len(root) // 4)
+        work.spend(4 + 4 * len(root))
         box, halvings, slopes = waiting.pop()
         if step in ".~":
             if not _holds(given, program, box, mean_value=step == "~"):
@@ -195,8 +187,7 @@ def _holds(given: _Inequality, program: "Program", box: Box, *, mean_value: bool
         _, slopes = program.run(_ends(box), derivatives=True)
         middles = [(low + high) / 2 for low, high in box]
         found, _ = program.run(_ends([(middle, middle) for middle in middles]))
-        for k in program.free:
-            low, high = box[k]
+        for k, (low, high) in enumerate(box):
             found = add(found, mul(slopes[k], *_ends([(low - middles[k], high - middles[k])])))
     else:
         found, _ = program.run(_ends(box))
@@ -212,7 +203,7 @@ def _worst_face(
         _, slopes = program.run(_ends(box), derivatives=True)
     sign = _sign(slopes[k])
     if sign == 0:
-        raise Refused(f"the formula is not monotone in {given.variables[k][0]} on a box")
+        raise Refused(f"the formula is not monotone in {given.free[k][0]} on a box")
     end = box[k][1] if (sign > 0) == (given.relation == "<=") else box[k][0]
     return [*box[:k], (end, end), *box[k + 1 :]], slopes
 
@@ -226,18 +217,19 @@ class Program:
     """A formula on intervals, with forward derivatives; what no free variable enters is done beforehand."""
 
     def __init__(self, formula: Formula, variables: Sequence[tuple[str, Fraction, Fraction]], work: Work):
-        self.free = [k for k, (_, low, high) in enumerate(variables) if low < high]
+        work.spend(cost(formula))
         self.known: dict[int, Ends] = {}
         self.steps: list[tuple[int, str, Sequence[int], Any]] = []
         self.result, self.work = len(formula) - 1, work
-        numbers = {name: k for k, (name, _, _) in enumerate(variables)}
+        fixed = {name: low for name, low, high in variables if low == high}
+        free = {name: k for k, name in enumerate(name for name, low, high in variables if low < high)}
         for place, (name, *operands) in enumerate(formula):
             extra: Any = None
             if name == "x":
-                operands, extra = [], numbers[operands[0]]
-                if extra not in self.free:
-                    self.known[place] = exactly(variables[extra][1])
+                if operands[0] in fixed:
+                    self.known[place] = exactly(fixed[operands[0]])
                     continue
+                operands, extra = [], free[operands[0]]
             elif name == "n":
                 self.known[place] = exactly(operands[0])
                 continue
@@ -247,11 +239,14 @@ class Program:
                 self.known[place], _ = _apply(name, [(self.known[k], {}) for k in operands], extra)
             else:
                 self.steps.append((place, name, operands, extra))
-        self.operations = sum(max(len(operands) - 1, 1) for _, _, operands, _ in self.steps)
+        used = {self.result, *(k for _, _, operands, _ in self.steps for k in operands)}
+        self.known = {k: ends for k, ends in self.known.items() if k in used}
+        once = cost([[name, *operands] for _, name, operands, _ in self.steps]) + len(self.known) // 4
+        self.costs = once, 2 * once + len(free) * sum(len(operands) for _, _, operands, _ in self.steps)
 
     def run(self, ends: list[Ends], *, derivatives: bool = False) -> tuple[Ends, list[Ends]]:
         """Enclose the value and, if asked, the slope along every variable."""
-        self.work.spend(self.operations * (1 + len(self.free) if derivatives else 1))
+        self.work.spend(self.costs[derivatives])
         done: dict[int, tuple[Ends, Slopes]] = {k: (found, {}) for k, found in self.known.items()}
         for place, name, operands, extra in self.steps:
             if name == "x":
@@ -269,17 +264,16 @@ def _apply(name: str, operands: list[tuple[Ends, Slopes]], exponent: Any) -> tup
     x, dx = operands[0]
     if name == "add":
         for y, dy in operands[1:]:
-            x, dx = add(x, y), _plus(dx, dy)
+            x, dx = add(x, y), _plus(dx, dy) if dx and dy else dx or dy
     elif name == "mul":
         for k, (y, dy) in enumerate(operands[1:]):
-            dx = _plus(_times(dx, y), _times(dy, x))
+            dx = _plus(_times(dx, y), _times(dy, x)) if dx or dy else dx
             x = sqr(x) if k == 0 and operands[1] is operands[0] else mul(x, y)
     elif name == "pow":
         dx = _times(dx, mul(exactly(exponent), power(x, exponent - 1))) if dx else dx
         x = power(x, exponent)
     elif name == "abs":
-        # Where the sign is open the slope may be that of either side.
-        sign = ONE if x[0] >= 0 else MINUS if x[1] <= 0 else (arb(-1), arb(1))
+        sign = ONE if x[0] >= 0 else MINUS if x[1] <= 0 else (arb(-1), arb(1))  # of either side
         x, dx = magnitude(x), _times(dx, sign)
     elif name == "exp":
         x = rising("exp", x)
@@ -336,17 +330,15 @@ def inverse(x: Ends) -> Ends:
 
 def power(x: Ends, exponent: Fraction) -> Ends:
     """Power of an interval; not a number if a fractional exponent meets a base that may reach zero."""
-    if exponent < 0:
-        return inverse(power(x, -exponent))
     if exponent.denominator > 1:
-        if not x[0] > 0:
-            return arb.nan(), arb.nan()
-        return rising("exp", mul(exactly(exponent), rising("log", x)))
-    if exponent == 0:
+        return rising("exp", mul(exactly(exponent), rising("log", x))) if x[0] > 0 else inverse(ZERO)
+    whole = exponent.numerator
+    if whole < 0:
+        return inverse(power(x, -exponent))
+    if whole == 0:
         return add(ONE, mul(ZERO, x))
-    if exponent % 2 == 0:
-        return sqr(power(x, exponent / 2))
-    return x[0] ** int(exponent), x[1] ** int(exponent)
+    low, high = magnitude(x) if whole % 2 == 0 else x
+    return low**whole, high**whole
 
 
 def _plus(x: Slopes, y: Slopes) -> Slopes:
@@ -359,8 +351,7 @@ def _times(slope: Slopes, factor: Ends) -> Slopes:
 
 def exactly(rational: Fraction) -> Ends:
     """Interval of one rational."""
-    around = arb(fmpq(*rational.as_integer_ratio()))
-    return around, around
+    return (arb(fmpq(*rational.as_integer_ratio())),) * 2
 
 
 def finite(x: Ends) -> bool:
@@ -372,11 +363,17 @@ def _ends(box: Box) -> list[Ends]:
     return [(arb(low), arb(high)) for low, high in box]
 
 
-def same(one: Formula, other: Formula) -> bool:
+def cost(formula: Formula) -> int:
+    """Count the operations of a formula."""
+    return sum(COSTS.get(name, len(operands)) for name, *operands in formula)
+
+
+def same(one: Formula, other: Formula, work: Work) -> bool:
     """Whether two formulas are the same function wherever both are defined: values at a point of a prime field.
 
     Different functions agree with a probability below 1e-60. What is not rational becomes an element by its argument.
     """
+    work.spend(cost(one) + cost(other))
     return _residue(one) == _residue(other)
 
 
@@ -390,15 +387,11 @@ def _residue(formula: Formula) -> int:
         elif name == "add":
             found.append(sum(found[k] for k in operands) % PRIME)
         elif name == "mul":
-            product = 1
-            for k in operands:
-                product = product * found[k] % PRIME
-            found.append(product)
+            found.append(reduce(lambda product, k: product * found[k] % PRIME, operands, 1))
         elif name == "pow":
             found.append(_residue_power(found[operands[0]], operands[1]))
-        else:
+        else:  # the magnitude does not know the sign of its argument
             x = found[operands[0]]
-            # The magnitude does not know the sign of its argument.
             found.append(_element(name, x * x % PRIME if name == "abs" else x))
     return found[-1]
 
@@ -407,8 +400,7 @@ def _residue_power(base: int, exponent: Fraction) -> int:
     """Integer powers by themselves; a fractional exponent leaves an element for its part between 0 and 1."""
     if base == 0:
         raise Refused("the identity cannot be decided: a base vanishes")
-    whole = floor(exponent)
-    rest = exponent - whole
+    whole, rest = divmod(exponent, 1)
     return pow(base, whole, PRIME) * (_element("pow", base, rest) if rest else 1) % PRIME
 
 
@@ -432,7 +424,15 @@ def _formula(stated: object, names: set[str] | None = None) -> list[list[Any]]:
     steps = _typed(stated, list, "formula")
     if not 0 < len(steps) <= MOST_STEPS:
         raise Refused("a formula is empty or too long")
-    return [_step(_typed(step, list, "step of a formula"), place, names) for place, step in enumerate(steps)]
+    read = [_step(_typed(step, list, "step of a formula"), place, names) for place, step in enumerate(steps)]
+    degrees: list[int] = []
+    for name, *operands in read:
+        below = [degrees[k] for k in operands if type(k) is int] or [1]
+        factor = ceil(abs(operands[1])) if name == "pow" else 1
+        degrees.append(max(1, factor) * (sum(below) if name == "mul" else max(below)))
+    if max(degrees) > MOST_DEGREE:
+        raise Refused(f"the degree of a formula is above {MOST_DEGREE}, so that its numbers become too long")
+    return read
 
 
 def _step(step: list[Any], place: int, names: set[str] | None) -> list[Any]:

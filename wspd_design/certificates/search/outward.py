@@ -25,7 +25,7 @@ def _above(x: Array) -> Array:
 
 
 def _hull(ends: list[Array]) -> "Interval":
-    """Enclose exact numbers whose nearest doubles are given; what is no number may be anything."""
+    """Enclose exact numbers whose nearest doubles are given; an operand that is not a number may be anything."""
     low, high = np.minimum.reduce(ends), np.maximum.reduce(ends)
     return Interval(
         np.where(np.isnan(low), -np.inf, _below(low)), np.where(np.isnan(high), np.inf, _above(high))

@@ -27,37 +27,40 @@ def settle_together(parts: Sequence[Inequality], *, tolerance: float) -> Mapping
 
 
 def _settled(parts: Sequence[Inequality], tolerance: float) -> Mapping[str, Stated]:
-    found, worst, target = _common(parts, tolerance)
-    enough = target <= worst.claim.bound if worst.claim.relation == "<=" else target >= worst.claim.bound
-    if not enough:
-        return {each.key: settle(each.claim, tolerance=tolerance) for each in parts}
-    return {each.key: _stated(each, found[each.key], target, reuse=each is worst) for each in parts}
+    """Enclose the part that comes last, and prove its bound of the others; or, if one denies it, settle each."""
+    *others, last = parts
+    found = extreme(last.claim, tolerance=tolerance)
+    target = tightest(last.claim, found, tolerance).bound
+    enough = target <= last.claim.bound if last.claim.relation == "<=" else target >= last.claim.bound
+    if found.tree and enough:
+        shown = {each.key: prove(replace(each.claim, bound=target)) for each in others}
+        if all(each.tree for each in shown.values()):
+            return {each.key: _stated(each, shown.get(each.key, found), target) for each in parts}
+    return _one_by_one(parts, tolerance)
 
 
-def enclose_together(parts: Sequence[Inequality], *, tolerance: float) -> Mapping[str, Stated]:
-    """Prove nearly the tightest bound that all parts of a claim have; that of the claim itself does not matter."""
-    asked = ["enclose", [each.claim.statement() for each in parts], tolerance, budget().effort]
-    return recall(asked, lambda: _enclosed(parts, tolerance))
-
-
-def _enclosed(parts: Sequence[Inequality], tolerance: float) -> Mapping[str, Stated]:
-    found, worst, target = _common(parts, tolerance)
-    return {each.key: _stated(each, found[each.key], target, reuse=each is worst) for each in parts}
-
-
-def _common(
-    parts: Sequence[Inequality], tolerance: float
-) -> tuple[Mapping[str, Outcome], Inequality, Fraction]:
-    """Enclose all parts; return also the tightest and the bound that is to be proved of all."""
+def _one_by_one(parts: Sequence[Inequality], tolerance: float) -> Mapping[str, Stated]:
+    """Enclose all parts; prove of all what the tightest allows, if that is enough, else settle each."""
     found = {each.key: extreme(each.claim, tolerance=tolerance) for each in parts}
     upper = parts[0].claim.relation == "<="
     worst = max(parts, key=lambda each: found[each.key].high if upper else -found[each.key].low)
-    return found, worst, tightest(worst.claim, found[worst.key], tolerance).bound
+    target = tightest(worst.claim, found[worst.key], tolerance).bound
+    enough = target <= worst.claim.bound if upper else target >= worst.claim.bound
+    if not enough:
+        return {each.key: settle(each.claim, tolerance=tolerance) for each in parts}
+    shown = {
+        each.key: found[each.key] if each is worst else prove(replace(each.claim, bound=target))
+        for each in parts
+    }
+    return {
+        each.key: replace(
+            _stated(each, shown[each.key], target), place=stated_of(each.claim, found[each.key]).place
+        )
+        for each in parts
+    }
 
 
-def _stated(part: Inequality, found: Outcome, bound: Fraction, *, reuse: bool) -> Stated:
-    """Prove the common bound of a part, with the place where its own extreme was found."""
+def _stated(part: Inequality, shown: Outcome, bound: Fraction) -> Stated:
+    """Write the proof of the common bound of a part."""
     wanted = replace(part.claim, bound=bound)
-    shown = found if reuse or not found.tree else prove(wanted)
-    proof = proof_of(wanted, shown.tree) if shown.tree else None
-    return replace(stated_of(part.claim, found), proof=proof)
+    return replace(stated_of(part.claim, shown), proof=proof_of(wanted, shown.tree) if shown.tree else None)

@@ -63,7 +63,7 @@ def adhesion_edges(problem: Problem, *, most: bool, axle: bool) -> dict[str, Ran
         base |= {name: domain.span(problem, name)[end] for name in LOAD}
         base |= {name: problem.nominal(name) for name in RESISTANCE}
     weak = problem.span("adhesion reduction")
-    found = {
+    found: dict[str, Ranges] = {
         name: base | {"adhesion reduction": weak[1 - end]} | ranges for name, ranges in _stiffening(problem)
     }
     if weak[0] < weak[1] or not found:

@@ -1,12 +1,15 @@
 """The domain of a claim: the range of each quantity of the table, in numbers and in words."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, cast
 
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import AXLE, QUANTITIES, STATE
 from wspd_design.certificates.records import Point, Problem
 from wspd_design.certificates.setting import axle
+from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH as KMH
 
@@ -40,8 +43,14 @@ def span(problem: Problem, name: str) -> Ends:
         If the load transfer has no range in which all wheels stay on the rail.
     """
     if name in AXLE and name not in problem.bounds:
-        return axle.load_share(problem) if name == AXLE[0] else axle.deceleration(problem)
+        return _axle_span(name, replace(problem, controller=cast(Controller, None)))
     return problem.span(name)
+
+
+@lru_cache(maxsize=64)
+def _axle_span(name: str, lawless: Problem) -> Ends:
+    """Work out a range that many claims of a problem share; it does not depend on the law."""
+    return axle.load_share(lawless) if name == AXLE[0] else axle.deceleration(lawless)
 
 
 def uncertain(problem: Problem) -> tuple[str, ...]:

@@ -91,7 +91,7 @@ def energy(
 
 
 def smallest_gain(gains: AdaptiveFuzzyGains) -> float:
-    """Return the smallest of the gains that must be positive; one that is no number counts as the smallest."""
+    """Return the smallest of the gains that must be positive; one that is not a number counts as the smallest."""
     needed = (
         gains.weight_rate,
         gains.bound_rate,

@@ -5,7 +5,7 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.arb import above
 from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.kernel.finding import Finding
-from wspd_design.certificates.kernel.obligation import Obligation
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.adhesion_edges import Ranges
@@ -39,7 +39,7 @@ from wspd_design.parameters.units import KMH
 CONTINUOUS = "T = u inside the limits of the brake: no valve lag, no sampling, continuous adaptation"
 
 
-def braking_obligations(problem: Problem) -> tuple[Obligation, ...]:
+def braking_obligations(problem: Problem) -> tuple[Inequality, ...]:
     """Return the claim that a train with wheels at static load decelerates, a >= 0."""
 
     def claimed(ranges: Ranges) -> Claim:
@@ -119,7 +119,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             Point(name="psi", value=found.bound, unit="N m"),
         )
         layer = gains.boundary_layer / gains.proportional_gain
-        meaning = f"abs(s_D) exceeds one layer width, {layer:.3g}, for at most {rounded_up(integral / layer)} s in total."
+        seconds = rounded_up(integral / layer)
+        meaning = f"abs(s_D) exceeds one layer width, {layer:.3g}, for at most {seconds} s in total."
     open_ones = [each.asked for each in (findings[c.key] for c in conditions) if not each.proved]
     if status is Status.REFUTED:
         meaning = (

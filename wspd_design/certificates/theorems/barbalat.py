@@ -117,7 +117,11 @@ def _convergence(problem: Problem, findings: Findings) -> Certificate:
     if smallest_gain(gains) > 0.0 and low.proved and high.proved:
         found = energy(problem, gains, low.low, high.high, eta, 1.0)
         lightest, radius = point(problem.span("wheelset inertia")[0]), point(problem.vehicle.wheel_radius)
-        steepest = radius / lightest * point(max(Fraction(high.high), Fraction(limit) - Fraction(low.low)))
+        steepest = (
+            radius
+            / lightest
+            * point(max(Fraction(high.high), Fraction(torque_limits(problem)[1]) - Fraction(low.low)))
+        )
         where = (
             Point(name="V(0) in sigma", value=above(found.start), unit="N s2"),
             Point(name="bound on the integral of abs(s_D) d sigma", value=above(found.integral), unit="s2/m"),
@@ -131,8 +135,8 @@ def _convergence(problem: Problem, findings: Findings) -> Certificate:
         name="barbalat",
         title="Convergence after Barbalat",
         claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} down to standstill, and "
-        "with T = u inside the limits of the brake, u* stays inside them by eta/g, eta/g <= u* <= T_max - eta/g with T_max "
-        f"at least {limit / 1e3:g} kN m. Therefore s_D tends to zero as the train comes to a standstill from "
+        "with T = u inside the limits of the brake, u* stays inside them by eta/g, eta/g <= u* <= T_max - eta/g with "
+        f"T_max at least {limit / 1e3:g} kN m. Therefore s_D tends to zero as the train comes to a standstill from "
         f"{problem.speeds[1] * KMH:.3g} km/h: in sigma = integral of dt/v the run has no end, the integral of abs(s_D) "
         f"is finite and s_D uniformly continuous; {said.text}, all speeds down to standstill.",
         status=status,

@@ -1,4 +1,4 @@
-"""Claims on the edges of the box where the adhesion is extreme, and what their findings say together."""
+"""Claims on the edges of the box where the adhesion is extreme, and their findings combined into one verdict."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace

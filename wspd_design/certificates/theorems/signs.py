@@ -7,9 +7,9 @@ from typing import NamedTuple, TypeAlias
 from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.kernel.obligation import Inequality
-from wspd_design.certificates.quantities import PLANT
+from wspd_design.certificates.quantities import CONTACT, PLANT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
-from wspd_design.certificates.setting.adhesion_edges import Ranges
+from wspd_design.certificates.setting.adhesion_edges import RESISTANCE, Ranges
 from wspd_design.certificates.setting.plant import (
     AXLE_PLANT,
     Forces,
@@ -27,6 +27,7 @@ from wspd_design.model.generated import slip as generated
 from wspd_design.model.number import Number
 from wspd_design.model.slip import SlipDynamics
 
+FIXED = (*CONTACT, *RAIL, "mass", *RESISTANCE)
 MEGA = 1e6  # N m in a MN m, so that the gain is a number of common size
 LEAST_GAIN = Fraction(1, 10**6)  # 1/s per MN m: above zero, where zero itself would not do
 
@@ -107,6 +108,13 @@ def _on_edges(problem: Problem, sign: SignOf) -> tuple[Inequality, ...]:
             unit=sign.unit,
         )
 
+    if sign.key == "gain":  # it does not depend on the adhesion
+        return (
+            Inequality(
+                key="gain, whatever the adhesion",
+                claim=claimed({name: problem.nominal(name) for name in FIXED}),
+            ),
+        )
     return on_edges(sign.key, problem, claimed, most=False, axle=sign.axle)
 
 

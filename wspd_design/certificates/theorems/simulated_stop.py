@@ -64,7 +64,7 @@ def _used(numbers: Mapping[str, float]) -> float:
     return max(abs(value) / limits[name.split()[0]] for name, value in numbers.items())
 
 
-def _denies_balance(problem: Problem, _: Place, work: Work) -> Mapping[str, float]:
+def _denies_balance(problem: Problem, _place: Place, work: Work) -> Mapping[str, float]:
     work.spend(len(PLANTS) * STOP_WORK)
     numbers = residuals(problem)
     if balances(numbers):
@@ -174,7 +174,7 @@ def stays(problem: Problem, numbers: Mapping[str, float]) -> bool:
     return abs(numbers["slip"] - law.slip_reference) <= 2.0 * law.layer and numbers["stopped"] == 1.0
 
 
-def _denies_tracking(problem: Problem, _: Place, work: Work) -> Mapping[str, float]:
+def _denies_tracking(problem: Problem, _place: Place, work: Work) -> Mapping[str, float]:
     work.spend(STOP_WORK)
     _, numbers = tracked_stop(problem)
     if stays(problem, numbers):

@@ -100,8 +100,8 @@ def gain_claims(problem: Problem, *, uses: Sequence[str] = AXLE_PLANT) -> tuple[
 
     axle = set(AXLE) <= set(uses)
     return (
-        *on_edges("r", problem, lambda ranges: claimed(ranges, sign=1.0), most=True, axle=axle),
         *on_edges("-r", problem, lambda ranges: claimed(ranges, sign=-1.0), most=False, axle=axle),
+        *on_edges("r", problem, lambda ranges: claimed(ranges, sign=1.0), most=True, axle=axle),
     )
 
 

@@ -8,26 +8,23 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from wspd_design.certificates.kernel.file import FOLDER, certificate_text, file_name
+from wspd_design.certificates.kernel.file import FOLDER, file_name
 from wspd_design.certificates.records import Certificate, Status
 from wspd_design.cli import options
 from wspd_design.cli.console import console, spaced, table
-from wspd_design.cli.output import check_folder, write_text
+from wspd_design.cli.output import check_folder
 from wspd_design.cli.verification import (
     exit_code,
-    folder_beside,
     margin_text,
-    problem_of,
     run_checks,
     show_claims,
     show_counts,
     show_not_varied,
     status_text,
-    stored_beside,
 )
 from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
-from wspd_design.parameters.errors import UserError
+from wspd_design.design.certification import folder_beside, problem_of_case, stored_beside
 
 
 def certify(
@@ -65,9 +62,13 @@ def certify(
     case = load_case(design, CaseOptions(vehicle=vehicle, rail=rail))
     folder = output if output is not None else folder_beside(design)
     check_folder(folder, force=force)
-    problem = problem_of(case)
-    certificates = run_checks(problem, only, effort, stored_beside(design))
-    sizes = _write(certificates, folder, force=force)
+    problem = problem_of_case(case)
+    certificates = run_checks(problem, only, effort, stored_beside(design), folder)
+    sizes = {
+        each.name: (folder / file_name(each)).stat().st_size
+        for each in certificates
+        if each.status is not Status.NOT_APPLICABLE
+    }
     show_claims(problem, certificates)
     _show(certificates, sizes)
     show_counts(certificates)
@@ -85,24 +86,6 @@ def _as_given(design: str, folder: Path, vehicle: str | None, rail: str | None) 
     found = is_design_file(design) and Path(design) == folder.with_suffix(".toml")
     given = (("--design", None if found else design), ("--vehicle", vehicle), ("--rail", rail))
     return "".join(f" {option} {shlex.quote(value)}" for option, value in given if value is not None)
-
-
-def _write(certificates: Sequence[Certificate], folder: Path, *, force: bool) -> dict[str, int]:
-    """Write what speaks about the design; return the size of each file [byte] by the name of the check."""
-    kept = [each for each in certificates if each.status is not Status.NOT_APPLICABLE]
-    if kept:
-        try:
-            folder.mkdir(exist_ok=True)
-        except OSError as error:
-            raise UserError(
-                f"folder {folder} cannot be made ({error.strerror}); choose another one with -o"
-            ) from None
-    sizes = {}
-    for certificate in kept:
-        text = certificate_text(certificate)
-        write_text(folder / file_name(certificate), text, force=force)
-        sizes[certificate.name] = len(text.encode())
-    return sizes
 
 
 def _show(certificates: Sequence[Certificate], sizes: Mapping[str, int]) -> None:

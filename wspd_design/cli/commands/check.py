@@ -7,15 +7,14 @@ import typer
 from rich.padding import Padding
 from rich.text import Text
 
-from wspd_design.certificates.kernel.checker import MOST_BYTES
 from wspd_design.certificates.kernel.file import FOLDER
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.replay import Replayed, replay
+from wspd_design.certificates.replay import Replayed
 from wspd_design.cli import options
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
-from wspd_design.cli.verification import claim_text, problem_of
-from wspd_design.design.case import CaseOptions, load_case
+from wspd_design.cli.verification import claim_text
+from wspd_design.design import certification
 from wspd_design.parameters.errors import UserError
 
 
@@ -43,14 +42,16 @@ def check(
     The whole certificate is made again from the design and printed; a file that says anything else is refused. Exit
     code 1 when a file is refused, else 3 when one decides nothing, else 0.
     """
-    cases = [(path, _text(path), design or _design_of(path)) for path in _files(certificates)]
+    cases = [(path, design or _design_of(path)) for path in _files(certificates)]
     found = []
-    wanted = CaseOptions(vehicle=vehicle, rail=rail)
-    problems = {made: problem_of(load_case(made, wanted)) for _, _, made in cases}
-    for path, text, made in cases:
+    problems = {
+        made: certification.problem_of(made, vehicle=vehicle, rail=rail)
+        for made in dict.fromkeys(made for _, made in cases)
+    }
+    for path, made in cases:
         with progress() as tell:
             tell(f"Checking {path.name!a}")
-            found.append(replay(problems[made], text))
+            found.append(certification.check(path, problems[made]))
         _show(path, made, found[-1])
     if not all(each.accepted for each in found):
         raise typer.Exit(REFUTED)
@@ -63,17 +64,6 @@ def _files(given: list[Path]) -> list[Path]:
     if not found:
         raise UserError(f"{given[0]} holds no certificate; name a folder that wspd certify wrote")
     return found
-
-
-def _text(path: Path) -> str:
-    """Read a file; bytes that are not text are left to the checker to refuse."""
-    try:
-        with path.open("rb") as file:
-            return file.read(MOST_BYTES + 1).decode("utf-8", errors="replace")
-    except OSError as error:
-        raise UserError(
-            f"{path} cannot be read ({error.strerror}); name a file that wspd certify wrote"
-        ) from None
 
 
 def _design_of(path: Path) -> str:

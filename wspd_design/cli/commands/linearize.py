@@ -38,8 +38,8 @@ def linearize(
 ) -> None:
     """Show open-loop poles, input gain and equilibrium torque of the slip over speed.
 
-    Where the slip pole exceeds 1/tau of the valve, no law without feedback of torque or wheel acceleration
-    can stabilize the equilibrium.
+    Where the slip pole exceeds 1/tau of the valve, no law can stabilize the equilibrium that does not read the torque
+    and has a memory of integrals alone. A law with dynamics of its own, such as a lead filter, is not bound by this.
     """
     from wspd_design.analysis import linearization
 
@@ -83,8 +83,9 @@ def _show(points: "list[Linearization]", beyond: list[bool]) -> None:
     limit = 1.0 / first.time_constant
     verdict = (
         f"!: at {sum(beyond)} of {len(points)} speeds the slip pole exceeds 1/tau = {limit:.3g} 1/s of the "
-        "valve: no law without feedback of torque or wheel acceleration can stabilize the equilibrium there."
+        "valve, nominal parameters: no law can stabilize the equilibrium there that does not read the torque and has "
+        "a memory of integrals alone. A law with dynamics of its own, such as a lead filter, is not bound by this."
         if any(beyond)
-        else f"The slip pole stays below 1/tau = {limit:.3g} 1/s of the valve at all of these speeds."
+        else f"The slip pole does not exceed 1/tau = {limit:.3g} 1/s of the valve at any of these speeds."
     )
     out.print(verdict, style="yellow" if any(beyond) else "")

@@ -13,9 +13,9 @@ from wspd_design.cli.console import console, progress
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.output import check_output
 from wspd_design.cli.stop_options import scenario
-from wspd_design.cli.verification import stored_beside
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
+from wspd_design.design.certification import stored_beside
 from wspd_design.design.records import Design
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError

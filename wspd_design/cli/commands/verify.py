@@ -9,14 +9,13 @@ from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.json_objects import verification_object
 from wspd_design.cli.verification import (
     exit_code,
-    problem_of,
     run_checks,
     show_claims,
     show_not_varied,
     show_verdicts,
-    stored_beside,
 )
 from wspd_design.design.case import CaseOptions, load_case
+from wspd_design.design.certification import problem_of_case, stored_beside
 
 _VERDICTS = {GOOD: "good", REFUTED: "refuted", UNDECIDED: "undecided"}
 
@@ -45,7 +44,7 @@ def verify(
         chosen(name, controller),
         CaseOptions(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),
     )
-    problem = problem_of(case, seed=seed)
+    problem = problem_of_case(case, seed=seed)
     certificates = run_checks(problem, only, effort, stored_beside(chosen(name, controller)))
     code = exit_code(certificates, asked=bool(only))
     if as_json:

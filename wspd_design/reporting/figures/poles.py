@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def pole_map(figure: "Figure", points: Sequence[Linearization], speeds: tuple[float, float]) -> "Figure":
-    """Draw the open-loop poles over train speed, and where no law without torque feedback can be stable.
+    """Draw the open-loop poles over train speed, and where they exceed the rate of the valve.
 
     Parameters
     ----------

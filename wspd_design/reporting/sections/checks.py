@@ -85,9 +85,8 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
     found: list[Block] = [
         Heading(text="Stability checks", anchor="stability-checks"),
         Paragraph(
-            text="Each check states a claim on the range of slip and speed of the specification and within "
-            "the bounds of mass, inertia and friction, with the assumptions that it names. The worst "
-            "findings stand first."
+            text="Each check states a claim with its domain and the numbers that it varies and holds, under the "
+            "assumptions that it names. The worst findings stand first."
         ),
         *_replay(dossier),
     ]

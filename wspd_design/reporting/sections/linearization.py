@@ -27,9 +27,10 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
             text=rich(
                 f"At the slip reference {specification.slip:g} and a frozen train speed the slip has the "
                 "pole $p = partial F\\/partial lambda$. The valve, a first-order lag, adds a pole at "
-                "$-1\\/tau$ and leaves $p$ where it is. A law that feeds back the slip alone leaves the sum "
-                "of the poles at $p - 1\\/tau$: where $p > 1\\/tau$ one of them is unstable whatever the "
-                "gains."
+                "$-1\\/tau$ and leaves $p$ where it is. A law that does not read the torque and has a "
+                "memory of integrals alone leaves the sum of the poles at $p - 1\\/tau$: where $p > 1\\/tau$ one "
+                "of them is unstable whatever the gains. A law with dynamics of its own, such as a lead filter, "
+                "is not bound by this."
             )
         ),
         Paragraph(
@@ -41,8 +42,8 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
             svg=picture(partial(pole_map, points=points, speeds=specification.speeds), height=3.1),
             caption=rich(
                 "Open-loop poles over train speed on the rail of the stops. Above the dashed line $1\\/tau$ "
-                "no law without feedback of torque or wheel acceleration has a stable equilibrium. Dotted: "
-                "range of the specification."
+                "no law that does not read the torque and has a memory of integrals alone has a stable equilibrium. "
+                "Dotted: range of the specification."
             ),
             alt=pole_map_alt(points, specification.speeds),
             anchor="pole-map",

@@ -83,7 +83,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     stated: dict[str, Stated] = {}
     if numbers["rise"] > TOLERANCE:
         # Where (44) itself speaks first, which has sgn(s) in it, then inside the layer.
-        order = np.lexsort((-found.measured, ~found.outside))
+        order = np.lexsort((-found.measured, np.logical_not(found.outside)))
         index = certain_rise(
             candidate.value,
             flow,

@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates.checks.ideal_run import ProofRun, largest_rise
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from wspd_design.certificates.checks.ideal_run import Array
 
 
@@ -33,6 +36,6 @@ def in_run(run: ProofRun, values: "Array") -> dict[str, float]:
     }
 
 
-def inside(run: ProofRun, order: "Array", speeds: tuple[float, float]) -> list[int]:
+def inside(run: ProofRun, order: "NDArray[np.intp]", speeds: tuple[float, float]) -> list[int]:
     """Return the instants of an order at which speed [m/s] and slip are ones that a claim speaks about."""
     return [k for k in order.tolist() if 0.0 <= run.slip[k] <= 1.0 and speeds[0] <= run.speed[k] <= speeds[1]]

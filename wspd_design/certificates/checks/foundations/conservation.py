@@ -1,4 +1,4 @@
-"""The simulated stop conserves momentum and energy, or it is no stop of this vehicle."""
+"""The simulated stop conserves momentum and energy, or it is not a stop of this vehicle."""
 
 from collections.abc import Mapping
 

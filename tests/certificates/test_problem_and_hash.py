@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from wspd_design.certificates.checks.frame import enclosure
+from wspd_design.certificates.kernel.finding import above, below
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.parameters.bounds import Bounds
@@ -103,7 +103,7 @@ def test_hash_tells_users_own_controllers_apart(problem):
 
 
 @pytest.mark.parametrize("number", [Fraction(1, 3), Fraction(-1, 3), Fraction(1, 2), Fraction(1, 10**400)])
-def test_enclosure_contains_the_exact_number(number):
-    found = enclosure(number, number, "-")
-    assert Fraction(found.low) <= number <= Fraction(found.high)
-    assert (found.low == found.high) is (number == Fraction(1, 2))
+def test_doubles_around_a_number_contain_it(number):
+    low, high = below(number), above(number)
+    assert Fraction(low) <= number <= Fraction(high)
+    assert (low == high) is (number == Fraction(1, 2))

@@ -54,8 +54,8 @@ PLANTED = {
     "adaptation": (_ablations(unadapted=201.5), "changes the distance by 0.25 %"),
     "air": (_stops("trenitalia", vented_air=1.0), "is 1.0 to 3.2 full cylinders"),
     "friction": (
-        replace(GOOD, yardsticks=tuple(replace(each, bound=250.0) for each in GOOD.yardsticks)),
-        "bound 250.0 m",
+        replace(GOOD, yardsticks=tuple(replace(each, ideal_stop=250.0) for each in GOOD.yardsticks)),
+        "250.0 m",
     ),
     "weight": (replace(GOOD, load_range=(188e3, 189e3)), "188 to 189 kN"),
 }

@@ -6,7 +6,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from wspd_design.certificates.kernel.checker import check
 from wspd_design.certificates.search import prover
 from wspd_design.certificates.search.tape import Tape
 
@@ -52,21 +51,20 @@ def _cut(low, high):
 
 
 @pytest.mark.parametrize("change", [_middle, _half, _cut])
-def test_prover_that_looks_away(monkeypatch, false_claim, forge, change):
+def test_prover_that_looks_away(monkeypatch, false_claim, refusal, change):
     _evaluates(monkeypatch, change)
     outcome = prover.prove(false_claim)
     assert outcome.tree
-    verdict = check(false_claim, forge(false_claim, outcome.tree))
-    assert not verdict.accepted
+    assert refusal(false_claim, outcome.tree)
 
 
-def test_prover_with_slack(false_claim, forge):
+def test_prover_with_slack(false_claim, refusal):
     outcome = prover.prove(replace(false_claim, bound=FALSE_BOUND + Fraction(3, 2)))
     assert outcome.tree
-    assert not check(false_claim, forge(false_claim, outcome.tree)).accepted
+    assert refusal(false_claim, outcome.tree)
 
 
-def test_prover_with_the_wrong_sign(monkeypatch, false_claim, forge):
+def test_prover_with_the_wrong_sign(monkeypatch, false_claim, refusal):
     honest = prover._Search.__post_init__
 
     def mutated(self):
@@ -76,7 +74,7 @@ def test_prover_with_the_wrong_sign(monkeypatch, false_claim, forge):
     monkeypatch.setattr(prover._Search, "__post_init__", mutated)
     outcome = prover.prove(false_claim)
     assert outcome.tree
-    assert not check(false_claim, forge(false_claim, outcome.tree)).accepted
+    assert refusal(false_claim, outcome.tree)
 
 
 def test_honest_prover_does_not_prove_it(false_claim):

@@ -127,6 +127,9 @@ def test_linearize_marks_what_the_valve_cannot_stabilize(wspd):
     marked = [float(line.split()[0]) for line in out.splitlines() if line.rstrip().endswith(" !")]
     assert 120.0 not in marked
     assert {60.0, 40.0, 20.0, 10.0, 5.0} <= set(marked)
+    said = " ".join(out.split())
+    assert "does not read the torque and has a memory of integrals alone" in said
+    assert "such as a lead filter, is not bound by this" in said
     assert "!" not in wspd("linearize", "--rail", "table10-dry").out
 
 

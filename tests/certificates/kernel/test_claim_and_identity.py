@@ -5,9 +5,12 @@ from fractions import Fraction
 
 import pytest
 import sympy
-from wspd_design.certificates.kernel.identity import same
 
-from wspd_design.certificates.kernel.claim import Claim, Variable, model_text, number, text, variable
+from wspd_design.certificates.kernel.checker import Refused, Work, decide, number
+from wspd_design.certificates.kernel.claim import Claim, Variable, steps_of, text, variable
+from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.kernel.obligation import Identity, proof_of
+from wspd_design.certificates.records import Status
 
 x, y = sympy.symbols("x y", positive=True)
 
@@ -48,10 +51,11 @@ def test_formula_is_the_model_as_it_is_written():
         bound=Fraction(1),
         unit="-",
     )
-    written = model_text(claim.formula())
+    written = claim.statement()["model"]
     for literal in ("0.1", "0.2", "0.3"):
-        assert literal in written.splitlines()
-    assert claim.digest() != replace(claim, expression=lambda values: values["x"] * 0.7 + 0.3).digest()
+        assert ["n", literal] in written
+    other = replace(claim, expression=lambda values: values["x"] * 0.7 + 0.3)
+    assert other.statement()["model"] != written
 
 
 SAME = [
@@ -73,11 +77,35 @@ DIFFERENT = [
 ]
 
 
+def identity(one, other):
+    return Identity(key="identity", text="one = other", left=one, right=other)
+
+
 @pytest.mark.parametrize(("one", "other"), SAME)
 def test_same_functions(one, other):
-    assert same(one, other)
+    asked = identity(one, other)
+    assert decide(proof_of(asked), Work()).statement == "one = other"
+    assert asked.decide(Stated(proof=proof_of(asked)), Work()).status is Status.PROVED
 
 
 @pytest.mark.parametrize(("one", "other"), DIFFERENT)
 def test_different_functions(one, other):
-    assert not same(one, other)
+    asked = identity(one, other)
+    with pytest.raises(Refused, match="not the same function"):
+        decide(proof_of(asked), Work())
+    with pytest.raises(Refused, match="not the same function"):
+        asked.decide(Stated(proof=proof_of(asked)), Work())
+    assert asked.decide(Stated(), Work()).status is Status.REFUTED
+
+
+def test_a_true_identity_does_not_stand_for_another_one():
+    true, false = identity(x, x), identity(x, y)
+    with pytest.raises(Refused, match="states something else"):
+        false.decide(Stated(proof=proof_of(true)), Work())
+
+
+def test_each_shared_part_is_one_step():
+    shared = sympy.exp(x * y)
+    steps = steps_of(sympy.atan(shared) + sympy.Abs(shared - 3 * x, evaluate=False))
+    assert [step[0] for step in steps].count("exp") == 1
+    assert len(set(steps)) == len(steps)
