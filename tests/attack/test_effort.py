@@ -8,11 +8,9 @@ from wspd_design.certificates.kernel.checker import FORMAT, Refused, Work, decid
 from wspd_design.certificates.kernel.file import MOST_NUMBERS, stated_findings
 
 
-def proof(model, tree, *, free=1, known=0):
-    """A proof that a formula exceeds -1."""
-    rows = [[f"v{k}", "0.0", "1.0", "-"] for k in range(free)] + [
-        [f"w{k}", "1.0", "1.0", "-"] for k in range(known)
-    ]
+def proof(model, tree):
+    """A proof that a formula of one variable exceeds -1."""
+    rows = [["v0", "0.0", "1.0", "-"]]
     statement = {"kind": "inequality", "name": "x", "relation": ">=", "bound": "-1.0", "unit": "-"}
     return {
         "format": FORMAT,
@@ -42,23 +40,13 @@ def test_each_step_of_a_tree_counts():
     assert spent(proof([["x", "v0"]], "A" * 5000 + ".")) >= 2 * 5000
 
 
-def test_known_numbers_that_boxes_carry_count():
-    few, many = (spent(proof([["n", "0"]], halved(7), known=count)) for count in (0, 4000))
-    assert many - few >= 255 * 1000
-
-
-@pytest.mark.parametrize(
-    "forged",
-    [
-        proof([["x", "v0"], ["mul", *[0] * 20_000]], halved(10)),
-        proof([["n", "0"]], halved(10), known=60_000),
-        proof([["x", "v0"]], "A" * 7_000_000 + "."),
-    ],
-    ids=["operands", "numbers", "faces"],
-)
-def test_what_asks_for_too_much_is_refused(forged):
-    with pytest.raises(Refused, match="more work"):
-        decide(forged, Work())
+def test_what_asks_for_too_much_is_refused():
+    for forged in (
+        proof([["x", "v0"], ["mul", *[0] * 2000]], halved(6)),
+        proof([["x", "v0"]], "A" * 50_000 + "."),
+    ):
+        with pytest.raises(Refused, match="more work"):
+            decide(forged, Work(100_000))
 
 
 def test_a_place_has_no_more_coordinates_than_a_plant():
