@@ -1,240 +1,175 @@
-"""A common quadratic function: accepted if it falls, refused if anything is wrong with it."""
+"""Quadratic functions around the equilibrium: accepted if they fall, refused if anything is wrong with them."""
 
 import json
-import sys
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
-from wspd_design.certificates.checks.region import lpv_lyapunov
-from wspd_design.certificates.kernel.arb import ball, point
+from wspd_design.certificates.checks.region.lpv_lyapunov import CHECK
+from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.theorems import quadratic
-from wspd_design.certificates.theorems.quadratic import (
-    check_quadratic,
-    contracts,
-    decays,
-    held,
-    is_positive,
-    loop_of,
-)
-from wspd_design.model.slip import slip_dynamics
+from wspd_design.certificates.replay import replay
+from wspd_design.certificates.setting.plant import dynamics_at
+from wspd_design.certificates.theorems import equilibrium, quadratic
+from wspd_design.certificates.theorems.region import FASTEST, FUNCTION
+from wspd_design.controllers.protocol import Command
+from wspd_design.controllers.torque_feedback import TorqueFeedback
+from wspd_design.parameters.bounds import EXACT, Bounds
 
 
 @pytest.fixture(scope="module")
 def problem(make_problem, make_controller):
-    return make_problem(make_controller("torque-feedback"))
+    """A loop whose numbers are known: its equilibrium is at the reference."""
+    made = make_problem(make_controller("torque-feedback", "polach-wet"), rail="polach-wet")
+    return replace(made, bounds=EXACT)
 
 
 @pytest.fixture(scope="module")
-def verdict(problem):
-    return lpv_lyapunov.check(problem)
+def proved(problem):
+    return CHECK.run(problem)
 
 
-@pytest.fixture(scope="module")
-def content(verdict):
-    (proof,) = verdict.proofs
-    return json.loads(proof.certificate)
-
-
-def numbers(content, name):
-    return [Fraction(each) for each in content[name]]
-
-
-def test_proved_for_all_speeds(problem, verdict):
-    assert verdict.status is Status.PROVED
-    assert all(hypothesis.status is Status.PROVED for hypothesis in verdict.hypotheses)
-    assert 0.0 < verdict.margin.low < verdict.margin.high
-    assert check_quadratic(verdict.proofs[0].certificate, problem).accepted
-
-
-def test_function_falls_along_random_courses(problem, content):
-    """SciPy's matrix exponential at random speeds and parameters: an independent sample by sample run."""
-    p = numbers(content, "sampled")
-    matrix = np.array([[float(p[0]), float(p[1])], [float(p[1]), float(p[2])]])
-    contraction = float(Fraction(content["contraction"]))
-    rng, law, vehicle = np.random.default_rng(5), problem.controller, problem.vehicle
-    for _ in range(20):
-        x = rng.normal(size=2)
-        for _ in range(50):
-            speed, mass, inertia, mu0 = (
-                rng.uniform(*bounds)
-                for bounds in (
-                    problem.speeds,
-                    problem.span("mass"),
-                    problem.span("wheelset inertia"),
-                    problem.span("mu0"),
-                )
-            )
-            plant = slip_dynamics(
-                replace(vehicle, mass=mass, wheelset_inertia=inertia),
-                replace(problem.rail, mu0=mu0),
-                0.14,
-                speed,
-            )
-            q, gamma = plant.pole - plant.deceleration / speed, 0.55 * 60e3 / inertia
-            generator = np.array([[q, -gamma, 0.0], [0.0, -1.0 / 0.6, 1.0 / 0.6], [0.0, 0.0, 0.0]])
-            command = law.gains.sliding_gain * x[0] - law.gains.torque_gain * x[1]
-            following = (expm(generator * 0.02) @ np.array([*x, command]))[:2]
-            assert following @ matrix @ following <= contraction**2 * (x @ matrix @ x)
-            x = following
-
-
-def changed(content, **changes):
-    return json.dumps({**content, **changes})
-
-
-@pytest.mark.parametrize("name", ["continuous", "sampled"])
-def test_false_matrices_are_refused(problem, content, name):
-    p11, p12, p22 = content[name]
-    for false in (
-        [p11, str(-Fraction(p12)), p22],  # falls for a loop with the other sign of the feedback
-        [p11, "0", p22],
-        [f"-{p11}", p12, p22],  # not positive definite
-        [p11, str(10 * Fraction(p12)), p22],
-        ["1", "0", "0"],
-        ["0", "0", "0"],
-    ):
-        assert not check_quadratic(changed(content, **{name: false}), problem).accepted
-
-
-def test_faster_decay_than_there_is_is_refused(problem, content):
-    assert not check_quadratic(changed(content, decay="40"), problem).accepted
-    assert not check_quadratic(changed(content, contraction="1/2"), problem).accepted
-    assert not check_quadratic(changed(content, contraction="3/2"), problem).accepted
-    assert check_quadratic(changed(content, decay="0", contraction="1"), problem).accepted
-
-
-def test_smaller_polytope_is_refused(problem, content):
-    low, high = numbers(content, "poles")
-    for poles in ((low, high / 2), (low + 5, high), (high, low)):
-        refused = check_quadratic(changed(content, poles=[str(each) for each in poles]), problem)
-        assert not refused.accepted
-        assert "polytope" in refused.reason
-
-
-def test_proofs_of_the_wrong_ends_are_refused(problem, content):
-    assert not check_quadratic(changed(content, proofs=content["proofs"][::-1]), problem).accepted
-    assert not check_quadratic(changed(content, proofs=["", ""]), problem).accepted
-
-
-def test_other_loops_are_refused(problem, content, make_problem, make_controller):
-    certificate = json.dumps(content)
-    law = problem.controller
-    brake = problem.vehicle.brake
-    others = (
-        replace(problem, speeds=(2.0, 120.0 / 3.6)),
-        replace(problem, bounds=problem.bounds | {"mu0": (0.44, 0.7)}),
-        replace(problem, bounds=problem.bounds | {"wheelset inertia": (300.0, 860.0)}),
-        replace(problem, sample_time=0.1),
-        replace(problem, slip=0.1),
-        replace(problem, controller=replace(law, gains=replace(law.gains, torque_gain=1.0))),
-        replace(problem, controller=replace(law, gains=replace(law.gains, sliding_gain=-20.0))),
-        replace(
-            problem, vehicle=replace(problem.vehicle, brake=replace(brake, fill_time=2.0, vent_time=2.0))
-        ),
-        make_problem(make_controller("smc")),
-    )
-    for other in others:
-        assert not check_quadratic(certificate, other).accepted
-    assert check_quadratic(certificate, problem).accepted
+def test_proved_with_known_numbers_and_accepted_again(problem, proved):
+    assert proved.status is Status.PROVED
+    assert all(each.status is Status.PROVED for each in proved.hypotheses)
+    assert 0.0 < proved.margin.low < 1.0
+    again = replay(problem, certificate_text(proved))
+    assert again.accepted, again.reason
+    assert again.certificate.claim == proved.claim
 
 
 @pytest.mark.parametrize(
-    "text",
+    ("entry", "value"),
     [
-        "",
-        "{}",
-        "[]",
-        "null",
-        '{"format": "wspd-quadratic/1"}',
-        "[" * 100_000,
-        "x" * (quadratic.MOST_BYTES + 1),
+        ("status", "REFUTED"),
+        ("claim", "Every stop is stable."),
+        ("margin", {"low": 0.9, "high": None, "unit": "per sample"}),
+        ("hypotheses", []),
+        ("held", ["mass"]),
+        ("explanation", ""),
     ],
-    ids=["empty", "object", "list", "null", "bare", "deep", "long"],
 )
-def test_garbage_is_refused(problem, text):
-    assert not check_quadratic(text, problem).accepted
+def test_a_changed_file_is_refused(problem, proved, entry, value):
+    content = json.loads(certificate_text(proved)) | {entry: value}
+    assert not replay(problem, json.dumps(content)).accepted
 
 
-def test_numbers_that_are_none_are_refused(problem, content):
-    for bad in ("1/0", "nan", "1" * 100, 3, None, "1e999999999"):
-        assert not check_quadratic(changed(content, decay=bad), problem).accepted
+@pytest.mark.parametrize("key", [FUNCTION, FASTEST, equilibrium.ABOVE])
+def test_a_dropped_proof_does_not_leave_it_proved(problem, proved, key):
+    content = json.loads(certificate_text(proved))
+    del content["findings"][key]
+    assert not replay(problem, json.dumps(content)).accepted
 
 
-def test_matrix_exponential_encloses_scipys(problem):
-    gains = problem.controller.gains
-    loop = loop_of(problem, problem.controller)
-    for q, gamma in ((0.5, 40.0), (14.0, 51.0), (-5.0, 38.0)):
-        step = held(loop, ball(q - 1e-9, q + 1e-9), point(gamma))
-        generator = np.array([[q, -gamma, 0.0], [0.0, -1.0 / 0.6, 1.0 / 0.6], [0.0, 0.0, 0.0]])
-        exact = expm(generator * 0.02)
-        expected = exact[:2, :2] + np.outer(exact[:2, 2], [gains.sliding_gain, -gains.torque_gain])
-        for i in range(2):
-            for k in range(2):
-                assert float(step[i][k]) == pytest.approx(expected[i, k], rel=1e-7)
-                assert step[i][k].contains(point(expected[i, k]))
+def test_functions_fall_along_random_courses(problem, proved):
+    """The nonlinear valve with true pulses, linear slip: V falls from sample to sample."""
+    document = proved.findings[FUNCTION].stated.proof
+    a, b, c = (float(Fraction(each)) for each in document["pieces"][0][4:7])
+    contraction = float(Fraction(document["pieces"][0][7]))
+    matrix = np.array([[a, b], [b, c]])
+    law, rng = quadratic.law_of(problem), np.random.default_rng(5)
+    ranges = quadratic.ranges_of(problem, tuple(map(Fraction, document["poles"])))
+    for m in quadratic.sampled(law, ranges):
+        x = rng.normal(size=(2, 50))
+        after = np.array([[float(each) for each in row] for row in m]) @ x
+        assert ((after * (matrix @ after)).sum(0) <= contraction**2 * (x * (matrix @ x)).sum(0)).all()
 
 
-def test_forms_are_those_of_the_matrices():
-    rng = np.random.default_rng(2)
-    a, p = rng.normal(size=(2, 2)), np.array([[2.0, 0.3], [0.3, 1.0]])
-    entries = (p[0, 0], p[0, 1], p[1, 1])
-    rows = tuple(tuple(row) for row in a.tolist())
-    falls = -(a.T @ p + p @ a) - 2.0 * 0.1 * p
-    assert decays(entries, rows, 0.1) == pytest.approx((falls[0, 0], falls[0, 1], falls[1, 1]))
-    shrinks = 0.81 * p - a.T @ p @ a
-    assert contracts(entries, rows, 0.9) == pytest.approx((shrinks[0, 0], shrinks[0, 1], shrinks[1, 1]))
-    assert is_positive(entries)
-    assert not is_positive((1, 1, 1))
-    assert not is_positive((point(1.0), point(0.0), ball(-1e-9, 1.0)))  # perhaps positive is not enough
+def test_false_functions_are_refused(problem, proved):
+    document = dict(proved.findings[FUNCTION].stated.proof)
+    check = quadratic.checker(problem)
+    assert check(document, Work())["pieces"] == 1.0
+    for k, value in ((0, "-1"), (4, "-1"), (3, "40"), (7, "1/2"), (7, "3/2"), (3, "-1"), (1, "5"), (5, "5")):
+        changed = [*document["pieces"][0]]
+        changed[k] = value
+        with pytest.raises(Refused):
+            check(document | {"pieces": [changed]}, Work())
+    for changes in (
+        {"steps": ""},
+        {"steps": ".."},
+        {"steps": "q.."},
+        {"pieces": []},
+        {"poles": ["1", "0"]},
+        {"format": "x"},
+    ):
+        with pytest.raises(Refused):
+            check(document | changes, Work())
+    with pytest.raises(Refused):
+        check(document, Work(100))
 
 
-def test_unstable_gains_are_refuted_with_a_witness(problem):
+def test_functions_for_a_smaller_range_of_poles_prove_nothing(problem, proved):
+    document = dict(proved.findings[FUNCTION].stated.proof)
+    low, high = map(Fraction, document["poles"])
+    content = json.loads(certificate_text(proved))
+    content["findings"][FUNCTION]["proof"] = document | {
+        "poles": [document["poles"][0], str(float((low + high) / 2))]
+    }
+    assert not replay(problem, json.dumps(content)).accepted
+
+
+def test_equilibrium_leaves_the_tolerance_off_the_nominal_numbers(make_problem, make_controller):
+    """Audit A2: with the bounds of the files there is no equilibrium near the reference at some corner."""
+    problem = make_problem(make_controller("torque-feedback", "polach-wet"), rail="polach-wet")
+    found = CHECK.run(problem)
+    assert found.status is Status.REFUTED
+    assert found.witness
+    assert found.hypotheses[-1].status is Status.REFUTED
+    assert replay(problem, certificate_text(found)).accepted
+    place = found.findings[equilibrium.NOWHERE].place
+    content = json.loads(certificate_text(found))
+    content["findings"][equilibrium.NOWHERE]["place"] = {
+        name: str(float(problem.nominal(name))) if name != "speed" else "10.0" for name in place
+    }
+    assert not replay(problem, json.dumps(content)).accepted
+
+
+def test_known_equilibrium_of_the_audit(problem):
+    """10 km/h, 61473 kg, 640 kg m2, mu0 0.24: the frozen equilibrium lay at slip 0.8175 for kappa, K of the audit."""
+    bounds = Bounds.of({"mass": (61473.0, 92209.0), "wheelset inertia": (640.0, 860.0), "mu0": (0.24, 0.36)})
+    uncertain = replace(problem, bounds=bounds)
+    at = {"speed": 10.0 / 3.6, "mass": 61473.0, "wheelset inertia": 640.0, "mu0": 0.24}
+    assert equilibrium.nowhere(uncertain, at, Work())["rate"] > 0.0
+    usual = {"speed": 10.0 / 3.6, "mass": 76841.0, "wheelset inertia": 752.0, "mu0": 0.3}
+    with pytest.raises(Refused):
+        equilibrium.nowhere(uncertain, usual, Work())
+
+
+def with_valve(problem, fill, vent, top=60e3):
+    brake = replace(problem.vehicle.brake, fill_time=fill, vent_time=vent, max_torque=top)
+    return replace(problem, vehicle=replace(problem.vehicle, brake=brake))
+
+
+def with_gains(problem, sliding, torque):
     law = problem.controller
-    weak = replace(problem, controller=replace(law, gains=replace(law.gains, torque_gain=0.0)))
-    verdict = lpv_lyapunov.check(weak)
-    assert verdict.status is Status.REFUTED
-    at = {each.name: each.value for each in verdict.witness}
-    vehicle = replace(problem.vehicle, mass=at["mass"], wheelset_inertia=at["wheelset inertia"])
-    plant = slip_dynamics(vehicle, replace(problem.rail, mu0=at["mu0"]), 0.14, at["speed"] / 3.6)
-    q = plant.pole - plant.deceleration / (at["speed"] / 3.6)
-    assert q == pytest.approx(at["p - a/v"], rel=1e-9)
-    generator = np.array([[q, -0.55 * 60e3 / at["wheelset inertia"]], [20.0 / 0.6, -1.0 / 0.6]])
-    assert np.linalg.eigvals(generator).real.max() > 0.0
+    return replace(
+        problem, controller=replace(law, gains=replace(law.gains, sliding_gain=sliding, torque_gain=torque))
+    )
 
 
-def test_sampling_too_slowly_is_refuted(problem):
-    slow = replace(problem, controller=replace(problem.controller, sample_time=0.1), sample_time=0.1)
-    assert lpv_lyapunov.check(slow).status is Status.REFUTED
+def test_a_fast_vent_refutes_the_old_rule(problem):
+    """Audit A7b: K = tau/h - 1 of the slower time makes the torque swing where the brake vents with 0.15 s."""
+    old = with_gains(problem, 3.907810377265587, 29.0)
+    assert CHECK.run(old).status is Status.PROVED
+    assert CHECK.run(with_valve(old, 0.6, 0.15)).status is Status.REFUTED
+    # Audit A7: T_F = T_V = 0.3 s and 68.7 kN m.
+    assert CHECK.run(with_valve(old, 0.3, 0.3, 68.7e3)).status is Status.REFUTED
 
 
-def test_without_a_solver_nothing_is_decided(problem, monkeypatch):
-    monkeypatch.setitem(sys.modules, "cvxpy", None)
-    verdict = lpv_lyapunov.check(problem)
-    assert verdict.status is Status.UNDECIDED
-    assert "cvxpy is missing" in verdict.explanation
-    assert not verdict.proofs
+def test_a_law_inherits_nothing(problem):
+    class Evil(TorqueFeedback):
+        def step(self, state, measurement):
+            return state, Command(fill=1.0, vent=0.0)
+
+    law = problem.controller
+    evil = Evil(**{name: getattr(law, name) for name in law.__dataclass_fields__})
+    assert CHECK.run(replace(problem, controller=evil)).status is Status.NOT_APPLICABLE
 
 
-def test_wrong_search_proves_nothing(problem, monkeypatch):
-    right = lpv_lyapunov.search
-
-    def wrong(loop, poles):
-        found = right(loop, poles)
-        return replace(found, sampled=(found.sampled[0], -found.sampled[1], found.sampled[2]))
-
-    monkeypatch.setattr(lpv_lyapunov, "search", wrong)
-    verdict = lpv_lyapunov.check(problem)
-    assert verdict.status is Status.UNDECIDED
-    assert not verdict.proofs
-
-
-@pytest.mark.parametrize("name", ["afsmc", "smc", "trenitalia", "none"])
-def test_speaks_about_linear_torque_feedback_alone(make_problem, make_controller, name):
-    verdict = lpv_lyapunov.check(make_problem(make_controller(name)))
-    assert verdict.status is Status.NOT_APPLICABLE
-    assert ("no_go" in verdict.explanation) is (name != "trenitalia")
+def test_plant_is_the_one_of_the_claim(problem):
+    at = dynamics_at(problem, np.array([[0.14, 10.0]]), ("slip", "speed"))
+    held = float(-at.drift[0] / at.gain[0])
+    assert 0.0 < held < problem.vehicle.brake.max_torque

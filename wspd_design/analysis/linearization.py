@@ -30,7 +30,7 @@ class Linearization:
     equilibrium_duty: float  # -, above 1 the brake cannot hold this slip
     slip_pole: float  # 1/s, without the valve lag
     gain: float  # 1/(N m s), G
-    time_constant: float  # s, of the valve
+    time_constant: float  # s, of the averaged valve at this duty; between T_F and T_V
     state_matrix: "NDArray[np.float64]"
     input_matrix: "NDArray[np.float64]"
 
@@ -90,8 +90,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     Raises
     ------
     UserError
-        If slip or speed are outside their range, or the brake fills and vents at different rates: the averaged
-        valve is then bilinear and has no one time constant.
+        If slip or speed are outside their range.
     """
     import numpy as np
 
@@ -100,15 +99,11 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     if not 0.0 < speed < 150.0:
         raise UserError(f"speed = {speed:g} m/s must be above 0 and below 150 m/s (540 km/h)")
     brake = vehicle.brake
-    if brake.fill_time != brake.vent_time:
-        raise UserError(
-            f"the brake of {vehicle.name} fills with {brake.fill_time:g} s and vents with {brake.vent_time:g} s; "
-            "eq. (14) and the linearization need one time constant: set fill_time equal to vent_time"
-        )
     plant = slip_plant(vehicle, rail)
     drift, gain = (float(x) for x in plant.drift_and_gain(slip, speed))
     torque = -drift / gain
-    duty = torque / brake.max_torque
+    share = torque / brake.max_torque
+    duty = share * brake.fill_time / ((1.0 - share) * brake.vent_time + share * brake.fill_time)
     a, b = plant.jacobians(slip, torque, speed, duty)
     a, b = np.array(a, dtype=np.float64), np.array(b, dtype=np.float64)
     return Linearization(
@@ -120,7 +115,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
         equilibrium_duty=duty,
         slip_pole=float(a[0, 0]),
         gain=gain,
-        time_constant=brake.fill_time,
+        time_constant=float(-1.0 / a[1, 1]),
         state_matrix=a,
         input_matrix=b,
     )

@@ -160,6 +160,7 @@ class Problem:
     slips: tuple[float, float]  # -, range of slip
     bounds: Bounds  # SI units
     sample_time: float  # s
+    slip_tolerance: float = 0.05  # -, within which an equilibrium shall lie beside the reference
     seed: int = 0
     contact_grows_with_load: bool = True
 
@@ -172,6 +173,8 @@ class Problem:
                 )
         if not 0.0 < self.slip < 1.0:
             raise UserError(f"slip = {self.slip:g} must lie in (0, 1); for percent write for example 14 %")
+        if not 0.0 < self.slip_tolerance < 1.0:
+            raise UserError(f"slip tolerance = {self.slip_tolerance:g} must lie in (0, 1)")
         if not 0.0 < self.sample_time < math.inf:
             raise UserError(f"sample time = {self.sample_time:g} s must be above 0")
         unknown = [name for name in self.bounds if name not in QUANTITIES or name in STATE]
@@ -180,6 +183,12 @@ class Problem:
             raise UserError(
                 f"bounds of {', '.join(unknown)}: there is no such number; the names are {allowed}"
             )
+
+    @property
+    def near(self) -> Ends:
+        """Slips within the tolerance of the reference, inside the range of slip."""
+        low, high = self.slip - self.slip_tolerance, self.slip + self.slip_tolerance
+        return max(low, min(self.slips[0], self.slip)), min(high, max(self.slips[1], self.slip))
 
     def nominal(self, name: str) -> float:
         """Return the value of a number of vehicle or rail by its name in the table, or the reference of the slip."""

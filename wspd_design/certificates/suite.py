@@ -18,6 +18,8 @@ from wspd_design.certificates.checks.foundations import (
     well_posed,
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
+from wspd_design.certificates.checks.linear import margins, routh_lag
+from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance
 from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
 from wspd_design.certificates.checks.stop import tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
@@ -49,6 +51,10 @@ CHECKS: Mapping[str, Check] = {
         no_go.CHECK,
         hard_limits.CHECK,
         sampling.CHECK,
+        routh_lag.CHECK,
+        margins.CHECK,
+        lpv_lyapunov.CHECK,
+        sampled_invariance.CHECK,
         tracking.CHECK,
         conservation.CHECK,
     )

@@ -20,7 +20,9 @@ class SlipPlant(NamedTuple):
 
 @lru_cache(maxsize=64)
 def slip_plant(vehicle: Vehicle, rail: Rail) -> SlipPlant:
-    """Eq. (19) with the averaged valve of eq. (14), as CasADi functions.
+    """Eq. (19) with the averaged valve, as CasADi functions: it fills for the duty and vents for the rest.
+
+    For T_F = T_V the torque follows eq. (14).
 
     Parameters
     ----------
@@ -34,12 +36,13 @@ def slip_plant(vehicle: Vehicle, rail: Rail) -> SlipPlant:
     """
     import casadi as ca
 
+    brake = vehicle.brake
     slip, torque, speed, duty = (ca.SX.sym(name) for name in ("slip", "torque", "speed", "duty"))
     dynamics = slip_dynamics(vehicle, rail, slip, speed)
     state = ca.vertcat(slip, torque)
     derivative = ca.vertcat(
         dynamics.drift + dynamics.gain * torque,
-        generated.torque_rate(torque, duty, vehicle.brake.max_torque, vehicle.brake.fill_time),
+        duty * (brake.max_torque - torque) / brake.fill_time - (1.0 - duty) * torque / brake.vent_time,
     )
     arguments = [slip, torque, speed, duty]
     return SlipPlant(

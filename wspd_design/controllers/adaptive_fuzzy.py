@@ -14,8 +14,8 @@ from wspd_design.model.slip import slip_ratio
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
-SLOPE = "du/ds"
-"""Name of the one number of the linear form, the slope of the torque over s [N m]."""
+SLOPE, ADAPTING = "du/ds", "rate of adaptation at s = 1"
+"""Names of the numbers of the linear form: slope of the torque over s [N m], and its rate of change by adaptation."""
 
 _TORQUE = Quantity(dimension="torque", counted="ratio")
 _TORQUE_RATE = Quantity(dimension="torque rate", counted="rate")
@@ -98,22 +98,37 @@ class AdaptiveFuzzy:
         return None
 
     def linear_numbers(self, zero: Number) -> Mapping[str, Number]:
-        """Work out the slope of the torque over s, with what the law adapts as at the start."""
-        return {SLOPE: torque_per_surface(self.gains, zero)}
+        """Work out the slope of the torque over s at the initial bound, and what adaptation of the weights adds.
+
+        Near s = 0 the weights change the torque by kappa s a second, kappa = alpha_1 w'w (over v if the rates are
+        scheduled); inside its dead zone the law adapts nothing. The bound changes it by a product of small numbers.
+        The slope is the same for all weights that differ from the initial ones by the same amount.
+        """
+        slope = {SLOPE: torque_per_surface(self.gains, zero)}
+        if self.gains.dead_zone:
+            return slope
+        strengths = firing_strengths(self.gains, zero)
+        rate = self.gains.torque_unit * self.gains.weight_rate * sum(w * w for w in strengths)
+        return slope | {ADAPTING: rate}
 
     def linear_form(
         self,
-        speed: Number,  # noqa: ARG002 - the same at all speeds
+        speed: Number,
         *,
         model: SlipModel | None = None,  # noqa: ARG002 - the law has none
         numbers: Mapping[str, Number] | None = None,
     ) -> Feedback:
-        """Return the gains near the reference, with what the law adapts held as at the start."""
-        slope = (numbers or self.linear_numbers(0.0))[SLOPE]
+        """Return the gains near the reference; weights that adapt add an integral and a double one."""
+        known = numbers or self.linear_numbers(0.0)
+        slope, adapting = known[SLOPE], known.get(ADAPTING, 0.0)
+        if self.gains.scheduled_rates:
+            adapting = adapting / speed
+        own, summed = self.gains.proportional_gain, self.gains.integral_gain
         return Feedback(
-            proportional=slope * self.gains.proportional_gain,
-            integral=slope * self.gains.integral_gain,
+            proportional=slope * own,
+            integral=slope * summed + adapting * own,
             torque=0.0,
+            twice=adapting * summed,
         )
 
     def start(self, measurement: Measurement) -> State:  # noqa: ARG002 - the law starts from its gains alone

@@ -21,11 +21,12 @@ class SlipModel(NamedTuple):
 
 
 class Feedback(NamedTuple):
-    """Gains of a law near its reference: u = u0 + P e + I (integral of e) - K (T - T0)."""
+    """Gains of a law near its reference: u = u0 + P e + I (integral of e) + J (twice integrated) - K (T - T0)."""
 
     proportional: Number  # N m per slip, P
     integral: Number  # N m/s per slip, I
     torque: Number  # -, K
+    twice: Number = 0.0  # N m/s2 per slip, J: of a law that adapts to its error
 
 
 @runtime_checkable

@@ -36,6 +36,7 @@ def stability_problem(
         slip=specification.slip,
         speeds=specification.speeds,
         slips=specification.slips,
+        slip_tolerance=specification.slip_tolerance,
         bounds=stated_bounds(vehicle, rail),
         sample_time=controller.sample_time,
         seed=seed,

@@ -1,24 +1,29 @@
 """Gains of the static law with torque feedback by stated rules.
 
-Near the reference the loop in y = v e, the error of the sliding speed, and t, the error of the torque over T_max,
-has the matrix [[q, -gamma], [kappa/tau, -(1 + K)/tau]] with q = p - a/v and gamma = R T_max / (inertia of the
-wheelset). With a fast pole (1 + K)/tau the torque follows the line t = kappa/(1 + K) y, on which
+Near an equilibrium the loop in y, the deviation of the sliding speed, and t, that of the torque over T_max, is
 
-    y' = -(gamma kappa/(1 + K) - q) y.
+    y' = q y - gamma t,   t' = -a t + b (kappa y - K t),   q = p - a/v,   gamma = R T_max / (inertia of the wheelset),
 
-Sampling limits the fast pole, the valve the slow one: on the line t falls as omega t, while venting changes the
-torque by no more than its share of T_max over tau.
+a and b between 1/T_F and 1/T_V. With a fast pole a + b K the torque follows a line, on which
+
+    y' = -(gamma kappa / (a/b + K) - q) y.
+
+Sampling limits the fast pole of the *fastest* valve that the bounds allow, with the largest T_max: there the torque
+settles within a sample, and a faster valve would let it swing. The *slowest* valve limits the slow pole omega: on the
+line t falls as omega t, while venting changes the torque by no more than its share of T_max over T_V. It is reached
+with the smallest T_max, the heaviest wheelset and the largest a/b, slowest over fastest time constant.
 """
 
-from dataclasses import replace
+from fractions import Fraction
+from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
-from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.linear_loop import lag_of
+from wspd_design.certificates.setting.creep_slope import USED
 from wspd_design.certificates.setting.plant import dynamics_at
-from wspd_design.certificates.theorems.quadratic import held, loop_of
+from wspd_design.certificates.setting.pulsed_valve import Times, sample_of
+from wspd_design.certificates.theorems.quadratic import Law, gains, one_sample, ranges_of
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
 from wspd_design.design.maximize import maximize
 from wspd_design.design.problem import stability_problem
@@ -30,6 +35,7 @@ if TYPE_CHECKING:
 
 VENTED_SHARE = 0.5  # of T_max: the largest torque error that venting from full brake lets out along the line
 POLES = 9  # values of q between the ends of its range
+DUTIES = (Fraction(1, 5), Fraction(1, 2), Fraction(4, 5))  # that hold the torque
 SHORTEST = 1e-3  # s, of the sample times that are tried
 HALVINGS = 12  # of their range
 
@@ -67,10 +73,10 @@ def torque_feedback_gains(vehicle: Vehicle, rail: Rail, specification: Specifica
         gains=TorqueFeedbackGains(slip_reference=specification.slip, sliding_gain=0.0, torque_gain=0.0),
     )
     problem = stability_problem(vehicle, rail, unfinished, specification)
-    poles, lag, period = _poles(problem), lag_of(problem), specification.sample_time
+    poles, period = _poles(problem), specification.sample_time
+    fast, slow = _times(problem)
     kappa, back = _rules(problem, poles, period)
-    heaviest = problem.span("wheelset inertia")[1]
-    gamma = _acceleration(problem)
+    heaviest, (least, most) = problem.span("wheelset inertia")[1], problem.span("max torque")
     largest = (
         f"q = p - a/v = {poles.high:.3g} 1/s, the largest that sampling finds ({poles.where})"
         if poles.high > 0.0
@@ -81,54 +87,65 @@ def torque_feedback_gains(vehicle: Vehicle, rail: Rail, specification: Specifica
             name="sliding_gain",
             value=kappa,
             unit="s/m",
-            why=f"kappa = (1 + K)(omega + q)/gamma: the slow pole is at least omega = 1/({VENTED_SHARE:g} tau) = "
-            f"{_slow_pole(lag):.3g} 1/s, so that venting from full brake lets out {VENTED_SHARE:.0%} of T_max along "
-            f"the line; {largest}; gamma = R T_max/inertia = {gamma:.3g} m/s^2 with the "
-            f"heaviest wheelset of {heaviest:g} kg m^2",
+            why=f"kappa = (tau_slow/tau_fast + K T_max/T_nominal)(omega + q)/gamma: the slow pole is at least omega = "
+            f"1/({VENTED_SHARE:g} tau_slow) = {_slow_pole(slow):.3g} 1/s, so that venting from full brake lets out "
+            f"{VENTED_SHARE:.0%} of T_max along the line; {largest}; tau from {fast:g} to {slow:g} s; gamma = "
+            f"R T_max/inertia = {_acceleration(problem):.3g} m/s^2 with the smallest T_max of {least / 1e3:g} kN m and "
+            f"the heaviest wheelset of {heaviest:g} kg m^2",
         ),
         Gain(
             name="torque_gain",
             value=back,
             unit="-",
-            why=f"K = tau/h - 1, at least 0: the torque settles within a sample, (1 + K)/tau = 1/h, with "
-            f"tau = {lag:g} s and h = {period:g} s; {_sampled(problem, poles)}",
+            why=f"K = (tau/h - 1) T_nominal/T_max, at least 0: with the fastest valve, tau = {fast:g} s, and the "
+            f"largest T_max of {most / 1e3:g} kN m the torque settles within a sample, h = {period:g} s; "
+            f"{_sampled(problem, poles)}",
         ),
     )
 
 
 def _rules(problem: Problem, poles: Poles, sample_time: float) -> tuple[float, float]:
     """Both gains, kappa [s/m] and K [-], for a sample time [s]."""
-    lag = lag_of(problem)
-    back = max(lag / sample_time - 1.0, 0.0)
-    return (1.0 + back) * (_slow_pole(lag) + max(poles.high, 0.0)) / _acceleration(problem), back
+    fast, slow = _times(problem)
+    least, most = problem.span("max torque")
+    own = problem.nominal("max torque")
+    back = max(fast / sample_time - 1.0, 0.0) * own / most
+    opened = slow / fast + back * least / own
+    return opened * (_slow_pole(slow) + max(poles.high, 0.0)) / _acceleration(problem), back
 
 
 def _slow_pole(lag: float) -> float:
     return 1.0 / (VENTED_SHARE * lag)
 
 
+def _times(problem: Problem) -> tuple[float, float]:
+    """Smallest and largest time constant of the valve [s]."""
+    spans = problem.span("fill time"), problem.span("vent time")
+    return min(low for low, _ in spans), max(high for _, high in spans)
+
+
 def _acceleration(problem: Problem) -> float:
-    """Change of the sliding speed by full torque with the heaviest wheelset, gamma [m/s2]."""
-    vehicle = problem.vehicle
-    return vehicle.wheel_radius * vehicle.brake.max_torque / problem.span("wheelset inertia")[1]
+    """Smallest change of the sliding speed that the law measures by full torque, gamma [m/s2]."""
+    radius = problem.vehicle.wheel_radius
+    return radius * problem.span("max torque")[0] / problem.span("wheelset inertia")[1]
 
 
 def _poles(problem: Problem) -> Poles:
-    """Search the ends of q on the domain, at the reference."""
+    """Search the ends of q on the domain, at slips within the tolerance of the reference."""
+    names = ("slip", *USED)
 
     def pole(points: "Array") -> "Array":
-        at = dynamics_at(problem, points)
-        found: Array = at.pole - at.deceleration / points[:, domain.SPEED]
+        at = dynamics_at(problem, points, names)
+        found: Array = at.pole - at.deceleration / points[:, names.index("speed")]
         return found
 
-    low, high = domain.slip_held(problem)
+    low, high = domain.box(problem, names)
+    low[0], high[0] = problem.near
     largest = maximize(pole, low, high, seed=problem.seed)
     smallest = maximize(lambda points: -pole(points), low, high, seed=problem.seed)
-    place = ", ".join(
-        f"{each.name} {each.value:.4g} {each.unit}".removesuffix(" -")
-        for each in domain.readable(largest.point)
-        if each.name != "slip"
-    )
+    varied = [k for k in range(len(names)) if low[k] < high[k]]
+    shown = domain.readable(largest.point[varied], [names[k] for k in varied])
+    place = ", ".join(f"{each.name} {each.value:.4g} {each.unit}".removesuffix(" -") for each in shown)
     return Poles(low=-smallest.value, high=largest.value, where=place)
 
 
@@ -150,19 +167,23 @@ def _sampled(problem: Problem, poles: Poles) -> str:
 
 
 def _kept_per_sample(problem: Problem, poles: Poles, sample_time: float) -> float:
-    """Largest eigenvalue of the sampled loop with the gains for a sample time [s], over q and the inertias."""
+    """Largest eigenvalue of the sampled loop with the gains for a sample time [s], over q, valve, T_max and inertia."""
     import numpy as np
 
     kappa, back = _rules(problem, poles, sample_time)
-    gains = TorqueFeedbackGains(slip_reference=problem.slip, sliding_gain=kappa, torque_gain=back)
-    law = TorqueFeedback(
-        name="tried", sample_time=sample_time, vehicle=problem.vehicle, rail=problem.rail, gains=gains
+    vehicle = problem.vehicle
+    law = Law(
+        slide=Fraction(kappa) * Fraction(vehicle.wheel_radius),
+        torque=Fraction(back) / Fraction(vehicle.brake.max_torque),
+        sample_time=Fraction(sample_time),
     )
-    loop = loop_of(replace(problem, controller=law, sample_time=sample_time), law)
-    steps = [
-        held(loop, point(float(q)), point(gamma))
-        for q in np.linspace(poles.low, poles.high, POLES)
-        for gamma in loop.gamma
-    ]
-    matrices = np.array([[[float(each) for each in row] for row in step] for step in steps])
-    return float(np.abs(np.linalg.eigvals(matrices)).max())
+    fill, vent, *rest = ranges_of(problem, (Fraction(0), Fraction(0)))
+    corners = gains(law, (fill, vent, *rest))
+    matrices = []
+    for f, v, u, q in product(
+        dict.fromkeys(fill), dict.fromkeys(vent), DUTIES, np.linspace(poles.low, poles.high, POLES)
+    ):
+        at = sample_of(Times((f, f), (v, v)), (Fraction(q), Fraction(q)), law.sample_time, (u, u))
+        matrices += [one_sample(at, g, torque) for g, torque in corners]
+    found = np.array([[[float(each) for each in row] for row in matrix] for matrix in matrices])
+    return float(np.abs(np.linalg.eigvals(found)).max())

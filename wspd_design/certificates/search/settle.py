@@ -31,7 +31,7 @@ def settle(claim: Claim, *, tolerance: float) -> Stated:
     target = tightest(claim, found, tolerance)
     denied = found.low > claim.bound if claim.relation == "<=" else found.high < claim.bound
     enough = target.bound <= claim.bound if claim.relation == "<=" else target.bound >= claim.bound
-    if not denied and not enough:
+    if not denied and not (enough and found.tree):
         # The bound lies within the tolerance of the extreme value, or the budget was used up.
         target, found = claim, prove(claim)
     return stated_of(target, found)

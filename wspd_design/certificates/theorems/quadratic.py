@@ -1,120 +1,125 @@
-"""A common quadratic Lyapunov function: found in doubles, shown in exact arithmetic.
+"""Quadratic functions that fall along a loop with torque feedback, shown in rational arithmetic.
 
-In x = (y, t), y = v e the error of the sliding speed [m/s] and t the error of the torque over T_max, a static law
-with torque feedback makes x' = A x with
+In x = (y, w), y the deviation of the sliding speed that the law measures [m/s] and w what the deviation of the torque
+changes of it per second [m/s2], a static law with torque feedback makes x' = A x with
 
-    A = [[q, -gamma], [kappa/tau, -(1 + K)/tau]],   q = p - a/v,   gamma = R T_max / (inertia of the wheelset).
+    A = [[q, -1], [b g, -(a + b K)]],   q = p - a/v,   g = kappa R T_max / (inertia of the wheelset),
 
-The deceleration a enters because v changes while e does; only the difference q of slip pole p and a/v matters, so
-that the polytope of (p, a/v) becomes an interval. A is affine in q and gamma: one P with A'P + PA < -2 alpha P at
-the four vertices serves for every course of q and gamma in between.
+kappa, K and R as the law counts them (K times T_max over its own T_max), a and b the rates of the averaged valve. The
+deceleration enters because v changes while the slip does; only the difference q of slip pole p and a/v matters.
+Sampled, with the numbers of :mod:`wspd_design.certificates.setting.pulsed_valve` and dU = g y - K w,
 
-With the command held over a sample, x -> x exp(A) is not affine in q: the interval of q is covered by parts whose
-matrix exponential is enclosed. It is affine in gamma, and x'Px is convex, so that the two ends of gamma suffice.
+    M = [[E - g j r, -D + K j r], [g j, AB - K j]].
+
+A is affine in each of q, a, b and M in each of E, D, AB, j, r; both are affine in (g, K) together, which lie in the
+quadrilateral of the ends of T_max and inertia. x'(A'P + PA)x is then affine and x'M'PMx convex along each number, so
+that the corners of their ranges suffice, for every course of the numbers in between.
+
+Times of the valve, T_max and inertia do not change during a stop. Their box may be halved; every piece has matrices of
+its own.
 """
 
-import json
-import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from itertools import product
+from typing import Any, NamedTuple, TypeAlias
 
-from wspd_design.certificates.kernel import checker
-from wspd_design.certificates.kernel.arb import Ball, ball, point
-from wspd_design.certificates.kernel.checker import Refused
-from wspd_design.certificates.kernel.claim import Claim, Relation
+from wspd_design.certificates.kernel.checker import Refused, Work, number
+from wspd_design.certificates.kernel.claim import text
+from wspd_design.certificates.kernel.finding import above, below
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.plant import (
-    OTHERS,
-    Values,
-    plant_dynamics,
-    plant_forces,
-    plant_variables,
-)
-from wspd_design.controllers.torque_feedback import TorqueFeedback
-from wspd_design.model.number import Number
+from wspd_design.certificates.setting.pulsed_valve import Interval, Sample, Times, rates, sample_of
+from wspd_design.certificates.setting.traced_law import written_law
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+FORMAT = "wspd-quadratic/2"
+LETTERS = "fvti"
+"""Which range a step halves: fill time, vent time, T_max, inertia; a full stop is a piece."""
+MOST_PIECES = 4_000
+WORK = 4_000  # operations on intervals that a corner of a piece is worth
 
-    Array = NDArray[np.float64]
-
-FORMAT = "wspd-quadratic/1"
-STATEMENT = "one quadratic function falls along the continuous and the sampled loop"
-MOST_BYTES = 4_000_000
-MOST_DIGITS = 60  # of a number in a certificate
-NUMBER = re.compile(r"-?[0-9]+(/[0-9]+)?")
-MOST_PARTS = 20_000  # of the interval of q
-
-Interval: TypeAlias = tuple[Fraction, Fraction]
 Symmetric: TypeAlias = tuple[Any, Any, Any]
 """Entries 11, 12, 22 of a symmetric matrix."""
 Matrix: TypeAlias = tuple[tuple[Any, Any], tuple[Any, Any]]
+Ranges: TypeAlias = tuple[Interval, ...]
+"""In the order of :data:`LETTERS`, that of q [1/s] last."""
 
 
-class Loop(NamedTuple):
-    """Exact numbers of a loop with torque feedback."""
+class Law(NamedTuple):
+    """Exact numbers of a law with torque feedback and of its sampling."""
 
-    gamma: Interval  # m/s2 per duty, R T_max / inertia
-    lag: Fraction  # s
-    sliding_gain: Fraction  # duty per m/s, kappa
-    torque_gain: Fraction  # -, K
+    slide: Fraction  # duty per s, kappa times R: what g is without T_max over inertia
+    torque: Fraction  # 1/(N m), K over the law's own T_max
     sample_time: Fraction  # s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Quadratic:
-    """V = x'Px with its guaranteed decay, for the continuous loop and for the sampled one."""
+class Piece:
+    """Functions of one piece and their guaranteed fall."""
 
-    poles: Interval  # of q, 1/s
     continuous: Symmetric
-    decay: Fraction  # 1/s, V falls at least as exp(-2 decay t)
+    decay: Fraction  # 1/s, the root of the function falls at least as exp(-decay t)
     sampled: Symmetric
-    contraction: Fraction  # V falls at least by this factor squared per sample
+    contraction: Fraction  # it falls at least by this factor per sample
 
 
-def loop_of(problem: Problem, law: TorqueFeedback) -> Loop:
-    """Exact numbers of the loop."""
-    brake = problem.vehicle.brake
-    torque = Fraction(problem.vehicle.wheel_radius) * Fraction(brake.max_torque)
-    light, heavy = (Fraction(each) for each in problem.span("wheelset inertia"))
-    # The law counts in its own T_max.
-    share = Fraction(brake.max_torque) / Fraction(law.vehicle.brake.max_torque)
-    return Loop(
-        gamma=(torque / heavy, torque / light),
-        lag=Fraction(max(brake.fill_time, brake.vent_time)),
-        sliding_gain=Fraction(law.gains.sliding_gain),
-        torque_gain=Fraction(law.gains.torque_gain) * share,
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quadratic:
+    """A range of q, how the box is halved, in preorder, and the functions of the pieces in their order."""
+
+    poles: Interval  # 1/s
+    steps: str
+    pieces: tuple[Piece, ...]
+
+
+def law_of(problem: Problem) -> Law:
+    """Exact numbers of the law."""
+    law: Any = written_law(problem.controller, "torque-feedback")
+    return Law(
+        slide=Fraction(law.gains.sliding_gain) * Fraction(law.radius),
+        torque=Fraction(law.gains.torque_gain) / Fraction(law.max_torque),
         sample_time=Fraction(problem.sample_time),
     )
 
 
-def pole_claim(problem: Problem, relation: Relation, bound: Fraction) -> Claim:
-    """Claim that q = p - a/v stays on one side of a bound, on the domain with the slip at its reference."""
+def ranges_of(problem: Problem, poles: Interval) -> Ranges:
+    """Ranges of the numbers that a piece may narrow."""
+    names = ("fill time", "vent time", "max torque", "wheelset inertia")
+    spans = [problem.span(name) for name in names]
+    return (*((Fraction(low), Fraction(high)) for low, high in spans), poles)
 
-    def difference(values: Values) -> Number:
-        plant = plant_dynamics(problem, values)
-        return plant.pole - plant.deceleration / values["speed"]
 
-    def arranged(values: Values) -> Number:
-        plant = plant_forces(problem, values)
-        return plant.pole - plant.deceleration / values["speed"]
+def gains(law: Law, ranges: Ranges) -> tuple[tuple[Fraction, Fraction], ...]:
+    """Corners of (g, K) [1/s2, -]."""
+    _, _, torques, inertias, _ = ranges
+    corners = dict.fromkeys(product(torques, inertias))
+    return tuple((law.slide * top / inertia, law.torque * top) for top, inertia in corners)
 
-    return Claim(
-        name="slip pole less a/v",
-        variables=plant_variables(problem, hold=OTHERS, ranges={"slip": problem.slip}),
-        expression=difference,
-        form=arranged,
-        relation=relation,
-        bound=bound,
-        unit="1/s",
+
+def averaged(law: Law, ranges: Ranges) -> Iterator[Matrix]:
+    """Corners of the matrices A of x' = A x."""
+    fill, vent, _, _, poles = ranges
+    valve = rates(Times(fill, vent))
+    for (g, back), *numbers in product(gains(law, ranges), *map(dict.fromkeys, (poles, valve, valve))):
+        q, a, b = numbers
+        yield (q, Fraction(-1)), (b * g, -(a + b * back))
+
+
+def sampled(law: Law, ranges: Ranges) -> Iterator[Matrix]:
+    """Corners of the matrices M of a sample."""
+    fill, vent, _, _, poles = ranges
+    found = sample_of(Times(fill, vent), poles, law.sample_time)
+    for (g, back), *numbers in product(gains(law, ranges), *map(dict.fromkeys, found)):
+        yield one_sample(Sample(*((each, each) for each in numbers)), g, back)
+
+
+def one_sample(at: Sample, g: Any, back: Any) -> Matrix:
+    """Return M at the lower ends of the numbers of a sample."""
+    slide, forced, kept, duty, delay = (low for low, _ in at)
+    return (
+        (slide - g * duty * delay, -forced + back * duty * delay),
+        (g * duty, kept - back * duty),
     )
-
-
-def rates(loop: Loop, q: Any, gamma: Any) -> Matrix:
-    """Matrix A of x' = A x."""
-    return ((q, -gamma), (loop.sliding_gain / loop.lag, -(1 + loop.torque_gain) / loop.lag))
 
 
 def decays(p: Symmetric, a: Matrix, decay: Any) -> Symmetric:
@@ -143,118 +148,103 @@ def contracts(p: Symmetric, a: Matrix, contraction: Any) -> Symmetric:
 
 
 def is_positive(p: Symmetric) -> bool:
-    """Whether a symmetric matrix is positive definite for certain: the pivots of LDL' are positive."""
+    """Whether a symmetric matrix is positive definite: the pivots of LDL' are positive."""
     p11, p12, p22 = p
-    return bool(p11 > 0) and bool(p22 - p12 * p12 / p11 > 0)
+    return bool(p11 > 0) and bool(p11 * p22 - p12 * p12 > 0)
 
 
-def held(loop: Loop, q: Ball, gamma: Ball) -> Matrix:
-    """Enclose the matrix from one sample to the next, with the command held in between."""
-    from flint import arb_mat
+def halved(ranges: Ranges, letter: str) -> tuple[Ranges, Ranges]:
+    """Both halves of a box, the lower one first."""
+    k = LETTERS.index(letter)
+    low, high = ranges[k]
+    middle = (low + high) / 2
+    return (*ranges[:k], (low, middle), *ranges[k + 1 :]), (*ranges[:k], (middle, high), *ranges[k + 1 :])
 
-    lag, span = point(loop.lag), point(loop.sample_time)
-    zero = point(0.0)
-    generator = arb_mat([[q, -gamma, zero], [zero, -1 / lag, 1 / lag], [zero, zero, zero]])
-    step = (generator * span).exp()
-    kappa, back = point(loop.sliding_gain), point(loop.torque_gain)
-    return (
-        (step[0, 0] + step[0, 2] * kappa, step[0, 1] - step[0, 2] * back),
-        (step[1, 0] + step[1, 2] * kappa, step[1, 1] - step[1, 2] * back),
+
+def checker(problem: Problem) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
+    """Return what decides about a proof and tells its numbers."""
+
+    def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
+        found, law = read(proof), law_of(problem)
+        boxes = [ranges_of(problem, found.poles)]
+        pieces = iter(found.pieces)
+        for step in found.steps:
+            if not boxes:
+                raise Refused("the steps go on after the last piece")
+            box = boxes.pop()
+            if step == ".":
+                _decide(law, box, next(pieces, None), work)
+            elif step in LETTERS:
+                boxes += halved(box, step)[::-1]
+            else:
+                raise Refused("a step is unknown")
+        if boxes or next(pieces, None) is not None:
+            raise Refused("steps and pieces do not match")
+        return {
+            "lowest pole": float(found.poles[0]),
+            "highest pole": float(found.poles[1]),
+            "decay": below(min(each.decay for each in found.pieces)),
+            "contraction": above(max(each.contraction for each in found.pieces)),
+            "pieces": float(len(found.pieces)),
+        }
+
+    return check
+
+
+def _decide(law: Law, box: Ranges, piece: Piece | None, work: Work) -> None:
+    """Refuse a piece whose functions do not fall."""
+    if piece is None:
+        raise Refused("a piece has no function")
+    if not (is_positive(piece.continuous) and is_positive(piece.sampled)):
+        raise Refused("a matrix P is not positive definite")
+    if piece.decay < 0 or not 0 <= piece.contraction <= 1:
+        raise Refused("a stated fall is none")
+    for matrix in averaged(law, box):
+        work.spend(WORK // 10)
+        if not is_positive(decays(piece.continuous, matrix, piece.decay)):
+            raise Refused("a function does not fall along the continuous loop at a corner")
+    for matrix in sampled(law, box):
+        work.spend(WORK // 10)
+        if not is_positive(contracts(piece.sampled, matrix, piece.contraction)):
+            raise Refused("a function does not fall along the sampled loop at a corner")
+
+
+def proof_of(found: Quadratic) -> dict[str, Any]:
+    """Write a proof as JSON."""
+    return {
+        "format": FORMAT,
+        "poles": [text(each) for each in found.poles],
+        "steps": found.steps,
+        "pieces": [
+            [text(each) for each in (*piece.continuous, piece.decay, *piece.sampled, piece.contraction)]
+            for piece in found.pieces
+        ],
+    }
+
+
+def read(proof: Mapping[str, Any]) -> Quadratic:
+    """Read a proof, or refuse it."""
+    if proof.keys() != {"format", "poles", "steps", "pieces"} or proof["format"] != FORMAT:
+        raise Refused(f"the proof does not have the format {FORMAT}")
+    low, high = _numbers(proof["poles"], 2)
+    if low > high or Fraction(float(low)) != low or Fraction(float(high)) != high:
+        raise Refused("the range of q is not one between two doubles")
+    steps, pieces = proof["steps"], proof["pieces"]
+    if not isinstance(steps, str) or not isinstance(pieces, list) or not 0 < len(pieces) <= MOST_PIECES:
+        raise Refused("the proof has no steps or no pieces, or too many")
+    if len(steps) != 2 * len(pieces) - 1:
+        raise Refused("steps and pieces do not match")
+    return Quadratic(
+        poles=(low, high), steps=steps, pieces=tuple(_piece(_numbers(each, 8)) for each in pieces)
     )
 
 
-def certificate_text(found: Quadratic, proofs: tuple[str, str]) -> str:
-    """Write a certificate; ``proofs`` show the lower and the upper end of the interval of q."""
-    content = {
-        "format": FORMAT,
-        "poles": [str(each) for each in found.poles],
-        "proofs": list(proofs),
-        "continuous": [str(each) for each in found.continuous],
-        "decay": str(found.decay),
-        "sampled": [str(each) for each in found.sampled],
-        "contraction": str(found.contraction),
-    }
-    return json.dumps(content, indent=1)
+def _piece(numbers: Sequence[Fraction]) -> Piece:
+    a, b, c, decay, d, e, f, contraction = numbers
+    return Piece(continuous=(a, b, c), decay=decay, sampled=(d, e, f), contraction=contraction)
 
 
-def _replay(certificate: str, problem: Problem) -> int:
-    law = problem.controller
-    if not isinstance(law, TorqueFeedback):
-        raise Refused("the controller is no static law with torque feedback")
-    if law.gains.slip_reference != problem.slip:
-        raise Refused("the problem speaks about another slip than the reference of the law")
-    found, proofs = _read(certificate)
-    relations: tuple[Relation, Relation] = (">=", "<=")
-    for relation, bound, proof in zip(relations, found.poles, proofs, strict=True):
-        verdict = checker.check(pole_claim(problem, relation, bound), proof)
-        if not verdict.accepted:
-            raise Refused(f"the end {float(bound):g} 1/s of the polytope is not shown: {verdict.reason}")
-    loop = loop_of(problem, law)
-    for name, matrix in (("continuous", found.continuous), ("sampled", found.sampled)):
-        if not is_positive(matrix):
-            raise Refused(f"the matrix P of the {name} loop is not positive definite")
-    if found.decay < 0 or not 0 <= found.contraction <= 1:
-        raise Refused("the stated decay is none")
-    for q in found.poles:
-        for gamma in loop.gamma:
-            if not is_positive(decays(found.continuous, rates(loop, q, gamma), found.decay)):
-                raise Refused(f"the continuous loop does not decay at the vertex q = {float(q):g} 1/s")
-    return covered(loop, found)
-
-
-def covered(loop: Loop, found: Quadratic) -> int:
-    """Number of parts of the interval of q on which the sampled loop is shown to contract.
-
-    Raises
-    ------
-    Refused
-        If it is not shown everywhere.
-    """
-    matrix = tuple(point(each) for each in found.sampled)
-    kept = point(found.contraction)
-    waiting, parts = [found.poles], 0
-    while waiting:
-        low, high = waiting.pop()
-        parts += 1
-        sums = [contracts(matrix, held(loop, ball(low, high), point(g)), kept) for g in loop.gamma]
-        if all(is_positive(each) for each in sums):
-            continue
-        if parts + len(waiting) > MOST_PARTS or low == high:
-            raise Refused(f"the sampled loop is not shown to contract at q = {float(low):g} 1/s")
-        middle = (low + high) / 2
-        waiting += [(middle, high), (low, middle)]
-    return parts
-
-
-def _read(certificate: str) -> tuple[Quadratic, tuple[str, str]]:
-    """Read a certificate, or refuse."""
-    if len(certificate) > MOST_BYTES:
-        raise Refused("the certificate is too long")
-    try:
-        content = json.loads(certificate)
-        known = content["format"] == FORMAT
-        low, high = (_number(each) for each in content["poles"])
-        first, second = (str(each) for each in content["proofs"])
-        matrices = {
-            name: tuple(_number(each) for each in content[name]) for name in ("continuous", "sampled")
-        }
-        continuous, sampled = ((a, b, c) for a, b, c in matrices.values())
-        found = Quadratic(
-            poles=(low, high),
-            continuous=continuous,
-            decay=_number(content["decay"]),
-            sampled=sampled,
-            contraction=_number(content["contraction"]),
-        )
-    except (ValueError, TypeError, KeyError, RecursionError, ZeroDivisionError):
-        raise Refused("the certificate is not of the form that is asked for") from None
-    if not known:
-        raise Refused(f"the certificate does not have the format {FORMAT}")
-    return found, (first, second)
-
-
-def _number(text: str) -> Fraction:
-    """Read p or p/q; powers of ten could stand for numbers that fill the memory."""
-    if not isinstance(text, str) or len(text) > MOST_DIGITS or not NUMBER.fullmatch(text):
-        raise ValueError("no number")
-    return Fraction(text)
+def _numbers(written: object, count: int) -> list[Fraction]:
+    if not isinstance(written, list) or len(written) != count:
+        raise Refused(f"the proof lacks {count} numbers")
+    return [number(each) for each in written]

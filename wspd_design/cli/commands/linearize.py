@@ -80,12 +80,13 @@ def _show(points: "list[Linearization]", beyond: list[bool]) -> None:
         caption="",
     )
     out.print(spaced(terminal_table(shown)))
-    limit = 1.0 / first.time_constant
+    limits = sorted({round(1.0 / point.time_constant, 6) for point in points})
+    limit = f"{limits[0]:.3g}" if len(limits) == 1 else f"{limits[0]:.3g} to {limits[-1]:.3g}"
     verdict = (
-        f"!: at {sum(beyond)} of {len(points)} speeds the slip pole exceeds 1/tau = {limit:.3g} 1/s of the "
+        f"!: at {sum(beyond)} of {len(points)} speeds the slip pole exceeds 1/tau = {limit} 1/s of the "
         "valve, nominal parameters: no law can stabilize the equilibrium there that does not read the torque and has "
         "a memory of integrals alone. A law with dynamics of its own, such as a lead filter, is not bound by this."
         if any(beyond)
-        else f"The slip pole does not exceed 1/tau = {limit:.3g} 1/s of the valve at any of these speeds."
+        else f"The slip pole does not exceed 1/tau = {limit} 1/s of the valve at any of these speeds."
     )
     out.print(verdict, style="yellow" if any(beyond) else "")

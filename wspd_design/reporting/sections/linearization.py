@@ -18,8 +18,7 @@ MEGA = 1e6
 def linearization(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the slip pole."""
     points, specification = dossier.linearizations, dossier.design.specification
-    limit = 1.0 / points[0].time_constant
-    beyond = [point for point in points if point.slip_pole > limit]
+    beyond = [point for point in points if point.slip_pole > 1.0 / point.time_constant]
     unstable = [point for point in points if point.slip_pole > 0.0]
     return (
         Heading(text="Linearization", anchor="linearization"),

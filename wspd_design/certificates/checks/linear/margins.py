@@ -1,21 +1,22 @@
 """How much the loop near its reference bears: gain, phase, delay and disk margin over speed, also as sampled."""
 
-import math
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.certificates.checks.frame import certified, level, series
+from wspd_design.certificates.checks.frame import Check, Figures, level, series
 from wspd_design.certificates.checks.linear.disk_margin import disk_margin
-from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.linear_loop import (
-    lag_of,
-    nominal,
-    on_brake,
-    outermost,
-)
-from wspd_design.controllers.offers import Linear
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.kernel.obligation import Obligation
+from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.search.settle import finding
+from wspd_design.certificates.setting.linear_loop import law_of, on_brake, valve
+from wspd_design.certificates.setting.pulsed_valve import Times, sample_of
+from wspd_design.certificates.theorems.linear import MARGINS_THEOREM, decibel
+from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -24,9 +25,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-NAME, TITLE = "margins", "Margins of the loop"
 SPEEDS = 25
-DECIBEL = 20.0
 MOST_GAIN, MOST_DELAY = 1e3, 10.0  # larger margins are reported as these: factor, s
 
 
@@ -45,89 +44,56 @@ class Margins:
 UNSTABLE = Margins(stable=False, gain_up=1.0, gain_down=1.0, phase=0.0, delay=0.0, disk=0.0)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Unstable:
-    """A speed at which a pole lies outside for certain."""
-
-    speed: float  # m/s
-    sampled: bool
-    least: float  # real part [1/s] or, of the sampled loop, magnitude [-] that a pole exceeds
-
-    def witness(self, problem: Problem) -> tuple[Point, ...]:
-        """Return the point with the nominal parameters."""
-        return (
-            Point(name="slip", value=problem.slip, unit="-"),
-            Point(name="speed", value=self.speed * KMH, unit="km/h"),
-            Point(name="mass", value=problem.vehicle.mass, unit="kg"),
-            Point(name="wheelset inertia", value=problem.vehicle.wheelset_inertia, unit="kg m2"),
-            Point(name="mu0", value=problem.rail.mu0, unit="-"),
-            Point(name="magnitude of a sampled pole", value=self.least, unit="-")
-            if self.sampled
-            else Point(name="real part of a pole", value=self.least, unit="1/s"),
-        )
-
-
-@certified(name=NAME, title=TITLE)
-def check(problem: Problem) -> Certificate:
-    """Work out the margins at speeds over the range, with nominal parameters."""
+def search(problem: Problem) -> Mapping[str, Stated]:
+    """Work out the margins at speeds over the range; where a loop is unstable, show it exactly."""
     import numpy as np
 
-    law = problem.controller
-    if not isinstance(law, Linear):
-        return laws.no_surface(problem, NAME, "The loop near its reference has margins at every speed.")
-    domain.box(problem)
     speeds = np.geomspace(*problem.speeds, SPEEDS)
-    continuous = [margins(loop(problem, law, float(v))) for v in speeds]
-    sampled = [margins(loop(problem, law, float(v), sample_time=problem.sample_time)) for v in speeds]
-    worst = min(range(SPEEDS), key=lambda i: min(continuous[i].disk, sampled[i].disk))
-    tightest = min(continuous[worst], sampled[worst], key=lambda each: each.disk)
-    stable = tightest.stable
-    unstable = [[k for k in range(SPEEDS) if not each[k].stable] for each in (continuous, sampled)]
-    beyond = _certain(problem, law, [speeds[each].tolist() for each in unstable])
-    speed = (beyond.speed if beyond else float(speeds[worst])) * KMH
-    where = (
-        Point(name="speed", value=speed, unit="km/h"),
-        Point(name="gain margin up", value=_decibel(tightest.gain_up), unit="dB"),
-        Point(name="gain margin down", value=_decibel(tightest.gain_down), unit="dB"),
-        Point(name="phase margin", value=math.degrees(tightest.phase), unit="deg"),
-        Point(name="delay margin", value=tightest.delay, unit="s"),
-        Point(name="disk margin", value=tightest.disk, unit="-"),
+    kinds = {"continuous": _over_speed(problem, sampled=False), "sampled": _over_speed(problem, sampled=True)}
+    wanted = {each.key: each for each in MARGINS_THEOREM.obligations(problem)}
+    stated = {}
+    for key, found in kinds.items():
+        for speed, each in zip(speeds, found, strict=True):
+            if not each.stable and (shown := _shown(wanted[key], float(speed))) is not None:
+                stated[key] = shown
+                break
+    worst, k = min(
+        ((each, k) for found in kinds.values() for k, each in enumerate(found)), key=lambda x: x[0].disk
     )
-    status = Status.EVIDENCE
-    if not stable:
-        status = Status.REFUTED if beyond else Status.UNDECIDED
-    x = "speed [km/h]"
-    kinds = (("continuous", continuous), ("sampled", sampled))
-    return Certificate(
-        name=NAME,
-        title=TITLE,
-        claim=f"With the nominal parameters the loop near slip {problem.slip:g} is stable at every speed from "
-        f"{problem.speeds[0] * KMH:.3g} to {problem.speeds[1] * KMH:.3g} km/h, continuous and sampled every "
-        f"{problem.sample_time * 1e3:g} ms, and bears changes of gain and phase at the valve.",
-        status=status,
-        explanation=(
-            f"Tightest at {speed:.3g} km/h: the gain may change by {_decibel(tightest.gain_down):.3g} to "
-            f"{_decibel(tightest.gain_up):.3g} dB, the phase by {math.degrees(tightest.phase):.3g} degrees, "
-            f"the delay may grow by {tightest.delay * 1e3:.3g} ms; disk margin {tightest.disk:.3g}."
-            if stable
-            else f"Unstable at {len(unstable[0])} of {SPEEDS} speeds as continuous loop and at {len(unstable[1])} as "
-            f"sampled loop: there is no margin. {_exactly(beyond)}"
-        ),
-        margin=Range(low=None, high=tightest.disk, unit="-"),
-        worst_point=where,
-        witness=beyond.witness(problem) if beyond else (),
-        assumptions=(
-            "frozen train speed",
-            "averaged valve with the slower of its two time constants",
-            "nominal parameters",
-            "torque command held over a sample: pulse width modulation without ripple, no computing time",
-        ),
-        method="python-control on the linear loop opened at the valve command; zero-order hold at the sample time; "
-        "disk margin at the extremes of abs(S - 1/2) over all frequencies; a witness by poles that Arb encloses",
-        resolution=f"{SPEEDS} speeds; gain margins beyond {_decibel(MOST_GAIN):.0f} dB and delay margins beyond "
-        f"{MOST_DELAY:.0f} s are given as these",
-        reference="eqs. (14), (19); docs/theory.md#routh; Seiler, Packard and Gahinet (2020), An introduction to "
-        "disk margins",
+    numbers = {
+        "speed": float(speeds[k]),
+        "gain up": worst.gain_up,
+        "gain down": worst.gain_down,
+        "phase": worst.phase,
+        "delay": worst.delay,
+        "disk": worst.disk,
+    }
+    return stated | {"margins": Stated(numbers=numbers)}
+
+
+def _over_speed(problem: Problem, *, sampled: bool) -> list[Margins]:
+    import numpy as np
+
+    span = problem.sample_time if sampled else None
+    return [margins(loop(problem, float(v), sample_time=span)) for v in np.geomspace(*problem.speeds, SPEEDS)]
+
+
+def _shown(obligation: Obligation, speed: float) -> Stated | None:
+    stated = Stated(place={"speed": speed})
+    try:
+        finding(obligation, stated)
+    except Refused:
+        return None
+    return stated
+
+
+def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG001 - samples of the nominal loop
+    """Margins over speed."""
+    import numpy as np
+
+    speeds, x = np.geomspace(*problem.speeds, SPEEDS), "speed [km/h]"
+    kinds = [(kind, _over_speed(problem, sampled=kind == "sampled")) for kind in ("continuous", "sampled")]
+    return Figures(
         series=(
             *(series(name, x, "disk margin [-]", speeds * KMH, _of(found, "disk")) for name, found in kinds),
             *(
@@ -140,43 +106,22 @@ def check(problem: Problem) -> Certificate:
             ),
             level("half a sample", x, "delay margin [s]", speeds * KMH, problem.sample_time / 2.0),
         ),
+        remark=f"Sampled at {SPEEDS} speeds; gain margins beyond {decibel(MOST_GAIN):.0f} dB and delay margins beyond "
+        f"{MOST_DELAY:.0f} s are given as these.",
     )
 
 
-def _certain(problem: Problem, law: Linear, speeds: list[list[float]]) -> Unstable | None:
-    """Look for a speed at which the loop is unstable for certain, among those where floats say so."""
-    for sampled, tried in zip((False, True), speeds, strict=True):
-        for speed in tried:
-            least = outermost(problem, law, speed, sampled=sampled)
-            if least > (1.0 if sampled else 0.0):
-                return Unstable(speed=speed, sampled=sampled, least=least)
-    return None
-
-
-def _exactly(beyond: Unstable | None) -> str:
-    if beyond is None:
-        return "But at none of them exact arithmetic shows a pole outside."
-    size = (
-        f"a sampled pole has a magnitude of at least {beyond.least:.4g}"
-        if beyond.sampled
-        else f"a pole has a real part of at least {beyond.least:.3g} 1/s"
-    )
-    return f"At {beyond.speed * KMH:.3g} km/h {size}, in exact arithmetic."
-
-
-def loop(problem: Problem, law: Linear, speed: float, *, sample_time: float | None = None) -> Any:
+def loop(problem: Problem, speed: float, *, sample_time: float | None = None) -> Any:
     """Loop opened at the valve command, to be closed by negative feedback.
 
     Parameters
     ----------
     problem : Problem
         With the nominal plant.
-    law : Linear
-        Controller.
     speed : float
         Train speed [m/s].
     sample_time : float, optional
-        Sampled loop with a zero-order hold and the integral of the law as it is summed [s].
+        Loop sampled with its pulses, and the integrals of the law as they are summed [s].
 
     Returns
     -------
@@ -186,26 +131,33 @@ def loop(problem: Problem, law: Linear, speed: float, *, sample_time: float | No
     import control
     import numpy as np
 
-    vehicle = problem.vehicle
-    dynamics = nominal(vehicle, problem.rail, problem.slip, speed)
-    lag, limit = lag_of(problem), vehicle.brake.max_torque
+    law, brake = law_of(problem), problem.vehicle.brake
+    dynamics = slip_dynamics(problem.vehicle, problem.rail, problem.slip, speed)
+    gain, limit = dynamics.gain, brake.max_torque
+    share = float(-dynamics.drift / gain / limit)
+    rates = valve(brake.fill_time, brake.vent_time, share)
     gains = on_brake(law, law.linear_form(speed), limit)
-    plant = control.ss(
-        np.array([[dynamics.pole, dynamics.gain * limit], [0.0, -1.0 / lag]]),
-        np.array([[0.0], [1.0 / lag]]),
-        np.eye(2),
-        np.zeros((2, 1)),
-    )
+    if sample_time is None:
+        a = np.array([[dynamics.pole, gain * limit], [0.0, -rates.decay]])
+        b = np.array([[0.0], [rates.rate]])
+    else:
+        duty = Fraction(share / brake.vent_time / rates.rate)
+        fill, vent, pole = (Fraction(float(x)) for x in (brake.fill_time, brake.vent_time, dynamics.pole))
+        ends = sample_of(Times((fill, fill), (vent, vent)), (pole, pole), Fraction(sample_time), (duty, duty))
+        kept, forced, held, moved, delay = (float(low) for low, _ in ends)
+        a = np.array([[kept, gain * limit * forced], [0.0, held]])
+        b = np.array([[gain * limit * moved * delay], [moved]])
+    plant = control.ss(a, b, np.eye(2), np.zeros((2, 1)), sample_time or 0)
     direct = np.array([[gains.proportional / limit, gains.torque]])
-    summed = np.array([[gains.integral / limit, 0.0]])
+    summed = np.array([[gains.integral / limit, gains.twice / limit]])
     if not np.any(summed):
         law_block = control.ss([], [], [], direct, sample_time or 0)
-    elif sample_time is None:
-        law_block = control.ss([[0.0]], summed, [[1.0]], direct)
     else:
-        law_block = control.ss([[1.0]], sample_time * summed, [[1.0]], direct, sample_time)
-    if sample_time is not None:
-        plant = control.c2d(plant, sample_time, "zoh")
+        step = sample_time or 1.0
+        chain = np.array([[0.0, 0.0], [step, 0.0]]) + (np.eye(2) if sample_time else 0.0)
+        enters = np.array([[step, 0.0], [0.0, 0.0]])
+        size = 2 if summed[0, 1] else 1
+        law_block = control.ss(chain[:size, :size], enters[:size], summed[:, :size], direct, sample_time or 0)
     return law_block * plant
 
 
@@ -239,12 +191,11 @@ def margins(opened: Any) -> Margins:
     )
 
 
-def _decibel(factor: float) -> float:
-    return DECIBEL * math.log10(factor)
-
-
 def _of(found: list[Margins], name: str) -> "Array":
     """One margin over speed."""
     import numpy as np
 
     return np.array([getattr(each, name) for each in found], dtype=np.float64)
+
+
+CHECK = Check(theorem=MARGINS_THEOREM, search=search, figures=figures)

@@ -1,219 +1,165 @@
-"""One quadratic Lyapunov function for all speeds: a proof for laws that feed back the braking torque."""
+"""Quadratic functions for all speeds: a proof for laws that feed back the braking torque."""
 
-import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.checks.frame import certified, level, series
-from wspd_design.certificates.kernel.arb import Ball, point
-from wspd_design.certificates.records import (
-    Certificate,
-    Hypothesis,
-    Point,
-    Problem,
-    Proof,
-    Range,
-    Series,
-    Status,
+from wspd_design.certificates.checks.frame import Check, Figures, level, series
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.kernel.claim import Claim
+from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation
+from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.search.budget import Budget, budget, within
+from wspd_design.certificates.search.prover import extreme, prove
+from wspd_design.certificates.search.quadratic import search as find
+from wspd_design.certificates.search.settle import finding, stated_of
+from wspd_design.certificates.setting import creep_slope
+from wspd_design.certificates.setting.plant import plant_with
+from wspd_design.certificates.setting.pulsed_valve import Times, sample_of
+from wspd_design.certificates.theorems import equilibrium
+from wspd_design.certificates.theorems.quadratic import law_of, one_sample, proof_of, ranges_of
+from wspd_design.certificates.theorems.region import (
+    FASTEST,
+    FUNCTION,
+    LPV_LYAPUNOV,
+    SLOWEST,
+    loop_ranges,
+    slopes,
 )
-from wspd_design.certificates.search.quadratic import NotFound, search
-from wspd_design.certificates.search.settle import Finding, enclose, engine
-from wspd_design.certificates.setting import domain, laws
-from wspd_design.certificates.setting.plant import place, plant_dynamics
-from wspd_design.certificates.theorems.quadratic import (
-    Loop,
-    Matrix,
-    Quadratic,
-    certificate_text,
-    check_quadratic,
-    held,
-    loop_of,
-    pole_claim,
-    rates,
-)
-from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
-    from wspd_design.certificates.kernel.claim import Relation
+    from wspd_design.certificates.setting.domain import Array
 
-NAME, TITLE = "lpv_lyapunov", "Quadratic function for all speeds"
-TOLERANCE = 0.1  # 1/s, of the ends of the polytope
+SLACKS = (
+    0.5,
+    2.0,
+    8.0,
+)  # 1/s, between what p - a/v attains and the bound that is proved; the first that succeeds
+FIRST_LOOK = 0.02  # of the effort, to find what is attained
 SPEEDS = 25
 
 
-@certified(name=NAME, title=TITLE)
-def check(problem: Problem) -> Certificate:
-    """Enclose the polytope, search the function, and let it be checked exactly."""
-    law = problem.controller
-    claim = "One quadratic function of slip and torque error falls at all speeds."
-    if not isinstance(law, TorqueFeedback):
-        if laws.slip_feedback_only(problem).status is Status.REFUTED:
-            reason = "uses torque or acceleration, but is no static linear law that a quadratic function could judge"
-        else:
-            reason = "feeds back neither torque nor acceleration; for such a law see no_go"
-        return laws.not_applicable(problem, NAME, claim, reason)
-    domain.box(problem)
-    loop = loop_of(problem, law)
-    ends = tuple(_end(problem, relation) for relation in (">=", "<="))
-    low, high = problem.speeds[0] * KMH, problem.speeds[1] * KMH
-    claim = (
-        f"Near slip {problem.slip:g}, with the valve lag of {float(loop.lag):g} s, one quadratic function of the "
-        f"errors of sliding speed and torque falls along the loop, continuous and sampled every "
-        f"{problem.sample_time * 1e3:g} ms, whatever the course of speed from {high:.3g} to {low:.3g} km/h, "
-        "for all masses, inertias and frictions of the domain."
+def search(problem: Problem) -> Mapping[str, Stated]:
+    """Enclose the slope of the creep force, search functions, and look where the loop rests."""
+    wanted = {each.key: each for each in LPV_LYAPUNOV.obligations(problem)}
+    stated = {key: _slope(problem, _claim(wanted[key])) for key in (SLOWEST, FASTEST)}
+    proved = slopes({key: finding(wanted[key], each) for key, each in stated.items()})
+    functions = None
+    if proved is not None:
+        low, high = creep_slope.poles(problem, problem.near, *proved)
+        functions = find(law_of(problem), ranges_of(problem, (Fraction(low), Fraction(high))))
+    stated[FUNCTION] = (
+        Stated(proof=proof_of(functions)) if functions else _first(wanted[FUNCTION], _places(problem))
     )
-    hypotheses = [Hypothesis(text="the slip pole less a/v stays in its interval", status=_weaker(ends))]
-    status, why, proof = Status.UNDECIDED, "", None
-    found: Quadratic | None = None
-    witness = _unstable(problem, loop, ends)
-    if witness:
-        status = Status.REFUTED
-    elif all(end.proof is not None for end in ends):
+    return stated | _equilibrium(problem, wanted)
+
+
+def _slope(problem: Problem, claim: Claim) -> Stated:
+    """Prove a bound on the slope close to the largest value that a short search attains."""
+    per_pole = 1.0 / _poles_per_slope(problem)
+    with within(Budget(effort=FIRST_LOOK * budget().effort)):
+        looked = extreme(claim, tolerance=SLACKS[0] * per_pole)
+    upwards = claim.relation == "<="
+    attained = looked.low if upwards else looked.high
+    for slack in SLACKS:
+        bound = attained + (slack if upwards else -slack) * per_pole
+        bounded = replace(claim, bound=Fraction(bound))
+        found = prove(bounded)
+        if found.tree:
+            return stated_of(bounded, found)
+    return stated_of(claim, looked)
+
+
+def _poles_per_slope(problem: Problem) -> float:
+    """Largest mu0 N, by which q changes with the slope."""
+    without, one = (creep_slope.poles(problem, problem.near, 0.0, most)[1] for most in (0.0, 1.0))
+    return one - without
+
+
+def _claim(obligation: Obligation) -> Claim:
+    assert isinstance(obligation, Inequality)
+    return obligation.claim
+
+
+def _equilibrium(problem: Problem, wanted: Mapping[str, Obligation]) -> dict[str, Stated]:
+    """Decide about both ends of the tolerance; where one fails, ask whether no slip within it will do."""
+    stated, places = {}, []
+    names = equilibrium.free(problem)
+    for key in (equilibrium.ABOVE, equilibrium.BELOW):
+        claim = _claim(wanted[key])
+        found = prove(claim)
+        stated[key] = stated_of(claim, found)
+        places.append({name: at for name, at in stated[key].place.items() if name in names})
+    return stated | {equilibrium.NOWHERE: _first(wanted[equilibrium.NOWHERE], places)}
+
+
+def _first(obligation: Obligation, places: Iterable[Mapping[str, float]]) -> Stated:
+    """Return the first place that denies a statement."""
+    for each in places:
+        stated = Stated(place=each)
         try:
-            found = search(loop, (ends[0].claim.bound, ends[1].claim.bound))
-            proof, why = _proved(problem, found, ends)
-        except NotFound as reason:
-            why = str(reason)
-        status = Status.PROVED if proof is not None else Status.UNDECIDED
-    else:
-        why = next(end.reason for end in ends if end.proof is None)
-    hypotheses.append(
-        Hypothesis(text="P, and its decrease at every vertex, are positive definite", status=status)
-    )
-    curves, worst = _plots(problem, law, loop)
-    bounds = ends[0].extreme.low, ends[1].extreme.high
-    polytope = f"p - a/v lies between {bounds[0]:.3g} and {bounds[1]:.3g} 1/s"
-    explanation = {
-        Status.PROVED: "",
-        Status.UNDECIDED: f"{polytope}. Nothing is shown: {why}.",
-        Status.REFUTED: f"{polytope}. At the witness the loop with these gains is unstable in exact arithmetic, so "
-        "that no such function can exist.",
-    }[status]
-    margin = Range(low=None, high=1.0 - worst, unit="per sample")
-    if found is not None and status is Status.PROVED:
-        margin = Range(low=float(1 - found.contraction), high=1.0 - worst, unit="per sample")
-        explanation = (
-            f"{polytope}. The error, measured by the root of the function, falls at least as "
-            f"exp(-{float(found.decay):.3g} t) in continuous time and by a factor of "
-            f"{float(found.contraction):.3g} per sample."
-        )
-    return Certificate(
-        name=NAME,
-        title=TITLE,
-        claim=claim,
-        status=status,
-        explanation=explanation,
-        margin=margin,
-        worst_point=witness,
-        witness=witness,
-        hypotheses=tuple(hypotheses),
-        assumptions=(
-            "small deviations from the reference; nothing saturates",
-            "averaged valve with the slower of its two time constants; command held over a sample, no computing time",
-            "sampled loop: p - a/v constant within a sample, arbitrary from one to the next",
-            "the slow change of the torque that holds the reference is left out",
-        ),
-        method="linear matrix inequality by cvxpy and Clarabel; exact LDL' of rational matrices at the vertices, "
-        "matrix exponentials enclosed by Arb on parts that cover the interval",
-        resolution=f"ends of the polytope within {TOLERANCE:g} 1/s"
-        + (f"; {proof.leaves} parts of its interval" if proof is not None else ""),
-        reference="eqs. (14), (19); docs/theory.md#lpv",
-        engine=engine(),
-        proofs=() if proof is None else (proof,),
-        series=curves,
-    )
+            finding(obligation, stated)
+        except Refused:
+            continue
+        return stated
+    return Stated()
 
 
-def _end(problem: Problem, relation: "Relation") -> Finding:
-    """Enclose one end of the interval of p - a/v."""
-    return enclose(pole_claim(problem, relation, Fraction(0)), tolerance=TOLERANCE)
-
-
-def _weaker(ends: tuple[Finding, ...]) -> Status:
-    return Status.PROVED if all(end.status is Status.PROVED for end in ends) else Status.UNDECIDED
-
-
-def _proved(problem: Problem, found: Quadratic, ends: tuple[Finding, ...]) -> tuple[Proof | None, str]:
-    """Let the checker decide."""
-    first, second = (end.proof for end in ends)
-    assert first is not None
-    assert second is not None
-    text = certificate_text(found, (first.certificate, second.certificate))
-    verdict = check_quadratic(text, problem)
-    if not verdict.accepted:
-        return None, verdict.reason
-    proof = Proof(
-        claim="common quadratic function",
-        statement=verdict.statement,
-        claim_hash=first.claim_hash,
-        certificate=text,
-        leaves=verdict.leaves,
-        seconds=verdict.seconds,
-    )
-    return proof, ""
-
-
-def _unstable(problem: Problem, loop: Loop, ends: tuple[Finding, ...]) -> tuple[Point, ...]:
-    """Look for a point where the frozen loop is unstable for certain."""
+def _places(problem: Problem) -> Iterator[Mapping[str, float]]:
+    """Places where the loop may be unstable: nominal numbers over speed, and the corners of valve and inertia."""
     import numpy as np
 
-    vehicle = problem.vehicle
-    usual = {
-        **ends[0].place,
-        "mass": vehicle.mass,
-        "wheelset inertia": vehicle.wheelset_inertia,
-        "mu0": problem.rail.mu0,
-    }
-    nominal = [{**usual, "speed": float(v)} for v in np.geomspace(*problem.speeds, SPEEDS)]
-    for at in (ends[1].place, ends[0].place, *nominal):
-        plant = plant_dynamics(problem, {name: point(value) for name, value in at.items()})
-        q = plant.pole - plant.deceleration / at["speed"]
-        gamma = (
-            point(Fraction(vehicle.wheel_radius) * Fraction(vehicle.brake.max_torque))
-            / at["wheelset inertia"]
-        )
-        if _leaves(held(loop, q, gamma)) or _grows(rates(loop, q, gamma)):
-            return (*place(at), Point(name="p - a/v", value=float(q), unit="1/s"))
-    return ()
+    ranges = loop_ranges(problem)
+    nominal = {name: problem.nominal(name) for name in ranges if name not in ("slip", "speed")}
+    narrow = ("fill time", "vent time", "max torque", "wheelset inertia")
+    corners = [
+        dict(zip(narrow, ends, strict=True)) for ends in product(*(problem.span(name) for name in narrow))
+    ]
+    for changed in ({}, *corners):
+        shown = {name: each for name, each in changed.items() if name in nominal}
+        for speed in np.geomspace(*problem.speeds, SPEEDS)[:: 1 if not changed else 4]:
+            yield {**nominal, **shown, "slip": problem.slip, "speed": float(speed)}
 
 
-def _grows(a: Matrix) -> bool:
-    """Whether a continuous loop is unstable for certain: a positive trace or a negative determinant."""
-    trace, determinant = _invariants(a)
-    return bool(trace > 0) or bool(determinant < 0)
-
-
-def _leaves(a: Matrix) -> bool:
-    """Whether a sampled loop is unstable for certain, after Jury."""
-    trace, determinant = _invariants(a)
-    return bool(determinant > 1) or bool(1 + trace + determinant < 0) or bool(1 - trace + determinant < 0)
-
-
-def _invariants(a: Matrix) -> tuple[Ball, Ball]:
-    """Trace and determinant, as balls."""
-    entries = [[point(each) if isinstance(each, (float, Fraction)) else each for each in row] for row in a]
-    return entries[0][0] + entries[1][1], entries[0][0] * entries[1][1] - entries[0][1] * entries[1][0]
-
-
-def _plots(problem: Problem, law: TorqueFeedback, loop: Loop) -> tuple[tuple[Series, ...], float]:
-    """Largest eigenvalue of the sampled loop over speed with nominal parameters, and its largest value."""
+def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG001 - samples of the nominal loop
+    """Largest eigenvalue of the sampled loop over speed with nominal numbers, and p - a/v."""
     import numpy as np
 
     speeds = np.geomspace(*problem.speeds, SPEEDS)
-    plant = slip_dynamics(problem.vehicle, problem.rail, problem.slip, speeds)
+    plant = slip_dynamics(*plant_with(problem, {}), problem.slip, speeds)
     poles = plant.pole - plant.deceleration / speeds
-    gamma = law.vehicle.wheel_radius * problem.vehicle.brake.max_torque / problem.vehicle.wheelset_inertia
-    sizes = []
-    for q in poles:
-        step = held(loop, point(float(q)), point(gamma))
-        eigenvalues = np.linalg.eigvals(np.array([[float(each) for each in row] for row in step]))
-        sizes.append(float(np.abs(eigenvalues).max()))
+    sizes = np.array([_radius(problem, float(q)) for q in poles])
     axes = ("speed [km/h]", "eigenvalue [-]")
-    curves = (
-        series("largest of the sampled loop, nominal", *axes, speeds * KMH, np.array(sizes)),
-        level("limit", *axes, speeds * KMH, 1.0),
-        series("nominal", "speed [km/h]", "p - a/v [1/s]", speeds * KMH, poles),
+    return Figures(
+        series=(
+            series("largest of the sampled loop, nominal", *axes, speeds * KMH, sizes),
+            level("limit", *axes, speeds * KMH, 1.0),
+            series("nominal", "speed [km/h]", "p - a/v [1/s]", speeds * KMH, poles),
+        ),
+        remark=f"The largest eigenvalue of the nominal sampled loop is {sizes.max():.3g}, at frozen speeds.",
     )
-    return curves, max(sizes) if sizes else math.inf
+
+
+def _radius(problem: Problem, pole: float) -> float:
+    """Largest eigenvalue of the nominal sampled loop, at a duty of one half."""
+    import numpy as np
+
+    law = law_of(problem)
+    fill, vent, top, inertia = (
+        Fraction(problem.nominal(name))
+        for name in ("fill time", "vent time", "max torque", "wheelset inertia")
+    )
+    half = Fraction(1, 2)
+    q = Fraction(pole)
+    sample = sample_of(Times((fill, fill), (vent, vent)), (q, q), law.sample_time, (half, half))
+    matrix = one_sample(sample, law.slide * top / inertia, law.torque * top)
+    found: Array = np.abs(np.linalg.eigvals(np.array([[float(each) for each in row] for row in matrix])))
+    return float(found.max())
+
+
+CHECK = Check(theorem=LPV_LYAPUNOV, search=search, figures=figures)

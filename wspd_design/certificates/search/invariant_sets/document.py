@@ -1,7 +1,7 @@
 """The certificate as a text that can be kept and checked again."""
 
-import json
 from collections.abc import Sequence
+from typing import Any
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.invariant_sets.search import Found
@@ -9,8 +9,8 @@ from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.invariant_sets.runs import FORMAT
 
 
-def write(problem: Problem, found: Sequence[Found]) -> str:
-    """Write sets of all windows, given the slowest first, as the JSON that the checker reads."""
+def write(problem: Problem, found: Sequence[Found]) -> dict[str, Any]:
+    """Write sets of all windows, given the slowest first, as the JSON object that the checker reads."""
     windows = [
         {
             "low": each.cells.window.low,
@@ -22,8 +22,7 @@ def write(problem: Problem, found: Sequence[Found]) -> str:
         }
         for each in reversed(found)
     ]
-    document = {"format": FORMAT, "claim_sha256": model_hash(problem), "windows": windows}
-    return json.dumps(document, separators=(",", ":"))
+    return {"format": FORMAT, "claim_sha256": model_hash(problem), "windows": windows}
 
 
 def _columns(found: Found) -> dict[str, list[int]]:

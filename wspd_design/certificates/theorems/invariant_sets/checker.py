@@ -6,70 +6,67 @@ of speed. What it has in common with the search is the reasoning of ``one_sample
 """
 
 import math
-import time
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import reduce
 from itertools import pairwise
 from typing import Any
 
-from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.invariant_sets.ball_plant import BallPlant
 from wspd_design.certificates.theorems.invariant_sets.ball_slopes import Ball, hull, law_slopes
 from wspd_design.certificates.theorems.invariant_sets.runs import CellRuns, read
 from wspd_design.controllers.protocol import Measurement
 
-MOST_IMAGES = 1_000_000
+WORK_OF_AN_IMAGE, WORK_OF_A_STEP = 250, 20  # operations on intervals
 BLOCK = 16  # cells along the edge of the blocks that are tried first
 GROUP = 4  # cells along the edge of the groups that share slopes of the law
 PIECES = 4  # of the range of slip where the rate has to be sharp
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
-    """Answer of the checker; ``slips`` bounds the slip at and between samples."""
-
-    accepted: bool
-    reason: str
-    leaves: int  # blocks of cells that were mapped
-    seconds: float  # of computing time
-    slips: tuple[float, float] = (math.nan, math.nan)
-
-
-def check(problem: Problem, text: str) -> Verdict:
-    """Decide whether the sets in a certificate are invariant for the closed loop of a problem.
+def decide(problem: Problem, document: Mapping[str, Any], work: Work) -> dict[str, float]:
+    """Decide whether the sets in a document are invariant for the closed loop of a problem.
 
     Parameters
     ----------
     problem : Problem
         What the claim speaks about; its law must remember nothing.
-    text : str
-        The certificate, JSON.
+    document : mapping
+        From JSON; it may be anything.
+    work : Work
+        What may still be spent.
+
+    Returns
+    -------
+    dict
+        ``lowest slip`` and ``highest slip`` at and between samples, number of ``windows`` and of mapped ``blocks``.
+
+    Raises
+    ------
+    Refused
+        If it is not shown.
     """
     from flint import ctx
 
-    started = time.process_time()
-    walk, accepted, reason = None, True, "every image lies inside"
     try:
         with ctx.workprec(64):
-            sets = read(problem, text)
+            sets = read(problem, document)
             if problem.controller.start(Measurement(problem.speeds[1], 0.0, 0.0)) != ():
                 raise Refused("the law has a memory, which the sets leave out")
-            walk = _Walk(BallPlant(problem))
+            walk = _Walk(BallPlant(problem), work)
             _cover(problem, walk.plant, sets)
             for here, slower in zip(sets, [*sets[1:], None], strict=True):
                 walk.window(here, slower)
-    except Refused as refusal:
-        accepted, reason = False, str(refusal)
     except (TypeError, ValueError, ArithmeticError) as error:  # of the law, on balls
-        accepted, reason = False, f"the map cannot be enclosed: {error}"
-    return Verdict(
-        accepted=accepted,
-        reason=reason,
-        leaves=walk.images if walk else 0,
-        seconds=time.process_time() - started,
-        slips=(walk.low, walk.high) if walk and accepted else (math.nan, math.nan),
-    )
+        raise (
+            error if isinstance(error, Refused) else Refused(f"the map cannot be enclosed: {error}")
+        ) from None
+    return {
+        "lowest slip": walk.low,
+        "highest slip": walk.high,
+        "windows": float(len(sets)),
+        "blocks": float(walk.images),
+    }
 
 
 def _cover(problem: Problem, plant: BallPlant, sets: list[CellRuns]) -> None:
@@ -87,8 +84,8 @@ def _cover(problem: Problem, plant: BallPlant, sets: list[CellRuns]) -> None:
 class _Walk:
     """Goes through the cells of all windows."""
 
-    def __init__(self, plant: BallPlant) -> None:
-        self.plant, self.images = plant, 0
+    def __init__(self, plant: BallPlant, work: Work) -> None:
+        self.plant, self.work, self.images = plant, work, 0
         self.low, self.high = 1.0, 0.0
 
     def window(self, here: CellRuns, slower: CellRuns | None) -> None:
@@ -164,8 +161,7 @@ class _Walk:
         if shares is None:
             return True
         self.images += 1
-        if self.images > MOST_IMAGES:
-            raise Refused("too many images")
+        self.work.spend(WORK_OF_AN_IMAGE + self.here.steps * WORK_OF_A_STEP)
         plant, here, steps = self.plant, self.here, self.here.steps
         point, n = plant.point, here.per_unit
         low, high = point(cells[0]) / n, point(cells[1]) / n

@@ -1,7 +1,7 @@
 """The certificate of invariant sets as the checker reads it: everything in it is suspect."""
 
-import json
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,10 +36,9 @@ class CellRuns:
         return all(any(a <= first and last <= b for a, b in self.columns.get(i, ())) for i in columns)
 
 
-def read(problem: Problem, text: str) -> list[CellRuns]:
-    """Understand the certificate, or refuse it."""
+def read(problem: Problem, document: Mapping[str, Any]) -> list[CellRuns]:
+    """Understand the document, or refuse it."""
     try:
-        document = json.loads(text)
         if document["format"] != FORMAT or document["claim_sha256"] != model_hash(problem):
             raise Refused("the certificate speaks about another model")
         entries = document["windows"]

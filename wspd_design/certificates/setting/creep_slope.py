@@ -1,0 +1,156 @@
+"""The range of q = p - a/v near the reference, with the numbers of contact and friction on their ranges.
+
+The creep force depends on few combinations of its numbers. With the stiffness over the load C, the steepness
+z = kA C slip / mu0, k = kS/kA and the sliding speed s = slip v,
+
+    p - a/v = -mu0 N S(z, k, A, B, s) - B_W / I,   N = Q R^2 / I + (1 - slip) 8 g / (number of wheels),
+
+where S is the slope of the force over mu0 Q and v, the same for every wheel load, mass and radius. It is that of a
+wheel with kA = mu0 = slip = N = 1, C = z and kS = k at the speed s, on which the kernels are evaluated. The quantity
+"steepness" is the shear modulus that gives this wheel its C.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+
+from wspd_design.certificates.kernel.arb import above, below, point
+from wspd_design.certificates.kernel.checker import Ends as Balls
+from wspd_design.certificates.kernel.checker import add, inverse, mul, power
+from wspd_design.certificates.kernel.claim import Claim, Relation, variable
+from wspd_design.certificates.quantities import QUANTITIES
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.plant import EXPONENT, Values, forces
+from wspd_design.model.number import Number
+from wspd_design.model.slip import slip_dynamics, static_wheel_load
+from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.loading import constants
+from wspd_design.parameters.records import Rail, Vehicle
+
+STEEPNESS, RATIO, SLIDING, NORMAL_MASS = "steepness", "kS/kA", "sliding speed", "normal mass"
+USED = (
+    "speed",
+    "mass",
+    "wheelset inertia",
+    "wheel radius",
+    "wheel damping",
+    "shear modulus",
+    "semi axis rolling",
+    "semi axis lateral",
+    "kalker c11",
+    "reference load",
+    "mu0",
+    "adhesion reduction",
+    "slip reduction",
+)
+"""What q depends on, beside the slip, and the claims vary."""
+
+HELD = ("friction ratio", "friction decay")
+"""What q depends on and the claims hold: with their ranges too a proof would take some 50 000 boxes."""
+
+
+def slope_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
+    """Claim that -S stays on one side of a bound [s/m], for all slips of a range and all numbers of the domain."""
+
+    def expression(x: Values) -> Number:
+        return slip_dynamics(*_normal(problem, x), 1.0, x[SLIDING], deceleration=0.0).pole
+
+    def arranged(x: Values) -> Number:
+        return forces(*_normal(problem, x), 1.0, x[SLIDING], deceleration=0.0).pole
+
+    return Claim(
+        name="slope of the creep force over mu0 Q v, falling",
+        variables=(
+            variable(STEEPNESS, _doubles(_steepness(problem, slips)), "Pa"),
+            variable(RATIO, _doubles(_quotient(problem, "slip reduction", "adhesion reduction")), "-"),
+            *(variable(name, problem.nominal(name), QUANTITIES[name].unit) for name in HELD),
+            variable(NORMAL_MASS, 1.0, "kg"),
+            variable(SLIDING, _doubles(mul(_wide(slips), _span(problem, "speed"))), "m/s"),
+        ),
+        expression=expression,
+        form=arranged,
+        relation=relation,
+        bound=bound,
+        unit="s/m",
+    )
+
+
+def poles(problem: Problem, slips: Ends, least: float, most: float) -> Ends:
+    """Return a range that q cannot leave while -S lies between two numbers [1/s]."""
+    inertia = mul(_span(problem, "wheelset inertia"), _one(0.5))
+    radius, share = _span(problem, "wheel radius"), _gravity(problem)
+    rim = mul(mul(mul(_span(problem, "mass"), share), inverse(inertia)), mul(radius, radius))
+    rolling = mul(_wide((1.0 - slips[1], 1.0 - slips[0])), mul(share, _one(8.0)))
+    low, high = mul(mul(_wide((least, most)), _span(problem, "mu0")), add(rim, rolling))
+    least_damping, most_damping = mul(_span(problem, "wheel damping"), inverse(inertia))
+    return _doubles((low - most_damping, high - least_damping))
+
+
+def _normal(problem: Problem, x: Values) -> tuple[Vehicle, Rail]:
+    """Wheel with N = 1 at slip 1, kA = mu0 = 1 and its steepness in place of the shear modulus."""
+    vehicle = replace(problem.vehicle, mass=x[NORMAL_MASS])
+    load = static_wheel_load(vehicle)
+    contact = replace(
+        vehicle.contact,
+        shear_modulus=x[STEEPNESS],
+        semi_axis_rolling=1.0,
+        semi_axis_lateral=1.0,
+        kalker_c11=1.0,
+        reference_load=load,
+    )
+    normal = replace(
+        vehicle,
+        wheelset_inertia=2.0 * load,
+        wheel_radius=1.0,
+        wheel_damping=0.0,
+        contact=contact,
+    )
+    rail = replace(
+        problem.rail,
+        mu0=1.0,
+        adhesion_reduction=1.0,
+        slip_reduction=x[RATIO],
+        friction_ratio=x["friction ratio"],
+        friction_decay=x["friction decay"],
+    )
+    return normal, rail
+
+
+def _steepness(problem: Problem, slips: Ends) -> Balls:
+    """Range of the shear modulus that gives the normal wheel the steepness z = kA C slip / mu0."""
+    share, power_of_load = _gravity(problem), Fraction(EXPONENT)
+    load, reference = mul(_span(problem, "mass"), share), _span(problem, "reference load")
+    found = mul(_wide(slips), share)
+    for name in ("shear modulus", "semi axis rolling", "semi axis lateral", "kalker c11"):
+        found = mul(found, _span(problem, name))
+    if problem.contact_grows_with_load:
+        per_load = mul(power(load, power_of_load - 1), power(reference, -power_of_load))
+    else:
+        growth = mul(mul(_one(problem.vehicle.mass), share), inverse(reference))
+        per_load = mul(power(growth, power_of_load), inverse(load))
+    return mul(mul(found, per_load), _quotient(problem, "adhesion reduction", "mu0"))
+
+
+def _quotient(problem: Problem, above: str, below: str) -> Balls:
+    return mul(_span(problem, above), inverse(_span(problem, below)))
+
+
+def _gravity(problem: Problem) -> Balls:
+    """Static wheel load per mass [m/s2]."""
+    return mul(_one(constants().gravity), inverse(_one(2 * problem.vehicle.wheelsets)))
+
+
+def _span(problem: Problem, name: str) -> Balls:
+    return _wide(domain.span(problem, name))
+
+
+def _wide(ends: Ends) -> Balls:
+    return point(ends[0]), point(ends[1])
+
+
+def _one(number: float) -> Balls:
+    return _wide((number, number))
+
+
+def _doubles(found: Balls) -> Ends:
+    return below(found[0]), above(found[1])
