@@ -300,8 +300,9 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
     elif status is Status.EVIDENCE:
         meaning = (
             f"Tightest at {numbers['speed'] * KMH:.3g} km/h: the gain may change by "
-            f"{decibel(numbers['gain down']):.3g} to {decibel(numbers['gain up']):.3g} dB, the phase by "
-            f"{math.degrees(numbers['phase']):.3g} degrees, the delay may grow by {numbers['delay'] * 1e3:.3g} ms; disk margin {numbers['disk']:.3g}."
+            f"{decibel(numbers['gain down']):.3g} to {decibel(numbers['gain up']):.3g} dB, "
+            f"the phase by {math.degrees(numbers['phase']):.3g} degrees, "
+            f"the delay may grow by {numbers['delay'] * 1e3:.3g} ms; disk margin {numbers['disk']:.3g}."
         )
     where = (
         (
