@@ -174,7 +174,7 @@ def test_a_fast_vent_refutes_the_old_rule(problem):
 
 def test_a_law_inherits_nothing(problem):
     class Evil(TorqueFeedback):
-        def step(self, state, measurement):
+        def step(self, state, _measurement):
             return state, Command(fill=1.0, vent=0.0)
 
     law = problem.controller
