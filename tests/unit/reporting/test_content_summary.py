@@ -101,7 +101,17 @@ def test_key_numbers_are_those_of_the_records():
     assert [each.unit for each in tiles.numbers] == ["m", "%", "", "1/s"]
     assert "(four-axle), in 10.00 s" in plain(tiles.numbers[0].note)
     assert "174.2 m" in plain(tiles.numbers[1].note)
-    assert "1/τ = 1.67" in plain(tiles.numbers[3].note)
+    assert plain(tiles.numbers[3].note).endswith("1/τ = 1.67 1/s")
+
+
+def test_two_valve_times_are_both_said():
+    dossier = sample_dossier()
+    entries = dict(dossier.vehicle.entries)
+    entries["brake.vent_time"] = replace(entries["brake.vent_time"], value=0.15)
+    tiles, _ = summary(replace(dossier, vehicle=replace(dossier.vehicle, entries=entries)))
+    assert isinstance(tiles, KeyNumbers)
+    said = plain(tiles.numbers[3].note)
+    assert "there, between 1.67 1/s of filling and 6.67 1/s of venting" in said
 
 
 def test_a_chaotic_stop_keeps_only_the_digits_that_it_has():

@@ -45,14 +45,15 @@ class Check:
         """Name of the theorem."""
         return self.theorem.name
 
-    def run(self, problem: Problem) -> Certificate:
-        """Search, let the checkers decide about what was found, and tell."""
+    def run(self, problem: Problem, *, figures: bool = True) -> Certificate:
+        """Search, let the checkers decide about what was found, and tell; with plots, if they are wanted."""
         started = time.perf_counter()
         made = silent(self.theorem, problem)
         if made is None:
             with remembering():
                 found = accepted(self.theorem.obligations(problem), self.search(problem))
-                made = illustrated(self, problem, told(self.theorem, problem, found))
+                made = told(self.theorem, problem, found)
+                made = illustrated(self, problem, made) if figures else made
         return replace(made, seconds=time.perf_counter() - started)
 
 
