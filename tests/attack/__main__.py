@@ -3,7 +3,6 @@
 import argparse
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -60,9 +59,6 @@ def main(arguments: list[str]) -> int:
         default=[],
         help="NAME=LOW:HIGH in SI units, for example load_share=0.85:1.15",
     )
-    parser.add_argument(
-        "--exact-torque", action="store_true", help="the law knows the torque that holds its slip"
-    )
     parser.add_argument("--only", action="append", help="name of a check")
     parser.add_argument("--evaluations", type=int, default=200_000, help="per statement")
     parser.add_argument("--cpu-seconds", type=float, default=np.inf, help="at most, over all statements")
@@ -70,7 +66,6 @@ def main(arguments: list[str]) -> int:
     given = parser.parse_args(arguments)
     free = {name: _ends(text) for name, _, text in (each.partition("=") for each in given.free)}
     case = read_case(given.design, vehicle=given.vehicle, rail=given.rail, free=free)
-    case = replace(case, exact_torque=given.exact_torque)
     paths = sorted(given.certificates.glob("*.json"))
     files = [each for each in map(read_stated, paths) if not given.only or each.check in given.only]
     for each in files:

@@ -89,9 +89,6 @@ class Case:
     sample_time: float  # s
     model: Plant  # of the law
     data: Data  # of the plant
-    exact_torque: bool = (
-        False  # whether claims speak about a law that knows the torque that holds the reference
-    )
 
     @cached_property
     def varied(self) -> tuple[str, ...]:

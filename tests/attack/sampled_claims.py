@@ -9,7 +9,7 @@ import numpy as np
 from tests.attack import linear, motion
 from tests.attack.case import Case, Stated
 from tests.attack.laws import feedback_duty
-from tests.attack.plant import Plant, holding_torque
+from tests.attack.plant import holding_torque, slip_pole
 from tests.attack.search import Attack, Points
 from tests.attack.statements import box, plant_at
 
@@ -55,25 +55,9 @@ def _equilibrium(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
     )
 
 
-def _resting_point(case: Case, plant: Plant, speed: Any, *, sampled: bool) -> tuple[Any, Any, Any]:
-    """Slip and duty at rest, and where there are none; a law that knows its torque rests at the reference.
-
-    Where the brake cannot hold the reference such a law saturates, and nothing is said: not a number.
-    """
-    if not case.exact_torque:
-        slip, duty = linear.equilibrium(case, plant, speed, sampled=sampled)
-        lost = np.isnan(slip)
-        return np.where(lost, case.slip, slip), np.where(lost, 0.5, duty), lost
-    slip = np.full(np.shape(speed), case.slip)
-    share = holding_torque(plant, slip, speed) / plant.max_torque
-    share = np.where((share > 0.0) & (share < 1.0), share, np.nan)
-    duty = linear.duty_of(plant, share, case.sample_time)
-    return slip, np.where(np.isnan(share), np.nan, duty), np.zeros(np.shape(speed), bool)
-
-
 def lpv_lyapunov(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
     """The loop with true pulses has an equilibrium near its reference, and settles."""
-    return [] if case.exact_torque else [_equilibrium(case, stated, names), _settles(case, stated, names)]
+    return [_equilibrium(case, stated, names), _settles(case, stated, names)]
 
 
 def functions(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
@@ -153,28 +137,6 @@ def _falls(case: Case, stated: Stated, names: tuple[str, ...], pieces: Pieces, *
     )
 
 
-def sampled_fall(
-    case: Case, stated: Stated, names: tuple[str, ...], p: tuple[float, ...], factor: float
-) -> Attack:
-    """V falls by a factor squared per sample with true pulses."""
-
-    def margin(x: Points) -> Any:
-        plant = plant_at(case, x)
-        slip, duty, lost = _resting_point(case, plant, x["speed"], sampled=True)
-        silent = np.isnan(duty)
-        matrix = linear.sampled_map(case, plant, slip, x["speed"], np.where(silent, 0.5, duty))
-        fall = factor - linear.contraction(matrix, p)
-        return np.where(lost, NEVER, np.where(silent, np.nan, fall))
-
-    return Attack(
-        check=stated.check,
-        statement=f"V falls by the factor {factor:.4g}^2 per sample with true pulses, about the equilibrium",
-        box=box(case, names, speed=case.speeds),
-        margin=margin,
-        cost=60,
-    )
-
-
 def _settles(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
     """The nonlinear loop with true pulses, from its equilibrium with a small deviation, comes to rest."""
 
@@ -199,30 +161,35 @@ def _settles(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
 
 
 def routh_lag(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
-    """Poles of the loop with the averaged valve at frozen speed, about the equilibrium."""
+    """Poles of the loop with the averaged valve at frozen speed, about any slip within the tolerance."""
+    ranges = {"speed": case.speeds}
     if case.law == "torque-feedback":
+        ranges["slip"] = (case.slip - case.tolerance, case.slip + case.tolerance)
 
         def margin(x: Points) -> Any:
             plant = plant_at(case, x)
-            slip, _, lost = _resting_point(case, plant, x["speed"], sampled=False)
-            matrix = linear.continuous_rates(case, plant, slip, x["speed"], frozen=True)
-            return np.where(lost, NEVER, -linear.abscissa(matrix))
+            share = holding_torque(plant, x["slip"], x["speed"]) / plant.max_torque
+            possible = (share > 0.0) & (share < 1.0)
+            seen = plant.with_numbers({"wheel_radius": case.model.wheel_radius})
+            pole = slip_pole(plant, x["slip"], x["speed"])
+            matrix = linear.averaged(case, seen, np.where(possible, share, 0.5), pole)
+            return np.where(possible, -linear.abscissa(matrix), np.nan)
 
     else:
 
         def margin(x: Points) -> Any:
             return -linear.surface_poles(case, plant_at(case, x), x["speed"])
 
-    found = Attack(
-        check=stated.check,
-        statement="all poles behind the averaged valve lie in the left half-plane",
-        box=box(case, names, speed=case.speeds),
-        margin=margin,
-        unit="1/s",
-        cost=20,
-    )
-    moves = case.law == "torque-feedback" and not case.exact_torque
-    return [found, *([_equilibrium(case, stated, names)] if moves else [])]
+    return [
+        Attack(
+            check=stated.check,
+            statement="all poles behind the averaged valve lie in the left half-plane",
+            box=box(case, names, **ranges),
+            margin=margin,
+            unit="1/s",
+            cost=20,
+        )
+    ]
 
 
 def sampled_invariance(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:

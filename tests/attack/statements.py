@@ -125,7 +125,7 @@ def quantity_of(name: str) -> tuple[Quantity, str] | None:
 
 
 def torque_rate(case: Case, plant: Plant, slip: Any, speed: Any) -> Any:
-    """Rate of the averaged torque that holds a slip, as a share of T_max [1/s]; the law measures with its own radius."""
+    """Rate of the torque that holds a slip, averaged, over T_max [1/s]; the law measures with its own radius."""
     torque = holding_torque(plant, slip, speed)
     seen = 1.0 - case.model.wheel_radius / plant.wheel_radius * (1.0 - slip)
     return averaged_rate(plant, torque, feedback_duty(case, seen, speed, torque)) / plant.max_torque

@@ -6,6 +6,9 @@ import pytest
 
 from wspd_design.certificates.kernel.checker import FORMAT, Refused, Work, decide, read
 from wspd_design.certificates.kernel.file import MOST_NUMBERS, stated_findings
+from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.kernel.obligation import Special
+from wspd_design.certificates.theorems import quadratic
 
 
 def proof(model, tree):
@@ -47,6 +50,25 @@ def test_what_asks_for_too_much_is_refused():
     ):
         with pytest.raises(Refused, match="more work"):
             decide(forged, Work(100_000))
+
+
+def test_long_fractions_of_a_quadratic_function_are_refused():
+    long = f"{10**40}/{10**40 + 1}"
+    forged = {"format": quadratic.FORMAT, "poles": ["-1.0", "1.0"], "steps": ".", "pieces": [[long] * 8]}
+    with pytest.raises(Refused, match="letters"):
+        quadratic.read(forged)
+    assert quadratic.read({**forged, "pieces": [["1/3"] * 8]}).steps == "."
+
+
+@pytest.mark.parametrize("entry", ["check", "evaluate"])
+def test_arithmetic_that_ends_at_numbers_of_a_file_is_refused(entry):
+    def overflow(_stated, _work):
+        raise OverflowError("cannot convert Infinity to integer ratio")
+
+    obligation = Special(key="sets", text="s", **{entry: overflow}, within={"speed": (0.0, 1.0)})
+    stated = Stated(proof={"a": 1}) if entry == "check" else Stated(place={"speed": 0.5})
+    with pytest.raises(Refused, match="sets cannot be computed: OverflowError"):
+        obligation.decide(stated, Work())
 
 
 def test_a_place_has_no_more_coordinates_than_a_plant():

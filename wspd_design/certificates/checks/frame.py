@@ -65,9 +65,11 @@ def accepted(wanted: Sequence[Obligation], stated: Mapping[str, Stated]) -> dict
     work = Work()
 
     def decide(obligation: Obligation, given: Stated) -> Finding:
+        left = work.left
         try:
             return obligation.decide(given, work)
         except Refused:
+            work.left = left  # no file holds the proof, so that it costs nothing
             return obligation.decide(replace(given, proof=None), work)
 
     def known(obligation: Obligation) -> Finding:
