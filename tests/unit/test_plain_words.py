@@ -7,7 +7,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 UNIDIOMATIC = re.compile(
-    r"at the begin of|(?<!there )\bis no (number|proof|plant|law|point|sum)\b|broken (exponent|power)|neither shown nor refuted"
+    r"at the begin of|(?<!there )\bis no (number|proof|plant|law|point|sum)\b|broken (exponent|power)"
+    r"|neither shown nor refuted"
     r"|\bmake the design again\b|takes the ground from|\bWishes\b|\bStopWords\b|numbers that are certain"
     r"|all that it needs is proved|found no ground to stand",
     re.IGNORECASE,
