@@ -54,7 +54,7 @@ def loops(vehicle, rail, count=2000, speeds=(10.0 / 3.6, 120.0 / 3.6)):
     rail, rng = friction(rail), np.random.default_rng(3)
     ends = (NEAR, speeds, vehicle.bounds["mass"], vehicle.bounds["wheelset_inertia"], rail.bounds["mu0"])
     draws = [np.concatenate([rng.uniform(*end, count), rng.choice(end, count)]) for end in ends]
-    draws[0], draws[1] = rng.uniform(*NEAR, 2 * count), rng.uniform(*speeds, 2 * count)
+    draws[0] = rng.uniform(*NEAR, 2 * count)
     slip, speed, mass, inertia, mu0 = draws
     step = 1e-5
 
