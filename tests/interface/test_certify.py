@@ -6,6 +6,7 @@ import pytest
 
 from wspd_design.certificates.kernel.file import SCHEMA
 from wspd_design.certificates.records import Status
+from wspd_design.design.certification import certify
 
 ONLY = ("--only", "open_loop_pole")
 QUICK = ("surface_hurwitz", "gain_positive", "open_loop_pole", "no_go", "tracking", "conservation")
@@ -51,11 +52,15 @@ def test_files_are_not_replaced_unless_one_asks_for_it(wspd, smc_file, folder):
 
 
 def test_a_search_whose_work_is_used_up_leaves_the_claim_undecided(wspd, smc_file, folder):
-    done = wspd("certify", smc_file, *asked("reaching"), "--effort", "0.01")
-    assert done.code == 3
-    assert "the search was cut by its budget" in said(done)
-    assert "more effort may decide it" in said(done)
-    assert json.loads((folder / "reaching.json").read_text())["status"] == Status.UNDECIDED.name
+    (found,) = certify(smc_file, only=("well_posed",), effort=1e-9, folder=folder)
+    assert found.status is Status.UNDECIDED
+    assert found.cut
+    assert json.loads((folder / "well_posed.json").read_text())["status"] == Status.UNDECIDED.name
+    checked = wspd("check", folder)
+    assert checked.code == 3
+    assert "? unchecked" in checked.out
+    # What is open is searched again, with more effort.
+    assert wspd("certify", smc_file, *asked("well_posed"), "--force").code == 0
 
 
 @pytest.mark.parametrize("written", ["0", "-1", "5 s", "soon", "nan"])
