@@ -155,6 +155,15 @@ def test_evidence_is_simulated_again(smc_file, searched, beside):
     assert searched == ["conservation"]
 
 
+def test_what_is_open_is_searched_again(smc_file, beside, request):
+    certification.certify(smc_file, only=("well_posed",), effort=1e-9, folder=beside)
+    assert json.loads((beside / "well_posed.json").read_text())["status"] == Status.UNDECIDED.name
+    searched = request.getfixturevalue("searched")
+    with pytest.raises(Searched):
+        certification.certify(smc_file, only=("well_posed",))
+    assert searched == ["well_posed"]
+
+
 CERTIFY = "import sys; from wspd_design.cli import main; sys.argv[0] = 'wspd'; main()"
 SPIN = "while True: pass"
 
