@@ -82,7 +82,11 @@ def test_every_certificate_is_complete(certificates):
             assert certificate.findings
         if certificate.status is Status.REFUTED:
             assert certificate.witness or certificate.margin is None
-            assert certificate.margin is None or certificate.margin.high is None or certificate.margin.high <= 0.0
+            assert (
+                certificate.margin is None
+                or certificate.margin.high is None
+                or certificate.margin.high <= 0.0
+            )
         if certificate.status is Status.EVIDENCE:
             assert not certificate.witness
             assert certificate.margin is None or certificate.margin.high >= 0.0

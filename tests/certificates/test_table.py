@@ -128,7 +128,7 @@ def test_the_report_shows_only_good_news_as_good():
     tones = {status: Shown[status.name].tone for status in Status}
     assert {status for status, tone in tones.items() if tone == "good"} == GREEN
     assert {status for status, tone in tones.items() if tone == "bad"} == BAD
-    assert MEANINGS == {Shown[status.name]: status.value for status in Status}
+    assert {Shown[status.name]: status.value for status in Status} == MEANINGS
 
 
 def test_the_meaning_of_a_green_status_is_not_bad_news():
