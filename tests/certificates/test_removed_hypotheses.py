@@ -3,90 +3,90 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
+from round_trip import keep, refused
 
-from wspd_design.certificates.checks.foundations import well_posed
-from wspd_design.certificates.checks.sliding import reaching
-from wspd_design.certificates.checks.valve import open_loop_pole
-from wspd_design.certificates.kernel.checker import check
-from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates import suite
+from wspd_design.certificates.kernel.checker import Work, decide
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
+from wspd_design.certificates.search.settle import settle
+from wspd_design.certificates.theorems.sliding import gain_claims
+
+NAMES = ("gain_positive", "reaching", "well_posed")
 
 
 @pytest.fixture(scope="module")
 def problem(make_reference_problem):
-    return make_reference_problem(30.0)
+    return make_reference_problem(100.0)
 
 
 @pytest.fixture(scope="module")
-def files(problem):
-    """Certificates of the reference problem as they are kept, by name."""
-    found = [module.check(problem) for module in (reaching, well_posed, open_loop_pole)]
-    assert found[0].status is found[1].status is Status.PROVED
-    return {each.name: json.loads(certificate_text(each)) for each in found}
+def kept(problem):
+    """Certificates of the reference problem with their files, by name."""
+    found = {name: keep(suite.CHECKS[name], problem) for name in NAMES}
+    assert {each.certificate.status for each in found.values()} == {Status.PROVED}
+    return found
 
 
-@pytest.mark.parametrize("name", ["reaching", "well_posed"])
-def test_every_single_proof_is_needed(problem, files, name):
-    content = files[name]
-    assert replay(problem, json.dumps(content)).accepted
-    assert len(content["proofs"]) > 1
-    for k in range(len(content["proofs"])):
-        less = content["proofs"][:k] + content["proofs"][k + 1 :]
-        for proofs in (less, less + less, [*less, less[0]]):
-            found = replay(problem, json.dumps(content | {"proofs": proofs}))
-            assert not found.accepted
-            assert found.missing
+@pytest.mark.parametrize("name", NAMES)
+def test_every_single_proof_is_needed(kept, name):
+    findings = kept[name].content["findings"]
+    proofs = [key for key, each in findings.items() if "proof" in each]
+    assert len(proofs) > 1
+    for key in proofs:
+        assert refused(kept[name], findings={other: each for other, each in findings.items() if other != key})
+        bare = {entry: each for entry, each in findings[key].items() if entry != "proof"}
+        assert refused(kept[name], findings=findings | {key: bare})
 
 
-def test_weaker_bounds_do_not_meet_what_is_needed(problem, files):
-    """A true statement with a looser bound, with its own fingerprint, in place of the needed one."""
-    gain, _ = reaching.claims(problem, problem.controller)
-    loose = replace(gain, bound=Fraction(60))
-    content = files["reaching"]
-    first, second = content["proofs"]
-    weaker = {**first, "bound": "60.0", "claim_sha256": loose.digest()}
-    assert check(loose, json.dumps(weaker)).accepted
-    assert not check(gain, json.dumps(weaker)).accepted
-    found = replay(problem, json.dumps(content | {"proofs": [weaker, second]}))
-    assert not found.accepted
-    assert found.missing
+def test_weaker_bounds_do_not_meet_what_is_needed(problem, kept):
+    """A true statement with a looser bound, with its own proof, in place of the needed one."""
+    asked = gain_claims(problem)[-1]
+    loose = settle(replace(asked.claim, bound=Fraction(200)), tolerance=1e3).proof
+    loose["statement"]["bound"] = "150/1"
+    assert decide(loose, Work()).leaves >= 1
+    findings = kept["reaching"].content["findings"]
+    found = findings | {asked.key: {"proof": loose}}
+    assert replay(problem, json.dumps(kept["reaching"].content)).accepted
+    assert refused(kept["reaching"], findings=found)
 
 
-def test_proofs_do_not_speak_for_other_checks(problem, files):
-    for name, content in files.items():
-        for other, stranger in files.items():
+def test_findings_do_not_speak_for_other_checks(kept):
+    for name, one in kept.items():
+        for other, stranger in kept.items():
             if other != name:
-                mixed = content | {"status": "PROVED", "proofs": stranger["proofs"]}
-                assert not replay(problem, json.dumps(mixed)).accepted, (name, other)
-                mixed = content | {"proofs": content["proofs"] + stranger["proofs"]}
-                assert not replay(problem, json.dumps(mixed)).accepted, (name, other)
+                both = one.content["findings"] | stranger.content["findings"]
+                assert refused(one, findings=stranger.content["findings"]), (name, other)
+                assert refused(one, findings=both), (name, other)
+                assert refused(one, check=other), (name, other)
 
 
-@pytest.mark.parametrize("key", ["claim", "relation", "tree", "bound", "claim_sha256", "format"])
-def test_names_and_trees_cannot_be_exchanged(problem, files, key):
-    """The tree, hash, bound or name of one proof under those of another."""
-    content = files["reaching"]
-    first, second = content["proofs"]
-    if first[key] == second[key]:
-        second = {**second, key: "x"}
-    for proofs in ([{**first, key: second[key]}, content["proofs"][1]], [first, {**second, key: first[key]}]):
-        if proofs != content["proofs"]:
-            assert not replay(problem, json.dumps(content | {"proofs": proofs})).accepted
+@pytest.mark.parametrize("entry", ["statement", "format", "tree"])
+def test_proofs_and_their_parts_cannot_be_exchanged(kept, entry):
+    """The statement of one proof under the name of another; another format; a tree that is cut or goes on."""
+    findings = kept["reaching"].content["findings"]
+    proofs = {key: each["proof"] for key, each in findings.items() if "tree" in each.get("proof", {})}
+    for one, other in pairwise(proofs):
+        tree = proofs[one]["tree"]
+        for given in {
+            "statement": (proofs[other]["statement"],),
+            "format": ("wspd-proof/1",),
+            "tree": (tree[:-1], tree + "."),
+        }[entry]:
+            forged = findings[one] | {"proof": proofs[one] | {entry: given}}
+            assert refused(kept["reaching"], findings=findings | {one: forged}), (one, other)
 
 
-def test_of_two_values_of_a_key_the_last_counts_everywhere(problem, files):
+@pytest.mark.parametrize("key", ["tree", "bound", "statement", "findings", "claim", "status"])
+def test_no_key_stands_twice(problem, kept, key):
     """What the reader of the file and the checker of the proof see is the same."""
-    text = json.dumps(files["reaching"])
-    doubled = text.replace('"tree": "', '"tree": ".", "tree": "')
-    doubled = doubled.replace('"bound": "', '"bound": "1.0", "bound": "')
-    assert replay(problem, doubled).shown == replay(problem, text).shown
-    for forged in (
-        text.replace('"prover": ', '"tree": ".", "prover": '),
-        text.replace('"prover": ', '"bound": "1.0", "prover": '),
-        text.replace('"prover": ', '"claim": "abs(r)", "prover": '),
-    ):
-        assert forged != text
-        assert not replay(problem, forged).accepted
+    text = json.dumps(kept["reaching"].content)
+    for value in ('"."', '"1.0"', "{}"):
+        doubled = text.replace(f'"{key}": ', f'"{key}": {value}, "{key}": ', 1)
+        assert doubled != text
+        found = replay(problem, doubled)
+        assert not found.accepted
+        assert "twice" in found.reason

@@ -1,11 +1,11 @@
 """The whole set: order, completeness, honesty and what it refuses."""
 
-import json
 import math
 from dataclasses import replace
 
 import pytest
 
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search.budget import Budget
 from wspd_design.certificates.suite import NAMES, verify
@@ -53,7 +53,6 @@ def test_order(certificates):
         "sampled_invariance",
         "tracking",
         "conservation",
-        "stop_bound",
     )
     assert tuple(certificate.name for certificate in certificates) == NAMES
 
@@ -61,11 +60,12 @@ def test_order(certificates):
 def test_only_a_checker_proves(certificates):
     for certificate in certificates:
         if certificate.status is Status.PROVED:
-            assert certificate.proofs
+            assert certificate.proved
             assert all(h.status is not Status.UNDECIDED for h in certificate.hypotheses)
-        for proof in certificate.proofs:
-            assert json.loads(proof.certificate)["claim_sha256"] == proof.claim_hash
-            assert len(proof.certificate) < 100_000
+        for finding in certificate.proved.values():
+            assert finding.leaves > 0
+            assert finding.shown
+        assert len(certificate_text(certificate)) < 1_000_000
 
 
 def test_every_certificate_is_complete(certificates):
@@ -78,15 +78,18 @@ def test_every_certificate_is_complete(certificates):
         assert certificate.seconds >= 0.0
         if certificate.status in (Status.EVIDENCE, Status.REFUTED, Status.VACUOUS):
             assert certificate.assumptions
-            assert certificate.resolution
             assert certificate.reference
-            assert certificate.margin is not None
+            assert certificate.findings
         if certificate.status is Status.REFUTED:
-            assert certificate.witness
-            assert certificate.margin.high <= 0.0
+            assert certificate.witness or certificate.margin is None
+            assert (
+                certificate.margin is None
+                or certificate.margin.high is None
+                or certificate.margin.high <= 0.0
+            )
         if certificate.status is Status.EVIDENCE:
             assert not certificate.witness
-            assert certificate.margin.high >= 0.0
+            assert certificate.margin is None or certificate.margin.high >= 0.0
         for series in certificate.series:
             assert 2 <= len(series.x) == len(series.y) <= 502
 
@@ -117,7 +120,6 @@ def test_printed_law_on_dry_rail(printed):
         "sampled_invariance": Status.NOT_APPLICABLE,
         "tracking": Status.REFUTED,
         "conservation": Status.EVIDENCE,
-        "stop_bound": Status.PROVED,
     }
 
 
@@ -142,18 +144,16 @@ SEARCHED = ("well_posed", "sliding_exists", "reaching", "open_loop_pole", "sampl
 
 
 @pytest.mark.parametrize("name", ["afsmc-repaired", "smc"])
-def test_a_search_without_time_says_nothing_infinite_and_nothing_false(make_problem, make_controller, name):
+def test_a_search_without_effort_says_nothing_infinite_and_nothing_false(make_problem, make_controller, name):
     """One look at the whole box is all there is; what was not shown is open."""
     problem = make_problem(make_controller(name, "polach-wet"), rail="polach-wet")
-    found = verify(problem, only={*SEARCHED, "afsmc_energy"}, budget=Budget(seconds=0.0))
+    found = verify(problem, only={*SEARCHED, "afsmc_energy"}, budget=Budget(effort=1e-9))
     for certificate in found:
         assert certificate.status is not Status.PROVED, certificate.name
         ends = (certificate.margin.low, certificate.margin.high) if certificate.margin else ()
         assert all(end is None or math.isfinite(end) for end in ends), certificate.name
         words = " ".join([certificate.explanation, *(each.text for each in certificate.hypotheses)])
         assert "inf" not in words.replace("-", " ").split(), certificate.name
-    (brake,) = (each for each in found if each.name == "sliding_exists")
-    assert "Whether the brake is ever the limit is open" in brake.explanation
 
 
 def test_unknown_check_is_refused_with_the_nearest_name(make_problem, make_controller):

@@ -70,6 +70,19 @@ def test_another_rail_is_another_claim(design):
     assert_refuted(design, "reaching", rail="polach-dry", vehicle="er24pc")
 
 
+def test_a_proved_limitation_fails_unless_it_is_asked_for(design):
+    dry = {"vehicle": "er24pc", "rail": "polach-dry"}
+    (found,) = assert_certified(design, "no_go", limitation=True, **dry)
+    assert found.status is Status.LIMITATION
+    for level in (Status.PROVED, Status.EVIDENCE):
+        with pytest.raises(AssertionError, match="no_go is LIMITATION, asked for"):
+            assert_certified(design, "no_go", at_least=level, **dry)
+    with pytest.raises(AssertionError, match="no_go is LIMITATION, asked for REFUTED"):
+        assert_refuted(design, "no_go", **dry)
+    with pytest.raises(AssertionError, match="surface_hurwitz is PROVED, asked for LIMITATION"):
+        assert_certified(design, "surface_hurwitz", limitation=True)
+
+
 def test_a_problem_of_ones_own(design):
     vehicle, rail = load_vehicle("er24pc"), load_rail("polach-wet")
     problem = stability_problem(vehicle, rail, design.build(vehicle, rail), design.specification)

@@ -196,7 +196,7 @@ def _vacuous(problem: Problem, findings: Findings) -> Certificate:
         name="barbalat",
         title="Convergence after Barbalat",
         claim="s tends to 0 as t tends to infinity, because the integral of abs(s_D) is finite and s_D is uniformly "
-        "continuous.",
+        f"continuous, {said.text}.",
         status=Status.VACUOUS if proved else Status.UNDECIDED,
         explanation=(
             f"There is no t to infinity in a stop, and a limit says nothing about the error at its end: while the slip "

@@ -213,8 +213,7 @@ def _tell_printed(problem: Problem, findings: Findings) -> Certificate:
         title="V2 of the paper",
         claim="V2 of (43) does not rise along the closed loop, as (44) says, at any state with "
         f"{problem.speeds[0] * KMH:.3g} to {problem.speeds[1] * KMH:.3g} km/h and slip {SLIPS[0]:g} to {SLIPS[1]:g} on "
-        f"{problem.rail.name}, "
-        "for any ideal weights and bound that satisfy (34) there.",
+        f"{problem.rail.name} with the nominal parameters, for any ideal weights and bound that satisfy (34) there.",
         status=status,
         explanation=_told("V2", "1/s", rise, run) + reason,
         margin=_margin("V2", status, run),
@@ -279,8 +278,8 @@ def _tell_repaired(problem: Problem, findings: Findings) -> Certificate:
         title="Repaired V",
         claim="V = v s_D^2/(2 g) + |b~|^2/(2 alpha1) + psi~^2/(2 alpha2) does not rise along the closed loop of the "
         f"repaired law, at any state with {problem.speeds[0] * KMH:.3g} to {problem.speeds[1] * KMH:.3g} km/h and slip "
-        f"{SLIPS[0]:g} to {SLIPS[1]:g} on {problem.rail.name}, for any ideal weights and bound that satisfy (34) "
-        "there.",
+        f"{SLIPS[0]:g} to {SLIPS[1]:g} on {problem.rail.name} with the nominal parameters, for any ideal weights and "
+        "bound that satisfy (34) there.",
         status=status,
         explanation=told,
         margin=_margin("V", status, run),

@@ -125,7 +125,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         name="lyapunov_surface",
         title="V of the sliding mode",
         claim="V = sbar^2/2, sbar = s/K_P, does not rise at any state outside the layer, abs(sbar) > "
-        f"{law.gains.boundary_layer:g}, whatever the integral of the error, on {domain.described(problem)}.",
+        f"{law.gains.boundary_layer:g}, whatever the integral of the error, on {domain.described(problem)}, the "
+        "other numbers of vehicle and rail nominal.",
         status=status,
         explanation=told,
         margin=Range(low=None, high=TOLERANCE - numbers["rise"], unit="of max V")
