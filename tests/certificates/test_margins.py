@@ -72,9 +72,7 @@ def test_disk_margin_is_the_peak_of_the_balanced_sensitivity(factor):
     assert margins.margins(opened).disk == pytest.approx(expected, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("name", "sample_time"), [("afsmc", None), ("smc", 0.005), ("torque-feedback", 0.02)]
-)
+@pytest.mark.parametrize(("name", "sample_time"), [("smc", 0.005), ("torque-feedback", 0.02)])
 def test_disk_margin_over_speed(make_problem, make_controller, name, sample_time):
     """Margins below 0.01 belong to peaks that are narrower than a grid of some hundred frequencies."""
     problem = make_problem(make_controller(name, "polach-wet"), rail="polach-wet")
@@ -87,7 +85,15 @@ def test_disk_margin_over_speed(make_problem, make_controller, name, sample_time
     for opened, disk in stable:
         highest = math.pi / sample_time if sample_time else 1e3
         assert disk == pytest.approx(1.0 / balanced_peak(opened, 1.0, highest), rel=1e-6)
-    assert min(disk for _, disk in stable) < (0.01 if name != "torque-feedback" else 1.0)
+    assert len(stable) > 1
+    assert (min(disk for _, disk in stable) < 0.01) is (name == "smc")
+
+
+def test_the_printed_law_has_no_margin_at_any_speed(make_problem, make_controller):
+    """Audit M1: with its adaptation; with held weights it looked stable on the wet rail."""
+    problem = make_problem(make_controller("afsmc", "polach-wet"), rail="polach-wet")
+    for speed in np.geomspace(*problem.speeds, 13):
+        assert not margins.margins(margins.loop(problem, float(speed))).stable
 
 
 def test_gain_and_phase_at_the_edge_of_the_disk(problem):
@@ -158,8 +164,10 @@ def test_sampled_loop_is_the_law_between_samples(problem, fill, vent):
 
 
 @pytest.fixture(scope="module")
-def good(problem):
-    return keep(margins.CHECK, problem)
+def good(make_problem, make_controller):
+    return keep(
+        margins.CHECK, make_problem(make_controller("torque-feedback", "polach-wet"), rail="polach-wet")
+    )
 
 
 @pytest.fixture(scope="module")
@@ -185,9 +193,7 @@ def test_a_place_that_is_not_unstable_refutes_nothing(good, bad):
     """The pole of a witness is enclosed again; samples cannot become a refutation."""
     findings = bad.content["findings"]
     for key in ("continuous", "sampled"):
-        assert refused(bad, findings={name: each for name, each in findings.items() if name != key}) is (
-            key == "continuous"
-        )
+        assert refused(bad, findings={name: each for name, each in findings.items() if name != key})
     forged = good.content["findings"] | {"sampled": findings["continuous"]}
     assert refused(good, findings=forged, status="REFUTED")
     assert not_for(bad, good.problem)

@@ -14,7 +14,9 @@ from tests.certificates.own_laws import BOUND, NOT_BOUND, EvilSliding
 from tests.certificates.round_trip import keep, no_proof_can_be_missed, no_word_can_be_changed, refused
 from wspd_design.certificates.checks.frame import accepted
 from wspd_design.certificates.checks.valve import no_go
+from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
@@ -207,6 +209,19 @@ def test_speeds_that_leave_the_domain_or_were_not_proved_are_refused(proved, spe
     found = replay(proved.problem, json.dumps(_with_range(proved, speeds)))
     assert not found.accepted
     assert found.certificate is None
+
+
+def test_a_genuine_proof_beyond_the_domain_is_refused(dry, proved):
+    """Proved of more speeds than the design speaks about: true, but not a statement of this design."""
+    proof = proved.certificate.findings["beyond"].stated.proof
+    low, high = proved.certificate.findings["beyond"].part
+    for speeds in ((low + 1e-9, dry.speeds[1]), (dry.speeds[0], high - 1e-9)):
+        narrower = replace(dry, speeds=speeds)
+        asked = {each.key: each for each in THEOREMS["no_go"].obligations(narrower)}["beyond"]
+        with pytest.raises(Refused, match="not part of the domain"):
+            asked.decide(Stated(proof=proof), Work())
+    asked = {each.key: each for each in THEOREMS["no_go"].obligations(dry)}["beyond"]
+    assert asked.decide(Stated(proof=proof), Work()).status is Status.PROVED
 
 
 def test_fewer_speeds_show_less_and_the_file_has_to_say_so(dry, proved):

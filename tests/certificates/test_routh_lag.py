@@ -116,7 +116,8 @@ def test_witness_off_all_nominal_numbers_is_unstable(make_problem, make_controll
     for name in numbers:
         low, high = problem.span(name)
         assert low <= at[name] <= high
-    assert 1.0 / 0.9 <= at[DECAY] <= 1.0 / 0.3
+    assert at[DECAY] * (1.0 + 1e-12) >= 1.0 / 0.9
+    assert at[DECAY] <= 1.0 / 0.3 * (1.0 + 1e-12)
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +170,7 @@ def test_a_fast_valve_lets_the_sliding_mode_pass_and_a_slow_one_does_not(light, 
     _stable_wherever_one_looks(problem, routh_lag.CHECK.run(problem), 0.02)
     slow = light("smc")
     assert routh_lag.CHECK.run(slow).status is Status.REFUTED
-    monkeypatch.setattr(linear_loop, "_rates", lambda *_: Valve(decay=1e3, rate=1e3))
+    monkeypatch.setattr(linear_loop, "_rates", lambda *_: Valve(decay=50.0, rate=50.0))
     assert routh_lag.CHECK.run(slow).status is Status.PROVED
     gains = slow.controller.linear_form(5.0)
     assert growth(plant_at("polach-dry", 5.0, {}), gains) > 0.0

@@ -1,6 +1,7 @@
 """The bound for every controller against dense sampling, ideal stops and all controllers at hand."""
 
-import json
+import copy
+import re
 from dataclasses import replace
 from fractions import Fraction
 
@@ -8,11 +9,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from tests.certificates.round_trip import keep, no_proof_can_be_missed, no_word_can_be_changed
 from wspd_design.certificates.checks.stop import stop_bound
+from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search import adhesion_peaks as peak_search
-from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.shortest_stop import adhesion_limit, adhesion_peaks
+from wspd_design.certificates.theorems.shortest_stop import stop_bound as theorem
+from wspd_design.certificates.theorems.shortest_stop.stop_bound import DISTANCE, TIME
 from wspd_design.model import adhesion
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.loading import load_rail
@@ -22,16 +26,23 @@ from wspd_design.simulation.records import Scenario
 START = 120.0 / 3.6
 
 
+def _end(verdict, name):
+    """Distance at which a curve of the verdict ends."""
+    (curve,) = (each for each in verdict.series if each.name == name)
+    return curve.x[-1]
+
+
 @pytest.fixture(scope="module")
 def proved(make_problem, make_controller):
-    """Problem, certificate and what the checker computes from it, for each rail."""
+    """Problem, proof and what the checker computes from it, for each rail."""
     kept = {}
 
     def of(rail):
         if rail not in kept:
             problem = make_problem(make_controller("none"), rail=rail)
-            text = peak_search.search(problem)
-            kept[rail] = problem, text, adhesion_peaks.check(problem, text).limit
+            plant = problem.vehicle, problem.rail, START
+            proof = peak_search.search(*plant)
+            kept[rail] = problem, proof, adhesion_peaks.decide(*plant, proof, Work())[0]
         return kept[rail]
 
     return of
@@ -107,29 +118,35 @@ def test_momentum_bounds_the_simulated_speed_from_below(er24pc, stop):
 
 @pytest.mark.parametrize("name", ["afsmc", "smc", "none", "torque-feedback"])
 def test_proved_and_kept(make_problem, make_controller, name):
-    verdict = stop_bound.check(make_problem(make_controller(name, "polach-wet"), rail="polach-wet"))
+    verdict = stop_bound.CHECK.run(make_problem(make_controller(name, "polach-wet"), rail="polach-wet"))
     assert verdict.status is Status.PROVED
     at = {point.name: point.value for point in verdict.worst_point}
-    assert at["bound on the time"] > 14.4  # the printed 12.2 s cannot come from this rail
-    assert (
-        at["bound on the distance"] < at["distance of the ideal stop"] <= at["distance of the simulated stop"]
-    )
+    assert at[TIME] > 14.4  # the printed 12.2 s cannot come from this rail
+    simulated, ideal = (float(each) for each in re.findall(r"takes ([0-9.]+) m", verdict.remark))
+    assert at[DISTANCE] == _end(verdict, "no stop ends before this") < ideal <= simulated
+    assert _end(verdict, "this stop") == pytest.approx(simulated, rel=1e-3)
+
+
+def test_every_word_rests_on_the_peaks(make_problem, make_controller):
+    kept = keep(stop_bound.CHECK, make_problem(make_controller("smc", "polach-wet"), rail="polach-wet"))
+    no_word_can_be_changed(kept)
+    no_proof_can_be_missed(kept)
 
 
 @pytest.mark.parametrize("factor", [1.1, 2.0])
-def test_planted_bound_is_refuted_by_a_stop(make_problem, make_controller, monkeypatch, factor):
-    right = adhesion_peaks.check
+def test_a_stop_shorter_than_a_planted_bound_is_remarked(make_problem, make_controller, monkeypatch, factor):
+    """The stop is simulated and decides nothing; whoever reads the verdict sees that something is wrong."""
+    right = theorem.decide
 
     def wrong(*given):
-        found = right(*given)
-        return replace(found, limit=replace(found.limit, distance=factor * found.limit.distance))
+        limit, parts = right(*given)
+        return replace(limit, distance=factor * limit.distance), parts
 
-    monkeypatch.setattr(adhesion_peaks, "check", wrong)
-    verdict = stop_bound.check(
+    monkeypatch.setattr(theorem, "decide", wrong)
+    verdict = stop_bound.CHECK.run(
         make_problem(make_controller("torque-feedback", "polach-wet"), rail="polach-wet")
     )
-    assert verdict.status is Status.REFUTED
-    assert verdict.witness
+    assert "A simulated stop is shorter than the bound" in verdict.remark
 
 
 def _words(key, change):
@@ -203,64 +220,65 @@ FAULTS = {
     "speed that is not a number": (_words("speeds", _placed(3, "nan")), "states no speeds"),
     "cut that is not a number": (_cuts(_placed(3, "1/0")), "states no cuts"),
     "numbers in place of text": (lambda content: content.update(peaks=[0.4]), "states no peaks"),
-    "no peaks": (lambda content: content.pop("peaks"), "states no peaks"),
+    "no peaks": (lambda content: content.pop("peaks"), "does not have the format"),
     "too many speeds": (lambda content: content.update(speeds="0 " * 2000), "states no speeds"),
     "other format": (lambda content: content.update(format="wspd-proof/1"), "does not have the format"),
-    "other claim": (lambda content: content.update(claim_sha256="0" * 64), "belongs to another claim"),
+    "more than peaks": (lambda content: content.update(claim_sha256="0" * 64), "does not have the format"),
+    "peaks that fill the memory": (lambda content: content.update(peaks=" " * 30_000), "states no peaks"),
+    "cuts that are not a list": (lambda content: content.update(cuts="0.1"), "one peak and one list of cuts"),
 }
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_planted_faults_are_refused(proved, fault):
-    problem, text, _ = proved("polach-dry")
+    problem, proof, _ = proved("polach-dry")
     change, reason = FAULTS[fault]
-    content = json.loads(text)
+    content = copy.deepcopy(proof)
     change(content)
-    verdict = adhesion_peaks.check(problem, json.dumps(content))
-    assert not verdict.accepted
-    assert reason in verdict.reason
+    with pytest.raises(Refused, match=reason):
+        adhesion_peaks.decide(problem.vehicle, problem.rail, START, content, Work())
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "null", "NaN", "[" * 100_000, " " * 2_000_000, "\x00\ufffd"])
-def test_what_is_no_certificate_is_refused(proved, text):
-    problem, _, _ = proved("polach-dry")
-    assert not adhesion_peaks.check(problem, text).accepted
+def test_more_parts_than_the_work_allows_are_refused(proved):
+    problem, proof, _ = proved("polach-dry")
+    with pytest.raises(Refused, match="more work"):
+        adhesion_peaks.decide(problem.vehicle, problem.rail, START, proof, Work(most=100_000))
 
 
-def _forged(text, problem):
-    """Write the fingerprint of another problem over that of a certificate."""
-    return json.dumps(json.loads(text) | {"claim_sha256": model_hash(problem)})
+def test_every_part_is_paid_for(proved):
+    problem, proof, _ = proved("polach-dry")
+    work = Work()
+    before = work.left
+    _, parts = adhesion_peaks.decide(problem.vehicle, problem.rail, START, proof, work)
+    assert parts == sum(len(cuts.split()) + 1 for cuts in proof["cuts"])
+    assert before - work.left >= adhesion_peaks.PART_WORK * parts
 
 
-def test_another_rail_vehicle_or_speed_is_another_claim(proved):
-    problem, text, _ = proved("polach-wet")
+def test_another_rail_vehicle_or_speed_needs_other_peaks(proved):
+    problem, proof, _ = proved("polach-wet")
     dry, _, _ = proved("polach-dry")
     light = replace(problem, vehicle=replace(problem.vehicle, mass=0.5 * problem.vehicle.mass))
     faster = replace(problem, speeds=(problem.speeds[0], 1.2 * START))
-    for other in (dry, light, faster):
-        assert "another claim" in adhesion_peaks.check(other, text).reason
-    # Whoever forges the fingerprint still has to show the peaks.
     for other in (dry, light):
-        assert "is not shown" in adhesion_peaks.check(other, _forged(text, other)).reason
+        with pytest.raises(Refused, match="is not shown"):
+            adhesion_peaks.decide(other.vehicle, other.rail, START, proof, Work())
     # The peaks hold at higher speeds as well: what is shown then is true.
-    found = adhesion_peaks.check(faster, _forged(text, faster))
-    assert "from 144 km/h" in found.statement
+    found, _ = adhesion_peaks.decide(faster.vehicle, faster.rail, faster.speeds[1], proof, Work())
     ideal = ideal_stop(
         faster.vehicle, Scenario(rail=faster.rail, initial_speed=faster.speeds[1]), plant="quarter"
     )
-    assert found.limit.distance < ideal.distance
+    assert found.distance < ideal.distance
 
 
 def test_fewer_speeds_show_less_but_nothing_false(proved):
-    problem, text, whole = proved("polach-dry")
-    content = json.loads(text)
+    problem, proof, whole = proved("polach-dry")
+    content = copy.deepcopy(proof)
     for key in ("speeds", "peaks"):
         content[key] = " ".join(content[key].split()[::4])
     content["cuts"] = content["cuts"][::4]
-    found = adhesion_peaks.check(problem, json.dumps(content))
-    assert found.accepted
-    assert 0.97 * whole.distance < found.limit.distance < whole.distance
-    assert found.limit.time < whole.time
+    found, _ = adhesion_peaks.decide(problem.vehicle, problem.rail, START, content, Work())
+    assert 0.97 * whole.distance < found.distance < whole.distance
+    assert found.time < whole.time
 
 
 @pytest.mark.parametrize(
@@ -276,16 +294,18 @@ def test_mutated_searches_prove_nothing(make_problem, make_controller, monkeypat
     """Peaks too low, from coarse samples, from a part of the slip, and cuts that are too far apart."""
     for name, value in mutation.items():
         monkeypatch.setattr(peak_search, name, value)
-    verdict = stop_bound.check(make_problem(make_controller("none")))
+    verdict = stop_bound.CHECK.run(make_problem(make_controller("none")))
     assert verdict.status is Status.UNDECIDED
-    assert not verdict.proofs
-    assert "the checker refuses" in verdict.claim
+    assert not verdict.proved
+    assert "No peaks of adhesion are stated that the checker accepts" in verdict.explanation
+    assert not any(character.isdigit() for character in verdict.claim.split("within less than")[1])
 
 
 def test_what_the_derivation_does_not_cover_is_undecided(make_problem, make_controller, er24pc):
     downhill = replace(er24pc, resistance_constant=-1e3)
-    verdict = stop_bound.check(make_problem(make_controller("none"), vehicle=downhill))
+    verdict = stop_bound.CHECK.run(make_problem(make_controller("none"), vehicle=downhill))
     assert verdict.status is Status.UNDECIDED
+    assert "a resistance without negative parts" in verdict.explanation
     dragged = replace(er24pc, resistance_constant=8e6)
     with pytest.raises(adhesion_limit.NoBound, match="outrun"):
         adhesion_limit.require(dragged, load_rail("polach-wet"), START)

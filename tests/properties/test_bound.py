@@ -7,10 +7,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.search import adhesion_peaks as peak_search
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
-from wspd_design.design.problem import stability_problem
-from wspd_design.design.records import Specification
+from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import require
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail
@@ -95,16 +95,15 @@ def test_no_controller_beats_the_ideal_stop(make_controller, rail, share, name, 
 @settings(max_examples=10, deadline=None)
 @example(rail=load_rail("polach-wet"), vehicle=DAMPED, kmh=120.0)
 @given(rail=rails, vehicle=vehicles, kmh=st.floats(15.0, 160.0))
-def test_what_is_proved_lies_below_ideal_stops(make_controller, rail, vehicle, kmh):
+def test_what_is_proved_lies_below_ideal_stops(rail, vehicle, kmh):
     """The search finds peaks and cuts that the checker accepts on every rail, for every vehicle."""
-    wanted = Specification(speeds=(10.0 / 3.6, kmh / 3.6))
-    problem = stability_problem(vehicle, rail, make_controller("none"), wanted)
+    plant = vehicle, rail, kmh / 3.6
+    require(*plant)
     with patch.object(peak_search, "SPEEDS", 40):
-        found = adhesion_peaks.check(problem, peak_search.search(problem))
-    assert found.limit is not None, found.reason
+        found, _ = adhesion_peaks.decide(*plant, peak_search.search(*plant), Work())
     ideal = ideal_stop(vehicle, Scenario(rail=rail, initial_speed=kmh / 3.6), plant="quarter")
-    assert 0.5 * ideal.distance < found.limit.distance < ideal.distance
-    assert found.limit.time < ideal.stopping_time
+    assert 0.5 * ideal.distance < found.distance < ideal.distance
+    assert found.time < ideal.stopping_time
 
 
 def test_every_number_of_the_vehicle_is_drawn():
@@ -118,7 +117,7 @@ def test_every_number_of_the_vehicle_is_drawn():
     parts = {"brake": vehicle.brake, "contact": vehicle.contact}
     names = {each.name for each in fields(vehicle)} - parts.keys() - {"name"}
     names |= {f"{part}.{each.name}" for part, record in parts.items() for each in fields(record)}
-    names = {name for name in names if not name.endswith("_bounds")}
+    names = {name for name in names if name.split(".")[-1] != "bounds"}
     assert names == SHARES.keys() | geometry | pitch | scale | disturbance | made
 
 

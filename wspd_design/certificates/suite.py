@@ -21,7 +21,7 @@ from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.linear import margins, routh_lag
 from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance
 from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
-from wspd_design.certificates.checks.stop import tracking
+from wspd_design.certificates.checks.stop import stop_bound, tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
@@ -57,6 +57,7 @@ CHECKS: Mapping[str, Check] = {
         sampled_invariance.CHECK,
         tracking.CHECK,
         conservation.CHECK,
+        stop_bound.CHECK,
     )
 }
 NAMES = tuple(THEOREMS)

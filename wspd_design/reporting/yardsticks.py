@@ -4,13 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from wspd_design.certificates.records import Certificate, Status
+from wspd_design.certificates.theorems.shortest_stop.stop_bound import DISTANCE, STOP_BOUND
 from wspd_design.reporting import numbers
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending
-
-SHORTEST_STOP = "stop_bound"  # the check
-DISTANCE = "bound on the distance"  # a place of its certificate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +50,7 @@ def ideal_sentence(figures: Metrics) -> str:
 def proved_bound(certificates: Iterable[Certificate]) -> ProvedBound | None:
     """Return what the check of the shortest stop proves; None where it proves nothing."""
     for each in certificates:
-        if each.name == SHORTEST_STOP and each.status is Status.PROVED:
+        if each.name == STOP_BOUND.name and each.status is Status.PROVED:
             places = {point.name: point.value for point in each.worst_point}
             return ProvedBound(distance=places[DISTANCE], certificate=each)
     return None

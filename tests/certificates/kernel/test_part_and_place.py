@@ -76,7 +76,14 @@ def test_a_part_between_two_doubles_is_refused():
 
 @pytest.mark.parametrize(
     "variables",
-    [[], None, 7, [["speed", "2.5", "30.0"]], [["mass", "2.5", "30.0", "kg"]], [["speed", "30.0", "2.5", "m/s"]]],
+    [
+        [],
+        None,
+        7,
+        [["speed", "2.5", "30.0"]],
+        [["mass", "2.5", "30.0", "kg"]],
+        [["speed", "30.0", "2.5", "m/s"]],
+    ],
     ids=repr,
 )
 def test_a_proof_that_states_no_part_is_refused(variables):
@@ -115,7 +122,9 @@ OUTSIDE = [
 def test_a_place_outside_the_domain_is_refused_by_whatever_amount(speed):
     with pytest.raises(Refused, match="outside the box"):
         AT.decide(Stated(place={"speed": speed}), Work())
-    special = Special(key="fast", text="slow", evaluate=lambda place, _: dict(place), within={"speed": WITHIN})
+    special = Special(
+        key="fast", text="slow", evaluate=lambda place, _: dict(place), within={"speed": WITHIN}
+    )
     with pytest.raises(Refused, match="leaves the domain"):
         special.decide(Stated(place={"speed": speed}), Work())
     assert special.decide(Stated(place={"speed": 30.0}), Work()).status is Status.REFUTED
@@ -123,7 +132,9 @@ def test_a_place_outside_the_domain_is_refused_by_whatever_amount(speed):
 
 @pytest.mark.parametrize("speed", [math.nan, math.inf, -math.inf])
 def test_a_place_that_is_not_finite_is_refused(speed):
-    special = Special(key="fast", text="slow", evaluate=lambda place, _: dict(place), within={"speed": WITHIN})
+    special = Special(
+        key="fast", text="slow", evaluate=lambda place, _: dict(place), within={"speed": WITHIN}
+    )
     for obligation in (AT, special):
         with pytest.raises(Refused, match=r"not finite|leaves the domain"):
             obligation.decide(Stated(place={"speed": speed}), Work())
@@ -131,7 +142,9 @@ def test_a_place_that_is_not_finite_is_refused(speed):
 
 @pytest.mark.parametrize("place", [{"slip": 25.0}, {"speed": 25.0, "slip": 0.1}])
 def test_a_place_names_the_free_quantities_and_nothing_else(place):
-    special = Special(key="fast", text="slow", evaluate=lambda place, _: dict(place), within={"speed": WITHIN})
+    special = Special(
+        key="fast", text="slow", evaluate=lambda place, _: dict(place), within={"speed": WITHIN}
+    )
     for obligation in (AT, special):
         with pytest.raises(Refused, match="must name speed and nothing else"):
             obligation.decide(Stated(place=place), Work())

@@ -9,6 +9,7 @@ from wspd_design.design.catalog import controller_of
 from wspd_design.design.file import design_text, read_design, write_design
 from wspd_design.design.records import Specification, rail_hash, vehicle_hash
 from wspd_design.design.selection import design_controller
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
 from wspd_design.testing import assert_refuted
@@ -38,7 +39,12 @@ def test_a_file_of_the_same_name_is_another_rail(made, wet, tmp_path):
 
 @pytest.mark.parametrize(
     "change",
-    [{"mu0": 0.31}, {"mu0_bounds": (0.2, 0.36)}, {"friction_decay": 0.21}, {"slip_reduction": 0.11}],
+    [
+        {"mu0": 0.31},
+        {"bounds": Bounds.of({"mu0": (0.2, 0.36)})},
+        {"friction_decay": 0.21},
+        {"slip_reduction": 0.11},
+    ],
 )
 def test_every_number_of_the_rail_counts(made, er24pc, wet, change):
     other = replace(wet, **change)
@@ -61,7 +67,7 @@ def test_constants_count(wet, er24pc, monkeypatch):
 
 def test_other_numbers_under_the_same_name_do_not_move_the_model(made, wet):
     """With mu0 of .42 the design needs more switching gain than it has; its own model stays at .3 (audit A4)."""
-    other = replace(wet, mu0=0.42, mu0_bounds=(0.41, 0.43))
+    other = replace(wet, mu0=0.42, bounds=Bounds.of({**wet.bounds, "mu0": (0.41, 0.43)}))
     assert_refuted(made, "reaching", rail=other)
     assert_refuted(made, "reaching", rail=replace(other, name="other"))
 

@@ -28,7 +28,8 @@ def _good(*statuses):
 def test_a_refuted_check_always_shows(statuses):
     for dossier in (_good(*statuses), sample_dossier(statuses)):
         said = verdict(dossier)
-        refuted = [each for each in dossier.certificates if each.status is Status.REFUTED]
+        bad = (Status.REFUTED, Status.LIMITATION)
+        refuted = [each for each in dossier.certificates if each.status in bad]
         assert (said.status is Shown.REFUTED) == bool(refuted)
         if refuted:
             total = len(statuses)
@@ -45,7 +46,10 @@ def test_a_refuted_check_always_shows(statuses):
 def test_every_check_is_counted(statuses):
     sentence = plain(verdict(_good(*statuses)).sentence)
     _, _, tally = sentence.partition("Checks: ")
-    counted = re.findall(r"(\d+) (refuted|undecided|sampled only|proved|vacuous|not applicable)", tally)
+    counted = re.findall(
+        r"(\d+) (refuted|undecided|sampled only|proved to be a limitation|proved|vacuous|not applicable)",
+        tally,
+    )
     assert sum(int(number) for number, _ in counted) == len(statuses)
     proved = {word: int(number) for number, word in counted}.get("proved", 0)
     assert proved == statuses.count(Status.PROVED)
@@ -55,7 +59,8 @@ def test_every_check_is_counted(statuses):
 @given(STATUSES)
 def test_the_worst_finding_wins(statuses):
     order = (Status.REFUTED, Status.UNDECIDED, Status.EVIDENCE, Status.PROVED)
-    worst = next((status for status in order if status in statuses), Status.VACUOUS)
+    shown = [Status.REFUTED if each is Status.LIMITATION else each for each in statuses]
+    worst = next((status for status in order if status in shown), Status.VACUOUS)
     assert verdict(_good(*statuses)).status is Shown[worst.name]
 
 

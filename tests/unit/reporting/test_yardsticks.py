@@ -7,20 +7,21 @@ import pytest
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
 from wspd_design.certificates.records import Point, Status
+from wspd_design.certificates.theorems.shortest_stop.stop_bound import DISTANCE, STOP_BOUND
 from wspd_design.reporting.numbering import parts
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary
 from wspd_design.reporting.text import plain
-from wspd_design.reporting.yardsticks import DISTANCE, SHORTEST_STOP, proved_bound
+from wspd_design.reporting.yardsticks import proved_bound
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.records import Ending, Sensing
 
 
 def proof(status=Status.PROVED):
     return replace(
-        certificate(SHORTEST_STOP, status),
+        certificate(STOP_BOUND.name, status),
         claim="No controller stops from 120 km/h within less than 170.19 m.",
         worst_point=(
             Point(name="bound on the time", value=9.5, unit="s"),

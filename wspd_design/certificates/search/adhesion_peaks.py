@@ -3,14 +3,11 @@
 Nobody has to trust this: a peak that is too low, or cuts that are too coarse, are refused.
 """
 
-import json
 from collections.abc import Iterable
 from fractions import Fraction
+from typing import Any
 
-from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import (
-    CLAIM,
     FORMAT,
     MOST_CUTS,
     PartTest,
@@ -19,6 +16,7 @@ from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import (
 from wspd_design.model import adhesion
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.loading import constants
+from wspd_design.parameters.records import Rail, Vehicle
 
 SPEEDS, CROWDING = 200, 1.25  # intervals of the speed, closer together at low speed
 SAMPLES = 2000  # of the slip, for a peak
@@ -28,35 +26,29 @@ LEAST_SLIP = 1e-6  # that is sampled
 FIRST, WIDER, NARROWER, LEAST_STEP = 0.5, 1.5, 0.6, 1e-4  # relative steps from cut to cut
 
 
-def search(problem: Problem) -> str:
-    """Return a certificate of the adhesion peaks from standstill to the initial speed of a problem."""
-    speeds = tuple(_decimal(problem.speeds[1] * (k / SPEEDS) ** CROWDING) for k in range(SPEEDS))
-    tops = peaks(problem, speeds)
-    cuts = tuple(
-        _cuts(part_test(problem.vehicle, problem.rail, speed), top)
-        for speed, top in zip(speeds, tops, strict=True)
-    )
-    content = {
+def search(vehicle: Vehicle, rail: Rail, start: float) -> dict[str, Any]:
+    """Return a certificate of the adhesion peaks from standstill to the initial speed [m/s]."""
+    speeds = tuple(_decimal(start * (k / SPEEDS) ** CROWDING) for k in range(SPEEDS))
+    tops = peaks(vehicle, rail, speeds)
+    cuts = (_cuts(part_test(vehicle, rail, speed), top) for speed, top in zip(speeds, tops, strict=True))
+    return {
         "format": FORMAT,
-        "claim": CLAIM,
-        "claim_sha256": model_hash(problem),
         "speeds": _written(speeds),
         "peaks": _written(tops),
         "cuts": [_written(each) for each in cuts],
     }
-    return json.dumps(content, indent=1)
 
 
-def peaks(problem: Problem, speeds: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+def peaks(vehicle: Vehicle, rail: Rail, speeds: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
     """Sample f/Q over the slip at each speed [m/s] and add a margin to its largest value."""
     import numpy as np
 
-    load = float(static_wheel_load(problem.vehicle))
-    stiffness = adhesion.contact_stiffness(problem.vehicle.contact, load)
+    load = float(static_wheel_load(vehicle))
+    stiffness = adhesion.contact_stiffness(vehicle.contact, load)
     slips = np.geomspace(LEAST_SLIP, 1.0, SAMPLES)
     referred = np.maximum([float(speed) for speed in speeds], constants().slip_regularization_speed)
     sliding = referred[:, np.newaxis] * slips
-    forces = adhesion.creep_force(slips, sliding, load, problem.rail, stiffness)
+    forces = adhesion.creep_force(slips, sliding, load, rail, stiffness)
     return tuple(_decimal(float(top) / load + MARGIN) for top in forces.max(axis=1))
 
 

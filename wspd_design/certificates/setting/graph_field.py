@@ -1,9 +1,9 @@
 """Values of CasADi graphs in a prime field: whether two graphs are the same function, decided exactly.
 
-The idea is that of :func:`wspd_design.certificates.kernel.checker.same`: inputs and everything that is not rational become
-pseudo-random elements of the field of 2^255 - 19 elements, which depend on the values of their arguments. Numbers are
-the exact doubles of the graph. Two graphs with the same value at such a point are the same function of real numbers
-wherever both are defined, except with a probability of about their degree in 2^255.
+The idea is that of :func:`wspd_design.certificates.kernel.checker.same`: inputs and everything that is not rational
+become pseudo-random elements of the field of 2^255 - 19 elements, which depend on the values of their arguments.
+Numbers are the exact doubles of the graph. Two graphs with the same value at such a point are the same
+function of real numbers wherever both are defined, except with a probability of about their degree in 2^255.
 
 A comparison becomes an element b that stands for 0 or 1: ``not b`` is 1 - b, ``a and b`` is a b, and
 ``if b then x else 0`` is b x. What holds for such an element holds for both branches. The converse fails here and

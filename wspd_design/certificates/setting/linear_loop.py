@@ -164,10 +164,12 @@ def loop_at(problem: Problem, values: Values, *, arranged: bool = False) -> tupl
     own, model = law.linear_model, None
     if own is not None:
         vehicle, rail = records_of(values, *own, "model ")
-        model = nominal(vehicle, rail, problem.slip, speed)
+        # As a quantity, with which arithmetic is exact; doubles would round differently in both forms.
+        reference = values["slip"] if isinstance(slips(problem), float) else problem.slip
+        model = nominal(vehicle, rail, reference, speed)
         if arranged:
             gain = slip_gain(speed, vehicle.wheel_inertia, vehicle.wheel_radius)
-            model = SlipModel(pole=forces(vehicle, rail, problem.slip, speed).pole, gain=gain)
+            model = SlipModel(pole=forces(vehicle, rail, reference, speed).pole, gain=gain)
     gains = on_brake(law, law.linear_form(speed, model=model, numbers=numbers), values["max torque"])
     return plant, _rates(problem, values), gains
 

@@ -19,6 +19,7 @@ from wspd_design.certificates.theorems import (
     surface,
     valve,
 )
+from wspd_design.certificates.theorems.shortest_stop.stop_bound import STOP_BOUND
 from wspd_design.certificates.theorems.theorem import Theorem
 
 THEOREMS: Mapping[str, Theorem] = {
@@ -46,6 +47,7 @@ THEOREMS: Mapping[str, Theorem] = {
         region.SAMPLED_INVARIANCE,
         simulated_stop.TRACKING,
         simulated_stop.CONSERVATION,
+        STOP_BOUND,
     )
 }
 """By name; a check without a row here does not exist."""

@@ -4,7 +4,7 @@ import math
 from collections import Counter
 
 from wspd_design.certificates.records import Certificate
-from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
+from wspd_design.certificates.theorems.shortest_stop.stop_bound import rounded_down
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
@@ -180,7 +180,7 @@ def _yardsticks(dossier: Dossier) -> Text:
         return f"{ideal}; no bound is proved"
     start = numbers.significant(dossier.design.specification.speeds[1] * KMH)
     link = Link(anchor=check_anchor(proved.certificate), text="proved bound")
-    return (f"{ideal}; ", link, f" from {start} km/h: {adhesion_peaks.rounded_down(proved.distance)} m")
+    return (f"{ideal}; ", link, f" from {start} km/h: {rounded_down(proved.distance)} m")
 
 
 def _checks(certificates: tuple[Certificate, ...]) -> Table:

@@ -1,132 +1,85 @@
 """No controller stops shorter than this, and how near to it the simulated stop comes."""
 
-from wspd_design.certificates.checks.frame import certified, series
-from wspd_design.certificates.outside import OutsideModel
-from wspd_design.certificates.records import (
-    Certificate,
-    Hypothesis,
-    Point,
-    Problem,
-    Proof,
-    Range,
-    Series,
-    Status,
-)
-from wspd_design.certificates.search import adhesion_peaks as peak_search
-from wspd_design.certificates.search.settle import versions
-from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.fingerprint import model_hash
-from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
-from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import INSTANTS, Limit, NoBound, require
-from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import CLAIM, rounded_down
+from collections.abc import Mapping
+from fractions import Fraction
+
+from wspd_design.certificates.checks.frame import Check, Figures, series
+from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.records import Certificate, Problem, Series
+from wspd_design.certificates.search import adhesion_peaks
+from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import read
+from wspd_design.certificates.theorems.shortest_stop.stop_bound import STOP_BOUND
 from wspd_design.parameters.units import KMH
 from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario
 from wspd_design.simulation.stop import simulate
 
-NAME, TITLE = "stop_bound", "Shortest stop of any controller"
-ROUNDING = 1e-3  # m and s; a simulated stop ends a little above standstill
+ROUNDING = 1e-3  # m; a simulated stop ends a little above standstill
 
 
-@certified(name=NAME, title=TITLE)
-def check(problem: Problem) -> Certificate:
-    """Bound every stop from below, simulate that of the controller, and compare."""
-    domain.box(problem)
-    start = problem.speeds[1]
-    try:
-        require(problem.vehicle, problem.rail, start)
-    except NoBound as reason:
-        raise OutsideModel(str(reason)) from None
-    text = peak_search.search(problem)
-    verdict = adhesion_peaks.check(problem, text)
-    if verdict.limit is None:
-        raise OutsideModel(f"the checker refuses what the search found: {verdict.reason}")
-    limit = verdict.limit
-    scenario = Scenario(rail=problem.rail, initial_speed=start)
+def search(problem: Problem) -> Mapping[str, Stated]:
+    """Sample the peaks of adhesion, and find cuts of the slip with which the checker sees them."""
+    peaks = adhesion_peaks.search(problem.vehicle, problem.rail, problem.speeds[1])
+    return {"peaks": Stated(proof=peaks)}
+
+
+def figures(problem: Problem, certificate: Certificate) -> Figures:
+    """Set the stop of this controller and the ideal stop against the bound."""
+    found = certificate.findings["peaks"]
+    if not found.proved or found.stated.proof is None:
+        return Figures()
+    scenario = Scenario(rail=problem.rail, initial_speed=problem.speeds[1])
     run = simulate(problem.vehicle, problem.controller, scenario, plant="quarter")
     ideal = ideal_stop(problem.vehicle, scenario, plant="quarter")
-    distance, time = run.totals.distance, float(run.time[-1])
-    stopped = run.ending is Ending.STOPPED
-    room = distance - limit.distance
-    kept = not stopped or (room >= -ROUNDING and time >= limit.time - ROUNDING)
-    consistent = ideal.distance >= limit.distance - ROUNDING
-    holds = kept and consistent
-    where = (
-        Point(name="bound of the distance", value=limit.distance, unit="m"),
-        Point(name="bound of the time", value=limit.time, unit="s"),
-        Point(name="distance of the simulated stop", value=distance, unit="m"),
-        Point(name="time of the simulated stop", value=time, unit="s"),
-        Point(name="distance of the ideal stop", value=ideal.distance, unit="m"),
-    )
-    efficiency = f"; this stop has an efficiency of {limit.distance / distance:.1%}" if stopped else ""
-    return Certificate(
-        name=NAME,
-        title=TITLE,
-        claim=f"No controller of this vehicle stops from {start * KMH:.3g} km/h on {problem.rail.name} within less "
-        f"than {rounded_down(limit.distance)} m or {rounded_down(limit.time)} s.",
-        status=Status.PROVED if holds else Status.REFUTED,
-        explanation=(
-            f"Adhesion alone asks for {limit.adhesion_distance:.4g} m; until {limit.handover:.3g} s the filling "
-            f"brake is the limit. The simulated stop takes {distance:.4g} m and {time:.4g} s{efficiency}. An ideal "
-            f"brake that holds the adhesion peak takes {ideal.distance:.4g} m, "
-            f"{ideal.distance / limit.distance - 1.0:.2%} more than what is proved."
-            if holds
-            else f"A simulated stop is shorter than the bound: {distance:.4g} m and {time:.4g} s, ideally "
-            f"{ideal.distance:.4g} m. Bound and simulation speak about different plants."
-        ),
-        margin=Range(low=room, high=room, unit="m"),
-        worst_point=where,
-        witness=() if holds else where,
-        hypotheses=(
-            Hypothesis(text="the simulated stop keeps the bound", status=_seen(kept)),
-            Hypothesis(text="the ideal stop keeps the bound", status=_seen(consistent)),
-        ),
-        assumptions=(
-            "quarter locomotive with static wheel load, nominal parameters, level track",
-            "rolling wheels and empty cylinders at the start; no other brake",
-        ),
-        method="peaks and cuts of the slip that are searched, then shown in balls by an independent checker; "
-        "momentum that the filling brake can take; both bound the speed from below",
-        resolution=f"{len(limit.peaks)} intervals of speed, {verdict.leaves} parts of the slip, {INSTANTS} instants of "
-        "the change from filling to adhesion",
-        reference="eqs. (1), (2), (5)-(9); docs/theory.md#bound",
-        engine=f"python-flint {versions()['python-flint']}",
-        proofs=(
-            Proof(
-                claim=CLAIM,
-                statement=verdict.statement,
-                claim_hash=model_hash(problem),
-                certificate=text,
-                leaves=verdict.leaves,
-                seconds=verdict.seconds,
-            ),
-        ),
-        series=_plots(problem, limit, run),
+    bound = found.numbers["distance"]
+    known = read(found.stated.proof, problem.speeds[1])
+    return Figures(
+        series=_plots(problem, (known.speeds, known.tops), bound, run),
+        remark=_remark(run, ideal.distance, bound),
     )
 
 
-def _seen(holds: bool) -> Status:
-    return Status.EVIDENCE if holds else Status.REFUTED
+def _remark(run: Run, ideal: float, bound: float) -> str:
+    """Compare stops that are simulated with the bound that is proved."""
+    distance, stopped = run.totals.distance, run.ending is Ending.STOPPED
+    if ideal < bound - ROUNDING or (stopped and distance < bound - ROUNDING):
+        return (
+            f"A simulated stop is shorter than the bound: {distance:.4g} m, ideally {ideal:.4g} m. Bound and "
+            "simulation speak about different plants; please report this."
+        )
+    own = (
+        f"The simulated stop takes {distance:.4g} m and {run.time[-1]:.4g} s, an efficiency of {bound / distance:.1%}."
+        if stopped
+        else f"The simulated train does not stop within {run.time[-1]:.4g} s."
+    )
+    return (
+        f"{own} An ideal brake that holds the adhesion peak takes {ideal:.4g} m, {ideal / bound - 1.0:.2%} more than "
+        "what is proved."
+    )
 
 
-def _plots(problem: Problem, limit: Limit, run: Run) -> tuple[Series, ...]:
+def _plots(
+    problem: Problem, peaks: tuple[tuple[Fraction, ...], tuple[Fraction, ...]], bound: float, run: Run
+) -> tuple[Series, ...]:
     """Enclosed peak over speed beside the sampled one, and the stop against the bound."""
     import numpy as np
 
-    speeds = np.array([float(speed) for speed in limit.speeds])
-    sampled = peak_adhesion(problem.vehicle, problem.rail, speeds[1:])[1]
+    speeds, tops = (np.array([float(each) for each in exact]) for exact in peaks)
+    above = np.append(speeds[1:], problem.speeds[1])
+    sampled = peak_adhesion(problem.vehicle, problem.rail, above)[1]
     axes = ("speed [km/h]", "adhesion [-]")
     path = ("distance [m]", "speed [km/h]")
     return (
-        series(
-            "bound of the peak", *axes, speeds[:-1] * KMH, np.array([float(peak) for peak in limit.peaks])
-        ),
-        series("peak", *axes, speeds[1:] * KMH, sampled),
+        series("bound on the peak", *axes, speeds * KMH, tops),
+        series("peak", *axes, above * KMH, sampled),
         series("this stop", *path, run.distance, run.speed * KMH),
         series(
             "no stop ends before this",
             *path,
-            np.array([limit.distance] * 2),
+            np.array([bound] * 2),
             np.array([0.0, run.speed[0] * KMH]),
         ),
     )
+
+
+CHECK = Check(theorem=STOP_BOUND, search=search, figures=figures)

@@ -65,9 +65,9 @@ def require(vehicle: Vehicle, rail: Rail, initial_speed: float) -> None:
     """
     positive = (rail.mu0, rail.friction_ratio, rail.adhesion_reduction, rail.slip_reduction)
     if not (min(positive) > 0.0 and rail.friction_ratio <= 1.0 and rail.friction_decay >= 0.0):
-        raise NoBound("the bound of the stop needs friction that is positive and never grows with sliding")
+        raise NoBound("a bound on the stop needs friction that is positive and never grows with sliding")
     if min(vehicle.resistance_constant, vehicle.resistance_linear, vehicle.resistance_quadratic) < 0.0:
-        raise NoBound("the bound of the stop needs a resistance without negative parts")
+        raise NoBound("a bound on the stop needs a resistance without negative parts")
     vehicle, rail = in_balls(vehicle), in_balls(rail)
     load = vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
     stiffness = adhesion.contact_stiffness(vehicle.contact, load)
@@ -76,7 +76,7 @@ def require(vehicle: Vehicle, rail: Rail, initial_speed: float) -> None:
     per_force = 2 * vehicle.wheelsets / vehicle.mass + 2 * radius**2 / vehicle.wheelset_inertia
     if not force * per_force >= (1 + slip) * resistance(vehicle, speed) / vehicle.mass:
         raise NoBound(
-            "the resistance could make a wheel outrun the train; the bound of the stop does not hold then"
+            "the resistance could make a wheel outrun the train; a bound on the stop does not hold then"
         )
 
 

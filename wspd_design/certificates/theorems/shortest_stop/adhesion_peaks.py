@@ -13,34 +13,29 @@ The last speed is the initial one, which comes from the problem. From the bounds
 shortest stop.
 """
 
-import json
 import math
 import re
-import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
 from wspd_design.certificates.kernel.arb import Ball, ball, in_balls, point
-from wspd_design.certificates.kernel.checker import Refused
-from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.fingerprint import model_hash
-from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import Limit, NoBound, require, stop_limit
+from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import Limit, stop_limit
 from wspd_design.model import adhesion
 from wspd_design.model.generated import adhesion as generated
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.parameters.units import KMH
 
-FORMAT = "wspd-adhesion-peaks/1"
-CLAIM = "shortest stop"
-MOST_BYTES = 1_000_000
+FORMAT = "wspd-peaks/2"
 MOST_SPEEDS, MOST_CUTS = 1000, 1000
+MOST_CHARACTERS = 20  # of a number and the space before it
 NUMBER = re.compile(
     r"[0-9]{1,4}(\.[0-9]{1,12})?"
 )  # no exponent, which could stand for a number that fills the memory
+PART_WORK = 100  # operations on balls that a part of the slip is worth
 
 PartTest = Callable[[Fraction, Fraction, Fraction], bool]
 """Whether f/Q is at most the third number on the part of the slip between the first two."""
@@ -55,51 +50,40 @@ class Peaks:
     cuts: tuple[tuple[Fraction, ...], ...]  # -, of the slip between 0 and 1, for each speed
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Verdict:
-    """Answer of the checker, with the bounds that it computed itself."""
-
-    accepted: bool
-    statement: str  # that was shown
-    reason: str
-    leaves: int  # parts of the slip, over all speeds
-    seconds: float
-    limit: Limit | None
-
-
-def check(problem: Problem, text: str) -> Verdict:
-    """Decide what a certificate of adhesion peaks shows about every stop of a vehicle.
+def decide(
+    vehicle: Vehicle, rail: Rail, start: float, proof: Mapping[str, Any], work: Work
+) -> tuple[Limit, int]:
+    """Return what a certificate of adhesion peaks shows about every stop, and the number of parts of the slip.
 
     Parameters
     ----------
-    problem : Problem
-        Vehicle, rail and initial speed come from here.
-    text : str
-        The certificate, JSON; it may be anything.
+    vehicle, rail : Vehicle, Rail
+        For which :func:`require` raises nothing.
+    start : float
+        Speed at which every stop starts [m/s].
+    proof : mapping
+        The certificate from JSON; it may be anything.
+    work : Work
+        What may still be spent.
+
+    Raises
+    ------
+    Refused
+        If the certificate is malformed or shows nothing.
     """
-    started = time.perf_counter()
-    limit, leaves, statement, reason = None, 0, "", "every part of the slip keeps its bound"
-    try:
-        limit, leaves = _decide(problem, text)
-        statement = (
-            f"no stop from {problem.speeds[1] * KMH:.4g} km/h is shorter than {rounded_down(limit.distance)} m or "
-            f"{rounded_down(limit.time)} s"
-        )
-    except (Refused, NoBound) as refusal:
-        reason = str(refusal)
-    return Verdict(
-        accepted=limit is not None,
-        statement=statement,
-        reason=reason,
-        leaves=leaves,
-        seconds=time.perf_counter() - started,
-        limit=limit,
-    )
-
-
-def rounded_down(bound: float) -> str:
-    """Write a lower bound so that what stands there is still one."""
-    return f"{math.floor(100.0 * bound) / 100.0:.2f}"
+    found = read(proof, start)
+    parts = 0
+    for speed, top, cuts in zip(found.speeds, found.tops, found.cuts, strict=True):
+        work.spend(PART_WORK * (len(cuts) + 1))
+        holds = part_test(vehicle, rail, speed)
+        for low, high in pairwise((Fraction(0), *cuts, Fraction(1))):
+            if not holds(low, high, top):
+                raise Refused(
+                    f"the peak {float(top):g} at {float(speed):g} m/s is not shown for slips from "
+                    f"{float(low):g} to {float(high):g}"
+                )
+            parts += 1
+    return stop_limit(vehicle, (*found.speeds, Fraction(start)), found.tops), parts
 
 
 def part_test(vehicle: Vehicle, rail: Rail, speed: Fraction) -> PartTest:
@@ -148,59 +132,34 @@ def part_test(vehicle: Vehicle, rail: Rail, speed: Fraction) -> PartTest:
     return holds
 
 
-def read(problem: Problem, text: str) -> Peaks:
-    """Read a certificate.
+def read(proof: Mapping[str, Any], start: float) -> Peaks:
+    """Read a certificate of the peaks from standstill to the initial speed [m/s].
 
     Raises
     ------
     Refused
-        If it is none, belongs to another problem, or its numbers do not rise as they have to.
+        If it is not one, or its numbers do not rise as they have to.
     """
-    if len(text) > MOST_BYTES:
-        raise Refused("the certificate is too long")
-    try:
-        content = json.loads(text)
-    except (ValueError, RecursionError):
-        raise Refused("the certificate is no JSON") from None
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise Refused(f"the certificate does not have the format {FORMAT}")
-    if content.get("claim_sha256") != model_hash(problem):
-        raise Refused("the certificate belongs to another claim")
-    speeds, tops = (_numbers(content.get(key), key, MOST_SPEEDS) for key in ("speeds", "peaks"))
-    written = content.get("cuts")
+    if proof.keys() != {"format", "speeds", "peaks", "cuts"} or proof["format"] != FORMAT:
+        raise Refused(f"the proof does not have the format {FORMAT}")
+    speeds, tops = (_numbers(proof[key], key, MOST_SPEEDS) for key in ("speeds", "peaks"))
+    written = proof["cuts"]
     if not isinstance(written, list) or not len(written) == len(speeds) == len(tops):
-        raise Refused("the certificate does not have one peak and one list of cuts for each speed")
+        raise Refused("the proof does not have one peak and one list of cuts for each speed")
     cuts = tuple(_numbers(each, "cuts", MOST_CUTS) for each in written)
-    if speeds[:1] != (Fraction(0),) or not _rise((*speeds, Fraction(problem.speeds[1]))):
+    if speeds[:1] != (Fraction(0),) or not _rise((*speeds, Fraction(start))):
         raise Refused("the speeds do not rise from 0 to the initial speed")
     if not all(_rise((Fraction(0), *each, Fraction(1))) for each in cuts):
         raise Refused("the cuts do not rise between 0 and 1")
     return Peaks(speeds=speeds, tops=tops, cuts=cuts)
 
 
-def _decide(problem: Problem, text: str) -> tuple[Limit, int]:
-    """Return what the certificate shows, with the number of parts that were tried; or refuse."""
-    vehicle, rail, start = problem.vehicle, problem.rail, problem.speeds[1]
-    found = read(problem, text)
-    require(vehicle, rail, start)
-    parts = 0
-    for speed, top, cuts in zip(found.speeds, found.tops, found.cuts, strict=True):
-        holds = part_test(vehicle, rail, speed)
-        for low, high in pairwise((Fraction(0), *cuts, Fraction(1))):
-            if not holds(low, high, top):
-                raise Refused(
-                    f"the peak {float(top):g} at {float(speed):g} m/s is not shown for slips from "
-                    f"{float(low):g} to {float(high):g}"
-                )
-            parts += 1
-    return stop_limit(vehicle, (*found.speeds, Fraction(start)), found.tops), parts
-
-
-def _numbers(written: Any, name: str, most: int) -> tuple[Fraction, ...]:
+def _numbers(written: object, name: str, most: int) -> tuple[Fraction, ...]:
     """Read decimals that stand in one text."""
-    words = written.split() if isinstance(written, str) else None
+    short = isinstance(written, str) and len(written) <= most * MOST_CHARACTERS
+    words = written.split() if short and isinstance(written, str) else None
     if words is None or len(words) > most or not all(NUMBER.fullmatch(each) for each in words):
-        raise Refused(f"the certificate states no {name}")
+        raise Refused(f"the proof states no {name}")
     return tuple(Fraction(each) for each in words)
 
 
