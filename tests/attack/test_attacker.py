@@ -17,9 +17,9 @@ from tests.attack.statements import needed_gain
 EVALUATIONS = 6000
 BOX = ("mass", "wheelset_inertia", "mu0")
 CHECKS = {
-    "smc": ("gain_positive", "well_posed", "reaching", "no_go"),
-    "feedback-wet": ("lpv_lyapunov", "routh_lag", "hard_limits"),
-    "adaptive": ("surface_hurwitz", "sliding_exists"),
+    "smc": ("gain_positive", "reaching", "no_go"),
+    "feedback-wet": ("gain_positive", "lpv_lyapunov"),
+    "adaptive": ("no_go", "surface_hurwitz"),
 }
 
 
