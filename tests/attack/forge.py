@@ -6,6 +6,7 @@ Nothing but a refusal may answer to any other.
 
 import argparse
 import json
+import math
 import sys
 import time
 import unicodedata
@@ -211,10 +212,13 @@ class Judge:
             return f"accepted with another {', '.join(map(ascii, changed))}"
         return ""
 
-    def count(self, stream: Iterator[Mutant]) -> dict[str, Count]:
-        """Judge a stream of mutants, by kind."""
+    def count(self, stream: Iterator[Mutant], *, cpu_seconds: float = math.inf) -> dict[str, Count]:
+        """Judge a stream of mutants, by kind; the time is an upper limit alone."""
         found: dict[str, Count] = {}
+        deadline = time.process_time() + cpu_seconds
         for mutant in stream:
+            if time.process_time() > deadline:
+                break
             one = found.setdefault(mutant.kind, Count())
             wrong, accepted, took = self.fault(mutant)
             one.tried += 1
@@ -242,6 +246,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--vehicle")
     parser.add_argument("--rail")
     parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--cpu-seconds", type=float, default=math.inf, help="at most")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--kind", action="append", choices=list(KINDS))
     parser.add_argument("--keep", type=Path, help="folder for the texts that were answered wrongly")
@@ -251,7 +256,9 @@ def main(arguments: list[str]) -> int:
     judge = Judge(lambda text: decide(problem, text), files)
     others = read_files(given.other) if given.other else {}
     chosen = {kind: KINDS[kind] for kind in given.kind or KINDS}
-    found = judge.count(mutants(files, others, given.count, seed=given.seed, kinds=chosen))
+    found = judge.count(
+        mutants(files, others, given.count, seed=given.seed, kinds=chosen), cpu_seconds=given.cpu_seconds
+    )
     print(f"{'kind':28}{'tried':>7}{'identical':>11}{'refused':>9}{'wrong':>7}{'worst CPU':>12}")
     for kind, one in found.items():
         print(

@@ -17,9 +17,9 @@ from tests.attack.statements import needed_gain
 EVALUATIONS = 6000
 BOX = ("mass", "wheelset_inertia", "mu0")
 CHECKS = {
-    "smc": ("gain_positive", "well_posed", "reaching", "no_go"),
-    "feedback-wet": ("lpv_lyapunov", "routh_lag", "hard_limits"),
-    "adaptive": ("surface_hurwitz", "sliding_exists"),
+    "smc": ("gain_positive", "reaching", "no_go"),
+    "feedback-wet": ("gain_positive", "lpv_lyapunov"),
+    "adaptive": ("no_go", "surface_hurwitz"),
 }
 
 
@@ -38,6 +38,7 @@ def broken(case, stated, names=BOX, evaluations=EVALUATIONS):
 # --- what the program proves
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(CHECKS))
 def test_no_counterexample_to_what_is_stated(name, design, certified):
     case = read_case(design(name))
@@ -135,6 +136,7 @@ def test_what_is_refuted_is_broken_when_it_is_said_to_be_proved():
     assert len(broken(case, of("open_loop_pole", inequalities=(lag,)))) == 1
 
 
+@pytest.mark.slow
 def test_a_stop_bound_one_percent_too_long_is_broken():
     right = of("stop_bound", "No controller stops within less than 272.29 m or 15.04 s.")
     assert broken(smc(), right, ()) == []
@@ -149,6 +151,7 @@ def test_limits_of_recovery_that_are_too_narrow_are_broken():
     assert len(broken(replace(case, slips=(0.02, 0.195)), of("hard_limits"))) == 1
 
 
+@pytest.mark.slow
 def test_a_band_that_is_too_narrow_is_broken():
     """With half the layer that the law has, and with a weak push, errors leave the band."""
     case = smc()
@@ -160,12 +163,14 @@ def test_a_band_that_is_too_narrow_is_broken():
 ENERGY = ("bound of the integral of abs(s_D) d sigma", "Lipschitz constant of s_D in sigma")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("integral", "rate", "count"), [(2.06, 47.9, 0), (0.005, 47.9, 1), (2.06, 5.0, 1)])
 def test_bounds_of_the_adaptive_law_that_are_too_small_are_broken(integral, rate, count, adaptive_case):
     stated = of("barbalat", "eta = 0.204 m/s2", points=dict(zip(ENERGY, (integral, rate), strict=True)))
     assert len(broken(adaptive_case, stated)) == count
 
 
+@pytest.mark.slow
 def test_an_energy_that_rises_is_seen(adaptive_case):
     """Where the brake is too weak to hold the surface, V grows although the adaptation is held."""
     data = adaptive_case.data

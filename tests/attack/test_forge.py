@@ -57,10 +57,12 @@ def wrong(judge, files, others, kinds, count=COUNT):
 # --- the program
 
 
+@pytest.mark.slow
 def test_nothing_false_is_accepted_among_the_findings(judge, files, others):
     assert wrong(judge, files, others, INSIDE) == []
 
 
+@pytest.mark.slow
 def test_nothing_false_is_accepted_of_any_kind(judge, files, others):
     assert wrong(judge, files, others, [kind for kind in KINDS if kind not in INSIDE]) == []
 
