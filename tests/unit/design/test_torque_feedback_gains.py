@@ -224,7 +224,7 @@ def test_the_design_passes_its_own_certificates(light, rail):
     expected = Status.PROVED if rail == "polach-wet" else Status.UNDECIDED
     assert lpv_lyapunov.CHECK.run(problem).findings[FUNCTION].status is expected
     weak = replace(
-        controller, gains=replace(controller.gains, sliding_gain=0.2 * controller.gains.sliding_gain)
+        controller, gains=replace(controller.gains, sliding_gain=0.1 * controller.gains.sliding_gain)
     )
     refuted = lpv_lyapunov.CHECK.run(replace(problem, controller=weak))
     assert refuted.status is refuted.findings[FUNCTION].status is Status.REFUTED
