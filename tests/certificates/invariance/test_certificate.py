@@ -131,6 +131,7 @@ def test_a_wide_box_is_left_open_with_the_windows_and_the_reason(left_open):
     assert not found.series
 
 
+@pytest.mark.slow
 def test_some_windows_of_a_range():
     # At 100 ms the slowest windows fail, the others have sets.
     problem = feedback_problem(spread=0.0, speeds=(3.0, 6.5), sliding_gain=0.64)
