@@ -53,6 +53,7 @@ def test_order(certificates):
         "sampled_invariance",
         "tracking",
         "conservation",
+        "stop_bound",
     )
     assert tuple(certificate.name for certificate in certificates) == NAMES
 
@@ -120,6 +121,7 @@ def test_printed_law_on_dry_rail(printed):
         "sampled_invariance": Status.NOT_APPLICABLE,
         "tracking": Status.REFUTED,
         "conservation": Status.EVIDENCE,
+        "stop_bound": Status.PROVED,
     }
 
 
