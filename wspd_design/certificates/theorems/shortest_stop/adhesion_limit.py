@@ -44,7 +44,6 @@ class Limit:
     adhesion_time: float  # s, from the adhesion peak alone
     adhesion_distance: float  # m
     handover: float  # s, t1
-    overspeed: float  # -, s
     speeds: tuple[Fraction, ...]  # m/s, rising from standstill to the start
     peaks: tuple[Fraction, ...]  # -, upper bounds of f/Q on the interval above each speed but the last
 
@@ -154,7 +153,6 @@ def stop_limit(plants: Extremes, speeds: Sequence[Fraction], peaks: Sequence[Fra
         adhesion_time=below(times[-1]),
         adhesion_distance=below(distances[-1]),
         handover=handover,
-        overspeed=ahead,
         speeds=tuple(speeds),
         peaks=tuple(peaks),
     )

@@ -80,7 +80,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         status=all_of(known, wide),
         explanation=(
             "With the nominal parameters adhesion alone asks for "
-            f"{rounded_down(known.numbers['adhesion distance'])} m; until {known.numbers['handover']:.3g} s the filling brake is the limit."
+            f"{rounded_down(known.numbers['adhesion distance'])} m; "
+            f"until {known.numbers['handover']:.3g} s the filling brake is the limit."
             if known.proved
             else "No peaks of adhesion are stated that the checker accepts."
         ),
