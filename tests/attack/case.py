@@ -1,9 +1,11 @@
 """Read a design, a vehicle and a rail with tomllib alone, and what a certificate file states."""
 
 import json
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from dataclasses import field as dataclass_field
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -87,9 +89,6 @@ class Case:
     sample_time: float  # s
     model: Plant  # of the law
     data: Data  # of the plant
-    exact_torque: bool = (
-        False  # whether claims speak about a law that knows the torque that holds the reference
-    )
 
     @cached_property
     def varied(self) -> tuple[str, ...]:
@@ -176,15 +175,24 @@ def _entry(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:
 
 # --- what a certificate file states
 
+NAMES = {"axle load share": "load_share"}  # of the plant, where they are not the words of the file
+AXLE = ("load_share", "train_deceleration")
+
+
+def field(name: str) -> str:
+    """Return the name of a number of the plant from the words of a file."""
+    return NAMES.get(name, name.replace(" ", "_"))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inequality:
-    """A quantity and its bound as a proof in the file states them."""
+    """What proofs in a file state together about a quantity: the loosest of their bounds on all of their ranges."""
 
     quantity: str
     relation: str
     bound: float
-    over: tuple[str, ...]  # names of the variables
+    ranges: Bounds  # of what varies
+    known: Mapping[str, float] = dataclass_field(default_factory=dict)  # the rest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,44 +202,73 @@ class Stated:
     check: str
     status: str
     claim: str
-    inequalities: tuple[Inequality, ...]
-    points: Mapping[str, float]  # numbers that the file states beside the margin
-    quadratics: tuple[Mapping[str, Any], ...]  # proofs with a matrix of V
+    inequalities: tuple[Inequality, ...] = ()
+    points: Mapping[str, float] = dataclass_field(
+        default_factory=dict
+    )  # numbers that the file states beside the margin
+    quadratics: tuple[Mapping[str, Any], ...] = ()  # proofs with matrices of V
     sets: tuple[Any, ...] = ()  # windows of invariant sets, one list per proof
+    varied: tuple[str, ...] = ()  # numbers of the plant that the claim says it varies
 
 
 def read_stated(path: Path) -> Stated:
     """Read a certificate file."""
     content = json.loads(path.read_text(encoding="utf-8"))
-    proofs = list(_proofs(content.get("proofs", [])))
+    proofs = {key: each["proof"] for key, each in content["findings"].items() if "proof" in each}
+    varied = tuple(field(name) for name in content["varied"])
+    parts: dict[str, list[Mapping[str, Any]]] = {}
+    for key, proof in proofs.items():
+        statement = proof.get("statement", {})
+        if statement.get("kind") == "inequality":
+            parts.setdefault(key.split(",")[0] if content["varied"] else key, []).append(statement)
     return Stated(
         check=content["check"],
         status=content["status"],
         claim=content["claim"],
-        inequalities=tuple(
-            Inequality(
-                quantity=each["claim"],
-                relation=each["relation"],
-                bound=float(Fraction(each["bound"])),
-                over=tuple(name.replace(" ", "_").split(".")[-1] for name in each.get("variables", ())),
-            )
-            for each in proofs
-            if "relation" in each and "part" not in each
-        ),
-        points={each["name"]: each["value"] for each in content.get("worst_point", ())},
-        quadratics=tuple(each for each in proofs if "sampled" in each),
-        sets=tuple(each["windows"] for each in proofs if "windows" in each),
+        inequalities=tuple(_together(each, content["claim"], varied) for each in parts.values()),
+        points={each["name"]: each["value"] for each in content["worst_point"]},
+        quadratics=tuple(each for each in proofs.values() if "pieces" in each),
+        sets=tuple(each["windows"] for each in proofs.values() if "windows" in each),
+        varied=varied,
     )
 
 
-def stated_names(stated: Stated) -> tuple[str, ...]:
-    """Return the numbers of the plant over which the proofs of a file range."""
-    names = {name for each in stated.inequalities for name in each.over}
-    return tuple(sorted(name for name in names if name in Plant.__dataclass_fields__))
+def _together(statements: list[Mapping[str, Any]], claim: str, varied: tuple[str, ...]) -> Inequality:
+    """Join the parts of a domain; a number that all parts hold at an end is left to what the claim varies."""
+    upper = statements[0]["relation"] == "<="
+    ranges: Bounds = {}
+    known: dict[str, float] = {}
+    for statement in statements:
+        for name, low, high, _ in statement["variables"]:
+            ends = float(Fraction(low)), float(Fraction(high))
+            if ends[0] < ends[1]:
+                old = ranges.get(field(name), ends)
+                ranges[field(name)] = min(old[0], ends[0]), max(old[1], ends[1])
+            else:
+                known[field(name)] = ends[0]
+    axle = {name: ends for name, ends in axle_ranges(claim).items() if name in varied}
+    bounds = [float(Fraction(each["bound"])) for each in statements]
+    return Inequality(
+        quantity=statements[0]["name"],
+        relation=statements[0]["relation"],
+        bound=max(bounds) if upper else min(bounds),
+        ranges={**{name: axle[name] for name in axle if name in known}, **ranges},
+        known={name: each for name, each in known.items() if name not in ranges},
+    )
 
 
-def _proofs(proofs: Iterable[Any]) -> Iterable[Mapping[str, Any]]:
-    for each in proofs:
-        content = json.loads(each) if isinstance(each, str) else each
-        yield content
-        yield from _proofs(content.get("proofs", []))
+def axle_ranges(claim: str) -> Bounds:
+    """Return the ranges of load share and deceleration of the train that a claim speaks about."""
+    number = r"([0-9.e+-]+)"
+    found = {}
+    for words, name in (("axle load share", "load_share"), ("train deceleration", "train_deceleration")):
+        said = re.search(rf"{words} {number} to {number}", claim)
+        if said:
+            found[name] = float(said[1]), float(said[2])
+    return found
+
+
+def with_axles(case: Case, stated: Stated) -> Case:
+    """Return the case with the ranges of the axles that a file states, unless it has others."""
+    data = case.data
+    return replace(case, data=replace(data, bounds=axle_ranges(stated.claim) | data.bounds))

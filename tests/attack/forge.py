@@ -68,10 +68,9 @@ def decide(problem: Any, text: str) -> Decision:
 
 def load_problem(design: Path, *, vehicle: str | None = None, rail: str | None = None) -> Any:
     """Load the closed loop that the files speak about."""
-    from wspd_design.cli.verification import problem_of
-    from wspd_design.design.case import CaseOptions, load_case
+    from wspd_design.design.certification import problem_of
 
-    return problem_of(load_case(str(design), CaseOptions(vehicle=vehicle, rail=rail)))
+    return problem_of(str(design), vehicle=vehicle, rail=rail)
 
 
 # --- what a file says

@@ -117,10 +117,14 @@ def sampled_map(case: Case, plant: Plant, slip: Any, speed: Any, duty: Any, *, q
 
 def continuous_rates(case: Case, plant: Plant, slip: Any, speed: Any, *, frozen: bool) -> Any:
     """Matrix of the averaged loop in (y, t): q, or at frozen speed p, in place of the first entry."""
+    q = slip_pole(plant, slip, speed) if frozen else difference_rate(plant, slip, speed)
+    return averaged(case, plant, holding_torque(plant, slip, speed) / plant.max_torque, q)
+
+
+def averaged(case: Case, plant: Plant, share: Any, q: Any) -> Any:
+    """Matrix of the averaged loop in (y, t) at a share of T_max, with q as its first entry."""
     scale = plant.max_torque / case.model.max_torque
     gamma = plant.wheel_radius * case.model.max_torque / plant.wheelset_inertia
-    q = slip_pole(plant, slip, speed) if frozen else difference_rate(plant, slip, speed)
-    share = holding_torque(plant, slip, speed) / plant.max_torque
     duty = filling_duty(plant, share)
     slope = scale * ((1.0 - share) / plant.fill_time + share / plant.vent_time)
     own = duty / plant.fill_time + (1.0 - duty) / plant.vent_time
@@ -175,8 +179,24 @@ def abscissa(matrix: Any) -> Any:
     return np.real(trace / 2 + np.sqrt(trace**2 / 4 - determinant + 0j))
 
 
-def contraction(matrix: Any, p: tuple[float, float, float]) -> Any:
+def contraction(matrix: Any, p: Any) -> Any:
     """Largest sqrt(V(M x)/V(x)) of V = x'Px, P = (p11, p12, p22), for matrices along the first two axes."""
-    lower = np.linalg.cholesky(np.array([[p[0], p[1]], [p[1], p[2]]])).T
-    moved = np.einsum("ij,jk...,kl->il...", lower, matrix, np.linalg.inv(lower))
-    return np.linalg.svd(np.moveaxis(moved, (0, 1), (-2, -1)), compute_uv=False)[..., 0]
+    return np.sqrt(_largest(p, np.einsum("ki...,kl...,lj...->ij...", matrix, _full(p), matrix)))
+
+
+def growth(matrix: Any, p: Any) -> Any:
+    """Largest V'/(2 V) of V = x'Px along x' = A x."""
+    moved = np.einsum("ki...,kj...->ij...", matrix, _full(p))
+    return _largest(p, moved + np.swapaxes(moved, 0, 1)) / 2.0
+
+
+def _full(p: Any) -> Any:
+    return np.array([[p[0], p[1]], [p[1], p[2]]])
+
+
+def _largest(p: Any, form: Any) -> Any:
+    """Largest x'Fx/x'Px."""
+    determinant = p[0] * p[2] - p[1] ** 2
+    trace = (p[2] * form[0, 0] - 2.0 * p[1] * form[0, 1] + p[0] * form[1, 1]) / determinant
+    product = (form[0, 0] * form[1, 1] - form[0, 1] ** 2) / determinant
+    return trace / 2 + np.sqrt(np.maximum(trace**2 / 4 - product, 0.0))

@@ -20,10 +20,10 @@ from tests.attack.plant import (
     STEP,
     Plant,
     adhesion_peak,
-    deceleration,
     filled,
     filling_from_empty,
     slip_rate,
+    slowing,
     vented,
 )
 
@@ -49,7 +49,7 @@ class Wheels:
 
     def move(self, plant: Plant, mean_torque: Any, time: Any, *, frozen: bool) -> None:
         """Go on for a short time under a torque, at frozen speed or with a train that slows down."""
-        speed = self.speed if frozen else self.speed - time / 2 * deceleration(plant, self.slip, self.speed)
+        speed = self.speed if frozen else self.speed - time / 2 * slowing(plant, self.slip, self.speed)
 
         def rate(slip: Any) -> Any:
             return slip_rate(plant, slip, speed, mean_torque)
@@ -58,7 +58,7 @@ class Wheels:
         self.slip = np.minimum(exponential_step(rate, self.slip, time), LOCKED)
         if not frozen:
             middle = (before + self.slip) / 2
-            self.speed = self.speed - time * deceleration(plant, middle, speed)
+            self.speed = self.speed - time * slowing(plant, middle, speed)
         self.lowest, self.highest = np.minimum(self.lowest, self.slip), np.maximum(self.highest, self.slip)
 
 
@@ -111,8 +111,8 @@ def layer_run(
     """Run the sliding-mode law with T = u in small steps: (time, slip, speed, integral of e) at each."""
     path = [(0.0, slip, speed, integral)]
     for k in range(round(time / step)):
-        slowing = deceleration(plant, slip, speed)
-        middle_speed = np.maximum(speed - step / 2 * slowing, 1e-3)
+        lost = slowing(plant, slip, speed)
+        middle_speed = np.maximum(speed - step / 2 * lost, 1e-3)
         middle_integral = integral + step / 2 * (case.slip - slip)
 
         def rate(x: Any, speed: Any = middle_speed, integral: Any = middle_integral) -> Any:
@@ -120,7 +120,7 @@ def layer_run(
 
         after = np.clip(exponential_step(rate, slip, step), -0.5, LOCKED)
         middle = (slip + after) / 2
-        speed = np.maximum(speed - step * deceleration(plant, middle, middle_speed), 1e-3)
+        speed = np.maximum(speed - step * slowing(plant, middle, middle_speed), 1e-3)
         integral = integral + step * (case.slip - middle)
         slip = after
         path.append(((k + 1) * step, slip, speed, integral))
@@ -202,7 +202,7 @@ def adaptive_run(
         after = np.clip(exponential_step(rate, slip, np.maximum(time, 1e-12)), -0.2, LOCKED)
         after = np.where(alive, after, slip)
         middle = (slip + after) / 2
-        speed = speed - time * deceleration(plant, middle, speed)
+        speed = speed - time * slowing(plant, middle, speed)
         error = error + time * (case.slip - middle)
         weights, psi, slip = weights + time * change, psi + time * widening, after
         following = dead_zone(case, variable(slip, error))
@@ -252,11 +252,11 @@ def ideal_stop(plant: Plant, speed: Any, *, step: float = 0.01, pull: float = 60
 
         after = np.clip(exponential_step(rate, slip, step), 0.0, LOCKED)
         middle = (slip + after) / 2
-        slowing = deceleration(plant, middle, safe)
-        last = np.minimum(time, np.where(alive, speed / slowing, 0.0))
-        way = way + speed * last - slowing * last**2 / 2
+        lost = slowing(plant, middle, safe)
+        last = np.minimum(time, np.where(alive, speed / lost, 0.0))
+        way = way + speed * last - lost * last**2 / 2
         clock = clock + last
-        speed = np.where(alive, speed - slowing * last, speed)
+        speed = np.where(alive, speed - lost * last, speed)
         slip = np.where(alive, after, slip)
         now += step
     return clock, way

@@ -83,15 +83,20 @@ def deceleration(plant: Plant, slip: Any, speed: Any) -> Any:
     return (resistance(plant, speed) + 2.0 * plant.wheelsets * force) / plant.mass
 
 
+def slowing(plant: Plant, slip: Any, speed: Any) -> Any:
+    """Deceleration of the train: the one that is given, else that of wheels that all do the same [m/s2]."""
+    given = plant.train_deceleration
+    return deceleration(plant, slip, speed) if given is None else given
+
+
 def slip_rate(plant: Plant, slip: Any, speed: Any, torque: Any) -> Any:
     """Rate of the slip of one wheelset from (1) to (3), by the quotient rule [1/s]."""
     radius = plant.wheel_radius
     spin = speed * (1.0 - slip) / radius
     force = creep_force(plant, slip, speed, static_load(plant) * plant.load_share)
     torques = 2.0 * radius * force - torque - 2.0 * plant.wheel_damping * spin
-    slowing = plant.train_deceleration
-    slowing = deceleration(plant, slip, speed) if slowing is None else slowing
-    return -radius / speed * torques / plant.wheelset_inertia - (1.0 - slip) * slowing / speed
+    lost = (1.0 - slip) * slowing(plant, slip, speed)
+    return -radius / speed * torques / plant.wheelset_inertia - lost / speed
 
 
 def axle_rates(plant: Plant, shares: Any, slips: Any, speed: Any, torques: Any) -> tuple[Any, Any]:
@@ -103,14 +108,14 @@ def axle_rates(plant: Plant, shares: Any, slips: Any, speed: Any, torques: Any) 
     forces = [
         creep_force(plant, slip, speed, load * share) for slip, share in zip(slips, shares, strict=True)
     ]
-    slowing = (resistance(plant, speed) + 2.0 * sum(forces)) / plant.mass
+    common = (resistance(plant, speed) + 2.0 * sum(forces)) / plant.mass
     rates = [
         slip_rate(
-            plant.with_numbers({"load_share": share, "train_deceleration": slowing}), slip, speed, torque
+            plant.with_numbers({"load_share": share, "train_deceleration": common}), slip, speed, torque
         )
         for share, slip, torque in zip(shares, slips, torques, strict=True)
     ]
-    return np.array(rates), slowing
+    return np.array(rates), common
 
 
 def drift(plant: Plant, slip: Any, speed: Any) -> Any:

@@ -1,5 +1,6 @@
 """Attacks on what is said about loops behind a sampled valve: recovery, poles, Lyapunov functions, invariant sets."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -8,7 +9,7 @@ import numpy as np
 from tests.attack import linear, motion
 from tests.attack.case import Case, Stated
 from tests.attack.laws import feedback_duty
-from tests.attack.plant import Plant, holding_torque
+from tests.attack.plant import holding_torque, slip_pole
 from tests.attack.search import Attack, Points
 from tests.attack.statements import box, plant_at
 
@@ -54,52 +55,85 @@ def _equilibrium(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
     )
 
 
-def _resting_point(case: Case, plant: Plant, speed: Any, *, sampled: bool) -> tuple[Any, Any, Any]:
-    """Slip and duty at rest, and where there are none; a law that knows its torque rests at the reference.
-
-    Where the brake cannot hold the reference such a law saturates, and nothing is said: not a number.
-    """
-    if not case.exact_torque:
-        slip, duty = linear.equilibrium(case, plant, speed, sampled=sampled)
-        lost = np.isnan(slip)
-        return np.where(lost, case.slip, slip), np.where(lost, 0.5, duty), lost
-    slip = np.full(np.shape(speed), case.slip)
-    share = holding_torque(plant, slip, speed) / plant.max_torque
-    share = np.where((share > 0.0) & (share < 1.0), share, np.nan)
-    duty = linear.duty_of(plant, share, case.sample_time)
-    return slip, np.where(np.isnan(share), np.nan, duty), np.zeros(np.shape(speed), bool)
-
-
 def lpv_lyapunov(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
-    """V of the file falls over a sample by its factor, about the equilibrium that the plant has."""
-    found = []
-    for proof in stated.quadratics:
-        p = tuple(float(Fraction(each)) for each in proof["sampled"])
-        found.append(sampled_fall(case, stated, names, p, float(Fraction(proof["contraction"]))))
-    if case.exact_torque:
-        return found
-    return [_equilibrium(case, stated, names), *found, _settles(case, stated, names)]
+    """The loop with true pulses has an equilibrium near its reference, and settles."""
+    return [_equilibrium(case, stated, names), _settles(case, stated, names)]
 
 
-def sampled_fall(
-    case: Case, stated: Stated, names: tuple[str, ...], p: tuple[float, ...], factor: float
-) -> Attack:
-    """V falls by a factor squared per sample with true pulses."""
+def functions(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
+    """Quadratic functions of a file fall around any slip within the tolerance, taken as the equilibrium."""
+    return [
+        _falls(case, stated, names, Pieces(case, proof), sampled=sampled)
+        for proof in stated.quadratics
+        for sampled in (True, False)
+    ]
+
+
+PIECEWISE = {"f": "fill_time", "v": "vent_time", "t": "max_torque", "i": "wheelset_inertia"}
+
+
+class Pieces:
+    """Functions of a proof and the box of each, as columns: P and rate, continuous and sampled."""
+
+    def __init__(self, case: Case, proof: Mapping[str, Any]) -> None:
+        plant, bounds = case.data.plant, case.data.bounds
+        root = {name: bounds.get(name, (getattr(plant, name),) * 2) for name in PIECEWISE.values()}
+        waiting, boxes = [root], []
+        for step in proof["steps"]:
+            box = waiting.pop()
+            if step == ".":
+                boxes.append(box)
+                continue
+            low, high = box[name := PIECEWISE[step]]
+            middle = (low + high) / 2
+            waiting += [{**box, name: (middle, high)}, {**box, name: (low, middle)}]
+        self.low, self.high = (
+            {name: np.array([box[name][end] for box in boxes]) for name in root} for end in (0, 1)
+        )
+        self.numbers = np.array([[float(Fraction(each)) for each in piece] for piece in proof["pieces"]]).T
+
+
+def _falls(case: Case, stated: Stated, names: tuple[str, ...], pieces: Pieces, *, sampled: bool) -> Attack:
+    """V falls; y is the error of the sliding speed that the law sees, the second number R T/I with its radius."""
+    count = pieces.numbers.shape[1]
 
     def margin(x: Points) -> Any:
-        plant = plant_at(case, x)
-        slip, duty, lost = _resting_point(case, plant, x["speed"], sampled=True)
-        silent = np.isnan(duty)
-        matrix = linear.sampled_map(case, plant, slip, x["speed"], np.where(silent, 0.5, duty))
-        fall = factor - linear.contraction(matrix, p)
-        return np.where(lost, NEVER, np.where(silent, np.nan, fall))
+        piece = np.minimum((x["piece"] * count).astype(int), count - 1)
+        own = {
+            name: pieces.low[name][piece] + x[f"along {name}"] * (pieces.high[name] - pieces.low[name])[piece]
+            for name in PIECEWISE.values()
+        }
+        plant = plant_at(case, {**x, **own})
+        share = holding_torque(plant, x["slip"], x["speed"]) / plant.max_torque
+        possible = (share > 1e-6) & (share < 1.0 - 1e-6)
+        q = linear.difference_rate(plant, x["slip"], x["speed"])
+        seen = plant.with_numbers({"wheel_radius": case.model.wheel_radius})
+        scale = seen.wheel_radius * case.model.max_torque / plant.wheelset_inertia
+        share = np.where(possible, share, 0.5)
+        if sampled:
+            duty = linear.duty_of(plant, share, case.sample_time)
+            matrix = linear.sampled_map(case, seen, x["slip"], x["speed"], duty, q=q)
+        else:
+            matrix = linear.averaged(case, seen, share, q)
+        one = np.ones(np.shape(q))
+        matrix = matrix * np.array([[one, 1.0 / scale], [scale, one]])
+        p, rate = (
+            pieces.numbers[4:7, piece] if sampled else pieces.numbers[:3, piece],
+            pieces.numbers[7 if sampled else 3],
+        )
+        worst = linear.contraction(matrix, p) if sampled else linear.growth(matrix, p)
+        return np.where(possible, (rate[piece] if sampled else -rate[piece]) - worst, np.nan)
 
+    near = (case.slip - case.tolerance, case.slip + case.tolerance)
+    free = [name for name in names if name not in PIECEWISE.values()]
+    along = {f"along {name}": (0.0, 1.0) for name in PIECEWISE.values()}
     return Attack(
         check=stated.check,
-        statement=f"V falls by the factor {factor:.4g}^2 per sample with true pulses, about the equilibrium",
-        box=box(case, names, speed=case.speeds),
+        statement=f"the {count} functions fall, {'per sample with true pulses' if sampled else 'continuously'}",
+        box=box(case, free, speed=case.speeds, slip=near, piece=(0.0, 1.0), **along),
         margin=margin,
-        cost=60,
+        cost=4,
+        slack=1e-9,
     )
 
 
@@ -127,30 +161,35 @@ def _settles(case: Case, stated: Stated, names: tuple[str, ...]) -> Attack:
 
 
 def routh_lag(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:
-    """Poles of the loop with the averaged valve at frozen speed, about the equilibrium."""
+    """Poles of the loop with the averaged valve at frozen speed, about any slip within the tolerance."""
+    ranges = {"speed": case.speeds}
     if case.law == "torque-feedback":
+        ranges["slip"] = (case.slip - case.tolerance, case.slip + case.tolerance)
 
         def margin(x: Points) -> Any:
             plant = plant_at(case, x)
-            slip, _, lost = _resting_point(case, plant, x["speed"], sampled=False)
-            matrix = linear.continuous_rates(case, plant, slip, x["speed"], frozen=True)
-            return np.where(lost, NEVER, -linear.abscissa(matrix))
+            share = holding_torque(plant, x["slip"], x["speed"]) / plant.max_torque
+            possible = (share > 0.0) & (share < 1.0)
+            seen = plant.with_numbers({"wheel_radius": case.model.wheel_radius})
+            pole = slip_pole(plant, x["slip"], x["speed"])
+            matrix = linear.averaged(case, seen, np.where(possible, share, 0.5), pole)
+            return np.where(possible, -linear.abscissa(matrix), np.nan)
 
     else:
 
         def margin(x: Points) -> Any:
             return -linear.surface_poles(case, plant_at(case, x), x["speed"])
 
-    found = Attack(
-        check=stated.check,
-        statement="all poles behind the averaged valve lie in the left half-plane",
-        box=box(case, names, speed=case.speeds),
-        margin=margin,
-        unit="1/s",
-        cost=20,
-    )
-    moves = case.law == "torque-feedback" and not case.exact_torque
-    return [found, *([_equilibrium(case, stated, names)] if moves else [])]
+    return [
+        Attack(
+            check=stated.check,
+            statement="all poles behind the averaged valve lie in the left half-plane",
+            box=box(case, names, **ranges),
+            margin=margin,
+            unit="1/s",
+            cost=20,
+        )
+    ]
 
 
 def sampled_invariance(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack]:

@@ -1,6 +1,6 @@
 """The audit's counterexamples keep their values in equations that share nothing with the package."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -8,6 +8,7 @@ import pytest
 from tests.attack import linear, motion
 from tests.attack.case import read_data
 from tests.attack.counterexamples import (
+    ADAPTIVE,
     CALM_SPEED,
     DEPARTURES,
     EQUILIBRIA,
@@ -195,7 +196,7 @@ def test_unequal_loads_raise_the_sum_of_the_peaks(point):
 
 @pytest.mark.parametrize("run", [LEAVES, FALLS], ids=["out", "down"])
 def test_runs_of_the_adaptive_law_leave_the_slips_of_its_theorem(run, adaptive_case):
-    case = adaptive_case
+    case = replace(adaptive_case, gains={**adaptive_case.gains, **ADAPTIVE})
     plant = case.data.plant.with_numbers(run)
     done = motion.adaptive_run(
         case,

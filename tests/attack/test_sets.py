@@ -1,6 +1,5 @@
 """The attacker of invariant sets: none of the runs leaves sets that hold, and it leaves sets that were moved."""
 
-import json
 import math
 
 import pytest
@@ -39,19 +38,11 @@ def case():
 @pytest.fixture(scope="module")
 def windows():
     problem = feedback_problem(spread=SPREAD, speeds=SPEEDS)
-    return json.loads(document.write(problem, search(problem, most_work=math.inf)))["windows"]
+    return document.write(problem, search(problem, most_work=math.inf))["windows"]
 
 
 def assailed(case, windows):
-    stated = Stated(
-        check="sampled_invariance",
-        status="PROVED",
-        claim="",
-        inequalities=(),
-        points={},
-        quadratics=(),
-        sets=(windows,),
-    )
+    stated = Stated(check="sampled_invariance", status="PROVED", claim="", sets=(windows,))
     (attack,) = attacks(case, stated, case.varied)
     return assail(attack, evaluations=60_000, seed=2)
 

@@ -10,6 +10,7 @@ import pytest
 from wspd_design.certificates.checks.region.lpv_lyapunov import CHECK
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates.kernel.finding import Finding, Stated
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.setting.plant import dynamics_at
@@ -138,6 +139,18 @@ def test_known_equilibrium_of_the_audit(problem):
         equilibrium.nowhere(uncertain, usual, Work())
 
 
+def test_a_place_without_equilibrium_is_told_by_its_own_numbers(problem):
+    """The witness may be of the other half of the claim: the sentence names the place that it speaks about."""
+    place = {"speed": 10.0 / 3.6, "mass": 61473.0, "mu0": 0.24}
+    found = Finding(status=Status.REFUTED, asked="", numbers={"rate": 2.5}, stated=Stated(place=place))
+    open_ = Finding(status=Status.UNDECIDED, asked="")
+    told = equilibrium.explained(
+        problem, {equilibrium.ABOVE: open_, equilibrium.BELOW: open_, equilibrium.NOWHERE: found}
+    )
+    assert told.startswith("At speed 10 km/h, mass 6.147e+04 kg, mu0 0.24 no equilibrium lies within 0.05")
+    assert "at the witness" not in told
+
+
 def with_valve(problem, fill, vent, top=60e3):
     brake = replace(problem.vehicle.brake, fill_time=fill, vent_time=vent, max_torque=top)
     return replace(problem, vehicle=replace(problem.vehicle, brake=brake))
@@ -161,7 +174,7 @@ def test_a_fast_vent_refutes_the_old_rule(problem):
 
 def test_a_law_inherits_nothing(problem):
     class Evil(TorqueFeedback):
-        def step(self, state, measurement):
+        def step(self, state, _measurement):
             return state, Command(fill=1.0, vent=0.0)
 
     law = problem.controller

@@ -6,12 +6,19 @@ from dataclasses import replace
 import control
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
+from tests.attack.case import read_data
+from tests.attack.plant import gain as attacker_gain
+from tests.attack.plant import holding_torque, slip_pole
+from tests.certificates.round_trip import forgeries, keep, no_word_can_be_changed, not_for, refused
 from wspd_design.certificates.checks.linear import margins
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting.linear_loop import loop_at, outermost, variables
+from wspd_design.certificates.theorems import linear
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.bounds import EXACT
 
 
 def test_known_loop():
@@ -72,7 +79,7 @@ def test_disk_margin_over_speed(make_problem, make_controller, name, sample_time
     """Margins below 0.01 belong to peaks that are narrower than a grid of some hundred frequencies."""
     problem = make_problem(make_controller(name, "polach-wet"), rail="polach-wet")
     loops = [
-        margins.loop(problem, problem.controller, float(speed), sample_time=sample_time)
+        margins.loop(problem, float(speed), sample_time=sample_time)
         for speed in np.geomspace(*problem.speeds, 13)
     ]
     found = [(opened, margins.margins(opened)) for opened in loops]
@@ -85,7 +92,7 @@ def test_disk_margin_over_speed(make_problem, make_controller, name, sample_time
 
 def test_gain_and_phase_at_the_edge_of_the_disk(problem):
     """A factor on the rim of the disk makes the loop unstable, a little inside none does."""
-    opened = margins.loop(problem, problem.controller, 12.0, sample_time=0.02)
+    opened = margins.loop(problem, 12.0, sample_time=0.02)
     disk = margins.margins(opened).disk
     for size, unstable in ((1.001 * disk, True), (0.999 * disk, False)):
         turns = size * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 721))
@@ -102,7 +109,7 @@ def problem(make_problem, make_controller):
 @pytest.mark.parametrize("sample_time", [None, 0.02])
 @pytest.mark.parametrize("speed", [3.0, 25.0])
 def test_gain_margin_is_where_the_loop_becomes_unstable(problem, sample_time, speed):
-    opened = margins.loop(problem, problem.controller, speed, sample_time=sample_time)
+    opened = margins.loop(problem, speed, sample_time=sample_time)
     found = margins.margins(opened)
     assert found.stable
     for factor, side in ((found.gain_up, 1.0), (found.gain_down, -1.0)):
@@ -112,43 +119,89 @@ def test_gain_margin_is_where_the_loop_becomes_unstable(problem, sample_time, sp
         assert not margins.margins(opened * (factor * (1.0 + 1e-3 * side))).stable
 
 
-def test_sampled_loop_is_the_law_between_samples(problem):
-    """Eigenvalues of a simulated pair of samples, without python-control's discretization."""
-    speed = 12.0
-    opened = margins.loop(problem, problem.controller, speed, sample_time=0.02)
+def pulses(pole, gain, limit, fill, vent, duty, span):
+    """Transition of (error, share of T_max, 1) over a sample of filling and then venting."""
+    found = np.eye(3)
+    for part, aim, time in ((duty, 1.0, fill), (1.0 - duty, 0.0, vent)):
+        rates = [[pole, -gain * limit, 0.0], [0.0, -1.0 / time, aim / time], [0.0, 0.0, 0.0]]
+        found = expm(np.array(rates) * part * span) @ found
+    return found
+
+
+@pytest.mark.parametrize(("fill", "vent"), [(0.6, 0.6), (0.4, 0.4), (0.6, 0.3)])
+def test_sampled_loop_is_the_law_between_samples(problem, fill, vent):
+    """Differences of one sample with its pulses, by exponentials of matrices; unlike times are enclosed only."""
+    speed, span = 12.0, 0.02
+    brake = replace(problem.vehicle.brake, fill_time=fill, vent_time=vent)
+    vehicle = replace(problem.vehicle, brake=brake)
+    changed = replace(problem, vehicle=vehicle, bounds=EXACT)
+    opened = margins.loop(changed, speed, sample_time=span)
     closed = np.sort_complex(control.feedback(opened, 1).poles())
-    dynamics = margins.nominal(problem.vehicle, problem.rail, 0.14, speed)
-    gains, lag, limit = problem.controller.linear_form(speed), 0.6, 60e3
-    steps, h = 4000, 0.02
-    a = np.array([[dynamics.pole, dynamics.gain * limit], [0.0, -1.0 / lag]])
-    matrix = np.empty((2, 2))
-    for column in range(2):
-        x = np.eye(2)[column]
-        command = -(gains.proportional / limit * x[0] + gains.torque * x[1])
-        drive = np.array([0.0, command / lag])
-        for _ in range(steps):  # Heun
-            k = a @ x + drive
-            x = x + h / steps * 0.5 * (k + a @ (x + h / steps * k) + drive)
-        matrix[:, column] = x
-    assert closed == pytest.approx(np.sort_complex(np.linalg.eigvals(matrix)), rel=1e-5)
+    plant = read_data("er24pc", "polach-dry").plant
+    pole, gain = float(slip_pole(plant, 0.14, speed)), float(attacker_gain(plant, speed))
+    limit = 60e3
+    share = float(holding_torque(plant, 0.14, speed)) / limit
+    duty = share * fill / ((1.0 - share) * vent + share * fill)
+    kept = pulses(pole, gain, limit, fill, vent, duty, span)
+    foot = kept[1, 2] / (1.0 - kept[1, 1])  # of the course that repeats itself
+    gains = problem.controller.linear_form(speed)
+
+    def after(error, torque):
+        moved = gains.proportional / limit * error - gains.torque * torque
+        start = np.array([error, foot + torque, 1.0])
+        return (pulses(pole, gain, limit, fill, vent, duty + moved, span) @ start)[:2]
+
+    step = 1e-6
+    columns = [(after(*(step * unit)) - after(*(-step * unit))) / (2.0 * step) for unit in np.eye(2)]
+    expected = np.sort_complex(np.linalg.eigvals(np.array(columns).T))
+    assert closed == pytest.approx(expected, rel=1e-5 if fill == vent else 1e-2)
 
 
-def test_verdicts(make_problem, make_controller, problem):
-    good = margins.check(problem)
-    assert good.status is Status.EVIDENCE
-    assert 0.3 < good.margin.high < 2.0
-    bad = margins.check(make_problem(make_controller("afsmc")))
-    assert bad.status is Status.REFUTED
-    assert bad.witness
-    assert margins.check(make_problem(make_controller("trenitalia"))).status is Status.NOT_APPLICABLE
+@pytest.fixture(scope="module")
+def good(problem):
+    return keep(margins.CHECK, problem)
+
+
+@pytest.fixture(scope="module")
+def bad(make_problem, make_controller):
+    return keep(margins.CHECK, make_problem(make_controller("afsmc")))
+
+
+def test_verdicts(make_problem, make_controller, good, bad):
+    assert good.certificate.status is Status.EVIDENCE
+    assert 0.3 < good.certificate.margin.high < 2.0
+    assert bad.certificate.status is Status.REFUTED
+    assert bad.certificate.witness
+    found = margins.CHECK.run(make_problem(make_controller("trenitalia")))
+    assert found.status is Status.NOT_APPLICABLE
+
+
+def test_words_of_evidence_and_of_a_refutation(good, bad):
+    no_word_can_be_changed(good)
+    no_word_can_be_changed(bad)
+
+
+def test_a_place_that_is_not_unstable_refutes_nothing(good, bad):
+    """The pole of a witness is enclosed again; samples cannot become a refutation."""
+    findings = bad.content["findings"]
+    for key in ("continuous", "sampled"):
+        assert refused(bad, findings={name: each for name, each in findings.items() if name != key}) is (
+            key == "continuous"
+        )
+    forged = good.content["findings"] | {"sampled": findings["continuous"]}
+    assert refused(good, findings=forged, status="REFUTED")
+    assert not_for(bad, good.problem)
+    assert {"status": "PROVED"} in forgeries(good)
 
 
 def test_too_slow_sampling_is_seen(problem):
-    """The planted fault: the gains that are right at 20 ms do not stand 100 ms."""
-    slow = replace(problem, controller=replace(problem.controller, sample_time=0.1), sample_time=0.1)
-    verdict = margins.check(slow)
+    """The planted fault: the gains that are right at 20 ms do not stand 200 ms."""
+    slow = replace(problem, controller=replace(problem.controller, sample_time=0.2), sample_time=0.2)
+    verdict = margins.CHECK.run(slow)
     assert verdict.status is Status.REFUTED
-    assert "at 0 of 25 speeds as continuous loop" in verdict.explanation
+    assert verdict.findings["continuous"].status is Status.UNDECIDED
+    assert verdict.findings["sampled"].status is Status.REFUTED
+    assert "magnitude of a sampled pole is at least" in verdict.explanation
 
 
 @pytest.mark.parametrize("name", ["afsmc", "smc", "torque-feedback"])
@@ -157,18 +210,18 @@ def test_enclosed_poles_are_those_of_the_floats(make_problem, make_controller, n
     problem = make_problem(make_controller(name))
     for speed in (3.0, 9.0, 30.0):
         sample_time = problem.sample_time if sampled else None
-        opened = margins.loop(problem, problem.controller, speed, sample_time=sample_time)
+        opened = margins.loop(problem, speed, sample_time=sample_time)
         poles = control.feedback(opened, 1).poles()
         expected = np.abs(poles).max() if sampled else poles.real.max()
-        found = outermost(problem, problem.controller, speed, sampled=sampled)
+        found = outermost(problem, speed, sampled=sampled)
         assert found == pytest.approx(expected, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", ["afsmc", "smc"])
 def test_witness_is_unstable(make_problem, make_controller, name):
-    """Eigenvalues of the continuous loop in slip, torque and integral, from differences of the drift."""
+    """Eigenvalues of the continuous loop in slip, torque and integrals, from differences of the drift."""
     problem = make_problem(make_controller(name))
-    verdict = margins.check(problem)
+    verdict = margins.CHECK.run(problem)
     assert verdict.status is Status.REFUTED
     at = {point.name: point.value for point in verdict.witness}
     speed, gains = at["speed"] / 3.6, problem.controller.linear_form(at["speed"] / 3.6)
@@ -176,20 +229,22 @@ def test_witness_is_unstable(make_problem, make_controller, name):
     more, less = (slip_dynamics(problem.vehicle, problem.rail, 0.14 + d, speed) for d in (step, -step))
     pole, gain = (more.drift - less.drift) / (2.0 * step), more.gain
     matrix = [
-        [pole, -gain, 0.0],
-        [gains.proportional / 0.6, -1.0 / 0.6, gains.integral / 0.6],
-        [1.0, 0.0, 0.0],
+        [pole, -gain, 0.0, 0.0],
+        [gains.proportional / 0.6, -1.0 / 0.6, gains.integral / 0.6, gains.twice / 0.6],
+        [1.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
     ]
+    assert (gains.twice != 0.0) is (name == "afsmc")  # the weights of which adapt
     assert np.linalg.eigvals(matrix).real.max() == pytest.approx(at["real part of a pole"], rel=1e-4)
     assert at["real part of a pole"] > 0.0
 
 
 def test_what_only_floats_see_is_undecided(make_problem, make_controller, monkeypatch):
-    monkeypatch.setattr(margins, "outermost", lambda *_, **__: -math.inf)
-    verdict = margins.check(make_problem(make_controller("afsmc")))
+    monkeypatch.setattr(linear, "outermost", lambda *_, **__: -math.inf)
+    verdict = margins.CHECK.run(make_problem(make_controller("afsmc")))
     assert verdict.status is Status.UNDECIDED
     assert not verdict.witness
-    assert "at none of them" in verdict.explanation
+    assert "at no speed exact arithmetic shows a pole outside" in verdict.explanation
 
 
 @pytest.mark.parametrize("name", ["afsmc", "smc", "torque-feedback"])
@@ -197,7 +252,7 @@ def test_a_law_for_another_brake_has_other_gains(make_problem, make_controller, 
     """By differences of what the law commands on a brake that is half as strong as its own."""
     weak = replace(er24pc, brake=replace(er24pc.brake, max_torque=30e3))
     law = make_controller(name, "polach-wet")
-    problem = make_problem(law, vehicle=weak, rail="polach-wet")
+    problem = replace(make_problem(law, vehicle=weak, rail="polach-wet"), bounds=EXACT)
     speed, slip = 12.0, 0.14
     plant = slip_dynamics(er24pc, problem.rail, slip, speed)
     middle = -plant.drift / plant.gain  # holds the slip
@@ -211,9 +266,7 @@ def test_a_law_for_another_brake_has_other_gains(make_problem, make_controller, 
         assert 0.0 < command.fill < 1.0
         return 30e3 * command.fill
 
-    _, gains = loop_at(
-        problem, law, {v.name: float(v.low) for v in variables(problem, law)} | {"speed": speed}
-    )
+    _, _, gains = loop_at(problem, {v.name: float(v.low) for v in variables(problem)} | {"speed": speed})
     step = 1e-7
     by_slip = (commanded(slip - step, middle) - commanded(slip + step, middle)) / (2.0 * step)
     by_torque = (commanded(slip, middle + 1.0) - commanded(slip, middle - 1.0)) / 2.0

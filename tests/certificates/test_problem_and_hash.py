@@ -77,6 +77,7 @@ def test_hash_sees_every_field_of_a_problem(problem):
         "slips": (0.02, 0.61),
         "bounds": BOUNDS | {"fill time": (0.3, 0.9)},
         "sample_time": 0.11,
+        "slip_tolerance": 0.04,
         "seed": 1,
         "contact_grows_with_load": False,
     }

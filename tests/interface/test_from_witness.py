@@ -101,7 +101,7 @@ def test_the_slip_rests_at_first_on_either_plant(wspd, witness_file):
         (("smc", "--from-witness", "w.json", "--runs", "9"), ("--runs", "--nominal")),
         (("smc", "--from-witness", "missing.json"), ("missing.json", "wspd certify")),
         (("smc", "--from-witness", "."), ("cannot be read", "wspd certify")),
-        (("smc", "--from-witness", "smc.toml"), ("smc.toml", "no complete JSON")),
+        (("smc", "--from-witness", "smc.toml"), ("smc.toml", "not complete JSON")),
         (("smc", "--from-witness", "fast.json"), ("fast.json", "speed 600 km/h", "0.36 and 500 km/h")),
         (("smc", "--from-witness", "proved.json"), ("proved.json", "PROVED", "only REFUTED")),
         (("smc", "--from-witness", "w.json", "--plant", "half"), ("half", "quarter")),

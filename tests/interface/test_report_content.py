@@ -18,6 +18,8 @@ from wspd_design.reporting.text import plain
 from wspd_design.simulation.records import Scenario
 from wspd_design.studies.dossier import dossier
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def made():

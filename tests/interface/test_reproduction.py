@@ -9,6 +9,8 @@ import pytest
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting.reproduction import write_reproduction
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):

@@ -52,7 +52,7 @@ def test_no_escape_sequences(changes, wspd, monkeypatch):
     monkeypatch.delenv("FORCE_COLOR", raising=False)
     for key, value in changes.items():
         monkeypatch.setenv(key, value)
-    outcome = wspd("verify", "smc", "--only", "gain_positive")
+    outcome = wspd("verify", "none", "--only", "gain_positive")
     assert "\x1b" not in outcome.out
     assert "✓ PROVED" in outcome.out
 

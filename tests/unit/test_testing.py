@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from wspd_design.certificates.checks.frame import Check
 from wspd_design.certificates.records import Status
+from wspd_design.design.certification import certify, folder_beside
 from wspd_design.design.file import write_design
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
@@ -41,6 +43,7 @@ def test_a_weak_gain_fails_with_explanation_and_worst_point(weak):
     assert message.startswith(
         "reaching is REFUTED, asked for PROVED: While the slip stays between 0.02 and 0.6"
     )
+    assert "W0 = 1 m/s2" in message
     assert "larger W0" in message
     assert "worst point: slip" in message
     assert "surface_hurwitz" not in message
@@ -80,3 +83,21 @@ def test_wrong_names_are_refused(design):
         assert_certified(design, "raeching")
     with pytest.raises(UserError, match="no check is named"):
         assert_certified(design)
+
+
+def test_a_proved_limitation_is_no_good_news_unless_asked_for(design):
+    """The audit: that no law of the class is stable passed as if it were a success."""
+    with pytest.raises(AssertionError, match="no_go is LIMITATION, asked for PROVED"):
+        assert_certified(design, "no_go", rail="polach-dry")
+    (found,) = assert_certified(design, "no_go", rail="polach-dry", limitation=True)
+    assert found.status is Status.LIMITATION
+
+
+def test_what_is_kept_beside_a_design_is_not_searched_again(design, tmp_path, monkeypatch):
+    path = tmp_path / "smc.toml"
+    write_design(design, path)
+    certify(path, only=("gain_positive",), folder=folder_beside(path))
+    monkeypatch.setattr(Check, "run", lambda *_: pytest.fail("searched"))
+    assert_certified(path, "gain_positive")
+    with pytest.raises(pytest.fail.Exception, match="searched"):
+        assert_certified(design, "gain_positive")

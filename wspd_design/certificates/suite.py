@@ -70,6 +70,7 @@ def verify(
     progress: Callable[[str], None] = lambda _: None,
     budget: Budget = DEFAULT_BUDGET,
     stored: Path | None = None,
+    figures: bool = True,
 ) -> tuple[Certificate, ...]:
     """Run the checks.
 
@@ -86,6 +87,8 @@ def verify(
     stored : Path, optional
         Folder of certificate files. One that is accepted for this problem, and decides its claim, is not searched
         again.
+    figures : bool
+        Whether to sample the curves and maps that a report shows beside the verdicts.
 
     Returns
     -------
@@ -108,18 +111,23 @@ def verify(
         _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
     wanted = [CHECKS[name] for name in NAMES if only is None or name in only]
     with remembering():
-        return tuple(_run(check, problem, progress, budget, stored) for check in wanted)
+        return tuple(_run(check, problem, progress, budget, stored, figures) for check in wanted)
 
 
 def _run(
-    check: Check, problem: Problem, progress: Callable[[str], None], budget: Budget, stored: Path | None
+    check: Check,
+    problem: Problem,
+    progress: Callable[[str], None],
+    budget: Budget,
+    stored: Path | None,
+    figures: bool,
 ) -> Certificate:
     progress(check.theorem.title)
     found = _accepted(check.name, problem, stored)
     if found is not None:
-        return illustrated(check, problem, found)
+        return illustrated(check, problem, found) if figures else found
     with listening(_at(check.theorem.title, progress)), within(budget):
-        return check.run(problem)
+        return check.run(problem, figures=figures)
 
 
 def _accepted(name: str, problem: Problem, folder: Path | None) -> Certificate | None:

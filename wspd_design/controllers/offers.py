@@ -130,6 +130,11 @@ class Linear(SlipReference, Controller, Protocol):
         """
 
 
+@runtime_checkable
+class LinearSurface(Surface, Linear, Protocol):
+    """A law with a sliding surface that is linear near its reference."""
+
+
 def slip_reference_of(law: Controller) -> float | None:
     """Slip that a law holds, None if it does not say [-].
 

@@ -77,6 +77,7 @@ def certify(
         progress=progress,
         budget=Budget(effort=effort),
         stored=stored or stored_beside(design),
+        figures=False,
     )
     if folder is not None:
         write_certificates(certificates, Path(folder))

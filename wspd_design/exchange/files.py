@@ -10,7 +10,7 @@ from typing import Any
 
 from wspd_design.exchange.documentation import with_tables
 from wspd_design.exchange.forms import Form, json_schema
-from wspd_design.exchange.vocabulary import STANDING_ALONE
+from wspd_design.exchange.vocabulary import WITH_SCHEMA
 
 FOLDER = "data/schemas"
 
@@ -34,7 +34,7 @@ def read_schema(name: str) -> dict[str, Any]:
 
 def write_schemas(folder: Path) -> None:
     """Write the schema file of every form that stands alone."""
-    for form in STANDING_ALONE:
+    for form in WITH_SCHEMA:
         (folder / schema_file(form)).write_text(schema_text(form), encoding="utf-8")
 
 

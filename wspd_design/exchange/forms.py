@@ -29,8 +29,8 @@ _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 class Key:
     """One key of an object.
 
-    ``many`` is the least and the largest length of a list of such values; a key that is not ``always`` there is
-    written by some commands only, which the meaning names.
+    ``many`` is the least and the largest length of a list of such values, ``by_name`` an object with one such value
+    for each name; a key that is not ``always`` there is written by some commands only, which the meaning names.
     """
 
     name: str
@@ -38,6 +38,7 @@ class Key:
     meaning: str
     nullable: bool = False
     many: tuple[int, int | None] | None = None
+    by_name: bool = False
     words: tuple[str, ...] = ()
     always: bool = True
 
@@ -106,6 +107,8 @@ def _value(key: Key) -> dict[str, Any]:
 
 
 def _listed(key: Key, value: dict[str, Any]) -> dict[str, Any]:
+    if key.by_name:
+        return {"type": "object", "additionalProperties": value}
     if key.many is None:
         return value
     least, most = key.many

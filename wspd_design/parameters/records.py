@@ -43,6 +43,12 @@ class ParameterSet:
             {name: entry.bounds for name, entry in self.entries.items() if entry.bounds is not None}
         )
 
+    def number(self, name: str) -> float:
+        """Return a number by its name [SI units]."""
+        value = self.entries[name].value
+        assert isinstance(value, float)
+        return value
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:

@@ -20,5 +20,5 @@ def found(problem):
 
 
 @pytest.fixture(scope="session")
-def text(problem, found):
+def written(problem, found):
     return document.write(problem, found)

@@ -1,12 +1,15 @@
 """A law with torque feedback, the box in which it is certified, and an integration that shares nothing with it."""
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.theorems.invariant_sets.checker import decide
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
 from wspd_design.model.slip import slip_dynamics
@@ -14,6 +17,24 @@ from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 SAMPLE, REFERENCE = 0.02, 0.14
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the checker says about sets."""
+
+    accepted: bool
+    reason: str = ""
+    slips: tuple[float, float] = (math.nan, math.nan)
+
+
+def check(problem, written):
+    """Let the checker decide about sets."""
+    try:
+        found = decide(problem, written, Work())
+    except Refused as refusal:
+        return Verdict(False, str(refusal))
+    return Verdict(True, slips=(found["lowest slip"], found["highest slip"]))
 
 
 def around(value, share):

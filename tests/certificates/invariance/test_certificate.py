@@ -7,13 +7,23 @@ from itertools import count
 
 import pytest
 
-from tests.certificates.invariance.loops import feedback_problem
-from wspd_design.certificates.checks.region import sampled_invariance as certificate
+from tests.certificates.invariance.loops import check, feedback_problem
+from tests.certificates.round_trip import (
+    keep,
+    no_proof_can_be_missed,
+    no_word_can_be_changed,
+    not_for,
+    refused,
+)
 from wspd_design.certificates.checks.region.outlines import OUTLINES
+from wspd_design.certificates.checks.region.sampled_invariance import CHECK
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import Budget, within
-from wspd_design.certificates.theorems.invariant_sets.checker import Verdict, check
+from wspd_design.certificates.theorems import region
+from wspd_design.certificates.theorems.region import SETS
 from wspd_design.controllers.protocol import Command
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller
@@ -22,34 +32,57 @@ from wspd_design.parameters.loading import load_rail
 
 
 @pytest.fixture(scope="module")
-def proved(problem):
-    return certificate.check(problem)
+def kept(problem):
+    return keep(CHECK, problem)
+
+
+@pytest.fixture(scope="module")
+def proved(kept):
+    return kept.certificate
 
 
 def test_a_proved_range(problem, proved):
     assert proved.status is Status.PROVED
-    assert proved.name == certificate.NAME
+    assert proved.name == CHECK.name
     assert proved.undecided == 0.0
     assert 0.0 < proved.margin.low < proved.margin.high == 1.0 - problem.slip
-    (proof,) = proved.proofs
-    assert json.loads(proof.certificate)["claim_sha256"] == proof.claim_hash == proved.model_hash
-    again = check(problem, proof.certificate)
+    (found,) = proved.proved.values()
+    again = check(problem, found.stated.proof)
     assert again.accepted
+    assert found.stated.proof["claim_sha256"] == proved.model_hash
     assert proved.margin.low == 1.0 - again.slips[1]
     assert f"{again.slips[1]:.3f}" in proved.claim
     assert any("full supply pressure" in each for each in proved.assumptions)
+
+
+def test_words_and_proofs(kept, problem):
+    no_word_can_be_changed(kept)
+    no_proof_can_be_missed(kept)
+    assert not_for(kept, replace(problem, bounds=problem.bounds | {"mu0": (0.25, 0.35)}))
+
+
+def test_other_sets_prove_nothing_in_a_file(kept):
+    """A cell less, from which nothing may be said, and half a file."""
+    proof = kept.content["findings"][SETS]["proof"]
+    row = proof["windows"][0]["columns"]["34"]
+    middle = (row[0] + row[1]) // 2
+    columns = proof["windows"][0]["columns"] | {"34": [row[0], middle, middle + 1, row[1]]}
+    holed = proof | {"windows": [proof["windows"][0] | {"columns": columns}, *proof["windows"][1:]]}
+    assert refused(kept, findings={SETS: {"proof": holed}})
+    text = json.dumps(kept.content)
+    assert not replay(kept.problem, text[: len(text) // 2]).accepted
 
 
 def test_the_designed_law_with_nominal_parameters(er24pc):
     """Fast windows, which need the finest cells; the designed gains are higher than those of the other tests."""
     rail, specification = load_rail("polach-wet"), Specification(sample_time=0.02)
     law = design_controller(er24pc, rail, specification, law="torque-feedback").build(er24pc, rail)
-    found = certificate.check(feedback_problem(spread=0.0, speeds=(29.0, 33.0), controller=law))
+    found = CHECK.run(feedback_problem(spread=0.0, speeds=(29.0, 33.0), controller=law))
     assert found.status is Status.PROVED
-    assert "1/512" in found.resolution
+    assert max(each["per_unit"] for each in found.findings[SETS].stated.proof["windows"]) == 512
     high = replace(law, gains=replace(law.gains, sliding_gain=8.0 * law.gains.sliding_gain))
     assert (
-        certificate.check(feedback_problem(spread=0.0, speeds=(31.5, 33.0), controller=high)).status
+        CHECK.run(feedback_problem(spread=0.0, speeds=(31.5, 33.0), controller=high)).status
         is Status.UNDECIDED
     )
 
@@ -66,15 +99,14 @@ def test_outlines_are_closed_and_physical(problem, proved):
         assert 0.0 <= min(series.y) <= max(series.y) <= problem.vehicle.brake.max_torque / 1e3
 
 
-def test_without_the_checker_it_is_evidence(problem, monkeypatch):
-    def no(_problem, _text):
-        return Verdict(accepted=False, reason="for the test", leaves=0, seconds=0.0)
+def test_without_the_checker_nothing_is_proved(problem, monkeypatch):
+    def no(*_):
+        raise Refused("for the test")
 
-    monkeypatch.setattr(certificate.checker, "check", no)
-    found = certificate.check(problem)
-    assert found.status is Status.EVIDENCE
-    assert not found.proofs
-    assert "does not accept" in found.explanation
+    monkeypatch.setattr(region.invariance, "decide", no)
+    found = CHECK.run(problem)
+    assert found.status is Status.UNDECIDED
+    assert not found.proved
     assert found.series[0].name.startswith("unproved set at ")
 
 
@@ -85,26 +117,18 @@ def wide():
 
 @pytest.fixture(scope="module")
 def left_open(wide):
-    return certificate.check(wide)
+    return CHECK.run(wide)
 
 
 def test_a_wide_box_is_left_open_with_the_windows_and_the_reason(left_open):
     found = left_open
     assert found.status is Status.UNDECIDED
     assert found.undecided == 1.0
-    assert "No set is found at 86.4 to 93.6 km/h" in found.explanation
-    assert "Simulated at 2 of these speeds" in found.explanation
-    assert "% of the full one over the box" in found.explanation
-    assert "With nominal parameters the checker accepts" in found.explanation
-    assert not found.proofs
-
-
-def test_sets_without_uncertainty_are_drawn_if_there_are_no_others(left_open):
-    alone = certificate.check(feedback_problem(spread=0.0, speeds=(24.0, 26.0)))
-    assert alone.status is Status.PROVED
-    assert [(each.x, each.y) for each in left_open.series] == [(each.x, each.y) for each in alone.series]
-    names = [each.name for each in left_open.series]
-    assert names == ["nominal set at 90.7 km/h", "nominal set at 93.6 km/h", "reference", "full torque"]
+    assert "No set is found at 86.4 to 93.6 km/h" in found.remark
+    assert "Simulated at 2 of these speeds" in found.remark
+    assert "% of the full one over the box" in found.remark
+    assert not found.proved
+    assert not found.series
 
 
 def test_some_windows_of_a_range():
@@ -114,43 +138,31 @@ def test_some_windows_of_a_range():
     problem = replace(
         problem, sample_time=0.1, controller=replace(problem.controller, sample_time=0.1, gains=gains)
     )
-    found = certificate.check(problem)
+    found = CHECK.run(problem)
     assert found.status is Status.UNDECIDED
     assert 0.1 < found.undecided < 0.9
-    assert "No set is found at 10.8 to" in found.explanation
-    assert "nominal parameters already" in found.explanation
+    assert "No set is found at 10.8 to" in found.remark
     speeds = [
         float(each.name.removeprefix("unproved set at ").removesuffix(" km/h")) for each in found.series[:-2]
     ]
     assert 10.8 < min(speeds) < max(speeds) == 23.4
 
 
-def test_some_windows_of_a_range_without_uncertainty(wide):
-    with within(Budget(seconds=1e-3)):
-        found = certificate.check(wide)
-    assert "With nominal parameters 1 of 2 windows have a set; the search time did not suffice for 1" in (
-        found.explanation
-    )
-    names = [each.name for each in found.series]
-    assert names == ["unproved nominal set at 90.7 km/h", "reference", "full torque"]
-
-
-def test_search_time_that_runs_out_is_said(problem):
-    with within(Budget(seconds=0.0)):
-        found = certificate.check(problem)
+def test_a_budget_that_runs_out_is_said(problem):
+    with within(Budget(effort=0.0)):
+        found = CHECK.run(problem)
     assert found.status is Status.UNDECIDED
     assert found.undecided == pytest.approx(1.0)
-    assert "The search time, counted in steps of cells, ran out before 82.8 to 93.6 km/h" in found.explanation
-    assert "the search time did not suffice for" in found.explanation
+    assert "The budget of the search ran out before 82.8 to 93.6 km/h" in found.remark
     assert not found.series
 
 
-def test_search_time_decides_how_many_windows_are_searched(problem):
-    """More time, more windows, and at last all of them."""
+def test_the_budget_decides_how_many_windows_are_searched(problem):
+    """More work, more windows, and at last all of them."""
     left = []
-    for seconds in (0.001, 0.5, 20.0):
-        with within(Budget(seconds=seconds)):
-            left.append(certificate.check(problem).undecided)
+    for effort in (5e-5, 0.025, 1.0):
+        with within(Budget(effort=effort)):
+            left.append(CHECK.run(problem).undecided)
     assert 1.0 > left[0] > left[1] >= left[2] == 0.0
 
 
@@ -158,14 +170,14 @@ def test_the_same_problem_has_the_same_text_on_a_slow_machine(wide, left_open, m
     clock = count(step=1000.0)
     for name in ("time", "monotonic", "perf_counter", "process_time"):
         monkeypatch.setattr(time, name, lambda: next(clock))
-    again = certificate.check(wide)
+    again = CHECK.run(wide)
     assert again.seconds >= 1000.0
     assert certificate_text(again) == certificate_text(left_open)
     assert again.series == left_open.series
 
 
 def test_wheels_that_lock_have_no_set(problem, make_controller):
-    found = certificate.check(
+    found = CHECK.run(
         replace(problem, controller=replace(make_controller("none", "polach-wet"), sample_time=0.02))
     )
     assert found.status is Status.UNDECIDED
@@ -175,9 +187,10 @@ def test_wheels_that_lock_have_no_set(problem, make_controller):
 @pytest.mark.parametrize("name", ["smc", "afsmc", "trenitalia", "knorr-bremse", "mitsubishi"])
 def test_laws_with_memory_are_none_of_its_business(problem, make_controller, name):
     controller = make_controller(name, "polach-wet", sample_time=0.02)
-    found = certificate.check(replace(problem, controller=controller))
+    found = CHECK.run(replace(problem, controller=controller))
     assert found.status is Status.NOT_APPLICABLE
     assert "remembers" in found.explanation
+    assert "slip and torque alone do not tell its next command" in found.explanation
 
 
 class Unsmooth:
@@ -194,6 +207,7 @@ class Unsmooth:
 
 
 def test_a_law_that_intervals_cannot_follow_is_left_open(problem):
-    found = certificate.check(replace(problem, controller=Unsmooth()))
+    found = CHECK.run(replace(problem, controller=Unsmooth()))
     assert found.status is Status.UNDECIDED
-    assert "cannot be evaluated on intervals" in found.claim
+    assert not found.proved
+    assert not found.series

@@ -9,6 +9,7 @@ import pytest
 from flint import ctx
 
 from tests.certificates.invariance.loops import drawn, feedback_problem, one_sample
+from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.theorems.invariant_sets.ball_plant import BallPlant
 from wspd_design.certificates.theorems.invariant_sets.ball_slopes import hull
 from wspd_design.certificates.theorems.invariant_sets.checker import _Walk
@@ -35,7 +36,7 @@ class Window:
 def image(problem, window, cell):
     """Image of a cell and the slips on the way, or None if the checker refuses it."""
     with ctx.workprec(64):
-        walk = _Walk(BallPlant(problem))
+        walk = _Walk(BallPlant(problem), Work())
         walk.here, walk.slower, walk.slopes = window, None, {}
         walk.speed = hull(
             walk.plant.point(window.low) - walk.plant.loss(window.high), walk.plant.point(window.high)

@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.certificates.invariance.loops import drawn, feedback_problem, one_sample
+from tests.certificates.invariance.loops import check, drawn, feedback_problem, one_sample
 from wspd_design.certificates.search.invariant_sets import document
 from wspd_design.certificates.search.invariant_sets.search import search
-from wspd_design.certificates.theorems.invariant_sets.checker import check
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
@@ -59,8 +58,8 @@ def runs(problem, found, bounds, count, *, seed=0):
     return left
 
 
-def test_runs_stay_in_proved_sets(problem, found, text):
-    verdict = check(problem, text)
+def test_runs_stay_in_proved_sets(problem, found, written):
+    verdict = check(problem, written)
     assert verdict.accepted
     assert runs(problem, found, verdict.slips, 8) == 0
 

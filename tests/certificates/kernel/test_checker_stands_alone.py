@@ -4,15 +4,18 @@ import ast
 import json
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import flint
 import pytest
 
-from wspd_design.certificates.checks.sliding import reaching
 from wspd_design.certificates.kernel import checker
+from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.kernel.file import certificate_text
-from wspd_design.certificates.records import Status
+from wspd_design.certificates.kernel.obligation import Sign
+from wspd_design.certificates.records import Certificate, Status
+from wspd_design.certificates.search.settle import exact
 
 FILE = Path(checker.__file__)
 MOST_LINES = 500
@@ -37,10 +40,20 @@ def test_the_checker_imports_flint_and_the_standard_library_alone():
 
 
 @pytest.fixture(scope="module")
-def content(make_reference_problem):
-    """A proved certificate, as it is kept."""
-    certificate = reaching.CHECK.run(make_reference_problem(30.0))
-    assert certificate.status is Status.PROVED
+def content(proved):
+    """A certificate with two proofs, as it is kept."""
+    sign = Sign(key="speed", quantity="speed", value=Fraction(2), unit="m/s")
+    positive = sign.decide(exact(sign), Work())
+    assert positive.status is Status.PROVED
+    certificate = Certificate(
+        name="reaching",
+        title="Reaching",
+        claim="It is reached.",
+        status=Status.PROVED,
+        explanation="It is.",
+        method="none",
+        findings={"gain": proved, "speed": positive},
+    )
     return json.loads(certificate_text(certificate))
 
 
@@ -89,10 +102,9 @@ def test_a_genuine_file_holds(alone, kept):
     lines = done.stdout.decode("ascii").splitlines()
     assert len(lines) == 2
     assert "'gain': holds, " in lines[0]
-    assert "(r + eta)/rho <= 25.09" in lines[0]
-    assert lines[0].endswith(
-        "for all slip 0.02 to 0.6, speed 2 to 33.4, mass 61472.8 to 92209.2, mu0 0.2 to 0.6"
-    )
+    assert "(r + eta)/rho <= 25.10" in lines[0]
+    assert lines[0].endswith("for all slip 0.02 to 0.6, speed 2 to 33.4, mass 61472.8 to 92209.2")
+    assert lines[1].endswith("speed = 2 m/s > 0")
 
 
 def cut(findings):
@@ -105,7 +117,7 @@ def tighter(findings):
 
 def wider(findings):
     rows = findings["gain"]["proof"]["statement"]["variables"]
-    next(row for row in rows if row[0] == "mu0")[2] = "0.7"
+    next(row for row in rows if row[0] == "mass")[2] = "92210.0"
 
 
 def other_formula(findings):

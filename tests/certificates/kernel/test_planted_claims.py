@@ -222,7 +222,7 @@ def test_theorem_needs_all_its_hypotheses(reference_claim, settled):
 
 
 def test_vanishing_function_is_not_positive_definite(settled, refusal):
-    """V = 0 is no Lyapunov function: V >= 0.1 x^2 away from zero is refuted and cannot be forged."""
+    """V = 0 is not a Lyapunov function: V >= 0.1 x^2 away from zero is refuted and cannot be forged."""
 
     def claim(scale):
         return Claim(

@@ -55,10 +55,14 @@ def test_fallback_arithmetic_finds_the_same(reference_claim, proved):
     assert found.high - found.low <= 0.01
 
 
+@pytest.fixture(scope="module")
+def supremum(reference_claim):
+    return extreme(reference_claim, tolerance=1e-6)
+
+
 @pytest.mark.parametrize("distance", [1e-2, 1e-3, 1e-4, 1e-5])
-def test_verdict_near_the_supremum(reference_claim, settled, distance):
+def test_verdict_near_the_supremum(reference_claim, supremum, settled, distance):
     """Just above it is proved, just below refuted, although the enclosure is asked for within 0.01 only."""
-    supremum = extreme(reference_claim, tolerance=1e-6)
     above, below = (
         settled(replace(reference_claim, bound=Fraction(bound)), tolerance=0.01)
         for bound in (supremum.high + distance, supremum.low - distance)

@@ -6,7 +6,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from wspd_design.plants.four_axle import Pitch, train_motion, wheel_loads
 
 from wspd_design.certificates.kernel.arb import above, below
 from wspd_design.certificates.outside import OutsideModel
@@ -14,6 +13,7 @@ from wspd_design.certificates.setting import axle
 from wspd_design.certificates.setting.axle import Pitching
 from wspd_design.model.slip import resistance, static_wheel_load
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.plants.planar import Planar
 
 GRAVITY = 9.81
 
@@ -80,27 +80,14 @@ def test_undamped_pitch_has_no_bound(problem):
 
 def static_shares(vehicle, adhesions, speed):
     """Loads over the static load, and deceleration, with the pitch at rest where each axle uses some adhesion."""
-    static, loads = static_wheel_load(vehicle), np.full(4, static_wheel_load(vehicle))
+    static, plant = static_wheel_load(vehicle), Planar(vehicle)
+    loads, rest = np.full(4, static), (0.0,) * 6
+    frequencies = np.array([vehicle.body_pitch_frequency, *[vehicle.bogie_pitch_frequency] * 2])
     for _ in range(100):
-        forces = tuple(adhesions * loads)
         # With no pitch yet the second derivative over the squared frequency is the static transfer.
-        motion = train_motion(vehicle, speed=speed, creep_forces=forces, pitch=Pitch(*[0.0] * 6))
-        body = (2.0 * math.pi * vehicle.body_pitch_frequency) ** 2
-        bogie = (2.0 * math.pi * vehicle.bogie_pitch_frequency) ** 2
-        rates = motion.pitch
-        loads = np.array(
-            wheel_loads(
-                vehicle,
-                Pitch(
-                    rates.body_rate / body,
-                    rates.front_bogie_rate / bogie,
-                    rates.rear_bogie_rate / bogie,
-                    0.0,
-                    0.0,
-                    0.0,
-                ),
-            )
-        )
+        motion = plant.train_motion(speed=speed, creep_forces=tuple(adhesions * loads), transfers=rest)
+        transfers = np.array(motion.transfer_rates[3:]) / (2.0 * math.pi * frequencies) ** 2
+        loads = np.array(plant.wheel_loads((*transfers, *rest[3:])))
     return loads / static, -motion.acceleration
 
 

@@ -103,7 +103,15 @@ def test_speed_outside_its_range_is_refused(er24pc, speed):
         linearize(er24pc, load_rail("polach-dry"), slip=0.14, speed=speed)
 
 
-def test_brake_with_two_time_constants_is_refused(er24pc):
-    other = replace(er24pc, brake=replace(er24pc.brake, vent_time=0.4))
-    with pytest.raises(UserError, match="set fill_time equal to vent_time"):
-        linearize(other, load_rail("polach-dry"), slip=0.14, speed=10.0)
+@pytest.mark.parametrize("vent", [0.15, 0.4, 0.9])
+def test_a_valve_that_fills_and_vents_with_two_times(er24pc, vent):
+    """The averaged valve T' = d (T_max - T)/T_F - (1 - d) T/T_V at the duty that holds the slip."""
+    other = replace(er24pc, brake=replace(er24pc.brake, vent_time=vent))
+    found = linearize(other, load_rail("polach-dry"), slip=0.14, speed=10.0)
+    duty, torque, top, fill = found.equilibrium_duty, found.equilibrium_torque, 60e3, 0.6
+    assert duty * (top - torque) / fill == pytest.approx((1.0 - duty) * torque / vent)
+    rate = duty / fill + (1.0 - duty) / vent
+    assert found.time_constant == pytest.approx(1.0 / rate)
+    assert found.state_matrix[1] == pytest.approx([0.0, -rate])
+    assert found.input_matrix[1] == pytest.approx((top - torque) / fill + torque / vent)
+    assert min(fill, vent) < found.time_constant < max(fill, vent)

@@ -1,5 +1,7 @@
 """From options to records."""
 
+from functools import cache
+
 import pytest
 
 from wspd_design.cli.arguments import chosen
@@ -20,9 +22,14 @@ from wspd_design.parameters.loading import (
 SPECIFICATION = Specification(slip=0.2, slips=(0.02, 0.6), sample_time=0.05)
 
 
+@cache
+def designed(vehicle, rail):
+    return design_controller(load_vehicle(vehicle), load_rail(rail), SPECIFICATION, law="smc")
+
+
 def written(folder, name="made.toml", vehicle="er24pc", rail="polach-dry"):
     path = folder / name
-    write_design(design_controller(load_vehicle(vehicle), load_rail(rail), SPECIFICATION, law="smc"), path)
+    write_design(designed(vehicle, rail), path)
     return str(path)
 
 

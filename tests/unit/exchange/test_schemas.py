@@ -1,6 +1,7 @@
 """Schema files and documentation follow from the forms, and one key means one thing in all of them."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -8,10 +9,16 @@ from jsonschema import Draft202012Validator, ValidationError
 
 import wspd_design as wd
 from wspd_design.certificates.kernel.file import SCHEMA, certificate_text
+from wspd_design.controllers.family import designed
+from wspd_design.design.file import design_text
+from wspd_design.design.records import Specification
+from wspd_design.design.selection import design_controller
+from wspd_design.exchange.design_forms import DESIGN_FILE
 from wspd_design.exchange.documentation import documented_tables, with_tables
 from wspd_design.exchange.files import FOLDER, read_schema, schema_file, schema_text
 from wspd_design.exchange.forms import UNITS, Form, inner_forms, unit
-from wspd_design.exchange.vocabulary import STANDING_ALONE
+from wspd_design.exchange.vocabulary import STANDING_ALONE, WITH_SCHEMA
+from wspd_design.parameters.loading import load_rail
 
 ROOT = Path(__file__).parents[3]
 FORMS = {each.name: each for form in STANDING_ALONE for each in (form, *inner_forms(form))}
@@ -20,10 +27,26 @@ MAKE = "run python -m wspd_design.exchange.files"
 
 def test_files_are_those_of_the_forms():
     folder = ROOT / "wspd_design" / FOLDER
-    assert {path.name for path in folder.iterdir()} == {schema_file(form) for form in STANDING_ALONE}
-    for form in STANDING_ALONE:
+    assert {path.name for path in folder.iterdir()} == {schema_file(form) for form in WITH_SCHEMA}
+    for form in WITH_SCHEMA:
         assert (folder / schema_file(form)).read_text(encoding="utf-8") == schema_text(form), MAKE
         Draft202012Validator.check_schema(read_schema(form.schema))
+
+
+@pytest.mark.parametrize("law", [family.name for family in designed()])
+def test_a_written_design_file_validates(er24pc, law):
+    design = design_controller(er24pc, load_rail("polach-wet"), Specification(), law=law)
+    document = tomllib.loads(design_text(design))
+    schema = Draft202012Validator(read_schema(DESIGN_FILE.schema))
+    schema.validate(document)
+    gain = next(iter(document["gains"]))
+    for broken in (
+        {key: value for key, value in document.items() if key != "rail_hash"},
+        document | {"schema": "wspd-design/1"},
+        document | {"specification": document["specification"] | {"speeds": [1.0]}},
+        document | {"gains": document["gains"] | {gain: {"value": 1.0, "why": "no unit"}}},
+    ):
+        assert not schema.is_valid(broken)
 
 
 def test_the_page_has_every_form_as_it_is():

@@ -18,7 +18,7 @@ from wspd_design.reporting.figure_style import INK, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
 from wspd_design.reporting.figures.phase import phase_planes
-from wspd_design.reporting.figures.poles import pole_map
+from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.figures.series import (
     axis_label,
     certificate_curves,
@@ -33,7 +33,7 @@ from wspd_design.studies.paper.published import load_table10
 DOSSIER = sample_dossier(rail="table10-dry")
 SPECIFICATION = DOSSIER.design.specification
 DRAWN = {
-    "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds),
+    "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds, (0.6, 0.6)),
     "stop": lambda figure: stop_traces(
         figure, DOSSIER.trials[0], SPECIFICATION, wheel_radius=0.55, max_torque=60e3
     ),
@@ -111,10 +111,25 @@ def test_long_names_stay_above_their_panels(count):
 
 def test_the_region_without_stable_equilibrium_is_marked():
     with figure_style():
-        axes = pole_map(new_figure(height=3.0), DOSSIER.linearizations, SPECIFICATION.speeds).axes[0]
+        axes = pole_map(
+            new_figure(height=3.0), DOSSIER.linearizations, SPECIFICATION.speeds, (0.6, 0.6)
+        ).axes[0]
     levels = [line.get_ydata()[0] for line in axes.get_lines()]
     assert any(level == pytest.approx(1.0 / 0.6) for level in levels)
     assert any("no stable equilibrium" in text.get_text() for text in axes.texts)
+
+
+def test_both_times_of_a_valve_and_the_one_of_its_average_are_marked():
+    points = [replace(each, time_constant=0.2 + 0.01 * k) for k, each in enumerate(DOSSIER.linearizations)]
+    with figure_style():
+        axes = pole_map(new_figure(height=3.0), points, SPECIFICATION.speeds, (0.4, 0.15)).axes[0]
+    drawn = [np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()]
+    for time in (0.4, 0.15):
+        assert any(np.allclose(each, 1.0 / time) for each in drawn)
+    rates = [1.0 / each.time_constant for each in points]
+    assert any(each.shape == (len(points),) and np.allclose(each, rates) for each in drawn)
+    said = pole_map_alt(points, SPECIFICATION.speeds, (0.4, 0.15))
+    assert "3.23 to 5 1/s, between 1/fill time = 2.5 1/s and 1/vent time = 6.67 1/s" in said
 
 
 def test_lock_intervals_and_tolerance_are_marked():

@@ -28,7 +28,8 @@ def _good(*statuses):
 def test_a_refuted_check_always_shows(statuses):
     for dossier in (_good(*statuses), sample_dossier(statuses)):
         said = verdict(dossier)
-        refuted = [each for each in dossier.certificates if each.status is Status.REFUTED]
+        bad = (Status.REFUTED, Status.LIMITATION)
+        refuted = [each for each in dossier.certificates if each.status in bad]
         assert (said.status is Shown.REFUTED) == bool(refuted)
         if refuted:
             total = len(statuses)
@@ -45,7 +46,10 @@ def test_a_refuted_check_always_shows(statuses):
 def test_every_check_is_counted(statuses):
     sentence = plain(verdict(_good(*statuses)).sentence)
     _, _, tally = sentence.partition("Checks: ")
-    counted = re.findall(r"(\d+) (refuted|undecided|sampled only|proved|vacuous|not applicable)", tally)
+    counted = re.findall(
+        r"(\d+) (refuted|undecided|sampled only|proved to be a limitation|proved|vacuous|not applicable)",
+        tally,
+    )
     assert sum(int(number) for number, _ in counted) == len(statuses)
     proved = {word: int(number) for number, word in counted}.get("proved", 0)
     assert proved == statuses.count(Status.PROVED)
@@ -55,7 +59,8 @@ def test_every_check_is_counted(statuses):
 @given(STATUSES)
 def test_the_worst_finding_wins(statuses):
     order = (Status.REFUTED, Status.UNDECIDED, Status.EVIDENCE, Status.PROVED)
-    worst = next((status for status in order if status in statuses), Status.VACUOUS)
+    shown = [Status.REFUTED if each is Status.LIMITATION else each for each in statuses]
+    worst = next((status for status in order if status in shown), Status.VACUOUS)
     assert verdict(_good(*statuses)).status is Shown[worst.name]
 
 
@@ -101,7 +106,17 @@ def test_key_numbers_are_those_of_the_records():
     assert [each.unit for each in tiles.numbers] == ["m", "%", "", "1/s"]
     assert "(four-axle), in 10.00 s" in plain(tiles.numbers[0].note)
     assert "174.2 m" in plain(tiles.numbers[1].note)
-    assert "1/τ = 1.67" in plain(tiles.numbers[3].note)
+    assert plain(tiles.numbers[3].note).endswith("1/τ = 1.67 1/s")
+
+
+def test_two_valve_times_are_both_said():
+    dossier = sample_dossier()
+    entries = dict(dossier.vehicle.entries)
+    entries["brake.vent_time"] = replace(entries["brake.vent_time"], value=0.15)
+    tiles, _ = summary(replace(dossier, vehicle=replace(dossier.vehicle, entries=entries)))
+    assert isinstance(tiles, KeyNumbers)
+    said = plain(tiles.numbers[3].note)
+    assert "there, between 1.67 1/s of filling and 6.67 1/s of venting" in said
 
 
 def test_a_chaotic_stop_keeps_only_the_digits_that_it_has():

@@ -22,7 +22,7 @@ FOLDER = ".certificates"
 PACKAGES = ("crival", "casadi", "cvxpy", "clarabel", "python-flint", "sympy")
 HEARSAY = ("findings", "made_by")
 """Entries of a file that no sentence of a certificate is compared with: one is decided about, the other is idle."""
-MOST_FINDINGS = 100
+MOST_FINDINGS, MOST_NUMBERS = 100, 100
 MOST_BOXES = 10**9
 
 
@@ -118,8 +118,8 @@ def _read(table: object) -> Stated:
 
 
 def _doubles(table: object) -> dict[str, float]:
-    if not isinstance(table, dict):
-        raise Refused("a finding has a place or numbers that are not a table")
+    if not isinstance(table, dict) or len(table) > MOST_NUMBERS:
+        raise Refused("a finding has a place or numbers that are not a table, or one that is too long")
     exact = {name: number(each) for name, each in table.items()}
     try:
         found = {name: float(each) for name, each in exact.items()}

@@ -7,6 +7,7 @@ finding. It refuses what is false or belongs to another statement; where nothing
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from math import isfinite
 from typing import Any, Protocol, TypeAlias
 
@@ -167,7 +168,7 @@ class Special:
         if stated.proof is not None:
             if self.check is None or stated.place:
                 raise Refused(f"no proof can show {self.key}")
-            found = self.check(stated.proof, work)
+            found = _sound(partial(self.check, stated.proof, work), self.key)
             return Finding(
                 status=Status.PROVED, asked=self.text, shown=self.text, numbers=found, leaves=1, stated=stated
             )
@@ -175,7 +176,7 @@ class Special:
             if self.evaluate is None:
                 raise Refused(f"no place can deny {self.key}")
             self._inside(stated.place)
-            found = self.evaluate(stated.place, work)
+            found = _sound(partial(self.evaluate, stated.place, work), self.key)
             return Finding(status=Status.REFUTED, asked=self.text, numbers=found, stated=stated)
         return Finding(status=Status.UNDECIDED, asked=self.text, stated=stated)
 
@@ -186,6 +187,14 @@ class Special:
         for name, (low, high) in within.items():
             if not low <= place[name] <= high:
                 raise Refused(f"the place of {self.key} leaves the domain: {name} = {place[name]:g}")
+
+
+def _sound(work_out: Callable[[], Numbers], key: str) -> Numbers:
+    """Return what a checker computes; numbers of a file at which its arithmetic ends are refused."""
+    try:
+        return work_out()
+    except ArithmeticError as error:
+        raise Refused(f"what is stated about {key} cannot be computed: {type(error).__name__}") from None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -49,7 +49,8 @@ def search(law: Law, ranges: Ranges) -> Quadratic | None:
     ranges : Ranges
         The box.
     """
-    waiting, steps, pieces = [(ranges, 0)], "", []
+    waiting, steps = [(ranges, 0)], ""
+    pieces: list[Piece] = []
     most = max(1, round(PIECES * budget().effort))
     while waiting:
         box, depth = waiting.pop()

@@ -1,6 +1,6 @@
 """Values of CasADi graphs in a prime field: whether two graphs are the same function, decided exactly.
 
-The idea is that of :mod:`wspd_design.certificates.kernel.identity`: inputs and everything that is not rational become
+The idea is that of :func:`wspd_design.certificates.kernel.checker.same`: inputs and everything that is not rational become
 pseudo-random elements of the field of 2^255 - 19 elements, which depend on the values of their arguments. Numbers are
 the exact doubles of the graph. Two graphs with the same value at such a point are the same function of real numbers
 wherever both are defined, except with a probability of about their degree in 2^255.

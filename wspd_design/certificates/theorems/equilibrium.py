@@ -32,6 +32,7 @@ from wspd_design.certificates.setting.plant import (
     plant_variables,
     records_of,
 )
+from wspd_design.certificates.setting.plant import place as shown
 from wspd_design.certificates.setting.traced_law import written_law
 from wspd_design.certificates.theorems.theorem import Findings
 from wspd_design.model.number import Number
@@ -78,10 +79,12 @@ def explained(problem: Problem, findings: Findings) -> str:
     if found is Status.PROVED:
         return f"An equilibrium lies within {problem.slip_tolerance:g} of the reference for all numbers of the domain"
     if found is Status.REFUTED:
-        rate = findings[NOWHERE].numbers["rate"]
+        rate, at = findings[NOWHERE].numbers["rate"], findings[NOWHERE].place
         side = "above" if rate > 0.0 else "below"
+        points = shown(at, tuple(at))
+        where = ", ".join(f"{each.name} {each.value:.4g} {each.unit}".removesuffix(" -") for each in points)
         return (
-            f"No equilibrium lies within {problem.slip_tolerance:g} of the reference at the witness: for every slip "
+            f"At {where} no equilibrium lies within {problem.slip_tolerance:g} of the reference: for every slip "
             f"there the torque that holds it would change by at least {abs(rate):.3g} T_max/s, so that the loop "
             f"rests {side} it, if at all"
         )

@@ -5,8 +5,8 @@ q^4 + a3 q^3 + a2 q^2 + a1 q + a0 if a3, a1, a0 and (a3 a2 - a1) a1 - a3^2 a0 ar
 """
 
 import math
+from collections.abc import Callable
 from fractions import Fraction
-from functools import partial
 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.claim import Claim, Expression, variable
@@ -115,8 +115,8 @@ def conditions(problem: Problem) -> dict[str, Claim]:
     }
 
 
-def _bound(expression: object, *, arranged: bool) -> Expression:
-    return partial(expression, arranged=arranged)  # type: ignore[call-overload, no-any-return]
+def _bound(expression: Callable[[Values, bool], Number], *, arranged: bool) -> Expression:
+    return lambda values: expression(values, arranged)
 
 
 def _routh_obligations(problem: Problem) -> tuple[Obligation, ...]:
@@ -299,9 +299,10 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
         )
     elif status is Status.EVIDENCE:
         meaning = (
-            f"Tightest at {numbers['speed'] * KMH:.3g} km/h: the gain may change by {decibel(numbers['gain down']):.3g} "
-            f"to {decibel(numbers['gain up']):.3g} dB, the phase by {math.degrees(numbers['phase']):.3g} degrees, the "
-            f"delay may grow by {numbers['delay'] * 1e3:.3g} ms; disk margin {numbers['disk']:.3g}."
+            f"Tightest at {numbers['speed'] * KMH:.3g} km/h: the gain may change by "
+            f"{decibel(numbers['gain down']):.3g} to {decibel(numbers['gain up']):.3g} dB, "
+            f"the phase by {math.degrees(numbers['phase']):.3g} degrees, "
+            f"the delay may grow by {numbers['delay'] * 1e3:.3g} ms; disk margin {numbers['disk']:.3g}."
         )
     where = (
         (

@@ -35,7 +35,7 @@ from wspd_design.certificates.setting.traced_law import written_law
 FORMAT = "wspd-quadratic/2"
 LETTERS = "fvti"
 """Which range a step halves: fill time, vent time, T_max, inertia; a full stop is a piece."""
-MOST_PIECES = 4_000
+MOST_PIECES, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it: long fractions take long
 WORK = 4_000  # operations on intervals that a corner of a piece is worth
 
 Symmetric: TypeAlias = tuple[Any, Any, Any]
@@ -247,4 +247,6 @@ def _piece(numbers: Sequence[Fraction]) -> Piece:
 def _numbers(written: object, count: int) -> list[Fraction]:
     if not isinstance(written, list) or len(written) != count:
         raise Refused(f"the proof lacks {count} numbers")
+    if any(len(str(each)) > MOST_LETTERS for each in written):
+        raise Refused(f"a number of the proof has more than {MOST_LETTERS} letters")
     return [number(each) for each in written]

@@ -344,7 +344,11 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         reached = "The recovery is proved from no speed on."
     else:
         slow = few_digits(lowest * KMH, up=True)
-        between = f"lies between {fast} and {slow}" if refuted else f"is at most {slow}"
+        between = (
+            f"lies between {few_digits(fast, up=False)} and {slow}"
+            if fast is not None
+            else f"is at most {slow}"
+        )
         reached = f"The lowest controllable speed {between} km/h; from there on the recovery is proved."
     held = tuple(name for name in HELD if problem.span(name)[0] < problem.span(name)[1])
     described = domain.described(problem, ("speed", *USED), held)

@@ -74,9 +74,7 @@ def certify(
     show_counts(certificates)
     show_not_varied(problem, certificates)
     if sizes:
-        console().print(
-            Text(f"\nWritten: {folder}/NAME.json for each of the {len(sizes)} checks that speak about it")
-        )
+        console().print(Text(f"\nWritten: {folder}/NAME.json, {len(sizes)} file{'s' * (len(sizes) != 1)}"))
         console().print(Text(f"Check them: wspd check {folder}{_as_given(design, folder, vehicle, rail)}"))
     raise typer.Exit(exit_code(certificates, asked=bool(only)))
 

@@ -81,7 +81,7 @@ def _design_of(path: Path) -> str:
 def _show(path: Path, design: str, found: Replayed) -> None:
     out = console()
     sign, style = _sign(found)
-    took = f" ({found.leaves} boxes)" if found.accepted else ""
+    took = f" ({found.leaves} {'box' if found.leaves == 1 else 'boxes'})" if found.accepted else ""
     # The name of the file is the only text that does not come from the design.
     head = f"  {_printable(path.name)} for {_printable(Path(design).name)}{took}"
     out.print(Text(sign, style=style) + Text(head, style="bold"))

@@ -11,8 +11,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def pole_map(figure: "Figure", points: Sequence[Linearization], speeds: tuple[float, float]) -> "Figure":
-    """Draw the open-loop poles over train speed, and where they exceed the rate of the valve.
+def pole_map(
+    figure: "Figure", points: Sequence[Linearization], speeds: tuple[float, float], times: tuple[float, float]
+) -> "Figure":
+    """Draw the open-loop poles over train speed, and where they exceed the rate of the averaged valve.
 
     Parameters
     ----------
@@ -22,6 +24,8 @@ def pole_map(figure: "Figure", points: Sequence[Linearization], speeds: tuple[fl
         Over rising speed.
     speeds : tuple of float
         Range of operation [m/s].
+    times : tuple of float
+        Fill and vent time of the valve [s]; the rate of the averaged valve lies between theirs.
     """
     import numpy as np
     from matplotlib.ticker import FixedLocator, NullLocator, ScalarFormatter
@@ -30,11 +34,15 @@ def pole_map(figure: "Figure", points: Sequence[Linearization], speeds: tuple[fl
     speed = np.array([point.speed * KMH for point in points])
     without = np.array([point.poles(with_lag=False)[0] for point in points])
     with_lag = np.array([point.poles() for point in points])
-    limit = 1.0 / points[0].time_constant
-    top = max(1.25 * limit, without.max() + 0.15 * np.ptp(without))
-    bottom = min(-1.6 * limit, without.min() - 0.05 * np.ptp(without))
-    axes.axhspan(limit, top, color=SERIES[1], alpha=0.12, linewidth=0)
-    axes.axhline(limit, color=SERIES[1], linestyle="--", linewidth=1.0)
+    limit, highest = np.array([1.0 / point.time_constant for point in points]), 1.0 / min(times)
+    top = max(1.25 * highest, without.max() + 0.15 * np.ptp(without))
+    bottom = min(-1.6 * highest, without.min() - 0.05 * np.ptp(without))
+    axes.fill_between(speed, limit, top, color=SERIES[1], alpha=0.12, linewidth=0)
+    axes.plot(speed, limit, color=SERIES[1], linestyle="--", linewidth=1.0)
+    if times[0] != times[1]:
+        for name, time in zip(("fill", "vent"), times, strict=True):
+            axes.axhline(1.0 / time, color=SERIES[1], linestyle=":", linewidth=0.8)
+            note(axes, f"1/{name} time", speed[-1], 1.0 / time, xytext=(-46, 2))
     axes.axhline(0.0, color=INK, linewidth=0.6)
     for column in range(with_lag.shape[1]):
         axes.plot(
@@ -57,19 +65,29 @@ def pole_map(figure: "Figure", points: Sequence[Linearization], speeds: tuple[fl
     axes.xaxis.set_major_formatter(ScalarFormatter())
     axes.set(xlabel="train speed [km/h]", ylabel="pole [1/s]")
     inside = "shaded, p > 1/τ: no stable equilibrium without torque feedback"
-    note(axes, inside, speed[0], limit, xytext=(4, 3))
+    note(axes, inside, speed[0], float(limit[0]), xytext=(4, 3))
     axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.98), ncols=2)
     return figure
 
 
-def pole_map_alt(points: Sequence[Linearization], speeds: tuple[float, float]) -> str:
+def pole_map_alt(
+    points: Sequence[Linearization], speeds: tuple[float, float], times: tuple[float, float]
+) -> str:
     """Say in words what the pole map shows."""
     highest = max(points, key=lambda point: point.slip_pole)
     lowest = min(points, key=lambda point: point.slip_pole)
+    rates = [1.0 / point.time_constant for point in points]
+    if times[0] == times[1]:
+        line = f"A line marks 1/tau = {1.0 / times[0]:.3g} 1/s"
+    else:
+        line = (
+            f"A line marks 1/tau of the averaged valve, {min(rates):.3g} to {max(rates):.3g} 1/s, between 1/fill time "
+            f"= {1.0 / times[0]:.3g} 1/s and 1/vent time = {1.0 / times[1]:.3g} 1/s"
+        )
     return (
         f"Slip pole over train speed from {points[0].speed * KMH:.3g} to {points[-1].speed * KMH:.3g} km/h. "
         f"It is highest, {highest.slip_pole:.3g} 1/s, at {highest.speed * KMH:.3g} km/h and lowest, "
-        f"{lowest.slip_pole:.3g} 1/s, at {lowest.speed * KMH:.3g} km/h. A line marks 1/tau = "
-        f"{1.0 / points[0].time_constant:.3g} 1/s; dotted lines mark the range of operation, "
+        f"{lowest.slip_pole:.3g} 1/s, at {lowest.speed * KMH:.3g} km/h. "
+        f"{line}; dotted lines mark the range of operation, "
         f"{speeds[0] * KMH:.3g} to {speeds[1] * KMH:.3g} km/h."
     )

@@ -18,6 +18,7 @@ MEGA = 1e6
 def linearization(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the slip pole."""
     points, specification = dossier.linearizations, dossier.design.specification
+    times = dossier.vehicle.number("brake.fill_time"), dossier.vehicle.number("brake.vent_time")
     beyond = [point for point in points if point.slip_pole > 1.0 / point.time_constant]
     unstable = [point for point in points if point.slip_pole > 0.0]
     return (
@@ -28,8 +29,9 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
                 "pole $p = partial F\\/partial lambda$. The valve, a first-order lag, adds a pole at "
                 "$-1\\/tau$ and leaves $p$ where it is. A law that does not read the torque and has a "
                 "memory of integrals alone leaves the sum of the poles at $p - 1\\/tau$: where $p > 1\\/tau$ one "
-                "of them is unstable whatever the gains. A law with dynamics of its own, such as a lead filter, "
-                "is not bound by this."
+                "of them is unstable whatever the gains. On average over its pulses the valve has a $tau$ between its "
+                "fill and its vent time, by how much it has to fill and vent to hold the torque. A law with "
+                "dynamics of its own, such as a lead filter, is not bound by this."
             )
         ),
         Paragraph(
@@ -38,13 +40,15 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
             f"{numbers.significant(points[-1].speed * KMH)} km/h, for the nominal parameters."
         ),
         Figure(
-            svg=picture(partial(pole_map, points=points, speeds=specification.speeds), height=3.1),
+            svg=picture(
+                partial(pole_map, points=points, speeds=specification.speeds, times=times), height=3.1
+            ),
             caption=rich(
                 "Open-loop poles over train speed on the rail of the stops. Above the dashed line $1\\/tau$ "
                 "no law that does not read the torque and has a memory of integrals alone has a stable equilibrium. "
                 "Dotted: range of the specification."
             ),
-            alt=pole_map_alt(points, specification.speeds),
+            alt=pole_map_alt(points, specification.speeds, times),
             anchor="pole-map",
         ),
         _table(points),

@@ -3,7 +3,6 @@
 from functools import partial
 
 from wspd_design.certificates.records import Certificate
-from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
@@ -20,7 +19,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the simulated stop."""
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
-    radius, limit = (_number(dossier.vehicle, name) for name in ("wheel_radius", "brake.max_torque"))
+    radius, limit = (dossier.vehicle.number(name) for name in ("wheel_radius", "brake.max_torque"))
     draw = partial(stop_traces, trial=own, specification=specification, wheel_radius=radius, max_torque=limit)
     start = numbers.significant(run.initial_speed * KMH)
     judged = numbers.significant(JUDGING_SPEED * KMH)
@@ -76,9 +75,3 @@ def _lyapunov(certificates: tuple[Certificate, ...]) -> tuple[Block, ...]:
             anchor="lyapunov",
         ),
     )
-
-
-def _number(parameters: ParameterSet, name: str) -> float:
-    value = parameters.entries[name].value
-    assert isinstance(value, float)
-    return value

@@ -5,6 +5,7 @@ from collections import Counter
 
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import rounded_down
+from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.figures.drawing import KMH
@@ -149,9 +150,18 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             value=numbers.decimals(worst.slip_pole, 2),
             unit="1/s",
             note=f"at {numbers.significant(worst.speed * KMH, 3)} km/h; 1/τ = "
-            f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s",
+            f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s{_between_times(dossier.vehicle)}",
         ),
     )
+
+
+def _between_times(vehicle: ParameterSet) -> str:
+    """Say between which rates that of the averaged valve lies; nothing if it fills as fast as it vents."""
+    times = vehicle.number("brake.fill_time"), vehicle.number("brake.vent_time")
+    if times[0] == times[1]:
+        return ""
+    fill, vent = (numbers.decimals(1.0 / time, 2) for time in times)
+    return f" there, between {fill} 1/s of filling and {vent} 1/s of venting"
 
 
 def _build_up(figures: Metrics) -> str:

@@ -12,9 +12,9 @@ from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.records import Certificate, Problem, Series
 from wspd_design.certificates.search.prover import prove
 from wspd_design.certificates.search.settle import stated_of
-from wspd_design.certificates.setting.linear_loop import law_of, nominal, on_brake, one_time, quartic, valve
+from wspd_design.certificates.setting.linear_loop import law_of, nominal, on_brake, quartic, valve
 from wspd_design.certificates.theorems.linear import ROUTH_LAG, conditions
-from wspd_design.controllers.offers import Surface
+from wspd_design.controllers.offers import LinearSurface
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.units import KMH
 
@@ -68,7 +68,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG
         series("nominal parameters", *axes, speeds * KMH, margin),
         level("limit", *axes, speeds * KMH, 0.0),
     ]
-    if isinstance(law, Surface) and one_time(problem):
+    if isinstance(law, LinearSurface) and brake.fill_time == brake.vent_time:
         curves += region(law, brake.fill_time, speeds, plant)
     return Figures(
         series=tuple(curves),

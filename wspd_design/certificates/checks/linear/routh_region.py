@@ -1,7 +1,7 @@
 """Region of (c, k) in which the loop inside the layer is stable with the valve lag, for the plot beside the verdict.
 
 k = W K_P/Phi for the sliding mode, whose equivalent torque cancels the slip pole of its model; k = G K_P du/ds for
-the adaptive law, which leaves the pole as it is.
+the adaptive law, which leaves the pole as it is and of which the weights are held here.
 """
 
 from dataclasses import asdict
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import level, series
 from wspd_design.certificates.records import Role, Series
+from wspd_design.certificates.setting.linear_loop import nominal
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
-from wspd_design.controllers.offers import SlipModel
-from wspd_design.controllers.sliding_mode import SlidingMode
+from wspd_design.controllers.offers import LinearSurface, SlipModel
 from wspd_design.parameters.loading import load_paper_gains
 from wspd_design.parameters.units import KMH
 
@@ -24,12 +24,12 @@ HIGHEST_RATE = 2.0  # of the plot, in multiples of the law's c or of 1/tau
 MARGIN = 5.0  # of the plot above and below the gains
 
 
-def region(law: AdaptiveFuzzy | SlidingMode, lag: float, speeds: "Array", plant: SlipModel) -> list[Series]:
+def region(law: LinearSurface, lag: float, speeds: "Array", plant: SlipModel) -> list[Series]:
     """Draw the border where the slip pole is largest and smallest, the law over speed, and the paper's gains.
 
     Parameters
     ----------
-    law : SlidingMode or AdaptiveFuzzy
+    law : LinearSurface
         Law with a surface.
     lag : float
         Time constant of the valve [s].
@@ -42,11 +42,7 @@ def region(law: AdaptiveFuzzy | SlidingMode, lag: float, speeds: "Array", plant:
 
     printed = _printed(law)
     rate, paper_rate = law.surface_rate, printed.surface_rate
-    own = (
-        law.gains.switching_gain / law.gains.boundary_layer / speeds
-        if isinstance(law, SlidingMode)
-        else plant.gain * law.linear_form(speeds).proportional
-    )
+    own = _loop_rate(law, speeds, plant)
     paper = plant.gain * printed.linear_form(speeds).proportional
     rates = np.linspace(0.0, HIGHEST_RATE * max(rate, 1.0 / lag), PLOT_RATES)[1:]
     shown = np.concatenate([own, paper])
@@ -67,11 +63,25 @@ def region(law: AdaptiveFuzzy | SlidingMode, lag: float, speeds: "Array", plant:
             curves.append(level(f"{side} at {at}, p tau = {pole * lag:.3g}", *axes, rates, bottom))
         else:
             line = np.clip(border[drawn], bottom, top)
-            curves.append(series(f"stable {side} this at {at}", *axes, rates[drawn], line, Role.LOOP_GAIN))
+            held = ", weights held," if law.linear_form(float(speeds[index])).twice else ""
+            curves.append(
+                series(f"stable {side} this{held} at {at}", *axes, rates[drawn], line, Role.LOOP_GAIN)
+            )
     return curves
 
 
-def _border(law: AdaptiveFuzzy | SlidingMode, pole: float, lag: float, rates: "Array") -> tuple[str, "Array"]:
+def _loop_rate(law: LinearSurface, speeds: "Array", plant: SlipModel) -> "Array":
+    """Return k over speed [1/s]: what a law with a design model has beside the slip pole and c that it cancels."""
+    gains = law.linear_form(speeds)
+    if law.linear_model is None:
+        found: Array = plant.gain * gains.proportional
+        return found
+    model = nominal(*law.linear_model, law.slip_reference, speeds)
+    kept: Array = model.gain * gains.proportional - model.pole - law.surface_rate
+    return kept
+
+
+def _border(law: LinearSurface, pole: float, lag: float, rates: "Array") -> tuple[str, "Array"]:
     """Return where in k the determinant vanishes over c, and on which side of it the loop is stable."""
     import numpy as np
 
@@ -79,7 +89,7 @@ def _border(law: AdaptiveFuzzy | SlidingMode, pole: float, lag: float, rates: "A
     if room <= 0.0:
         return "nothing is stable", np.zeros(len(rates))
     with np.errstate(divide="ignore"):
-        if isinstance(law, SlidingMode):  # room (c + k) > tau k c
+        if law.linear_model is not None:  # room (c + k) > tau k c
             excess = lag * rates - room
             return "below", np.where(excess > 0.0, room * rates / excess, np.inf)
         excess = room - lag * rates  # room (k - p) > tau k c
@@ -87,7 +97,7 @@ def _border(law: AdaptiveFuzzy | SlidingMode, pole: float, lag: float, rates: "A
     return ("above", border) if pole > 0.0 else ("below", np.where(excess < 0.0, border, np.inf))
 
 
-def _printed(law: AdaptiveFuzzy | SlidingMode) -> AdaptiveFuzzy:
+def _printed(law: LinearSurface) -> AdaptiveFuzzy:
     """Return the adaptive law with the gains that the paper prints, on the brake of a law."""
     gains = AdaptiveFuzzyGains(
         slip_reference=law.slip_reference,

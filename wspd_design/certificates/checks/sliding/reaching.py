@@ -1,7 +1,8 @@
 """Reaching condition of the sliding-mode law: the switching gain outweighs all that its model does not know."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.quantities import STATE
 from wspd_design.certificates.records import Certificate, Point, Problem
-from wspd_design.certificates.search.prover import extreme
+from wspd_design.certificates.search.prover import extreme, prove
 from wspd_design.certificates.search.together import settle_together
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import BASIC, PARAMETERS, SLIP, SPEED
@@ -52,15 +53,21 @@ def required_gain(problem: Problem) -> Supremum:
 
 
 def supremum(claims: Sequence[Inequality], tolerance: float = TOLERANCE) -> Supremum:
-    """Enclose the largest value of the expressions of claims; their bounds do not matter."""
-    found = [(each.claim, extreme(each.claim, tolerance=tolerance)) for each in claims]
-    claim, tightest = max(found, key=lambda pair: pair[1].low)
+    """Enclose the largest value of the expressions of claims; their bounds do not matter.
+
+    The claim that comes last is enclosed first; where no other one exceeds its enclosure, that is enough.
+    """
+    *others, last = (each.claim for each in claims)
+    claim, tightest = last, extreme(last, tolerance=tolerance)
+    upper = tightest.high
+    if not all(prove(replace(each, bound=Fraction(upper))).tree for each in others):
+        found = [(each, extreme(each, tolerance=tolerance)) for each in others]
+        claim, tightest = max(((last, tightest), *found), key=lambda pair: pair[1].low)
+        upper = max(upper, *(each.high for _, each in found))
     at = {v.name: float(tightest.point.get(v.name, v.low)) for v in claim.variables}
-    wide = {v.name for each, _ in found for v in each.variables if v.low < v.high}
+    wide = {v.name for each in (*others, last) for v in each.variables if v.low < v.high}
     names = [name for name in at if name in (*BASIC, *wide)]
-    return Supremum(
-        value=tightest.low, upper=max(each.high for _, each in found), point=place(at, tuple(names))
-    )
+    return Supremum(value=tightest.low, upper=upper, point=place(at, tuple(names)))
 
 
 def figures(problem: Problem, certificate: Certificate) -> Figures:

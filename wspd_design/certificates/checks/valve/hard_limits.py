@@ -11,10 +11,12 @@ from wspd_design.certificates.checks.frame import Check, Figures, level, series
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.search.prover import prove
 from wspd_design.certificates.search.recovery_samples import Samples, sample
-from wspd_design.certificates.search.settle import enclose, settle
+from wspd_design.certificates.search.settle import enclose, settle, stated_of
 from wspd_design.certificates.setting.domain import BASIC
+from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.theorems.recovery import (
     DEVIATION,
     HARD_LIMITS,
@@ -28,7 +30,6 @@ from wspd_design.certificates.theorems.recovery import (
 from wspd_design.parameters.units import KMH
 
 TIGHT = 0.95  # share up to which a proof is tried: it costs the more the closer it comes to 1
-SPARED, LEAST_TOLERANCE = 0.75, 0.04  # of the enclosed share: part of its distance from 1, and least
 GROWTH_TOLERANCE, TORQUE_TOLERANCE = 0.05, 100.0  # -, N m
 TRIALS = 12  # of a counterexample
 SPEEDS = 12  # at which the lowest one of a proof is sought
@@ -44,36 +45,44 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     escape = _escape(problem)
     if escape:
         stated["escape"] = Stated(place=escape)
-    lowest, most, boxes = lowest_speed(problem)
-    if lowest is None:
-        return {**stated, "share": Stated(effort=Effort(boxes=boxes, undecided=1.0))}
-    speeds = lowest, problem.speeds[1]
-    tolerance = max(SPARED * (1.0 - most), LEAST_TOLERANCE)
-    return {**stated, "share": enclose(share_claim(problem, DEVIATION, speed=speeds), tolerance=tolerance)}
+    return {**stated, "share": _share(problem)}
 
 
-def lowest_speed(problem: Problem) -> tuple[float | None, float, int]:
-    """Return the lowest of some speeds from which on the condition seems to hold [m/s], with the share it uses there.
-
-    The count of boxes that this took comes last.
-    """
+def _share(problem: Problem) -> Stated:
+    """Prove the condition from as low a speed on as seems possible; the lowest one is sought by halving."""
     import numpy as np
 
-    lowest, most, boxes = None, 0.0, 0
-    for speed in np.geomspace(*problem.speeds, SPEEDS)[::-1]:
-        found = prove(replace(share_claim(problem, DEVIATION, speed=float(speed)), bound=Fraction(TIGHT)))
+    speeds = np.geomspace(*problem.speeds, SPEEDS)[:-1].tolist()
+    boxes = 0
+
+    def proved(from_speed: float) -> Stated | None:
+        nonlocal boxes
+        claim = share_claim(problem, DEVIATION, speed=(from_speed, problem.speeds[1]))
+        claim = replace(claim, bound=Fraction(TIGHT))
+        found = prove(claim)
         boxes += found.boxes
-        if not found.tree:
-            break
-        lowest, most = max(float(speed), problem.speeds[0]), max(most, found.low)
-    return lowest, most, boxes
+        return stated_of(claim, found) if found.tree else None
+
+    everywhere = proved(problem.speeds[0])
+    if everywhere:
+        return everywhere
+    best, low, high = None, 0, len(speeds)  # fails from the speed at low on, holds from that at high on
+    while high - low > 1:
+        middle = (low + high) // 2
+        found = proved(speeds[middle])
+        low, high, best = (low, middle, found) if found else (middle, high, best)
+    return best or Stated(effort=Effort(boxes=boxes, undecided=1.0))
+
+
+def _samples(problem: Problem) -> Samples:
+    return recall(["samples of recovery", model_hash(problem)], lambda: sample(problem))
 
 
 def _escape(problem: Problem) -> dict[str, float] | None:
     """Return the fastest sampled point at which the slip passes slip_max for certain."""
     import numpy as np
 
-    samples, ranges = sample(problem), place_of(problem)
+    samples, ranges = _samples(problem), place_of(problem)
     for k in np.flatnonzero(samples.worst < DEVIATION)[::-1][:TRIALS]:
         sampled = dict(zip(BASIC, map(float, samples.tightest[k]), strict=True))
         at = {
@@ -92,7 +101,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG
     """Return the recoverable deviation over speed beside the one asked for, and the growth."""
     import numpy as np
 
-    samples = sample(problem)
+    samples = _samples(problem)
     speeds = samples.speeds * KMH
     axes = ("speed [km/h]", "recoverable deviation of the slip [-]")
     return Figures(

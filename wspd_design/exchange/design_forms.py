@@ -1,0 +1,43 @@
+"""The form of a design file, which is TOML: units stand beside the gains, the specification is in SI units."""
+
+from wspd_design.design.file import SCHEMA
+from wspd_design.exchange.common_keys import PAIR, RAIL_KEY, SCHEMA_KEY, VEHICLE_KEY
+from wspd_design.exchange.forms import Form, Key
+
+SPECIFICATION_TABLE = Form(
+    name="specification_table",
+    keys=(
+        Key(name="slip", kind="number", meaning="slip reference"),
+        Key(name="speeds", kind="number", many=PAIR, meaning="range of operation, in m/s"),
+        Key(name="slips", kind="number", many=PAIR, meaning="range of slip of the checks"),
+        Key(name="slip_tolerance", kind="number", meaning="width of the band about the reference"),
+        Key(name="sample_time", kind="number", meaning="of the controller, in s"),
+    ),
+)
+GAIN_TABLE = Form(
+    name="gain_table",
+    keys=(
+        Key(
+            name="value",
+            kind="value",
+            meaning="number, list of numbers, true or false, in the unit beside it",
+        ),
+        Key(name="unit", kind="text", meaning="of the value; another one of the same dimension is converted"),
+        Key(name="why", kind="text", meaning="the rule that chose it"),
+    ),
+)
+DESIGN_FILE = Form(
+    name="design_file",
+    schema=SCHEMA,
+    keys=(
+        SCHEMA_KEY,
+        Key(name="name", kind="text", meaning="of the design"),
+        Key(name="law", kind="text", meaning="family of the control law"),
+        VEHICLE_KEY,
+        Key(name="vehicle_hash", kind="text", meaning="fingerprint of the vehicle that it was made for"),
+        RAIL_KEY,
+        Key(name="rail_hash", kind="text", meaning="fingerprint of the rail that it was made for"),
+        Key(name="specification", kind=SPECIFICATION_TABLE, meaning="what was asked for"),
+        Key(name="gains", kind=GAIN_TABLE, by_name=True, meaning="a table for each gain of the law"),
+    ),
+)
