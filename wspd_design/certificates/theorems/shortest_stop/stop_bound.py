@@ -97,6 +97,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         ),
         assumptions=(
             "level track; the wheel loads add up to the weight",
+            "the range of the axle load share is that of a load transfer that follows the deceleration without delay",
             "rolling wheels and empty cylinders at the start; no other brake",
         ),
         varied=(*USED, "axle load share"),
