@@ -26,8 +26,8 @@ THEOREMS = (
         "creep force turns the slip back to 0 by the last hypotheses, so that R omega <= (1 + s) v for good. The "
         "creep force grows with the friction, since S - eps S' >= 0: the peak falls with the speed, and the bound of "
         "mu at one speed holds above it. It also falls with the load: f/Q depends on s C/Q, and C/Q falls with Q; "
-        "under less load Q' the slip s (C/Q)/(C'/Q') < s has the same gradient, slides less and finds no less friction. "
-        "So sum Q_i mu(Q_i) <= m g_0 mu(min Q_i).",
+        "under less load Q' the slip s (C/Q)/(C'/Q') < s has the same gradient, slides less and finds no less "
+        "friction. So sum Q_i mu(Q_i) <= m g_0 mu(min Q_i).",
         not_said="That a controller reaches it. That load transfer lowers the sum of the peaks on every rail: "
         "with mu0 .42, A .15, B .6 s/m, k_A .2, k_S .04 at 57 km/h wheel loads of 130 and 70 % raise it by "
         f"{100 * stop_limit.load_transfer_example:.2f} %.",
