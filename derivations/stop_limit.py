@@ -2,7 +2,7 @@
 
 Claims: (1) and (2) of all wheels add up to a momentum balance without creep force; a wheel that outruns the train is
 slowed down by its creep force; the creep force grows with the friction. That load transfer lowers the sum of the peaks
-is not among them: there are rails on which it raises it.
+is not among them: there are rails on which it raises it. The least wheel load bounds the sum on every rail.
 """
 
 import sympy as sp
@@ -36,6 +36,14 @@ _slip_rate = (-R * motion.wheel_acceleration / v + R * motion.omega / v**2 * mot
 _least = grip * (8 / m + R**2 / inertia) - (1 + s) * f_d / m
 _helps = 8 * s * grip / m + (1 + s) * v * B / inertia + R * T / (2 * inertia)  # not negative
 outrun_residual = sp.simplify(v * _slip_rate - (_least + _helps))
+
+# --- the same wheel if the others differ: only the deceleration D of the train connects them -----------------
+D = sp.Symbol("D", positive=True)
+_other_rate = (-R * motion.wheel_acceleration / v - R * motion.omega / v**2 * D).subs(_at)
+_held = grip * R**2 / inertia - (1 + s) * D
+outrun_others_residual = sp.simplify(
+    v * _other_rate - (_held + (1 + s) * v * B / inertia + R * T / (2 * inertia))
+)
 
 # --- the creep force over 2 Q/pi is mu S(c/mu); its derivative in mu is S - eps S', eps = c/mu ---------------
 _x, _y = k_A * eps, k_S * eps

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.search import adhesion_peaks as peak_search
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
-from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import require
+from wspd_design.certificates.theorems.shortest_stop.extremes import exactly
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail
@@ -97,8 +97,7 @@ def test_no_controller_beats_the_ideal_stop(make_controller, rail, share, name, 
 @given(rail=rails, vehicle=vehicles, kmh=st.floats(15.0, 160.0))
 def test_what_is_proved_lies_below_ideal_stops(rail, vehicle, kmh):
     """The search finds peaks and cuts that the checker accepts on every rail, for every vehicle."""
-    plant = vehicle, rail, kmh / 3.6
-    require(*plant)
+    plant = exactly(vehicle, rail), kmh / 3.6
     with patch.object(peak_search, "SPEEDS", 40):
         found, _ = adhesion_peaks.decide(*plant, peak_search.search(*plant), Work())
     ideal = ideal_stop(vehicle, Scenario(rail=rail, initial_speed=kmh / 3.6), plant="quarter")

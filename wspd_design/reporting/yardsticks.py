@@ -13,7 +13,7 @@ from wspd_design.simulation.records import Ending
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProvedBound:
-    """A distance below which no controller stops, and the certificate that proves it."""
+    """A distance below which no controller stops the nominal vehicle, and the certificate that proves it."""
 
     distance: float  # m
     certificate: Certificate

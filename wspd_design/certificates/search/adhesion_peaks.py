@@ -13,10 +13,10 @@ from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import (
     PartTest,
     part_test,
 )
+from wspd_design.certificates.theorems.shortest_stop.extremes import Extremes
 from wspd_design.model import adhesion
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.loading import constants
-from wspd_design.parameters.records import Rail, Vehicle
 
 SPEEDS, CROWDING = 200, 1.25  # intervals of the speed, closer together at low speed
 SAMPLES = 2000  # of the slip, for a peak
@@ -26,11 +26,11 @@ LEAST_SLIP = 1e-6  # that is sampled
 FIRST, WIDER, NARROWER, LEAST_STEP = 0.5, 1.5, 0.6, 1e-4  # relative steps from cut to cut
 
 
-def search(vehicle: Vehicle, rail: Rail, start: float) -> dict[str, Any]:
+def search(plants: Extremes, start: float, intervals: int = SPEEDS) -> dict[str, Any]:
     """Return a certificate of the adhesion peaks from standstill to the initial speed [m/s]."""
-    speeds = tuple(_decimal(start * (k / SPEEDS) ** CROWDING) for k in range(SPEEDS))
-    tops = peaks(vehicle, rail, speeds)
-    cuts = (_cuts(part_test(vehicle, rail, speed), top) for speed, top in zip(speeds, tops, strict=True))
+    speeds = tuple(_decimal(start * (k / intervals) ** CROWDING) for k in range(intervals))
+    tops = peaks(plants, speeds)
+    cuts = (_cuts(part_test(plants, speed), top) for speed, top in zip(speeds, tops, strict=True))
     return {
         "format": FORMAT,
         "speeds": _written(speeds),
@@ -39,16 +39,16 @@ def search(vehicle: Vehicle, rail: Rail, start: float) -> dict[str, Any]:
     }
 
 
-def peaks(vehicle: Vehicle, rail: Rail, speeds: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
+def peaks(plants: Extremes, speeds: tuple[Fraction, ...]) -> tuple[Fraction, ...]:
     """Sample f/Q over the slip at each speed [m/s] and add a margin to its largest value."""
     import numpy as np
 
-    load = float(static_wheel_load(vehicle))
-    stiffness = adhesion.contact_stiffness(vehicle.contact, load)
+    load = float(static_wheel_load(plants.strong)) * plants.share
+    stiffness = adhesion.contact_stiffness(plants.strong.contact, load)
     slips = np.geomspace(LEAST_SLIP, 1.0, SAMPLES)
     referred = np.maximum([float(speed) for speed in speeds], constants().slip_regularization_speed)
     sliding = referred[:, np.newaxis] * slips
-    forces = adhesion.creep_force(slips, sliding, load, rail, stiffness)
+    forces = adhesion.creep_force(slips, sliding, load, plants.strong_rail, stiffness)
     return tuple(_decimal(float(top) / load + MARGIN) for top in forces.max(axis=1))
 
 

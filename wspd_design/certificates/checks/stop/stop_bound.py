@@ -8,24 +8,29 @@ from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.records import Certificate, Problem, Series
 from wspd_design.certificates.search import adhesion_peaks
 from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import read
-from wspd_design.certificates.theorems.shortest_stop.stop_bound import STOP_BOUND
+from wspd_design.certificates.theorems.shortest_stop.extremes import exactly, over_bounds
+from wspd_design.certificates.theorems.shortest_stop.stop_bound import BOUNDS, NOMINAL, STOP_BOUND
 from wspd_design.parameters.units import KMH
 from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario
 from wspd_design.simulation.stop import simulate
 
+WIDE = 100  # intervals of the speed, where the parameters are wide
 ROUNDING = 1e-3  # m; a simulated stop ends a little above standstill
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:
     """Sample the peaks of adhesion, and find cuts of the slip with which the checker sees them."""
-    peaks = adhesion_peaks.search(problem.vehicle, problem.rail, problem.speeds[1])
-    return {"peaks": Stated(proof=peaks)}
+    start = problem.speeds[1]
+    return {
+        NOMINAL: Stated(proof=adhesion_peaks.search(exactly(problem.vehicle, problem.rail), start)),
+        BOUNDS: Stated(proof=adhesion_peaks.search(over_bounds(problem), start, WIDE)),
+    }
 
 
 def figures(problem: Problem, certificate: Certificate) -> Figures:
     """Set the stop of this controller and the ideal stop against the bound."""
-    found = certificate.findings["peaks"]
+    found = certificate.findings[NOMINAL]
     if not found.proved or found.stated.proof is None:
         return Figures()
     scenario = Scenario(rail=problem.rail, initial_speed=problem.speeds[1])

@@ -23,11 +23,11 @@ from typing import Any
 
 from wspd_design.certificates.kernel.arb import Ball, ball, in_balls, point
 from wspd_design.certificates.kernel.checker import Refused, Work
-from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import Limit, stop_limit
+from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import Limit, loaded, stop_limit
+from wspd_design.certificates.theorems.shortest_stop.extremes import Extremes
 from wspd_design.model import adhesion
 from wspd_design.model.generated import adhesion as generated
 from wspd_design.parameters.loading import constants
-from wspd_design.parameters.records import Rail, Vehicle
 
 FORMAT = "wspd-peaks/2"
 MOST_SPEEDS, MOST_CUTS = 1000, 1000
@@ -50,15 +50,13 @@ class Peaks:
     cuts: tuple[tuple[Fraction, ...], ...]  # -, of the slip between 0 and 1, for each speed
 
 
-def decide(
-    vehicle: Vehicle, rail: Rail, start: float, proof: Mapping[str, Any], work: Work
-) -> tuple[Limit, int]:
+def decide(plants: Extremes, start: float, proof: Mapping[str, Any], work: Work) -> tuple[Limit, int]:
     """Return what a certificate of adhesion peaks shows about every stop, and the number of parts of the slip.
 
     Parameters
     ----------
-    vehicle, rail : Vehicle, Rail
-        For which :func:`require` raises nothing.
+    plants : Extremes
+        Plants that the bound shall cover.
     start : float
         Speed at which every stop starts [m/s].
     proof : mapping
@@ -70,12 +68,14 @@ def decide(
     ------
     Refused
         If the certificate is malformed or shows nothing.
+    NoBound
+        If the derivation does not cover the plants.
     """
     found = read(proof, start)
     parts = 0
     for speed, top, cuts in zip(found.speeds, found.tops, found.cuts, strict=True):
         work.spend(PART_WORK * (len(cuts) + 1))
-        holds = part_test(vehicle, rail, speed)
+        holds = part_test(plants, speed)
         for low, high in pairwise((Fraction(0), *cuts, Fraction(1))):
             if not holds(low, high, top):
                 raise Refused(
@@ -83,22 +83,21 @@ def decide(
                     f"{float(low):g} to {float(high):g}"
                 )
             parts += 1
-    return stop_limit(vehicle, (*found.speeds, Fraction(start)), found.tops), parts
+    return stop_limit(plants, (*found.speeds, Fraction(start)), found.tops), parts
 
 
-def part_test(vehicle: Vehicle, rail: Rail, speed: Fraction) -> PartTest:
-    """Return the test of a bound of f/Q on a part of the slip at one train speed, under the static load.
+def part_test(plants: Extremes, speed: Fraction) -> PartTest:
+    """Return the test of a bound of f/Q on a part of the slip at one train speed, under the least load.
 
     Parameters
     ----------
-    vehicle, rail : Vehicle, Rail
-        With the signs that :func:`require` asks for.
+    plants : Extremes
+        With the signs that :func:`overspeed` asks for.
     speed : Fraction
         Of the train [m/s].
     """
-    vehicle, rail = in_balls(vehicle), in_balls(rail)
-    load = vehicle.mass * constants().gravity / (2 * vehicle.wheelsets)
-    stiffness = adhesion.contact_stiffness(vehicle.contact, load)
+    rail = in_balls(plants.strong_rail)
+    load, stiffness = loaded(in_balls(plants.strong), plants.share)
     # Below the regularization speed the slip is referred to that speed, and sliding is no faster than there.
     referred = point(max(speed, Fraction(constants().slip_regularization_speed)))
 
