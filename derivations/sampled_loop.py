@@ -30,16 +30,25 @@ product_residual = sp.simplify(
 )
 condition_residual = sp.simplify((1 - other_root) * (1 + p * tau) - (1 - beta - p * tau * (alpha - 1)))
 
-# --- quadratic function: y = v e, t the error of the torque over T_max --------------------------------------
+# --- quadratic function: y = v e, w = gamma (T - T*)/T_max what the torque changes of y' -----------------------
 q, gamma, kappa, back, decay, kept = sp.symbols("q gamma kappa K_T alpha_V c_V", real=True)
-y, t, v, a, R, I_w, T_max = sp.symbols("y t v a R I_w T_max", positive=True)
-_error_rate = p * (y / v) - R * T_max / (I_w * v) * t  # of e = y/v, from (19) near the reference
-sliding_residual = sp.simplify(
-    (v * _error_rate - a * (y / v)) - (q * y - gamma * t).subs({q: p - a / v, gamma: R * T_max / I_w})
+y, w, v, a, R, I_w, T_max = sp.symbols("y w v a R I_w T_max", positive=True)
+_error_rate = p * (y / v) - w / v  # of e = y/v, from (19) near the reference: w = R (T - T*)/I_w
+sliding_residual = sp.simplify((v * _error_rate - a * (y / v)) - (q * y - w).subs(q, p - a / v))
+fill, vent, duty, torque_share = sp.symbols("T_F T_V u_0 theta_0", positive=True)
+forgetting, driving = sp.symbols("a_V b_V", positive=True)
+_duty = duty + kappa * y - back * w / gamma  # of the law, gamma = R T_max/I_w
+_share = torque_share + w / gamma
+_averaged = gamma * (_duty * (1 - _share) / fill - (1 - _duty) * _share / vent)  # w' of the valve (9), averaged
+_still = {w: 0, y: 0}
+forgetting_of_valve = duty / fill + (1 - duty) / vent
+driving_of_valve = (1 - torque_share) / fill + torque_share / vent
+rates = sp.Matrix([[q, -1], [driving * gamma * kappa, -(forgetting + driving * back)]])
+_of_valve = {forgetting: forgetting_of_valve, driving: driving_of_valve}
+loop_residual = sum(
+    sp.simplify(sp.diff(_averaged, state).subs(_still) - entry.subs(_of_valve)) ** 2
+    for state, entry in zip((y, w), rates.row(1), strict=True)
 )
-_valve = (kappa * y - back * t - t) / tau  # tau T' + T = T_max u, eq. (14), u = kappa y - K t
-rates = sp.Matrix([[q, -gamma], [kappa / tau, -(1 + back) / tau]])
-loop_residual = sp.expand((rates * sp.Matrix([y, t]))[1] - _valve)
 entries = sp.symbols("P_11 P_12 P_22", real=True)
 _P = sp.Matrix([entries[:2], entries[1:]])
 any_matrix = sp.Matrix(2, 2, sp.symbols("A_11 A_12 A_21 A_22", real=True))
@@ -70,11 +79,12 @@ contraction = (
 )
 contraction_residual = _difference(contraction, kept**2 * _P - any_matrix.T * _P * any_matrix)
 affine_residual = sp.expand(
-    sum(entry.diff(*twice) ** 2 for entry in rates for twice in ((q, q), (gamma, gamma), (q, gamma)))
+    sum(entry.diff(*twice) ** 2 for entry in rates
+        for twice in ((q, q), (forgetting, forgetting), (driving, driving), (q, driving), (q, forgetting)))
 )
 _pivot = _p22 - _p12**2 / _p11
 pivots_residual = sp.simplify(
-    (sp.Matrix([[y, t]]) * _P * sp.Matrix([y, t]))[0] - (_p11 * (y + _p12 / _p11 * t) ** 2 + _pivot * t**2)
+    (sp.Matrix([[y, w]]) * _P * sp.Matrix([y, w]))[0] - (_p11 * (y + _p12 / _p11 * w) ** 2 + _pivot * w**2)
 )
 _theta = sp.Symbol("theta", positive=True)
 _one, _two = sp.Matrix(sp.symbols("a_1 a_2", real=True)), sp.Matrix(sp.symbols("b_1 b_2", real=True))

@@ -201,31 +201,32 @@ THEOREMS = (
         anchor="lpv",
         title="One quadratic function for all speeds",
         statement="If an equilibrium of the actual parameters lies within the tolerance about the reference, let "
-        "e and T - T* be the deviations from it. In y = v e and t = (T - T*)/T_max a static law with the duty u* "
-        "+ kappa y - K t gives x' = A x, x = (y, t), A = [[q, -gamma], [kappa/tau, -(1 + K)/tau]], with q = p - "
-        "a/v at the equilibrium and gamma = R T_max/I_w. If A^T P + P A < -2 alpha P at the four vertices of an "
-        "interval of q and one of gamma, x^T P x falls at least as exp(-2 alpha t) whatever the course of q and "
-        "gamma within them. If A_h^T P A_h < c^2 P for the matrices A_h from sample to sample, for all q and both "
-        "ends of gamma, it falls by c^2 per sample.",
+        "e and T - T* be the deviations from it, gamma = R T_max/I_w and u, theta the duty and T*/T_max there. In y "
+        "= v e and w = gamma (T - T*)/T_max a static law with the duty u + kappa y - K (T - T*)/T_max gives x' = A x, "
+        "x = (y, w), A = [[q, -1], [b g, -(a + b K)]], with q = p - a_v/v at the equilibrium, a_v the deceleration, "
+        "g = gamma kappa, a = u/T_F + (1 - u)/T_V and b = (1 - theta)/T_F + theta/T_V. If A^T P + P A < -2 alpha P "
+        "at the corners of intervals of q, a, b and of (g, K), x^T P x falls at least as exp(-2 alpha t) whatever "
+        "the course of these numbers within them. If A_h^T P A_h < c^2 P for the matrices A_h from sample to sample, "
+        "it falls by c^2 per sample.",
         hypotheses=(
             "an equilibrium lies within the tolerance about the reference: it is at the reference only if the law "
             "knows the holding torque u* of the actual parameters, and elsewhere the pole is another one",
             "small deviations from that equilibrium; nothing saturates",
-            "q = p - a/v and gamma stay in their intervals, for every slip within the tolerance",
-            "valve a first-order lag, T_F = T_V",
-            "P > 0; sampled: q and gamma constant within a sample",
+            "q stays in its interval, for every slip within the tolerance; T_max and the inertia do not change",
+            "the valve averaged, or from sample to sample; full supply pressure",
+            "P > 0; sampled: q constant within a sample",
             "the change of the equilibrium is slow",
         ),
-        sketch="A is affine in q and gamma, so that A^T P + P A is negative between the vertices if it is at "
-        "them. A_h is affine in gamma, and x^T P x is convex; in q it is not affine, so that the interval is "
-        "covered by parts whose matrix exponential is enclosed. P is positive definite if the pivots of LDL' are.",
+        sketch="A is affine in each of its numbers, so that A^T P + P A is negative between the corners if it is at "
+        "them; a and b lie between 1/T_F and 1/T_V because u and theta lie in [0, 1]. A_h is affine in each of the "
+        "numbers of a sample, which are enclosed, and x^T P x is convex. P is positive definite if the pivots of "
+        "LDL' are.",
         not_said="Where the equilibrium lies: without an integral of the error it moves with mass, inertia and "
-        "friction. What happens beyond small deviations, when the brake is the limit, or for a valve that vents "
-        "faster than it fills.",
+        "friction. What happens beyond small deviations, or when the brake is the limit.",
         identities=(
-            Identity("y' = q y - gamma t", sampled_loop.sliding_residual),
-            Identity("t' = (kappa y - (1 + K) t)/tau", sampled_loop.loop_residual),
-            Identity("A is affine in q and gamma", sampled_loop.affine_residual),
+            Identity("y' = q y - w", sampled_loop.sliding_residual),
+            Identity("w' = b g y - (a + b K) w near the equilibrium, from (9)", sampled_loop.loop_residual),
+            Identity("A is affine in each of q, a, b", sampled_loop.affine_residual),
             Identity("-(A^T P + P A) - 2 alpha P by entries, for any A", sampled_loop.decrease_residual),
             Identity("c^2 P - A^T P A by entries, for any A", sampled_loop.contraction_residual),
             Identity("x^T P x by the pivots P_11 and P_22 - P_12^2/P_11", sampled_loop.pivots_residual),

@@ -264,15 +264,12 @@ def test_load_transfer_may_raise_the_sum_of_the_peaks():
 
 def test_checker_evaluates_the_derived_formulas():
     """The functions of the certificates on symbols are those that stand on the theory page."""
-    loop = quadratic.Loop(
-        gamma=(sampled_loop.gamma,) * 2,
-        lag=sampled_loop.tau,
-        sliding_gain=sampled_loop.kappa,
-        torque_gain=sampled_loop.back,
-        sample_time=sampled_loop.h,
-    )
-    coded = sp.Matrix(quadratic.rates(loop, sampled_loop.q, sampled_loop.gamma))
-    assert sp.simplify(coded - sampled_loop.rates) == sp.zeros(2, 2)
+    tau, slide, torque, top, inertia, q = (sp.Rational(n, 7) for n in (2, 3, 5, 11, 13, 17))
+    law = quadratic.Law(slide=slide, torque=torque, sample_time=sp.Integer(1))
+    (coded,) = set(quadratic.averaged(law, ((tau, tau), (tau, tau), (top, top), (inertia, inertia), (q, q))))
+    numbers = {sampled_loop.q: q, sampled_loop.forgetting: 1 / tau, sampled_loop.driving: 1 / tau}
+    numbers |= {sampled_loop.gamma * sampled_loop.kappa: slide * top / inertia, sampled_loop.back: torque * top}
+    assert sp.Matrix(coded) == sampled_loop.rates.subs(numbers)
     any_matrix = sampled_loop.any_matrix.tolist()
     pairs = (
         (quadratic.decays(sampled_loop.entries, any_matrix, sampled_loop.decay), sampled_loop.decrease),
