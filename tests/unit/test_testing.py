@@ -110,7 +110,7 @@ def test_what_is_kept_beside_a_design_is_not_searched_again(design, tmp_path, mo
     path = tmp_path / "smc.toml"
     write_design(design, path)
     certify(path, only=("gain_positive",), folder=folder_beside(path))
-    monkeypatch.setattr(Check, "run", lambda *_: pytest.fail("searched"))
+    monkeypatch.setattr(Check, "run", lambda *_, **__: pytest.fail("searched"))
     assert_certified(path, "gain_positive")
     with pytest.raises(pytest.fail.Exception, match="searched"):
         assert_certified(design, "gain_positive")

@@ -58,7 +58,7 @@ def test_files_are_written_checked_and_taken_again(path, monkeypatch):
     # What lies there and is accepted is not searched again; what is changed is.
     from wspd_design.certificates.checks.frame import Check
 
-    monkeypatch.setattr(Check, "run", lambda *_: pytest.fail("searched"))
+    monkeypatch.setattr(Check, "run", lambda *_, **__: pytest.fail("searched"))
     assert [certificate_text(each) for each in wd.certify(path, only=QUICK)] == [
         certificate_text(each) for each in made[:2]
     ]
