@@ -39,7 +39,9 @@ fill, vent, duty, torque_share = sp.symbols("T_F T_V u_0 theta_0", positive=True
 forgetting, driving = sp.symbols("a_V b_V", positive=True)
 _duty = duty + kappa * y - back * w / gamma  # of the law, gamma = R T_max/I_w
 _share = torque_share + w / gamma
-_averaged = gamma * (_duty * (1 - _share) / fill - (1 - _duty) * _share / vent)  # w' of the valve (9), averaged
+_averaged = gamma * (
+    _duty * (1 - _share) / fill - (1 - _duty) * _share / vent
+)  # w' of the valve (9), averaged
 _still = {w: 0, y: 0}
 forgetting_of_valve = duty / fill + (1 - duty) / vent
 driving_of_valve = (1 - torque_share) / fill + torque_share / vent
@@ -79,8 +81,11 @@ contraction = (
 )
 contraction_residual = _difference(contraction, kept**2 * _P - any_matrix.T * _P * any_matrix)
 affine_residual = sp.expand(
-    sum(entry.diff(*twice) ** 2 for entry in rates
-        for twice in ((q, q), (forgetting, forgetting), (driving, driving), (q, driving), (q, forgetting)))
+    sum(
+        entry.diff(*twice) ** 2
+        for entry in rates
+        for twice in ((q, q), (forgetting, forgetting), (driving, driving), (q, driving), (q, forgetting))
+    )
 )
 _pivot = _p22 - _p12**2 / _p11
 pivots_residual = sp.simplify(

@@ -268,7 +268,10 @@ def test_checker_evaluates_the_derived_formulas():
     law = quadratic.Law(slide=slide, torque=torque, sample_time=sp.Integer(1))
     (coded,) = set(quadratic.averaged(law, ((tau, tau), (tau, tau), (top, top), (inertia, inertia), (q, q))))
     numbers = {sampled_loop.q: q, sampled_loop.forgetting: 1 / tau, sampled_loop.driving: 1 / tau}
-    numbers |= {sampled_loop.gamma * sampled_loop.kappa: slide * top / inertia, sampled_loop.back: torque * top}
+    numbers |= {
+        sampled_loop.gamma * sampled_loop.kappa: slide * top / inertia,
+        sampled_loop.back: torque * top,
+    }
     assert sp.Matrix(coded) == sampled_loop.rates.subs(numbers)
     any_matrix = sampled_loop.any_matrix.tolist()
     pairs = (
