@@ -180,4 +180,4 @@ def test_box_outside_the_model_leaves_the_rest_undecided(make_problem, make_cont
     assert found["gain_positive"].status is Status.REFUTED
     for undecided in ("well_posed", "sliding_exists", "no_go", "open_loop_pole", "sampling", "routh_lag"):
         assert found[undecided].status is Status.UNDECIDED
-        assert "not positive" in found[undecided].claim
+        assert "not positive" in found[undecided].explanation

@@ -62,7 +62,7 @@ def test_answers_reach_the_design(answer, tmp_path):
 def test_the_law_with_torque_feedback(answer, wspd, tmp_path):
     outcome = answer(ENTER * 2 + DOWN * 2 + ENTER * 3 + f"{ERASE}20 ms{ENTER * 3}")
     assert outcome.code == 0
-    assert "K = tau/h - 1, at least 0" in " ".join(outcome.out.split())
+    assert "K = (tau/h - 1) T_nominal/T_max, at least 0" in " ".join(outcome.out.split())
     made = read_design(tmp_path / "design.toml")
     assert (made.law, made.specification.sample_time) == ("torque-feedback", 0.02)
     assert wspd("simulate", "design.toml", "--plant", "quarter").code == 0

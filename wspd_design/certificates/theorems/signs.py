@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from fractions import Fraction
+from math import isfinite
 from typing import NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.claim import Claim
@@ -125,7 +126,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         ((sign, found[sign.key]) for sign in SIGNS if found[sign.key].status is Status.REFUTED), None
     )
     said = scope(problem, AXLE_PLANT)
-    values = "; ".join(f"{sign.name} >= {found[sign.key].low:.4g} {sign.unit}" for sign in SIGNS)
+    bounded = [sign for sign in SIGNS if isfinite(found[sign.key].low)]
+    values = "; ".join(f"{sign.name} >= {found[sign.key].low:.4g} {sign.unit}" for sign in bounded)
     meaning = {
         Status.PROVED: "The train slows down at every point, adhesion brakes it, more torque always means more slip, "
         "and the input gain grows during a stop",
@@ -144,7 +146,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         title="Signs of the model",
         claim=f"a = (f_d + 8 f)/m >= 0 and G' = G a/v >= 0 for wheels at static load, f >= 0 and G > 0 {said.text}.",
         status=status,
-        explanation=f"{meaning}. Found: {values}.",
+        explanation=f"{meaning}. Found: {values or 'no bound'}.",
         margin=slowing.margin,
         worst_point=at(slowing) if slowing.values else (),
         witness=()
