@@ -117,6 +117,15 @@ def _reaching_obligations(problem: Problem) -> tuple[Obligation, ...]:
     )
 
 
+def _between(low: float, high: float) -> str:
+    """Say where an acceleration lies; a search without effort leaves an end open."""
+    if math.isfinite(low) and math.isfinite(high):
+        return f"lies between {low:.7g} and {high:.7g} m/s2"
+    if math.isfinite(low):
+        return f"is at least {low:.7g} m/s2"
+    return f"is at most {high:.7g} m/s2" if math.isfinite(high) else "is not known"
+
+
 def _tell_reaching(problem: Problem, findings: Findings) -> Certificate:
     law = sliding_law(problem)
     eta, gain, most = reserve(problem), law.gains.switching_gain, largest_deceleration(problem)
@@ -136,7 +145,7 @@ def _tell_reaching(problem: Problem, findings: Findings) -> Certificate:
         f"{low * KMH:.3g} km/h, abs(s_D) falls in sigma = integral of dt/v with at least eta = {eta:.3g} m/s2: "
         f"W0 = {gain:.4g} m/s2 outweighs the model error, abs(r) + eta <= rho W0, {said.text}.",
         status=status,
-        explanation=f"The smallest W0 that does lies between {needed.low:.7g} and {needed.high:.7g} m/s2. "
+        explanation=f"The smallest W0 that does {_between(needed.low, needed.high)}. "
         + {
             Status.PROVED: "The surface is reached where v0 exp(-a_max abs(sbar0)/eta) is above the lowest speed, with "
             f"a_max = {most:.4g} m/s2: from slip {problem.slips[0]:g} without an integral at {high * KMH:.3g} km/h "
