@@ -107,10 +107,7 @@ def test_rate_is_that_of_the_kernels():
         exact = at.drift + at.gain * torque
         wide = slip_rate(problem, *(ival.Interval(x, x) for x in (slip, speed, torque)))
         assert wide.inf <= exact <= wide.sup
-        fixed = replace(
-            problem,
-            bounds=EXACT,
-        )
+        fixed = replace(problem, vehicle=vehicle, rail=rail, bounds=EXACT)
         thin = slip_rate(fixed, *(ival.Interval(x, x) for x in (slip, speed, torque)))
         damping = vehicle.wheel_damping / vehicle.wheel_inertia
         assert thin.inf - 1e-12 <= exact <= thin.sup + 1e-12
