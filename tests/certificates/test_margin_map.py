@@ -9,7 +9,9 @@ from wspd_design.certificates.checks.foundations import well_posed
 from wspd_design.certificates.checks.margin_map import margin_map
 from wspd_design.certificates.checks.sliding import reaching, sliding_exists
 from wspd_design.certificates.checks.valve import open_loop_pole
+from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.theorems.authority import torque_findings
 
 ROUNDING = 1e-6
 
@@ -18,18 +20,14 @@ def _smc(make_controller, make_problem, rail):
     return make_problem(make_controller("smc", rail), rail=rail)
 
 
-# A check of several claims has one margin, a map shows one claim: which of the two to compare is open.
-OTHER_MARGIN = pytest.mark.xfail(reason="the map shows another claim of the check than the margin")
-
-
 @pytest.mark.parametrize("rail", ["polach-dry", "polach-wet"])
 @pytest.mark.parametrize(
     ("check", "sign", "scale"),
     [
         (reaching.CHECK.run, 1.0, 1.0),
-        pytest.param(open_loop_pole.CHECK.run, 1.0, 1.0, marks=OTHER_MARGIN),
+        (open_loop_pole.CHECK.run, 1.0, 0.9),  # p tau <= 1 with the slowest valve, 0.9 s; the map shows p
         (well_posed.CHECK.run, -1.0, 1.0),
-        pytest.param(sliding_exists.CHECK.run, -1.0, 1e3, marks=OTHER_MARGIN),
+        (sliding_exists.CHECK.run, -1.0, 1e3),
     ],
 )
 def test_the_worst_of_the_map_is_what_is_proved(make_controller, make_problem, rail, check, sign, scale):
@@ -38,7 +36,12 @@ def test_the_worst_of_the_map_is_what_is_proved(make_controller, make_problem, r
     values = np.array(shown.values)
     margins = sign * (shown.limit - values) * scale
     margin = certificate.margin
-    low = -np.inf if margin.low is None else margin.low  # a witness bounds it from above alone
+    if certificate.name == "sliding_exists":  # it has two claims; the map shows the room to release
+        margin, _ = (each.margin for each in torque_findings(certificate.findings))
+    low = margin.low
+    if low is None:  # the search ended at a witness
+        assert certificate.status is Status.REFUTED
+        low = -np.inf
     assert low - ROUNDING <= margins.min() <= margin.high + ROUNDING
     row, column = shown.y.index(shown.worst[1]), shown.x.index(shown.worst[0])
     assert margins[row, column] == margins.min()

@@ -172,7 +172,12 @@ def plant_dynamics(problem: Problem, values: Values) -> SlipDynamics:
     return slip_dynamics(vehicle, rail, slip, speed, wheel_load=load, deceleration=values[DECELERATION])
 
 
-def dynamics_at(problem: Problem, points: "Array", names: Sequence[str] = domain.BASIC) -> SlipDynamics:
+def dynamics_at(
+    problem: Problem,
+    points: "Array",
+    names: Sequence[str] = domain.BASIC,
+    held: Mapping[str, float] | None = None,
+) -> SlipDynamics:
     """Slip dynamics (19) of the plant at many points of the domain at once.
 
     Parameters
@@ -182,10 +187,14 @@ def dynamics_at(problem: Problem, points: "Array", names: Sequence[str] = domain
     points : ndarray
         One point per row, the columns as in ``names``, SI units.
     names : sequence of str
-        Slip, speed and the numbers that vary; the others are nominal.
+        Slip, speed and the numbers that vary.
+    held : mapping, optional
+        One point, such as a worst one, from which the other uncertain numbers are taken; without it they are nominal.
     """
+    point = held or {}
+    others = {name: point[name] for name in domain.uncertain(problem) if name in point}
     columns = {name: points[..., k] for k, name in enumerate(names)}
-    return plant_dynamics(problem, complete(problem, columns))
+    return plant_dynamics(problem, complete(problem, {**others, **columns}))
 
 
 class Forces(NamedTuple):

@@ -10,12 +10,12 @@ from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.search.together import settle_together
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.setting.plant import complete, plant_dynamics
+from wspd_design.certificates.setting.plant import dynamics_at
 from wspd_design.certificates.theorems.edges import of_key, together
 from wspd_design.certificates.theorems.signs import WELL_POSED, sign_obligations
 
 if TYPE_CHECKING:
-    from wspd_design.certificates.setting.domain import Array
+    pass
 
 TOLERANCES = {"m/s2": 1e-2, "N": 5.0, "1/s per MN m": 0.01, "1/s2 per MN m": 0.01}
 
@@ -36,18 +36,11 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     at = together(of_key(certificate.findings.items(), "deceleration")).values
     if not at:
         return Figures()
-    others = {name: at[name] for name in domain.uncertain(problem) if name in at and name not in domain.BASIC}
-
-    def deceleration(points: "Array") -> "Array":
-        columns = {name: points[:, k] for k, name in enumerate(domain.BASIC)}
-        found: Array = plant_dynamics(problem, complete(problem, {**others, **columns})).deceleration
-        return found
-
     return Figures(
         maps=margin_map(
             "deceleration",
             "deceleration a [m/s2]",
-            deceleration,
+            lambda points: dynamics_at(problem, points, held=at).deceleration,
             domain.box(problem),
             over=domain.SLIP,
             limit=0.0,

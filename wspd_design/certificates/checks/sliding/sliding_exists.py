@@ -12,7 +12,7 @@ from wspd_design.certificates.search.settle import settle
 from wspd_design.certificates.search.together import settle_together
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.domain import BASIC, SLIP, SPEED
-from wspd_design.certificates.setting.plant import complete, plant_dynamics
+from wspd_design.certificates.setting.plant import dynamics_at
 from wspd_design.certificates.theorems.authority import (
     SLIDING_EXISTS,
     out_of_reach,
@@ -113,12 +113,10 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     law, eta = surface_of(problem), reserve(problem)
     release, _ = torque_findings(certificate.findings)
     at = release.values or {name: sum(domain.span(problem, name)) / 2.0 for name in BASIC}
-    others = {name: at[name] for name in domain.uncertain(problem) if name in at and name not in BASIC}
 
     def released(points: "Array") -> "Array":
         """Ideal torque less the reserve, u* - eta/g [kN m]."""
-        columns = {name: points[:, k] for k, name in enumerate(BASIC)}
-        plant = plant_dynamics(problem, complete(problem, {**others, **columns}))
+        plant = dynamics_at(problem, points, held=at)
         error = sliding_surface.slip_error(law.slip_reference, points[:, SLIP])
         ideal = sliding_surface.equivalent_torque(plant.drift, plant.gain, 0.0, error, law.surface_rate)
         left: Array = (ideal - eta / (plant.gain * points[:, SPEED])) / 1e3

@@ -28,16 +28,17 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     """Pole over speed beside the rate of the slowest valve."""
     poles = slip_pole.pole_map(problem)
     limit = 1.0 / slowest_valve(problem)
+    worst = certificate.findings["every valve"].values
     return Figures(
         series=slip_pole.plots(poles, "1/tau", limit),
         maps=margin_map(
             "slip pole",
             "slip pole p [1/s]",
-            lambda points: dynamics_at(problem, points).pole,
+            lambda points: dynamics_at(problem, points, held=worst).pole,
             domain.slip_held(problem),
             over=domain.MU0,
             limit=limit,
-            worst=certificate.findings["every valve"].values,
+            worst=worst,
             largest=True,
         ),
         remark=f"{slip_pole.unstable_speeds(poles, limit)}.",
