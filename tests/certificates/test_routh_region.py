@@ -44,8 +44,8 @@ def test_loop_is_stable_on_the_named_side_of_the_border_only(shown, er24pc):
             for c, k in zip(border.x, border.y, strict=True)
             if min(border.y) < k < 0.99 * max(border.y)
         ]
-        assert inner
-        for c, k in inner[:: max(1, len(inner) // 5)]:
+        assert len(inner) > 5
+        for c, k in inner[:: len(inner) // 5]:
             assert stable(name, pole, c, 0.97 * k) == (side == "below")
             assert stable(name, pole, c, 1.03 * k) == (side == "above")
 

@@ -45,7 +45,10 @@ def region(law: LinearSurface, lag: float, speeds: "Array", plant: SlipModel) ->
     own = _loop_rate(law, speeds, plant)
     paper = plant.gain * printed.linear_form(speeds).proportional
     rates = np.linspace(0.0, HIGHEST_RATE * max(rate, 1.0 / lag), PLOT_RATES)[1:]
-    shown = np.concatenate([own, paper])
+    borders = [(index, *_border(law, float(plant.pole[index]), lag, rates)) for index in _extremes(plant)]
+    # The border is in the picture where the law has its c, however far its gains lie from it.
+    beside = [np.interp(rate, rates, border) for _, _, border in borders]
+    shown = np.concatenate([own, paper, [k for k in beside if 0.0 < k < np.inf]])
     bottom, top = float(shown.min()) / MARGIN, float(shown.max()) * MARGIN
     axes = ("c = K_I/K_P [1/s]", "k [1/s]")
     curves = [series("the law over speed", *axes, np.full(len(speeds), rate), own, Role.LOOP_GAIN)]
@@ -55,9 +58,8 @@ def region(law: LinearSurface, lag: float, speeds: "Array", plant: SlipModel) ->
                 "the paper's gains over speed", *axes, np.full(len(speeds), paper_rate), paper, Role.LOOP_GAIN
             )
         )
-    for index in (int(plant.pole.argmax()), int(plant.pole.argmin())):
+    for index, side, border in borders:
         pole, at = float(plant.pole[index]), f"{speeds[index] * KMH:.3g} km/h"
-        side, border = _border(law, pole, lag, rates)
         drawn = (border > 0.0) & np.isfinite(border)
         if drawn.sum() < LEAST_POINTS:
             curves.append(level(f"{side} at {at}, p tau = {pole * lag:.3g}", *axes, rates, bottom))
@@ -68,6 +70,11 @@ def region(law: LinearSurface, lag: float, speeds: "Array", plant: SlipModel) ->
                 series(f"stable {side} this{held} at {at}", *axes, rates[drawn], line, Role.LOOP_GAIN)
             )
     return curves
+
+
+def _extremes(plant: SlipModel) -> tuple[int, int]:
+    """Return where the slip pole is largest and where it is smallest."""
+    return int(plant.pole.argmax()), int(plant.pole.argmin())
 
 
 def _loop_rate(law: LinearSurface, speeds: "Array", plant: SlipModel) -> "Array":
