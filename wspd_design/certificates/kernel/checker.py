@@ -381,7 +381,7 @@ def _residue(formula: Formula) -> int:
     found: list[int] = []
     for name, *operands in formula:
         if name == "x":
-            found.append(_element("x", operands[0]))
+            found.append(element("x", operands[0]))
         elif name == "n":
             found.append(operands[0].numerator * pow(operands[0].denominator, -1, PRIME) % PRIME)
         elif name == "add":
@@ -391,8 +391,7 @@ def _residue(formula: Formula) -> int:
         elif name == "pow":
             found.append(_residue_power(found[operands[0]], operands[1]))
         else:  # the magnitude does not know the sign of its argument
-            x = found[operands[0]]
-            found.append(_element(name, x * x % PRIME if name == "abs" else x))
+            found.append(element(name, pow(found[operands[0]], 2 if name == "abs" else 1, PRIME)))
     return found[-1]
 
 
@@ -401,10 +400,11 @@ def _residue_power(base: int, exponent: Fraction) -> int:
     if base == 0:
         raise Refused("the identity cannot be decided: a base vanishes")
     whole, rest = divmod(exponent, 1)
-    return pow(base, whole, PRIME) * (_element("pow", base, rest) if rest else 1) % PRIME
+    return pow(base, whole, PRIME) * (element("pow", base, rest) if rest else 1) % PRIME
 
 
-def _element(*content: object) -> int:
+def element(*content: object) -> int:
+    """Pseudo-random element of the field that stands for its content."""
     return int.from_bytes(sha256(repr(content).encode()).digest() * 2, "big") % PRIME
 
 

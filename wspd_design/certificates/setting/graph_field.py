@@ -13,22 +13,15 @@ there, so that "different" means "not shown to be the same".
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cache
-from hashlib import sha256
 from math import isfinite
 from typing import Any
 
+from wspd_design.certificates.kernel.checker import PRIME, element
 from wspd_design.parameters.errors import WspdError
-
-PRIME = 2**255 - 19
 
 
 class UndecidedError(WspdError, ValueError):
     """The graph has no value in the field: a division by zero, or a constant that is not a finite number."""
-
-
-def element(*content: object) -> int:
-    """Pseudo-random element of the field that stands for its content."""
-    return int.from_bytes(sha256(repr(content).encode()).digest() * 2, "big") % PRIME
 
 
 def values(function: Any, inputs: Sequence[Sequence[int]]) -> list[list[int]]:
