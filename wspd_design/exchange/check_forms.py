@@ -60,6 +60,15 @@ PROOF = Form(
         ),
     ),
 )
+GROUNDS = (
+    Key(name="explanation", kind="text", meaning="why the verdict is so"),
+    Key(name="margin", kind=RANGE, nullable=True, meaning="positive when the claim holds"),
+    Key(name="worst_point", kind=POINT, many=ANY, meaning="coordinates of the tightest point"),
+    Key(name="witness", kind=POINT, many=ANY, meaning="coordinates of a point where the claim fails"),
+    Key(name="hypotheses", kind=HYPOTHESIS, many=ANY, meaning="conditions of the theorem"),
+    Key(name="assumptions", kind="text", many=ANY, meaning="what is taken for granted"),
+)
+"""Why a verdict is so: keys of every object that tells one."""
 CHECK = Form(
     name="check",
     keys=(
@@ -67,12 +76,7 @@ CHECK = Form(
         Key(name="title", kind="text", meaning="what is checked"),
         Key(name="claim", kind="text", meaning="what is claimed"),
         Key(name="status", kind="text", words=STATUSES, meaning="verdict on the claim"),
-        Key(name="explanation", kind="text", meaning="why the verdict is so"),
-        Key(name="margin", kind=RANGE, nullable=True, meaning="positive when the claim holds"),
-        Key(name="worst_point", kind=POINT, many=ANY, meaning="coordinates of the tightest point"),
-        Key(name="witness", kind=POINT, many=ANY, meaning="coordinates of a point where the claim fails"),
-        Key(name="hypotheses", kind=HYPOTHESIS, many=ANY, meaning="conditions of the theorem"),
-        Key(name="assumptions", kind="text", many=ANY, meaning="what is taken for granted"),
+        *GROUNDS,
         Key(name="method", kind="text", meaning="how the verdict was found"),
         Key(name="reference", kind="text", meaning="where the argument stands"),
         Key(name="model_hash", kind="text", meaning="fingerprint of all numbers that the verdict rests on"),

@@ -33,35 +33,26 @@ class Theorem:
 
 def silent(theorem: Theorem, problem: Problem) -> Certificate | None:
     """Return the certificate of a theorem that does not speak about a design, or that leaves the model; else None."""
+
+    def without_findings(status: Status, explanation: str, method: str) -> Certificate:
+        made = Certificate(
+            name=theorem.name,
+            title=theorem.title,
+            claim=theorem.claim,
+            status=status,
+            explanation=explanation,
+            method=method,
+        )
+        return _complete(theorem, problem, made)
+
     reason = theorem.speaks_about(problem)
     if reason:
-        return _complete(
-            theorem,
-            problem,
-            Certificate(
-                name=theorem.name,
-                title=theorem.title,
-                claim=theorem.claim,
-                status=Status.NOT_APPLICABLE,
-                explanation=f"{problem.controller.name} {reason}.",
-                method="form of the law",
-            ),
-        )
+        said = f"{problem.controller.name} {reason}."
+        return without_findings(Status.NOT_APPLICABLE, said, "form of the law")
     try:
         theorem.obligations(problem)
     except OutsideModel as outside:
-        return _complete(
-            theorem,
-            problem,
-            Certificate(
-                name=theorem.name,
-                title=theorem.title,
-                claim=theorem.claim,
-                status=Status.UNDECIDED,
-                explanation=f"The check could not be evaluated: {outside}.",
-                method="none",
-            ),
-        )
+        return without_findings(Status.UNDECIDED, f"The check could not be evaluated: {outside}.", "none")
     return None
 
 
