@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from wspd_design.certificates.kernel.checker import PRIME, element
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.graph_field import PRIME, UndecidedError, element, values
+from wspd_design.certificates.setting.graph_field import UndecidedError, values
 from wspd_design.certificates.setting.written_laws import WRITTEN, WrittenLaw
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.laws import law_constants
