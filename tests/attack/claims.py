@@ -197,8 +197,8 @@ def _adaptive(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack
     least = 0.2 if stated.check == "barbalat" else case.speeds[0]
     lowest, highest = torque_range(case, free, eta, speeds=(least, case.speeds[1]))
     constant, bound = (lowest + highest) / 2, (highest - lowest) / 2
-    integral = next((v for k, v in stated.points.items() if k.startswith("bound of the integral")), np.inf)
-    steepest = next((v for k, v in stated.points.items() if k.startswith("Lipschitz")), np.inf)
+    integral = _bound(stated, "bound on the integral of abs(s_D)")
+    steepest = _bound(stated, "Lipschitz constant of s_D") if stated.check == "barbalat" else np.inf
 
     def margin(x: Points) -> Any:
         run = motion.adaptive_run(
@@ -223,6 +223,14 @@ def _adaptive(case: Case, stated: Stated, names: tuple[str, ...]) -> list[Attack
             cost=4000,
         )
     ]
+
+
+def _bound(stated: Stated, name: str) -> float:
+    """Return a bound that the file states; infinity where it states no bounds at all."""
+    if not stated.points:
+        return np.inf
+    (value,) = (value for each, value in stated.points.items() if each.startswith(name))
+    return value
 
 
 def torque_range(

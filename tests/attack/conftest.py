@@ -44,7 +44,7 @@ def certified(design):
 
     @cache
     def made(name, checks):
-        folder = design(name).with_suffix(".certificates")
+        folder = design(name).with_suffix(f".{'-'.join(checks)}")
         chosen = [word for check in checks for word in ("--only", check)]
         run(["certify", str(design(name)), *chosen, "--output", str(folder), "--force"])
         return folder

@@ -11,7 +11,6 @@ from wspd_design.certificates.checks.sliding import reaching, sliding_exists
 from wspd_design.certificates.checks.valve import open_loop_pole
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting import domain
-from wspd_design.certificates.theorems.authority import torque_findings
 
 ROUNDING = 1e-6
 
@@ -36,8 +35,6 @@ def test_the_worst_of_the_map_is_what_is_proved(make_controller, make_problem, r
     values = np.array(shown.values)
     margins = sign * (shown.limit - values) * scale
     margin = certificate.margin
-    if certificate.name == "sliding_exists":  # it has two claims; the map shows the room to release
-        margin, _ = (each.margin for each in torque_findings(certificate.findings))
     low = margin.low
     if low is None:  # the search ended at a witness
         assert certificate.status is Status.REFUTED

@@ -11,6 +11,7 @@ from wspd_design.certificates.quantities import AXLE, PLANT, STATE
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.plant import complete, plant_dynamics
+from wspd_design.certificates.theorems.authority import torque_findings
 from wspd_design.certificates.theorems.sliding import reserve
 from wspd_design.parameters.bounds import Bounds
 
@@ -54,10 +55,24 @@ def test_rail_on_which_the_brake_is_the_limit_refutes_that_the_surface_exists(li
     assert refused(limited, status="VACUOUS")
 
 
-def test_margin_is_not_above_any_random_point(limited):
+def test_margin_and_witness_are_of_the_side_to_release_where_both_are_refuted(limited):
+    verdict = limited.certificate
+    release, apply = torque_findings(verdict.findings)
+    assert release.status is apply.status is Status.REFUTED
+    assert verdict.margin == release.margin
+    assert {point.name: point.value for point in verdict.witness}["u* - eta/g"] <= verdict.margin.high
+
+
+def test_margins_are_not_above_any_random_point(limited):
     released, applied = _slack(limited.problem)
-    room = min(released.min(), 51e3 - applied.max())
-    assert limited.certificate.margin.low <= room
+    release, apply = torque_findings(limited.certificate.findings)
+    assert release.margin.low <= released.min()
+    assert apply.margin.low <= 51e3 - applied.max()
+
+
+def test_margin_is_that_of_the_side_with_less_room_where_both_are_proved(small):
+    verdict = sliding_exists.CHECK.run(small(200e3))
+    assert verdict.margin == min((each.margin for each in torque_findings(verdict.findings)), key=lambda m: m.low)
 
 
 def test_friction_up_to_which_the_brake_suffices_is_shown(make_problem, make_controller, narrow, er24pc):

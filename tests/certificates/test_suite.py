@@ -5,10 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from tests.certificates.symbols import used
 from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search.budget import Budget
-from wspd_design.certificates.suite import NAMES, verify
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.suite import CHECKS, NAMES, verify
 from wspd_design.parameters.errors import UserError
 
 
@@ -67,6 +70,30 @@ def test_only_a_checker_proves(certificates):
             assert finding.leaves > 0
             assert finding.shown
         assert len(certificate_text(certificate)) < 1_000_000
+
+
+def test_what_the_claims_vary_and_hold_stands_in_the_sentence(sliding, make_problem, make_controller):
+    """The names in a sentence are typed, those in its inequalities are read from their symbols."""
+    problem = make_problem(make_controller("smc", "polach-wet"), rail="polach-wet")
+    uncertain, compared = domain.uncertain(problem), 0
+    for certificate in sliding:
+        theorem = CHECKS[certificate.name].theorem
+        if theorem.speaks_about(problem):
+            continue
+        for each in theorem.obligations(problem):
+            if isinstance(each, Inequality):
+                names = set(used(each.claim)) & set(uncertain)
+                free = {v.name for v in each.claim.free} & names
+                inside = {
+                    v.name
+                    for v in each.claim.variables
+                    if v.name in names and not v.free and float(v.low) not in domain.span(problem, v.name)
+                }
+                assert free <= set(certificate.varied), (certificate.name, each.key)
+                said = inside <= set(certificate.held) or "with nominal parameters" in certificate.claim
+                assert said, (certificate.name, each.key)
+                compared += len(free | inside)
+    assert compared > 100
 
 
 def test_every_certificate_is_complete(certificates):

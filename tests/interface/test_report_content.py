@@ -105,7 +105,7 @@ def test_the_first_pdf_page_is_enough_to_decide(made, pdf):
 def test_the_files_travel_with_the_report(made, pdf):
     attached = {name: contents[0] for name, contents in pdf.attachments.items()}
     record = json.loads(attached["report.json"])
-    assert record["stops"][0]["distance"] == made.trials[0].metrics.distance
+    assert record["stops"][0]["distance_m"] == made.trials[0].metrics.distance
     assert record["provenance"]["input_hash"] == made.provenance.input_hash
     assert b"[gains.integral_gain]" in attached["design.toml"]
 

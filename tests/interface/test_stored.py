@@ -50,7 +50,7 @@ def searched(monkeypatch):
     """Plant a search that only notes what it is asked for, and a prover that breaks."""
     asked = []
 
-    def noted(self, _problem):
+    def noted(self, _problem, **_options):
         asked.append(self.name)
         raise Searched
 

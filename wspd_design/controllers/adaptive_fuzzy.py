@@ -228,13 +228,3 @@ def torque_per_surface(gains: AdaptiveFuzzyGains, zero: Number) -> Number:
         b * w * (pull - mean) for b, w, pull in zip(gains.initial_weights, strengths, pulls, strict=True)
     )
     return gains.torque_unit * (moved + (zero + gains.initial_bound) / gains.boundary_layer)
-
-
-def torque_rate_per_surface(gains: AdaptiveFuzzyGains, zero: Number) -> Number:
-    """Rate at which the adaptation of the weights moves the torque near s = 0, over s: alpha_1 w'w [N m/s].
-
-    For constant rates without a dead zone; scheduled rates divide it by the speed, and inside a dead zone nothing
-    adapts. The bound psi_hat moves with abs(s), so that it adds nothing to first order.
-    """
-    strengths = firing_strengths(gains, zero)
-    return gains.torque_unit * gains.weight_rate * sum(w * w for w in strengths)

@@ -10,7 +10,6 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.model.number import Number
-from wspd_design.parameters.records import Rail, Vehicle
 
 
 class SlipModel(NamedTuple):
@@ -36,19 +35,6 @@ class SlipReference(Protocol):
     @property
     def slip_reference(self) -> float:
         """Slip that the law holds [-]."""
-
-
-@runtime_checkable
-class DesignModel(Protocol):
-    """A law that knows a vehicle and a rail, its design model."""
-
-    @property
-    def vehicle(self) -> Vehicle:
-        """Vehicle of the design model."""
-
-    @property
-    def rail(self) -> Rail:
-        """Rail of the design model."""
 
 
 @runtime_checkable

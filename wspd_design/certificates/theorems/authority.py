@@ -21,12 +21,12 @@ from wspd_design.certificates.theorems.edges import of_key, on_edges, together
 from wspd_design.certificates.theorems.scope import scope
 from wspd_design.certificates.theorems.sliding import MEASURED, reserve
 from wspd_design.certificates.theorems.theorem import (
+    ORDER,
     Findings,
     Theorem,
     all_of,
     hypothesis,
     left_open,
-    smallest_margin,
 )
 from wspd_design.certificates.theorems.whom import surface_of, with_surface
 from wspd_design.model.generated import sliding_surface
@@ -176,7 +176,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     until, never = (of_key(findings.items(), key) for key in ("until", "out of reach"))
     status = Status.VACUOUS if all_of(*never) is Status.PROVED else all_of(release, apply)
     said = scope(problem, TORQUES, MEASURED)
-    tight = release if release.status is Status.REFUTED or apply.status is Status.PROVED else apply
+    tight = _decisive(release, apply)
     known = tuple(name for name in said.names if name in tight.values)
     where = place(tight.values, known) if known else ()
     upper = f"{least / 1e3:g} kN m"
@@ -199,7 +199,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"{most / 1e3:g} kN m is less than u* at slip {problem.slip:g}, so that the slip stays below it."
         if status is Status.VACUOUS
         else f"{_lower_side(release)} {_upper_side(apply, friction, least)}",
-        margin=smallest_margin(release, apply),
+        margin=tight.margin,
         worst_point=where,
         witness=(*where, Point(name=_name(tight), value=_attained(tight), unit="N m"))
         if status is Status.REFUTED
@@ -212,6 +212,19 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         "independent checker",
         reference="eqs. (23), (27); docs/theory.md#existence",
     )
+
+
+def _decisive(release: Finding, apply: Finding) -> Finding:
+    """Return the side that margin, tightest point and witness speak about: the weaker, or the one with less room.
+
+    Where both are refuted it is the side to release, since a wheel that a vented brake does not let recover locks.
+    """
+
+    def rank(side: Finding) -> tuple[int, float]:
+        room = side.margin.low if side.status is Status.PROVED and side.margin.low is not None else 0.0
+        return ORDER.index(side.status), room
+
+    return min((release, apply), key=rank)
 
 
 def _friction(until: Sequence[Finding]) -> tuple[float, float] | None:
