@@ -72,7 +72,9 @@ def test_margins_are_not_above_any_random_point(limited):
 
 def test_margin_is_that_of_the_side_with_less_room_where_both_are_proved(small):
     verdict = sliding_exists.CHECK.run(small(200e3))
-    assert verdict.margin == min((each.margin for each in torque_findings(verdict.findings)), key=lambda m: m.low)
+    assert verdict.margin == min(
+        (each.margin for each in torque_findings(verdict.findings)), key=lambda m: m.low
+    )
 
 
 def test_friction_up_to_which_the_brake_suffices_is_shown(make_problem, make_controller, narrow, er24pc):

@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.model.number import Number
+from wspd_design.parameters.records import Rail, Vehicle
 
 
 class SlipModel(NamedTuple):
