@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from wspd_design.certificates.checks.frame import Check, Figures, level, series
 from wspd_design.certificates.checks.linear.disk_margin import disk_margin
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+Matrices: TypeAlias = "tuple[Array, Array, Array]"
+"""A, B and C of a loop; its D is zero, since the brake lags."""
 
 SPEEDS = 25
 MOST_GAIN, MOST_DELAY = 1e3, 10.0  # larger margins are reported as these: factor, s
@@ -75,7 +78,13 @@ def _over_speed(problem: Problem, *, sampled: bool) -> list[Margins]:
     import numpy as np
 
     span = problem.sample_time if sampled else None
-    return [margins(loop(problem, float(v), sample_time=span)) for v in np.geomspace(*problem.speeds, SPEEDS)]
+    found = []
+    for speed in np.geomspace(*problem.speeds, SPEEDS):
+        opened = _matrices(problem, float(speed), span)
+        # python-control, which takes long to load, is asked about stable loops alone.
+        stable = _stable(_closed_poles(*opened), sampled=sampled)
+        found.append(margins(_in_control(opened, span)) if stable else UNSTABLE)
+    return found
 
 
 def _shown(obligation: Obligation, speed: float) -> Stated | None:
@@ -128,7 +137,17 @@ def loop(problem: Problem, speed: float, *, sample_time: float | None = None) ->
     control.StateSpace
         From duty to duty.
     """
+    return _in_control(_matrices(problem, speed, sample_time), sample_time)
+
+
+def _in_control(opened: Matrices, sample_time: float | None) -> Any:
     import control
+
+    return control.ss(*opened, 0.0, sample_time or 0)
+
+
+def _matrices(problem: Problem, speed: float, sample_time: float | None) -> Matrices:
+    """A, B and C of the loop: first the brake and the slip, then what the law has summed."""
     import numpy as np
 
     law, brake = law_of(problem), problem.vehicle.brake
@@ -147,18 +166,30 @@ def loop(problem: Problem, speed: float, *, sample_time: float | None = None) ->
         kept, forced, held, moved, delay = (float(low) for low, _ in ends)
         a = np.array([[kept, gain * limit * forced], [0.0, held]])
         b = np.array([[gain * limit * moved * delay], [moved]])
-    plant = control.ss(a, b, np.eye(2), np.zeros((2, 1)), sample_time or 0)
     direct = np.array([[gains.proportional / limit, gains.torque]])
     summed = np.array([[gains.integral / limit, gains.twice / limit]])
     if not np.any(summed):
-        law_block = control.ss([], [], [], direct, sample_time or 0)
-    else:
-        step = sample_time or 1.0
-        chain = np.array([[0.0, 0.0], [step, 0.0]]) + (np.eye(2) if sample_time else 0.0)
-        enters = np.array([[step, 0.0], [0.0, 0.0]])
-        size = 2 if summed[0, 1] else 1
-        law_block = control.ss(chain[:size, :size], enters[:size], summed[:, :size], direct, sample_time or 0)
-    return law_block * plant
+        return a, b, direct
+    step = sample_time or 1.0
+    chain = np.array([[0.0, 0.0], [step, 0.0]]) + (np.eye(2) if sample_time else 0.0)
+    enters = np.array([[step, 0.0], [0.0, 0.0]])
+    size = 2 if summed[0, 1] else 1
+    whole = np.block([[a, np.zeros((2, size))], [enters[:size], chain[:size, :size]]])
+    return whole, np.vstack([b, np.zeros((size, 1))]), np.hstack([direct, summed[:, :size]])
+
+
+def _closed_poles(a: "Array", b: "Array", c: "Array") -> "NDArray[np.complex128]":
+    """Poles after negative feedback."""
+    import numpy as np
+
+    return np.asarray(np.linalg.eigvals(a - b @ c), dtype=np.complex128)
+
+
+def _stable(poles: "NDArray[np.complex128]", *, sampled: bool) -> bool:
+    import numpy as np
+
+    inside = np.abs(poles) < 1.0 if sampled else poles.real < 0.0
+    return bool(inside.all())
 
 
 def margins(opened: Any) -> Margins:
@@ -166,10 +197,8 @@ def margins(opened: Any) -> Margins:
     import control
     import numpy as np
 
-    poles = control.feedback(opened, 1).poles()
-    sample_time = float(opened.dt)
-    inside = np.abs(poles) < 1.0 if sample_time else poles.real < 0.0
-    if not inside.all():
+    poles, sample_time = _closed_poles(opened.A, opened.B, opened.C), float(opened.dt)
+    if not _stable(poles, sampled=bool(sample_time)):
         return UNSTABLE
     with warnings.catch_warnings():
         # It says that it interpolates where the polynomial method would lose digits.
