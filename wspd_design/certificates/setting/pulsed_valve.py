@@ -73,7 +73,9 @@ def sample_of(times: Times, poles: Interval, span: Fraction, duties: Interval = 
         Range of the duty u that holds the torque [-].
     """
     h = point(span)
-    fills, vents, shares = (dict.fromkeys(each) for each in (times.fill, times.vent, duties))  # known ones once
+    fills, vents, shares = (
+        dict.fromkeys(each) for each in (times.fill, times.vent, duties)
+    )  # known ones once
     corners = [(point(f), point(v), point(u)) for f, v, u in product(fills, vents, shares)]
     # The exponent is affine in u, 1/T_F and 1/T_V; the crest rises with u and T_V and falls with T_F.
     kept = [(-u * h / f - (1 - u) * h / v).exp() for f, v, u in corners]
