@@ -1,8 +1,8 @@
 """Where a loop is real or of magnitude one, and its balanced disk margin, over all frequencies.
 
 For a strictly proper loop the sensitivity is S = o/c, with the characteristic polynomials o of the open and c of the
-closed loop, and the loop itself is L = (c - o)/o. With z = (1 + s)/(1 - s) the same holds for a sampled loop in s, where
-it is excited at s = i w, w >= 0, too. The square of abs(S - 1/2) is then a ratio of polynomials in w^2. Its slope
+closed loop, and the loop itself is L = (c - o)/o. With z = (1 + s)/(1 - s) the same holds for a sampled loop in s,
+where it is excited at s = i w, w >= 0, too. The square of abs(S - 1/2) is then a ratio of polynomials in w^2. Its slope
 vanishes at the zeros of a polynomial, which finds peaks that are narrower than the steps of any grid: the closed loop
 may be hardly damped.
 """
