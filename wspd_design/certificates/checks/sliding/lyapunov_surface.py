@@ -16,8 +16,8 @@ from wspd_design.certificates.checks.ideal_run import (
     sliding_runs,
 )
 from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.memory import recall
 from wspd_design.certificates.records import Certificate, Problem, Role
-from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.domain import PARAMETERS
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.plant import plant_with
