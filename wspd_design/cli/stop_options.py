@@ -37,14 +37,26 @@ def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) ->
         patches=tuple(map(_patch, disturbances.patch or ())),
         grade=0.0 if disturbances.grade is None else _grade(disturbances.grade),
         pad_vibration=disturbances.pad_vibration,
-        sensing=Sensing(
-            speed_noise=_amount(disturbances.speed_noise, "speed", "speed noise"),
-            pulses_per_turn=disturbances.pulses or 0,
-            reference_error=0.0
-            if disturbances.reference_error is None
-            else _reference_error(disturbances.reference_error),
-            dead_time=_amount(disturbances.dead_time, "time", "dead time"),
-        ),
+        sensing=_sensing(disturbances),
+    )
+
+
+def _sensing(disturbances: StopOptions) -> Sensing:
+    if disturbances.period_timing and disturbances.pulses is None:
+        raise UserError("--period-timing needs a pulse wheel; add --pulses, for example --pulses 100")
+    drift = disturbances.reference_drift
+    return Sensing(
+        speed_noise=_amount(disturbances.speed_noise, "speed", "speed noise"),
+        pulses_per_turn=disturbances.pulses or 0,
+        period_timing=disturbances.period_timing,
+        reference_error=_error(disturbances.reference_error, "reference error", "a speed read"),
+        reference_drift=0.0
+        if drift is None
+        else parse_quantity(drift, "acceleration", what="reference drift"),
+        reference_noise=_amount(disturbances.reference_noise, "speed", "reference noise"),
+        torque_error=_error(disturbances.torque_error, "torque error", "a torque computed"),
+        dead_time=_amount(disturbances.dead_time, "time", "dead time"),
+        shortest_pulse=_amount(disturbances.shortest_pulse, "time", "shortest pulse"),
     )
 
 
@@ -81,10 +93,11 @@ def _amount(text: str | None, dimension: Dimension, what: str) -> float:
     return value
 
 
-def _reference_error(text: str) -> float:
-    value = parse_quantity(text, "ratio", what="reference error")
+def _error(text: str | None, what: str, positive: str) -> float:
+    """Read a relative error; nothing written is none."""
+    if text is None:
+        return 0.0
+    value = parse_quantity(text, "ratio", what=what)
     if not -1.0 < value < 1.0:
-        raise UserError(
-            f'reference error "{text}" must lie between -100 % and 100 %; positive is a speed read too high'
-        )
+        raise UserError(f'{what} "{text}" must lie between -100 % and 100 %; positive is {positive} too high')
     return value

@@ -82,8 +82,13 @@ def scenario_object(scenario: Scenario) -> dict[str, Any]:
         "pad_vibration": scenario.pad_vibration,
         "speed_noise_m_s": sensing.speed_noise,
         "pulses_per_turn": sensing.pulses_per_turn,
+        "period_timing": sensing.period_timing,
         "reference_error": sensing.reference_error,
+        "reference_drift_m_s2": sensing.reference_drift,
+        "reference_noise_m_s": sensing.reference_noise,
+        "torque_error": sensing.torque_error,
         "dead_time_s": sensing.dead_time,
+        "shortest_pulse_s": sensing.shortest_pulse,
     }
 
 

@@ -72,9 +72,27 @@ def test_axle_rails_are_front_first():
 
 
 def test_sensing():
-    stop = made(speed_noise="0.18 km/h", pulses=80, reference_error="-2 %", dead_time="40 ms")
+    stop = made(
+        speed_noise="0.18 km/h",
+        pulses=80,
+        period_timing=True,
+        reference_error="-2 %",
+        reference_drift="-0.05 m/s2",
+        reference_noise="0.36 km/h",
+        torque_error="15 %",
+        dead_time="40 ms",
+        shortest_pulse="10 ms",
+    )
     assert stop.sensing == Sensing(
-        speed_noise=pytest.approx(0.05), pulses_per_turn=80, reference_error=-0.02, dead_time=0.04
+        speed_noise=pytest.approx(0.05),
+        pulses_per_turn=80,
+        period_timing=True,
+        reference_error=-0.02,
+        reference_drift=-0.05,
+        reference_noise=pytest.approx(0.1),
+        torque_error=0.15,
+        dead_time=0.04,
+        shortest_pulse=0.01,
     )
 
 
@@ -87,10 +105,16 @@ def test_all_is_said_to_the_reader():
         speed_noise="0.05 m/s",
         pulses=80,
         reference_error="2 %",
+        reference_drift="-0.05 m/s2",
+        reference_noise="0.1 m/s",
+        torque_error="-10 %",
         dead_time="40 ms",
+        shortest_pulse="10 ms",
     )
     assert rails_of(stop) == "polach-wet/polach-wet/polach-dry/polach-dry, low-adhesion from 50 m"
     assert disturbances_of(stop) == (
-        "grade -5 permille, pad vibration, speed noise 0.05 m/s rms, 80 pulses per turn, reference error 2 %, "
-        "dead time 40 ms"
+        "grade -5 permille, pad vibration, speed noise 0.05 m/s rms, 80 pulses per turn, counted, "
+        "reference error 2 %, reference drift -0.05 m/s2, reference noise 0.1 m/s rms, torque error -10 %, "
+        "dead time 40 ms, shortest pulse 10 ms"
     )
+    assert "100 pulses per turn, timed" in disturbances_of(made(pulses=100, period_timing=True))
