@@ -1,5 +1,7 @@
 """From the options of a stop to its scenario."""
 
+from dataclasses import asdict
+
 import pytest
 
 from wspd_design.cli.disturbances import StopOptions
@@ -83,17 +85,18 @@ def test_sensing():
         dead_time="40 ms",
         shortest_pulse="10 ms",
     )
-    assert stop.sensing == Sensing(
-        speed_noise=pytest.approx(0.05),
+    right = Sensing(
+        speed_noise=0.05,
         pulses_per_turn=80,
         period_timing=True,
         reference_error=-0.02,
         reference_drift=-0.05,
-        reference_noise=pytest.approx(0.1),
+        reference_noise=0.1,
         torque_error=0.15,
         dead_time=0.04,
         shortest_pulse=0.01,
     )
+    assert asdict(stop.sensing) == pytest.approx(asdict(right), rel=1e-15)
 
 
 def test_all_is_said_to_the_reader():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
+from scipy.stats import kstest
 
 from wspd_design.codegen import closed_loop
 from wspd_design.codegen.memory import Memory
@@ -226,6 +227,16 @@ def test_the_noise_of_a_wheel_depends_on_seed_axle_and_sample_alone(light, wet):
         errors = [normal(wet.seed, k, 1 + axle) for k in range(len(true))]
         expected = np.maximum(true + 0.1 / light.wheel_radius * np.array(errors), 0.0)
         np.testing.assert_allclose(seen, expected, rtol=1e-12, atol=1e-12)
+
+
+def test_the_noise_is_normal_and_independent():
+    # The numbers of the test above, by their distribution alone.
+    errors = np.array([[normal(3, k, whose) for k in range(2000)] for whose in range(5)])
+    assert kstest(errors.ravel(), "norm").pvalue > 0.01
+    correlation = np.corrcoef(np.vstack([errors, np.roll(errors, 1, axis=1)]))
+    assert np.abs(correlation - np.eye(10)).max() < 4.0 / np.sqrt(2000)
+    other = np.array([normal(4, k, 1) for k in range(2000)])
+    assert abs(np.corrcoef(other, errors[1])[0, 1]) < 4.0 / np.sqrt(2000)
 
 
 def test_the_torque_of_other_pads_is_told_and_not_braked_with(light, wet):
