@@ -78,6 +78,11 @@ COMMAND_LINES = {
         ("-1 m/s", "not be negative"),
     ),
     "torque error of all": (("simulate", "--torque-error", "-100 %"), ("-100 %", "between", "torque")),
+    "load spread below zero": (("simulate", "--load-spread", "-1 %"), ("-1 %", "between 0 and 20 %")),
+    "load spread of the quarter locomotive": (
+        ("simulate", "--load-spread", "4 %", "--plant", "quarter"),
+        ("four-axle",),
+    ),
     "seed too large": (("simulate", "--seed", str(2**63)), ("seed", "2^63")),
     "no runs": (("simulate", "--runs", "0"), ("--runs", "--help")),
     "nominal without runs": (("simulate", "--nominal"), ("--runs 1000",)),

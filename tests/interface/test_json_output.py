@@ -81,8 +81,10 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
         *("--grade", "-5 permille", "--pad-vibration", "--speed-noise", "0.05 m/s", "--pulses", "80"),
         *("--reference-error", "2 %", "--reference-drift", "-0.05 m/s2", "--reference-noise", "0.1 m/s"),
         *("--torque-error", "-10 %", "--dead-time", "140 ms", "--shortest-pulse", "10 ms", "--period-timing"),
+        *("--load-spread", "4 %"),
     )
     found = only_object(wspd("simulate", "trenitalia", *SLOW, *options, "--json"))
+    assert found["scenario"].pop("load_spread") == pytest.approx(0.04, rel=0.1)
     assert found["scenario"] == {
         "start": {"slip": 0.0, "torque_Nm": 0.0, "braking_time_s": 0.0},
         "axle_rails": ["polach-wet", "polach-wet", "polach-dry", "polach-dry"],

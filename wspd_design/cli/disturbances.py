@@ -47,6 +47,14 @@ class StopOptions:
         bool,
         _described("--pad-vibration", None, "Vibration of the brake pads, T_d in Section 7 of the paper."),
     ] = False
+    load_spread: Annotated[
+        str | None,
+        _described(
+            "--load-spread",
+            "SHARE",
+            'Wheel loads vary along a track (ERRI B 176) that the seed draws; standard deviation: "4 %".',
+        ),
+    ] = None
     speed_noise: Annotated[
         str | None, _described("--speed-noise", "SPEED", 'Of the measured rim speed, rms: "0.05 m/s".')
     ] = None

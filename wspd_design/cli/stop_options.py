@@ -5,17 +5,19 @@ import re
 from wspd_design.cli.arguments import parse_speed
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import load_rail
-from wspd_design.parameters.records import Rail
+from wspd_design.parameters.loading import load_rail, load_track_spectrum
+from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import Dimension, parse_quantity
-from wspd_design.simulation.records import Patch, Scenario, Sensing
+from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing
+from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
 _PERMILLE = re.compile(r"(?P<number>.*\d)\s*(?:‰|per ?mil(?:le)?)", re.IGNORECASE)
+MOST_SPREAD = 0.2  # of the wheel loads: five standard deviations are the load
 _GRADE = 'write "5 permille", "0.5 %" or 0.005, negative downhill'
 
 
-def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) -> Scenario:
+def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int, vehicle: Vehicle) -> Scenario:
     """Return the stop that the user asks for.
 
     Parameters
@@ -28,6 +30,8 @@ def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) ->
         Initial speed with its unit.
     seed : int
         Of all random numbers.
+    vehicle : Vehicle
+        Whose axles meet the irregular track one after the other.
     """
     return Scenario(
         rail=rail,
@@ -38,6 +42,25 @@ def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) ->
         grade=0.0 if disturbances.grade is None else _grade(disturbances.grade),
         pad_vibration=disturbances.pad_vibration,
         sensing=_sensing(disturbances),
+        load_irregularity=None
+        if disturbances.load_spread is None
+        else _loads(disturbances.load_spread, vehicle, seed),
+    )
+
+
+def _loads(text: str, vehicle: Vehicle, seed: int) -> LoadIrregularity:
+    """Wheel loads with the shape of a drawn track."""
+    spread = parse_quantity(text, "ratio", what="load spread")
+    if not 0.0 <= spread <= MOST_SPREAD:
+        raise UserError(
+            f'load spread "{text}" must lie between 0 and {100.0 * MOST_SPREAD:g} %: a wheel would leave the rail'
+        )
+    track, channel = load_track_spectrum("erri-b176"), "vertical-high"
+    return irregular_load(
+        vehicle,
+        synthesize(track, channel, seed=seed),
+        sigma=standard_deviation(track, channel),
+        spread=spread,
     )
 
 

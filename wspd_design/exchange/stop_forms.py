@@ -51,6 +51,11 @@ SCENARIO = Form(
         Key(name="patches", kind=PATCH, many=ANY, meaning="changes of rail along the track"),
         Key(name="grade", kind="number", meaning="rise over run, positive uphill"),
         Key(name="pad_vibration", kind="flag", meaning="T_d of Section 7"),
+        Key(
+            name="load_spread",
+            kind="number",
+            meaning="root mean square of what the relative wheel loads differ from 1 by, along the table",
+        ),
         Key(name="speed_noise_m_s", kind="number", meaning="rms, of the measured rim speed"),
         Key(
             name="pulses_per_turn",

@@ -12,9 +12,11 @@ def rails_of(stop: Scenario) -> str:
 def disturbances_of(stop: Scenario) -> str:
     """Say what disturbs a stop besides its rails; empty for nothing."""
     sensing = stop.sensing
+    loads = stop.load_irregularity
     said = (
         (stop.grade, f"grade {1e3 * stop.grade:g} permille"),
         (stop.pad_vibration, "pad vibration"),
+        (loads, f"wheel loads that vary by {100.0 * loads.spread:.2g} % rms" if loads else ""),
         (sensing.speed_noise, f"speed noise {sensing.speed_noise:g} m/s rms"),
         (
             sensing.pulses_per_turn,

@@ -91,6 +91,12 @@ class LoadIrregularity:
     spacing: float  # m
     factors: tuple[tuple[float, ...], ...]  # per axle, at multiples of the spacing; the last value stays
 
+    @property
+    def spread(self) -> float:
+        """Root mean square of what the relative wheel loads differ from 1 by [-]."""
+        values = [value - 1.0 for row in self.factors for value in row]
+        return math.sqrt(math.fsum(value * value for value in values) / len(values))
+
     def __post_init__(self) -> None:
         """Refuse what is no table of wheel loads."""
         if not 0.0 < self.spacing < math.inf:

@@ -7,7 +7,7 @@ import pytest
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.stop_options import scenario
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import load_rail
+from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Patch, Scenario, Sensing
 
@@ -15,7 +15,7 @@ WET, DRY = load_rail("polach-wet"), load_rail("polach-dry")
 
 
 def made(**words):
-    return scenario(WET, StopOptions(**words), speed="120 km/h", seed=3)
+    return scenario(WET, StopOptions(**words), speed="120 km/h", seed=3, vehicle=load_vehicle("er24pc"))
 
 
 def test_nothing_written_disturbs_nothing():
@@ -121,3 +121,11 @@ def test_all_is_said_to_the_reader():
         "dead time 40 ms, shortest pulse 10 ms"
     )
     assert "100 pulses per turn, timed" in disturbances_of(made(pulses=100, period_timing=True))
+
+
+def test_load_spread():
+    loads = made(load_spread="4 %").load_irregularity
+    assert len(loads.factors) == 4
+    assert loads.spread == pytest.approx(0.04, rel=0.1)
+    assert loads == made(load_spread="4 %").load_irregularity
+    assert "wheel loads that vary by 4 % rms" in disturbances_of(made(load_spread="4 %"))

@@ -63,6 +63,7 @@ def compare(
         disturbances,
         speed=speed,
         seed=seed,
+        vehicle=cases[0].vehicle,
     )
     trials: list[tuple[Trial, float]] = []
     with progress() as tell:

@@ -53,7 +53,7 @@ def report(
     chosen_name = chosen(name, controller)
     case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
     made = _design(chosen_name, case)
-    stop = scenario(case.rail, disturbances, speed=speed, seed=seed)
+    stop = scenario(case.rail, disturbances, speed=speed, seed=seed, vehicle=case.vehicle)
     with progress() as tell:
         computed = dossier(
             made,

@@ -102,6 +102,7 @@ def simulate(
         disturbances,
         speed=options.SPEED if speed is None else speed,
         seed=seed,
+        vehicle=case.vehicle,
     )
     start = None
     if witness is not None:
