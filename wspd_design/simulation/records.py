@@ -31,14 +31,17 @@ class Sensing:
     A pulse wheel is counted as by an incremental encoder: the wheel speed is that of the whole pulses since the last
     sample, and the rest of the angle stays for the next one. With ``period_timing`` it is one pulse over the time
     between the last two, and never more than one pulse over the time since the last one, which is the rule where no
-    pulse comes; the clock is exact. Where the wheel stands at the start is drawn.
+    pulse comes: a faster wheel would have given one. The clock is exact; the times of the pulses are interpolated
+    within the steps, and the speeds agree with the true angle to 3e-5 up to 1000 pulses in steps of 0.2 ms. Before the
+    stop the wheel turned at its first speed; where it stands at the start is drawn.
 
     The train speed that all controllers of the train know is v (1 + error) + drift t + noise, t from the start of the
     stop, and never negative.
 
     A command takes effect after the dead time, with as many others on their way as there are samples within it. A
     pulse of filling or venting that is shorter than the shortest one is left out of its command, unless the valve is
-    open already.
+    open already: what moves in a valve has not left its seat before. The size of all these is the user's; no measured
+    one is known here.
     """
 
     speed_noise: float = 0.0  # m/s rms of the measured rim speed, independent at each sample and axle
