@@ -220,8 +220,8 @@ def _tell_printed(problem: Problem, findings: Findings) -> Certificate:
         hypotheses=tuple(hypothesis(each.asked, each) for each in formulas),
         assumptions=(*ASSUMPTIONS, "continuous adaptation", CHOICE),
         held=domain.not_varied(problem, ()),
-        method="a run with the Rosenbrock method RODAS; derivatives by differences along the flow, outside the layer; a "
-        f"rise below {TOLERANCE:g} of the maximum counts as rounding; at a witness forward derivatives in balls",
+        method="a run with the Rosenbrock method RODAS; derivatives by differences along the flow, outside the layer; "
+        f"a rise below {TOLERANCE:g} of the maximum counts as rounding; at a witness forward derivatives in balls",
         reference="eqs. (39)-(44); docs/theory.md#printed",
     )
 
