@@ -40,6 +40,7 @@ class Settings(ctypes.Structure):
             "dead_time",
             "longest_step",
             "creep_rate",
+            "slope_limit",
             "stop_speed",
             "regularization_speed",
             "time_limit",

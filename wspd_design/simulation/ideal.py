@@ -106,6 +106,8 @@ def ideal_stop(
         held_slips=np.array([slips[rail] for rail in rails]),
         held_speeds=(float(speeds[0]), float(speeds[1])),
     )
+    if instantaneous:  # full from the start, so that no step has to find the filling
+        given = replace(given, pressures=np.full(len(given.pressures), vehicle.brake.max_pressure))
     output, _ = run_loop(braked, filling, scenario, given)
     what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
     build_up = "full torque at once" if instantaneous else "with brake build-up"

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-LONGEST_STEP = 1e-3  # s
-STEPS_PER_CREEP_TIME = 0.5  # Runge-Kutta of order four is stable up to 2.8 creep times
+LONGEST_STEP = 5e-3  # s
+SLOPE_LIMIT = 2.0  # step over creep time; Runge-Kutta of order four is stable up to 2.8
 LOAD_MARGIN = 1.3  # wheel load under braking against the static one, at most
 RECORD_INTERVAL = 2e-3  # s, of the traces
 JUDGING_SPEED = 10.0 / 3.6  # m/s, slip statistics count above it
@@ -139,7 +139,8 @@ def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, r
         sample_time=controller.sample_time,
         dead_time=cases[0][1].sensing.dead_time,
         longest_step=LONGEST_STEP / refinement,
-        creep_rate=steepest * LOAD_MARGIN ** (2.0 / 3.0) * STEPS_PER_CREEP_TIME * refinement,
+        creep_rate=steepest * LOAD_MARGIN ** (2.0 / 3.0),
+        slope_limit=SLOPE_LIMIT / refinement,
         stop_speed=fixed.stop_speed,
         regularization_speed=fixed.slip_regularization_speed,
         time_limit=fixed.time_limit,
