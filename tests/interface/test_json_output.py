@@ -115,16 +115,18 @@ def test_stop_from_a_witness(wspd, witness_file):
     assert many["distance_m"]["max"] == pytest.approx(found["distance_m"], rel=1e-9)
 
 
-def test_a_chaotic_stop_gives_its_spread(wspd, monkeypatch):
-    def chaotic(*arguments, **options):
+def test_sensitive_and_unresolved_are_two_findings(wspd, monkeypatch):
+    def sensitive(*arguments, **options):
         made = trial(*arguments, **options)
-        return replace(made, check=replace(made.check, chaotic=True, spread=0.25, refinement=8))
+        return replace(made, check=replace(made.check, sensitive=True, spread=0.25))
 
-    monkeypatch.setattr(simulate, "trial", chaotic)
+    monkeypatch.setattr(simulate, "trial", sensitive)
     found = only_object(wspd("simulate", "none", *SLOW, "--json"))
-    assert (found["step_check"]["chaotic"], found["step_check"]["spread_m"]) == (True, 0.25)
+    check = found["step_check"]
+    assert (check["sensitive"], check["unresolved"], check["spread_m"]) == (True, False, 0.25)
     shown = wspd("simulate", "none", *SLOW).out
-    assert "chaotic" in shown
+    assert "sensitive" in shown
+    assert "unresolved" not in shown
     assert "0.25 m" in shown
 
 

@@ -10,7 +10,8 @@ from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.self_check import StepCheck
 
-CHAOTIC = "chaotic: the last digit of anything moves the result"
+SENSITIVE = "sensitive: a change of the initial speed that nobody can measure moves the result"
+UNRESOLVED = "unresolved: half of the shortest steps still change the stop"
 
 
 def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
@@ -70,11 +71,14 @@ def number(value: float, form: str) -> str:
 
 def _trust(check: StepCheck) -> Text:
     """Say what the step check means."""
-    if check.chaotic:
-        return Text(
-            f"This stop is {CHAOTIC}, and no step is short enough. Over slightly different initial speeds "
-            f"the distance spreads by {check.spread:.2g} m.",
+    said = Text()
+    if check.sensitive:
+        said.append(
+            f"This stop is {SENSITIVE}. Over slightly different initial speeds the distance spreads by "
+            f"{check.spread:.2g} m. ",
             style="yellow",
         )
+    if check.unresolved:
+        return said.append(f"This stop is {UNRESOLVED}.", style="yellow")
     divided = f", divided by {check.refinement}," if check.refinement > 1 else ""
-    return Text(f"The steps{divided} are short enough: half of them give the same stop.", style="dim")
+    return said.append(f"The steps{divided} are short enough: half of them give the same stop.", style="dim")

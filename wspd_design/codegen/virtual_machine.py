@@ -202,14 +202,21 @@ class _VirtualPlant:
         self._give("until", until)
         self._give("soonest", soonest)
         self._give("scale", 1.0)
+        self._give("last_cut", 0.0)
         self._look_up()
         rows = self._step(number)
         kept = int(rows[:, self.layout.row].sum())
         result = self._record(rows[:kept])
         cut = kept < number and float(self.part("time")[0]) < until and rows[kept, self.layout.row + 1] < 1.0
         if cut:  # once more up to the event
-            self._give("scale", rows[kept, self.layout.row + 1])
-            result = result or self._record(self._step(1))
+            scale = rows[kept, self.layout.row + 1]
+            self._give("scale", scale)
+            rows = self._step(1)
+            if not rows[0, self.layout.row]:  # an event is found by interpolation, and once more
+                self._give("scale", scale * rows[0, self.layout.row + 1])
+                self._give("last_cut", 1.0)
+                rows = self._step(1)
+            result = result or self._record(rows)
             kept += 1
         else:
             self._last_step = (float(self.part("time")[0]) - time) / kept

@@ -16,7 +16,7 @@ RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
 INTEGRATED = 7  # totals of a lane that are integrals; lock time and largest slip follow
 SPEED_SHARE = 0.1  # of the speed, that a step may take from it where the slope limit is one
-EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event
+EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event of a wheel
 
 
 def _places(sizes: dict[str, int]) -> dict[str, slice]:
@@ -92,7 +92,8 @@ def layout(kernels: Kernels) -> Layout:
                 "radius": axles,
                 "inertia": axles,
                 "until": 1,
-                "scale": 1,
+                "scale": 1,  # share of a step up to its first event
+                "last_cut": 1,
                 "soonest": 1,  # time to the next change of rail or loads
                 "longest_step": 1,
                 "creep_rate": 1,
@@ -100,7 +101,8 @@ def layout(kernels: Kernels) -> Layout:
                 "regularization_speed": 1,
                 "stop_speed": 1,
                 "judging_speed": 1,
-                "load_factors": 1 + 2 * axles,  # a place, relative loads there, and their slopes over distance
+                "load_factors": 1
+                + 2 * axles,  # a place, relative loads there, and their slopes over distance
                 # First point, spacing and place of the table; slip there and beside it.
                 "hold": 3 + 3 * axles,
             }
@@ -228,11 +230,19 @@ class _Step:
             where(speed > given["judging_speed"], maximum(most, after["slip"]), most),
         )
         after["stop"] = ca.vertcat(reached[-1], now["stop"][1:] + ca.vertcat(stop, judged * h, h))
-        made = where(given["scale"] < 1.0, 1.0, share >= 1.0)
+        made = where(given["last_cut"], 1.0, share >= 1.0)
         made = where(following > now["time"], made, 0.0)
         made = where(now["speed"] > given["stop_speed"] * (1.0 + 1e-6), made, 0.0)
         row = ca.vertcat(
-            *(after["stop"][4], speed, after["stop"][0], wheel, after["slip"], after["passed"], after["load"]),
+            *(
+                after["stop"][4],
+                speed,
+                after["stop"][0],
+                wheel,
+                after["slip"],
+                after["passed"],
+                after["load"],
+            ),
             *(torque[1], made, share),
         )
         return [where(made, ca.vertcat(*after.values()), self.whole), row]
@@ -339,7 +349,11 @@ class _Step:
             stage = self._stage(motion, torque, state["damping"], state)
             state["locked"] = where(torque < 2.0 * radius * stage.force, 0.0, state["locked"])
             state["held"] = where(torque < stage.passed, 0.0, state["held"])
-        return {**state, **{name: getattr(stage, name) for name in _Stage._fields if name in state}, "torque": torque}
+        return {
+            **state,
+            **{name: getattr(stage, name) for name in _Stage._fields if name in state},
+            "torque": torque,
+        }
 
     def _stage(self, motion: Any, torque: Any, damping: Any, state: dict[str, Any]) -> _Stage:
         """Everything at one moment; locks, holds and contact are those of the state."""
@@ -434,8 +448,10 @@ class _Step:
         first = ca.SX(1.0)
         for event in range(1 + axles):
             begin, middle, end = (value[event] for value in values)
-            first = where(end < 0.0, minimum(first, _crossing(begin, middle, end)), first)
-        return maximum(first, EVENT_SHARE)
+            crosses = where(begin > 0.0, end < 0.0, 0.0)
+            share = maximum(_crossing(where(crosses, begin, 1.0), middle, end), EVENT_SHARE if event else 0.0)
+            first = where(crosses, minimum(first, share), first)
+        return where(first < 1.0 - 1e-6, first, 1.0)
 
     def _settled(self, speed: Any, wheel: Any) -> tuple[Any, Any, Any, Any]:
         """Wheel speeds, locks and holds after the step, and the impulse that the brake could not pass on."""
@@ -451,10 +467,8 @@ class _Step:
 
 
 def _crossing(begin: Any, middle: Any, end: Any) -> Any:
-    """Share of a step after which a quantity that ends below zero gets there, from three of its values."""
+    """Share of a step after which a positive quantity that ends below zero gets there, from three of its values."""
     import casadi as ca
 
     bend, fall = 2.0 * (begin - 2.0 * middle + end), 3.0 * begin - 4.0 * middle + end
-    beyond = where(begin > 0.0, begin, 1.0)
-    share = 2.0 * beyond / (fall + ca.sqrt(maximum(fall * fall - 4.0 * bend * beyond, 0.0)))
-    return where(begin > 0.0, share, 0.0) + 1e-9
+    return 2.0 * begin / (fall + ca.sqrt(maximum(fall * fall - 4.0 * bend * begin, 0.0))) + 1e-9

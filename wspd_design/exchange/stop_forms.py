@@ -102,14 +102,19 @@ STEP_CHECK = Form(
             meaning="by which the steps were divided until they were short enough",
         ),
         Key(
-            name="chaotic",
+            name="sensitive",
             kind="flag",
-            meaning="no step is short enough: the closed loop amplifies the last digits",
+            meaning="the closed loop amplifies: runs from slightly different initial speeds diverge",
+        ),
+        Key(
+            name="unresolved",
+            kind="flag",
+            meaning="no step is short enough: half of the shortest steps still change the stop",
         ),
         Key(
             name="spread_m",
             kind="number",
-            meaning="range of the distance over slightly different initial speeds; 0 unless chaotic",
+            meaning="range of the distance over slightly different initial speeds; 0 unless sensitive",
         ),
     ),
 )

@@ -6,7 +6,9 @@ from wspd_design.model.generated import adhesion as generated
 from wspd_design.model.number import Number
 from wspd_design.parameters.records import Contact, Rail
 
-_LOAD_EXPONENT = 2.0 / 3.0  # of the stiffness: both semi-axes of Hertz's ellipse grow with the cube root of the load
+_LOAD_EXPONENT = (
+    2.0 / 3.0
+)  # of the stiffness: both semi-axes of Hertz's ellipse grow with the cube root of the load
 _BINOMIALS = tuple(math.prod((_LOAD_EXPONENT - j) / (j + 1) for j in range(k)) for k in range(5))
 
 

@@ -35,7 +35,7 @@ static int advance(Loop *loop)
     double *step = loop->step, stop_speed = loop->set.stop_speed;
     if (loop->patches > 0) lay_rails(loop);
     choose_steps(loop, next);
-    for (int attempt = 0; attempt < 2; attempt++) {
+    for (int cuts = 0;; cuts++) { /* an event is found by interpolation, and once more */
         follow_valves(loop, next, pressure, torque, filled, damping);
         spread(step, lane_step);
         for (int k = 0; k < 3; k++) {
@@ -50,7 +50,7 @@ static int advance(Loop *loop)
             EACH_LANE reached.wheel[k * LANES + l] =
                 loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
         }
-        if (attempt > 0 || !shorten(loop, at, stage, torque, &reached, next)) break;
+        if (cuts == 2 || !shorten(loop, at, stage, torque, &reached, next)) break;
     }
     for (int k = 0; k < TRANSFER_STATES; k++) {
         #define TRANSFERRED(j) stage[j]->transfer[k * STOPS + s]

@@ -11,7 +11,7 @@
 #define TRANSFER_STATES (2 * TRANSFERS) /* the load transfers, then their rates */
 #define SHORTEST 1e-9 /* s: edges closer together than this are one */
 #define SPEED_SHARE 0.1 /* of the speed, that a step may take from it where the slope limit is one */
-#define EVENT_SHARE 1e-4 /* of a step: none is cut shorter at an event, so that time goes on */
+#define EVENT_SHARE 1e-4 /* of a step: none is cut shorter at an event of a wheel, so that time goes on */
 #define RAIL 5 /* numbers of a rail, side by side in the parameter vector from FIRST_RAIL on */
 #define WIDE __attribute__((aligned(64)))
 #define INLINE inline __attribute__((always_inline))
@@ -370,12 +370,12 @@ static INLINE void follow_valves(const Loop *loop, const double *next, double *p
     actuator_kernel(loop->window_fixed, when, pressure, torque, filled, damping);
 }
 
-/* Share of a step after which a quantity that ends below zero gets there, from its values at begin, middle and end. */
+/* Share of a step after which a positive quantity that ends below zero gets there, from its values at begin, middle and
+   end. */
 static double crossing(double begin, double middle, double end)
 {
     double bend = 2.0 * (begin - 2.0 * middle + end), fall = 3.0 * begin - 4.0 * middle + end;
-    double share = begin > 0.0 ? 2.0 * begin / (fall + sqrt(fall * fall - 4.0 * bend * begin)) : 0.0;
-    return share + 1e-9; /* a little below zero */
+    return 2.0 * begin / (fall + sqrt(fall * fall - 4.0 * bend * begin)) + 1e-9; /* a little below zero */
 }
 
 /* Share of a step up to its first event: a wheel locks, is let go, or comes to the slip to be held; or the train comes
@@ -398,10 +398,11 @@ static double before_event(const Loop *loop, int s, const Motion *const at[4], c
             else if (loop->held[l] != 0.0) value[k] = brake[k] - taken->passed[l];
             else value[k] = moved->wheel[l] - limit;
         }
-        double share = value[2] < 0.0 ? crossing(value[0], value[1], value[2]) : 1.0;
+        double share = value[0] > 0.0 && value[2] < 0.0 ? crossing(value[0], value[1], value[2]) : 1.0;
+        share = share > EVENT_SHARE ? share : EVENT_SHARE;
         first = share < first ? share : first;
     }
-    return first > EVENT_SHARE ? first : EVENT_SHARE;
+    return first < 1.0 - 1e-6 ? first : 1.0;
 }
 
 /* Shorten the steps to their first events; tells whether any was. */
