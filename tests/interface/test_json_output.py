@@ -204,11 +204,11 @@ def test_a_train_that_cannot_stop_has_no_ideal_stop(wspd):
     )
     found = only_object(wspd(*case, "--json"))
     assert_form(found, STOP)
-    assert (found["ending"], found["ideal_ending"]) == ("time_limit", "time_limit")
+    assert (found["ending"], found["ideal_ending"]) == ("runaway", "runaway")
     assert (found["ideal_stop_m"], found["efficiency"]) == (None, None)
     for shown in (wspd(*case).out, wspd("compare", *case[1:]).out):
         words = " ".join(shown.split())
-        assert f"No ideal stop: {NO_IDEAL_STOP}." in words
+        assert f"No ideal stop: {NO_IDEAL_STOP[Ending.RUNAWAY]}." in words
         assert "no controller stops shorter" not in words
 
 

@@ -83,7 +83,7 @@ class _VirtualPlant:
         self.sample = self.steps = 0
         self._last_step = given.settings.longest_step
         self.patch = [0] * axles
-        self.moving = True
+        self.moving = bool(given.speeds[0] > given.settings.stop_speed)  # or at rest already
         self.rows: list[NDArray[np.float64]] = []
         self.bad_command = (0.0, 0.0, 0.0)
         self._steps = {

@@ -84,8 +84,8 @@ def _limits(made: Reproduction) -> tuple[Block, ...]:
                 "the sources of any report for each number.",
                 "The rule tables of Knorr-Bremse and Mitsubishi are lost and were reconstructed: what stands here "
                 "about them is about the reconstruction.",
-                f"Digits that are not there: the closed loops of {', '.join(sorted(sensitive))} can be sensitive, and then "
-                "amplify what nobody can measure. Such distances carry half their spread."
+                f"Digits that are not there: the closed loops of {', '.join(sorted(sensitive))} can be sensitive, "
+                "and then amplify what nobody can measure. Such distances carry half their spread."
                 if sensitive
                 else "No closed loop is sensitive; all distances are good to a millionth.",
                 "Speeds are measured exactly and the train speed is known, as in the paper.",

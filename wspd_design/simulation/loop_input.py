@@ -13,6 +13,7 @@ from wspd_design.parameters.records import Brake, Rail, Vehicle
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import Scenario, Start
+from wspd_design.simulation.runaway import runs_away
 from wspd_design.simulation.start import available_torque
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ LONGEST_STEP = 5e-3  # s
 SLOPE_LIMIT = 2.0  # step over creep time; Runge-Kutta of order four is stable up to 2.8
 LOAD_MARGIN = 1.3  # wheel load under braking against the static one, at most
 RECORD_INTERVAL = 2e-3  # s, of the traces
+_RUNAWAY_TIME = 10.0  # s, that are simulated of a stop of trains that cannot stop
 JUDGING_SPEED = 10.0 / 3.6  # m/s, slip statistics count above it
 
 
@@ -135,6 +137,7 @@ def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, r
         for rail in {*_rails(scenario, plant), *(patch.rail for patch in scenario.patches)}
     )
     fixed = constants()
+    hopeless = all(runs_away(plant.vehicle, scenario) for plant, scenario in cases)
     return Settings(
         sample_time=controller.sample_time,
         dead_time=cases[0][1].sensing.dead_time,
@@ -143,7 +146,7 @@ def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, r
         slope_limit=SLOPE_LIMIT / refinement,
         stop_speed=fixed.stop_speed,
         regularization_speed=fixed.slip_regularization_speed,
-        time_limit=fixed.time_limit,
+        time_limit=min(fixed.time_limit, _RUNAWAY_TIME) if hopeless else fixed.time_limit,
         judging_speed=JUDGING_SPEED,
         record_interval=RECORD_INTERVAL,
     )

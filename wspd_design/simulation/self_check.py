@@ -64,7 +64,7 @@ def simulate_checked(
     for refinement in REFINEMENTS:
         finer = simulate_on(braked, controller, scenario, refinement=2 * refinement)
         check = StepCheck(
-            distance=abs(finer.totals.distance / run.totals.distance - 1.0),
+            distance=_apart(finer, run),
             slip=slip_difference(vehicle, run, finer),
             refinement=refinement,
             sensitive=spread > 0.0,
@@ -85,13 +85,19 @@ def perturbed_spread(plant: Plant, controller: Controller, scenario: Scenario, r
 
     nearest, distance = neighbour(1), run.totals.distance
     # A stop from a speed that is lower by a share is shorter by twice that share.
-    moved = abs(nearest.totals.distance / distance - 1.0) > AMPLIFICATION * 2.0 * PERTURBATION
+    moved = _apart(nearest, run) > AMPLIFICATION * 2.0 * PERTURBATION
     slipped = slip_difference(plant.vehicle, run, nearest) > SLIP_AMPLIFICATION * PERTURBATION
     if not moved and not slipped:
         return 0.0
     further = (neighbour(number).totals.distance for number in range(2, PERTURBED_RUNS + 1))
     distances = (distance, nearest.totals.distance, *further)
     return max(distances) - min(distances)
+
+
+def _apart(run: Run, other: Run) -> float:
+    """Relative difference of the distances; none between trains that are at rest at once."""
+    distance = other.totals.distance
+    return abs(run.totals.distance / distance - 1.0) if distance > 0.0 else 0.0
 
 
 def slip_difference(vehicle: Vehicle, run: Run, other: Run) -> float:

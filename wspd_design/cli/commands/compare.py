@@ -107,10 +107,11 @@ def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> N
         f"rms about {_references(trials, references)}; lock: how long the wheels were locked{more}.",
         style="dim",
     )
-    if first.metrics.ideal_ending is Ending.TIME_LIMIT:
-        out.print(f"No ideal stop: {NO_IDEAL_STOP}.", style="bold yellow")
+    if first.metrics.ideal_ending in NO_IDEAL_STOP:
+        out.print(f"No ideal stop: {NO_IDEAL_STOP[first.metrics.ideal_ending]}.", style="bold yellow")
     if len(stopped) < len(trials):
-        out.print(f"* {Ending.TIME_LIMIT.value}.", style="yellow")
+        (ending, *_) = {made.run.ending for made in trials if made.run.ending is not Ending.STOPPED}
+        out.print(f"* {ending.value}.", style="yellow")
     spreads = [f"{made.run.controller} {made.check.spread:.2g} m" for made in trials if made.check.sensitive]
     if spreads:
         out.print(

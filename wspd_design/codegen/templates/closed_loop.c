@@ -189,6 +189,10 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
         loop->torque[l] = torques[l], loop->damping[l] = damping[l];
     }
     observe(loop);
+    for (int s = 0; s < STOPS; s++) {
+        loop->stop[END_SPEED * STOPS + s] = speed[s];
+        if (speed[s] <= loop->set.stop_speed) finish(loop, s); /* at rest already */
+    }
 }
 
 /* What the controllers see: speed, wheel speed, torque of every lane. */
