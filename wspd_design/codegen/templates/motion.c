@@ -320,7 +320,7 @@ static INLINE void choose_steps(Loop *loop, double *next)
 {
     const Settings *set = &loop->set;
     double per_speed = set->slope_limit / set->creep_rate, bound = 0.0;
-    WIDE double until[STOPS], allowed[STOPS];
+    WIDE double until[STOPS], allowed[STOPS], span[STOPS];
     EACH_STOP {
         double after = loop->time[s] + SHORTEST, before = loop->goal[s] - SHORTEST, nearest = loop->goal[s];
         for (int a = 0; a < AXLES; a++) {
@@ -336,14 +336,17 @@ static INLINE void choose_steps(Loop *loop, double *next)
         double slow = loop->now.speed[s];
         slow = slow > set->regularization_speed ? slow : set->regularization_speed;
         allowed[s] = slow * per_speed; /* on the steepest rail, rolling */
+        span[s] = until[s] - loop->time[s];
     }
-    for (int s = 0; s < STOPS; s++) bound = allowed[s] < set->longest_step ? 1.0 : bound;
+    for (int s = 0; s < STOPS; s++) {
+        double most = span[s] < set->longest_step ? span[s] : set->longest_step;
+        bound = allowed[s] < most && loop->active[s] != 0.0 ? 1.0 : bound;
+    }
     if (bound != 0.0 && !loop->hold) lengthen(loop, allowed); /* the table of held slips is fine at low speed */
     EACH_STOP {
-        double span = until[s] - loop->time[s];
         double wanted = allowed[s] < set->longest_step ? allowed[s] : set->longest_step;
-        double count = ceil(span / wanted * (1.0 - 1e-12));
-        loop->step[s] = count > 1.0 ? span / count : span;
+        double count = ceil(span[s] / wanted * (1.0 - 1e-12));
+        loop->step[s] = count > 1.0 ? span[s] / count : span[s];
     }
     for (int s = 0; s < STOPS; s++)
         if (loop->active[s] != 0.0 && (loop->patches > 0 || loop->load_factor))
