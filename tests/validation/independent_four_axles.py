@@ -63,8 +63,9 @@ class IndependentFourAxles:
             0.5 * c.wheelset_inertia
         )
         # Quasi-static transfer: the body's inertia above the traction rods, the rods' pull and the bogie's inertia.
-        body = c.body_mass * -a * (c.body_height - c.traction_rod_height) / c.bogie_spacing
-        inertia = c.bogie_mass * -a
+        held = -a - self.climbing / c.mass  # what is held beside gravity
+        body = c.body_mass * held * (c.body_height - c.traction_rod_height) / c.bogie_spacing
+        inertia = c.bogie_mass * held
         bogies = [
             (inertia * c.bogie_height + (2.0 * pair.sum() - inertia) * c.traction_rod_height) / c.wheelbase
             for pair in (f[:2], f[2:])

@@ -14,7 +14,7 @@ from wspd_design.model.number import maximum, minimum, where
 
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
-INTEGRATED = 7  # totals of a lane that are integrals; lock time and largest slip follow
+INTEGRATED = 8  # totals of a lane that are integrals; lock time and largest slip follow
 SPEED_SHARE = 0.1  # of the speed, that a step may take from it where the slope limit is one
 EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event of a wheel
 
@@ -46,7 +46,8 @@ class Layout:
     def row(self) -> int:
         """Length of a row of the trace.
 
-        After it come whether the step was made, and the share of it before its first event.
+        After it come whether the step was made, the share of it before its first event, and the angles that the wheels
+        have turned.
         """
         return 3 + 5 * self.axles
 
@@ -225,7 +226,8 @@ class _Step:
         after["lane"] = ca.vertcat(
             now["lane"][:axles] + lane[:axles] + lost,
             now["lane"][axles : 5 * axles] + lane[axles : 5 * axles],
-            now["lane"][5 * axles : integrated] + judged * lane[5 * axles :],
+            now["lane"][5 * axles : 7 * axles] + judged * lane[5 * axles : 7 * axles],
+            now["lane"][7 * axles : integrated] + lane[7 * axles :],
             now["lane"][integrated : integrated + axles] + now["locked"] * h,
             where(speed > given["judging_speed"], maximum(most, after["slip"]), most),
         )
@@ -243,7 +245,7 @@ class _Step:
                 after["passed"],
                 after["load"],
             ),
-            *(torque[1], made, share),
+            *(torque[1], made, share, after["lane"][(INTEGRATED - 1) * axles : integrated]),
         )
         return [where(made, ca.vertcat(*after.values()), self.whole), row]
 
@@ -398,6 +400,7 @@ class _Step:
             2.0 * damped * wheel,
             slip,
             slip * slip,
+            wheel,
             resistance,
             resistance * speed,
         )

@@ -187,8 +187,9 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     referred = slip * min(speed / constants().slip_regularization_speed, 1.0)
     alike = (speed * (1.0 - slip) / plant.vehicle.wheel_radius, referred)
     at_rest = len(output.samples) == 0  # a start below the stop speed
-    # As the first sample saw them.
-    torques = np.full(axles, scenario.start.torque) if at_rest else output.samples[0, -axles:]
+    # As the first sample saw them, without the error of their measurement.
+    factor = 1.0 + scenario.sensing.torque_error
+    torques = np.full(axles, scenario.start.torque) if at_rest else output.samples[0, -axles:] / factor
     return np.concatenate(
         [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques]
     )
