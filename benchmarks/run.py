@@ -298,10 +298,9 @@ medians and quartiles.
 
 REMARKS = """The hand-written program `benchmarks/scalar_stop.c` computes the same integrals with the same method; its
 distance agrees to 1e-9. Its steps are limited by the steepest slope of the creep curve, those of the compiled loop by
-the present one. `benchmarks/references.py` holds the runs with SciPy and python-control. They step from valve
-edge to valve edge as well, but between edges they choose their steps, while the compiled loop takes at most 5 ms. Against solvers the ratios therefore grow with the
-sampling rate and with the number of valve edges. Without a compiler, one step of 2300 operations takes CasADi's
-virtual machine about 4.6 us (on the machine above), so that 1 ms steps leave no room for a ratio of twenty.
+the present one. `benchmarks/references.py` holds the runs with SciPy and python-control. They step from valve edge to
+valve edge as well, but between edges they choose their steps, while the compiled loop takes at most 5 ms. Against
+solvers the ratios therefore grow with the sampling rate and with the number of valve edges.
 """
 
 

@@ -15,6 +15,7 @@ from wspd_design.model.number import maximum, minimum, where
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
 INTEGRATED = 8  # totals of a lane that are integrals; lock time and largest slip follow
+BALANCED = 1e-10  # relative: torques that differ by less are equal
 SPEED_SHARE = 0.1  # of the speed, that a step may take from it where the slope limit is one
 EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event of a wheel
 
@@ -349,8 +350,9 @@ class _Step:
         state = {**state, "contact": ca.reshape(ca.horzcat(*begins).T, -1, 1)}
         for _ in range(2):
             stage = self._stage(motion, torque, state["damping"], state)
-            state["locked"] = where(torque < 2.0 * radius * stage.force, 0.0, state["locked"])
-            state["held"] = where(torque < stage.passed, 0.0, state["held"])
+            brake = torque * (1.0 - BALANCED)
+            state["locked"] = where(brake < 2.0 * radius * stage.force, 0.0, state["locked"])
+            state["held"] = where(brake < stage.passed, 0.0, state["held"])
         return {
             **state,
             **{name: getattr(stage, name) for name in _Stage._fields if name in state},
@@ -451,7 +453,7 @@ class _Step:
         first = ca.SX(1.0)
         for event in range(1 + axles):
             begin, middle, end = (value[event] for value in values)
-            crosses = where(begin > 0.0, end < 0.0, 0.0)
+            crosses = where(begin > 0.0, minimum(middle, end) < 0.0, 0.0)
             share = maximum(_crossing(where(crosses, begin, 1.0), middle, end), EVENT_SHARE if event else 0.0)
             first = where(crosses, minimum(first, share), first)
         return where(first < 1.0 - 1e-6, first, 1.0)
@@ -470,7 +472,7 @@ class _Step:
 
 
 def _crossing(begin: Any, middle: Any, end: Any) -> Any:
-    """Share of a step after which a positive quantity that ends below zero gets there, from three of its values."""
+    """Share of a step after which a positive quantity gets below zero, from three of its values."""
     import casadi as ca
 
     bend, fall = 2.0 * (begin - 2.0 * middle + end), 3.0 * begin - 4.0 * middle + end

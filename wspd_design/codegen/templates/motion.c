@@ -10,6 +10,7 @@
 #define LANES (AXLES * STOPS)
 #define TRANSFER_STATES (2 * TRANSFERS) /* the load transfers, then their rates */
 #define SHORTEST 1e-9 /* s: edges closer together than this are one */
+#define BALANCED 1e-10 /* relative: torques that differ by less are equal, so that an event ends where it was found */
 #define SPEED_SHARE 0.1 /* of the speed, that a step may take from it where the slope limit is one */
 #define EVENT_SHARE 1e-4 /* of a step: none is cut shorter at an event of a wheel, so that time goes on */
 #define RAIL 5 /* numbers of a rail, side by side in the parameter vector from FIRST_RAIL on */
@@ -174,9 +175,9 @@ static INLINE void observe(Loop *loop)
     evaluate(loop, &loop->now, loop->torque, loop->damping, &loop->present);
     for (int l = 0; l < LANES; l++) {
         const Stage *at = &loop->present;
-        if (loop->locked[l] != 0.0 && loop->torque[l] < 2.0 * radius[l] * at->force[l])
-            loop->locked[l] = 0.0, released = 1.0;
-        if (loop->held[l] != 0.0 && loop->torque[l] < at->passed[l]) loop->held[l] = 0.0, released = 1.0;
+        double given = loop->torque[l] * (1.0 - BALANCED);
+        if (loop->locked[l] != 0.0 && given < 2.0 * radius[l] * at->force[l]) loop->locked[l] = 0.0, released = 1.0;
+        if (loop->held[l] != 0.0 && given < at->passed[l]) loop->held[l] = 0.0, released = 1.0;
     }
     if (released != 0.0) evaluate(loop, &loop->now, loop->torque, loop->damping, &loop->present);
 }
@@ -385,8 +386,7 @@ static INLINE void follow_valves(const Loop *loop, const double *next, double *p
     actuator_kernel(loop->window_fixed, when, pressure, torque, filled, damping);
 }
 
-/* Share of a step after which a positive quantity that ends below zero gets there, from its values at begin, middle and
-   end. */
+/* Share of a step after which a positive quantity gets below zero, from its values at begin, middle and end. */
 static double crossing(double begin, double middle, double end)
 {
     double bend = 2.0 * (begin - 2.0 * middle + end), fall = 3.0 * begin - 4.0 * middle + end;
@@ -413,7 +413,8 @@ static double before_event(const Loop *loop, int s, const Motion *const at[4], c
             else if (loop->held[l] != 0.0) value[k] = brake[k] - taken->passed[l];
             else value[k] = moved->wheel[l] - limit;
         }
-        double share = value[0] > 0.0 && value[2] < 0.0 ? crossing(value[0], value[1], value[2]) : 1.0;
+        int below = value[0] > 0.0 && (value[1] < 0.0 || value[2] < 0.0);
+        double share = below ? crossing(value[0], value[1], value[2]) : 1.0;
         share = share > EVENT_SHARE ? share : EVENT_SHARE;
         first = share < first ? share : first;
     }
@@ -430,8 +431,9 @@ static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *co
     EACH_STOP target[s] = at[0]->speed[s] > judging ? judging : loop->set.stop_speed;
     for (int s = 0; s < STOPS; s++) any = reached->speed[s] < target[s] ? 1.0 : any;
     for (int l = 0; l < LANES; l++) {
-        any = reached->wheel[l] < 0.0 ? 1.0 : any;
-        any = loop->locked[l] != 0.0 && torque[LANES + l] < 2.0 * radius[l] * stage[3]->force[l] ? 1.0 : any;
+        double taken = 2.0 * radius[l] * stage[2]->force[l], later = 2.0 * radius[l] * stage[3]->force[l];
+        any = at[2]->wheel[l] < 0.0 || reached->wheel[l] < 0.0 ? 1.0 : any;
+        any = loop->locked[l] != 0.0 && (torque[l] < taken || torque[LANES + l] < later) ? 1.0 : any;
     }
     if (any == 0.0 && !loop->hold) return 0;
     any = 0.0;
