@@ -57,8 +57,8 @@ def measure_stops(scalar: Scalar) -> list[Row]:
     single = load_closed_loop(Planar(VEHICLE), LAW)
     several = load_closed_loop(Planar(VEHICLE), LAW, stops=SIDE_BY_SIDE)
     one, many = given(), given(stops=SIDE_BY_SIDE)
-    longer, short = given(longest_step=5e-3), given(time_limit=SHORT - 0.5 * SAMPLE_TIME)
-    distance = distance_of(single.run(given(refinement=4)))
+    short = given(time_limit=SHORT - 0.5 * SAMPLE_TIME)
+    distance = distance_of(single.run(given(refinement=16)))
 
     def error(value: float) -> str:
         return f"{abs(value / distance - 1.0):.0e}"
@@ -70,7 +70,6 @@ def measure_stops(scalar: Scalar) -> list[Row]:
     ways: dict[str, Callable[[], object]] = {
         "loop": lambda: single.run(one),
         "scalar": scalar.run,
-        "longer steps": lambda: single.run(longer),
         "campaign": lambda: several.run(many),
         "short loop": lambda: single.run(short),
         "short control": lambda: references.control_stop(SHORT),
@@ -90,11 +89,10 @@ def measure_stops(scalar: Scalar) -> list[Row]:
 
     own = error(distance_of(single.run(one)))
     theirs = error(references.scipy_stop())
-    coarse = error(distance_of(single.run(longer)))
     return [
         Row(
-            what="one compiled stop, 1 ms steps, against SciPy RK45 1e-6",
-            goal=300.0,
+            what="one compiled stop against SciPy RK45 1e-6",
+            goal=500.0,
             at_least=True,
             ratios=ratios("scipy", "loop"),
             note=f"errors of the distance {own} and {theirs}; right-hand side in plain Python",
@@ -106,19 +104,12 @@ def measure_stops(scalar: Scalar) -> list[Row]:
             ratios=ratios("scipy numpy", "loop"),
         ),
         Row(
-            what="the same, 5 ms steps, plain Python",
-            goal=300.0,
-            at_least=True,
-            ratios=ratios("scipy", "longer steps"),
-            note=f"error of the distance {coarse}",
-            judged=False,
-        ),
-        Row(
-            what="time of one stop over that of the hand-written scalar C program",
-            goal=0.6,
+            what="time of one stop over that of the hand-written scalar C program at equal error",
+            goal=0.15,
             at_least=False,
             ratios=ratios("loop", "scalar"),
-            note=f"-O3 -march=native, libm, the same {scalar.run()[1]} steps",
+            note=f"-O3 -march=native, libm; errors {own} and {error(scalar.run()[0])}, {single.run(one).steps} and "
+            f"{scalar.run()[1]} steps",
         ),
         Row(
             what="one stop against python-control `input_output_response`",
@@ -262,12 +253,11 @@ stop: four axles with load transfer, wet rail (Polach), from 120 km/h, the print
 medians and quartiles.
 """
 
-REMARKS = """The hand-written program `benchmarks/scalar_stop.c` computes the same integrals with the same steps; its
-distance agrees to 1e-9. `benchmarks/references.py` holds the runs with SciPy and python-control. They step from valve
-edge to valve edge as well, but between edges they choose their steps, while the compiled loop takes at most 1 ms and
-evaluates the right-hand side 3.6 times as often as RK45 does here. Against solvers the ratios therefore grow with the
-sampling rate and with the number of valve edges. Without a compiler, one step of 2300 operations takes CasADi's
-virtual machine about 4.6 us (on the machine above), so that 1 ms steps leave no room for a ratio of twenty.
+REMARKS = """The hand-written program `benchmarks/scalar_stop.c` computes the same integrals with the same method; its
+distance agrees to 1e-9. Its steps are limited by the steepest slope of the creep curve, those of the compiled loop by
+the present one. `benchmarks/references.py` holds the runs with SciPy and python-control. They step from valve edge to
+valve edge as well, but between edges they choose their steps, while the compiled loop takes at most 5 ms. Against
+solvers the ratios therefore grow with the sampling rate and with the number of valve edges.
 """
 
 
