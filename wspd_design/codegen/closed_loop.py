@@ -194,6 +194,9 @@ def _loaded(plant: Plant, controller: Controller | None, stops: int, disturbed: 
     return kernels, law, library
 
 
+_TEMPLATES = ("motion.c", "steps.c", "events.c", "sensors.c", "closed_loop.c")
+
+
 def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
     """Return the C source of the loop."""
     places = {
@@ -221,7 +224,7 @@ def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
     parts += [emit(kernel, lanes, shared=kernel.n_in() - 1) for kernel in (law.start, law.step)]
-    parts += [folder.joinpath(name).read_text() for name in ("motion.c", "sensors.c", "closed_loop.c")]
+    parts += [folder.joinpath(name).read_text() for name in _TEMPLATES]
     return "".join(parts)
 
 
