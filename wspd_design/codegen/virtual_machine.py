@@ -87,6 +87,7 @@ class _VirtualPlant:
         self.following = [CLOSED] * axles
         self.recorded = -1.0
         self.sample = self.steps = 0
+        self._bends = _bends(given.load_factors)
         self._last_step = given.settings.longest_step
         self.patch = [0] * axles
         self.moving = bool(given.speeds[0] > given.settings.stop_speed)  # or at rest already
@@ -271,9 +272,10 @@ class _VirtualPlant:
                     place = distance - self.parameters[_OFFSET, axle]
                     soonest = min(soonest, self._wait_for(float(given.patch_starts[reached, 0] - place)))
         if given.load_factors is not None and given.load_spacings is not None:
-            point = math.floor(distance / given.load_spacings[0] + 1e-6) + 1
-            if point < given.load_factors.shape[1]:
-                soonest = min(soonest, self._wait_for(point * given.load_spacings[0] - distance))
+            place = math.floor(distance / given.load_spacings[0] + 1e-6)
+            point = next((bend for bend in self._bends if bend > place), None)
+            if point is not None:
+                soonest = min(soonest, self._wait_for(point * float(given.load_spacings[0]) - distance))
         return soonest
 
     def _wait_for(self, ahead: float) -> float:
@@ -363,6 +365,16 @@ def _traced(controller: Controller) -> Controller:
         return _Traced(controller)
     except UntraceableError:
         return controller
+
+
+def _bends(factors: "Array | None") -> list[int]:
+    """Points at which a table of loads bends; after its last value it is even."""
+    import numpy as np
+
+    if factors is None:
+        return []
+    slopes = np.diff(factors, axis=1, append=factors[:, -1:])
+    return [int(k) + 1 for k in np.flatnonzero((np.diff(slopes, axis=1) != 0.0).any(axis=0))]
 
 
 def _flat(values: Any) -> "Array":

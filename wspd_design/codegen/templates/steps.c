@@ -27,9 +27,21 @@ static INLINE void lay_rails(Loop *loop)
     observe(loop);
 }
 
+/* Tell whether the table of loads of a stop bends at a point; where it is even, as beyond its end, no step is cut. */
+static int bends(const Loop *loop, int s, long point)
+{
+    for (int l = s; l < LANES; l += STOPS) {
+        const double *row = loop->load_factor + l * loop->load_points + point;
+        double after = point < loop->load_points - 1 ? row[1] - row[0] : 0.0;
+        if (row[0] - row[-1] != after) return 1;
+    }
+    return 0;
+}
+
 /* Shorten a step to the next change of rail or point of the table of loads, where the forces have a kink. */
 static double before_change(const Loop *loop, int s, double step)
 {
+    double reach = step * loop->now.speed[s];
     for (int l = s; l < LANES; l += STOPS) {
         double place = loop->now.distance[s] - loop->lp[OFFSET * LANES + l];
         if (loop->patch[l] < loop->patches) {
@@ -38,9 +50,11 @@ static double before_change(const Loop *loop, int s, double step)
         }
     }
     if (loop->load_factor) {
-        double spacing = loop->load_spacing[s], point = floor(loop->now.distance[s] / spacing + 1e-6) + 1.0;
-        double wait = wait_for(loop, s, point * spacing - loop->now.distance[s]);
-        if (point < (double)loop->load_points && wait < step) step = wait;
+        double spacing = loop->load_spacing[s], place = loop->now.distance[s];
+        long point = (long)(place / spacing + 1e-6) + 1;
+        while (point < loop->load_points && !bends(loop, s, point) && (double)point * spacing < place + reach) point++;
+        double wait = wait_for(loop, s, (double)point * spacing - place);
+        if (point < loop->load_points && wait < step) step = wait;
     }
     return step;
 }
