@@ -70,7 +70,6 @@ class Head(ctypes.Structure):
         ("trace_used", ctypes.c_long),
         ("quantum", ctypes.c_double),
         ("reference_factor", ctypes.c_double),
-        ("gains", DOUBLES),
     )
 
 

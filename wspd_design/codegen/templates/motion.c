@@ -59,7 +59,6 @@ typedef struct {
     long trace_rows, trace_used;
     double quantum;             /* rad/s, resolution of the measured wheel speed; 0 for none */
     double reference_factor;    /* measured over true train speed */
-    const double *gains;        /* numbers of the law */
     /* from here on: the state of the loop */
     WIDE double lp[PARAMETERS * LANES], lp2[PARAMETERS * 2 * LANES]; /* the second twice, for middle and end of a step */
     WIDE double stop_fixed[STOP_CONSTANTS * STOPS];        /* constants of the kernels */
