@@ -225,8 +225,9 @@ class TestCompilers:
     def test_no_compiler_at_all(self, monkeypatch):
         monkeypatch.delenv("CC", raising=False)
         monkeypatch.setattr(compiler.shutil, "which", lambda _name: None)
+        monkeypatch.setattr(compiler, "find_spec", lambda _name: None)
         compiler.find_compiler.cache_clear()
-        with pytest.raises(NoCompilerError, match="neither CC nor cc, gcc or clang is installed"):
+        with pytest.raises(NoCompilerError, match="neither CC nor cc, gcc, clang or ziglang is installed"):
             load_library(SOURCE)
 
 
