@@ -85,13 +85,16 @@ def plant_sources() -> Iterator[tuple[str, int]]:
 
 def compile_plants(platform: Platform, folder: Path) -> None:
     """Compile all plants for all instruction sets of a platform."""
-    cc = (*ZIG, "-target", platform.triple)
+    cc = (*ZIG, "-target", platform.triple, "-Wno-pass-failed")
 
     def build(source: str, name: str, *options: str) -> None:
         text = folder / f"{name}.c"
         text.write_text(source, encoding="utf-8")
         output = str(folder / f"{name}{platform.suffix}")
-        subprocess.run([*cc, *options, *PORTABLE_FLAGS, str(text), "-o", output, "-lm", "-s", "-Wno-pass-failed"], check=True)
+        subprocess.run(
+            [*cc, *options, *PORTABLE_FLAGS, str(text), "-o", output, "-lm", "-s"],
+            check=True,
+        )
         text.unlink()
 
     with ThreadPoolExecutor(max_workers=2) as pool:
@@ -122,7 +125,17 @@ def build_wheel(name: str, output: Path) -> None:
         prebuilt.mkdir()
         compile_plants(PLATFORMS[name], prebuilt)
         (copy / "setup.py").write_text(SETUP.format(platform=name), encoding="utf-8")
-        command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--quiet", "--wheel-dir", str(output), str(copy)]
+        command = [
+            sys.executable,
+            "-m",
+            "pip",
+            "wheel",
+            "--no-deps",
+            "--quiet",
+            "--wheel-dir",
+            str(output),
+            str(copy),
+        ]
         subprocess.run(command, check=True)
         print(f"{name}: {len(list(prebuilt.iterdir()))} libraries")
 

@@ -27,7 +27,7 @@ def library_name(source: str, target: str) -> str:
 
 
 def prebuilt_library(source: str) -> ctypes.CDLL | None:
-    """Load the library of a source for the best instruction set of this machine; None where none came with the wheel."""
+    """Load the library of a source for the best instruction set of this machine, None if there is none."""
     for target in targets():
         path = folder() / f"{library_name(source, target)}{SUFFIX}"
         if path.exists():
@@ -45,4 +45,6 @@ def targets() -> tuple[str, ...]:
         return ()
     path = folder() / f"{CPU_LEVEL}{SUFFIX}"
     level = ctypes.CDLL(str(path)).wspd_cpu_level() if path.exists() else 1
-    return tuple(name for least, name in ((4, "x86-64-v4"), (3, "x86-64-v3"), (1, "x86-64")) if level >= least)
+    return tuple(
+        name for least, name in ((4, "x86-64-v4"), (3, "x86-64-v3"), (1, "x86-64")) if level >= least
+    )

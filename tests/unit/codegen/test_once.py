@@ -58,7 +58,9 @@ def test_a_new_gain_vehicle_or_rail_compiles_nothing(er24pc, make_controller, co
 
 def changes(gains):
     """The slip reference, and another gain."""
-    name = next(f.name for f in fields(gains) if f.name != "slip_reference" and type(getattr(gains, f.name)) is float)
+    name = next(
+        f.name for f in fields(gains) if f.name != "slip_reference" and type(getattr(gains, f.name)) is float
+    )
     yield replace(gains, slip_reference=0.08)
     yield replace(gains, **{name: 0.7 * getattr(gains, name)})
 

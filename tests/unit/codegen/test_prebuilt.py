@@ -26,7 +26,16 @@ from wspd_design.simulation.stop import simulate
 
 BUILD = Path(__file__).parents[3] / "wheels" / "build.py"
 LEVELS = {"x86-64": "x86-64", "x86-64-v3": "x86-64-v3", "x86-64-v4": "x86-64-v4", "arm64": "armv8-a"}
-LAWS = ("afsmc", "afsmc-repaired", "smc", "torque-feedback", "trenitalia", "knorr-bremse", "mitsubishi", "none")
+LAWS = (
+    "afsmc",
+    "afsmc-repaired",
+    "smc",
+    "torque-feedback",
+    "trenitalia",
+    "knorr-bremse",
+    "mitsubishi",
+    "none",
+)
 NO_COMPILER = "no C compiler for this test"
 
 
@@ -109,7 +118,9 @@ def given_for(vehicle, law, scenario, stops=1):
     return loop_input([(Planar(vehicle), replace(scenario, initial_speed=speed)) for speed in speeds], law)
 
 
-@pytest.mark.skipif(not Path("/proc/cpuinfo").exists() or platform.machine() != "x86_64", reason="Linux on x86-64")
+@pytest.mark.skipif(
+    not Path("/proc/cpuinfo").exists() or platform.machine() != "x86_64", reason="Linux on x86-64"
+)
 def test_the_level_of_the_processor(runnable):
     flags = set(re.search(r"^flags\s*:(.*)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)[1].split())
     third = {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe", "xsave"} <= flags
@@ -159,7 +170,7 @@ def test_a_library_of_other_code_is_not_taken(er24pc, make_controller, scenario,
 
 @pytest.mark.parametrize("name", LAWS)
 def test_without_a_compiler_the_law_runs_in_the_virtual_machine(
-    er24pc, make_controller, scenario, libraries, runnable, monkeypatch, request, name
+    er24pc, make_controller, scenario, request, name
 ):
     law = make_controller(name, "polach-wet")
     rows = sample_rows(law)
@@ -200,7 +211,9 @@ def test_a_bad_command_is_told_by_the_virtual_machine(er24pc, make_controller, s
     assert output.bad_command == expected.bad_command == pytest.approx((0.6, 1.2, 0.0))
 
 
-def test_one_notice_tells_what_is_missing(er24pc, make_controller, scenario, from_wheel, no_compiler, monkeypatch):  # noqa: ARG001
+def test_one_notice_tells_what_is_missing(
+    er24pc, make_controller, scenario, from_wheel, no_compiler, monkeypatch
+):  # noqa: ARG001
     monkeypatch.setattr(notices, "_told", set())
     with pytest.warns(UserWarning, match=rf"^{NO_COMPILER}; the law runs .* pip install") as caught:
         runs = [simulate(er24pc, make_controller(name), scenario) for name in ("trenitalia", "none")]
@@ -208,7 +221,9 @@ def test_one_notice_tells_what_is_missing(er24pc, make_controller, scenario, fro
     assert {run.engine for run in runs} == {"compiled plant, law in CasADi's virtual machine"}
 
 
-def test_a_wheel_holds_what_stops_and_campaigns_ask_for(er24pc, make_controller, scenario, build, monkeypatch):
+def test_a_wheel_holds_what_stops_and_campaigns_ask_for(
+    er24pc, make_controller, scenario, build, monkeypatch
+):
     asked = set()
     monkeypatch.setattr(closed_loop, "prebuilt_library", lambda source: asked.add(source))
     law = make_controller("none")
