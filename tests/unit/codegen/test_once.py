@@ -18,7 +18,7 @@ WET = load_rail("polach-wet")
 
 
 @pytest.fixture
-def compilations(cache, monkeypatch):  # noqa: ARG001
+def compilations(cache, monkeypatch):  # noqa: ARG001 - an empty one
     """Sources that a compiler was run on; nothing is in the cache, and no library is remembered."""
     sources, true = [], subprocess.run
 

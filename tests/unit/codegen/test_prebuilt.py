@@ -144,7 +144,8 @@ def test_instruction_sets_do_not_change_a_bit(
         np.testing.assert_array_equal(numbers(loop.run(given, sample_rows=rows)), native)
 
 
-def test_a_plant_from_a_wheel_is_not_compiled(er24pc, make_controller, scenario, from_wheel, monkeypatch):  # noqa: ARG001
+@pytest.mark.usefixtures("from_wheel")
+def test_a_plant_from_a_wheel_is_not_compiled(er24pc, make_controller, scenario, monkeypatch):
     compiled, true = [], closed_loop.load_library
     monkeypatch.setattr(closed_loop, "load_library", lambda source: compiled.append(source) or true(source))
     law = make_controller("trenitalia")
@@ -154,7 +155,8 @@ def test_a_plant_from_a_wheel_is_not_compiled(er24pc, make_controller, scenario,
     assert len(compiled) == 1
 
 
-def test_a_library_of_other_code_is_not_taken(er24pc, make_controller, scenario, from_wheel, monkeypatch):  # noqa: ARG001
+@pytest.mark.usefixtures("from_wheel")
+def test_a_library_of_other_code_is_not_taken(er24pc, make_controller, scenario, monkeypatch):
     # The planted fault: the code was changed after the wheel was built, half the stages' weight.
     law, true = make_controller("trenitalia"), closed_loop.closed_loop_source
     before = simulate(er24pc, law, scenario).totals.distance
@@ -211,9 +213,8 @@ def test_a_bad_command_is_told_by_the_virtual_machine(er24pc, make_controller, s
     assert output.bad_command == expected.bad_command == pytest.approx((0.6, 1.2, 0.0))
 
 
-def test_one_notice_tells_what_is_missing(
-    er24pc, make_controller, scenario, from_wheel, no_compiler, monkeypatch
-):  # noqa: ARG001
+@pytest.mark.usefixtures("from_wheel", "no_compiler")
+def test_one_notice_tells_what_is_missing(er24pc, make_controller, scenario, monkeypatch):
     monkeypatch.setattr(notices, "_told", set())
     with pytest.warns(UserWarning, match=rf"^{NO_COMPILER}; the law runs .* pip install") as caught:
         runs = [simulate(er24pc, make_controller(name), scenario) for name in ("trenitalia", "none")]
