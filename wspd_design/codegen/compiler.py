@@ -31,6 +31,7 @@ PORTABLE_FLAGS = (
     "-shared",
     "-std=gnu11",
 )
+COMPILER_INSTALLATION = 'pip install "wspd-design[compiler]"'
 # Not every machine knows the first two.
 FLAGS = ("-march=native", "-mprefer-vector-width=512", *PORTABLE_FLAGS)
 

@@ -5,7 +5,7 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from wspd_design.codegen.bound import Bound
-from wspd_design.codegen.compiler import NoCompilerError, load_library
+from wspd_design.codegen.compiler import COMPILER_INSTALLATION, NoCompilerError, load_library
 from wspd_design.codegen.emitter import emit
 from wspd_design.codegen.laws import LawKernels, immutable, law_kernels
 from wspd_design.codegen.loop_numbers import DOUBLES
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _SLOWER = (
-    "the law runs in CasADi's virtual machine, several times slower; "
-    "pip install wspd-design[compiler] brings a compiler"
+    "the law runs in CasADi's virtual machine, and stops take two to three times as long; "
+    f"{COMPILER_INSTALLATION} brings a compiler"
 )
 
 
@@ -105,20 +105,20 @@ def load_law(controller: Controller, *, axles: int, stops: int) -> LoadedLaw:
     else:
         content, kinds = known
         kernels = _traces.get(content, kinds, lambda: law_kernels(controller))
-    engine: ctypes.CDLL | VirtualLaw
-    try:
-        engine = _libraries.get(
-            (kernels, axles, stops), (), lambda: load_library(law_source(kernels, axles=axles, stops=stops))
-        )
-    except NoCompilerError as error:
-        tell_once(str(error), _SLOWER)
-        engine = _virtual.get((kernels, axles * stops), (), lambda: virtual_law(kernels, axles * stops))
+    engine = _engines.get((kernels, axles, stops), (), lambda: _engine(kernels, axles, stops))
     return LoadedLaw(kernels, axles * stops, engine)
 
 
 _traces: "Memory[LawKernels]" = Memory(64)
-_libraries: "Memory[ctypes.CDLL]" = Memory(64)
-_virtual: "Memory[VirtualLaw]" = Memory(64)
+_engines: "Memory[ctypes.CDLL | VirtualLaw]" = Memory(64)
+
+
+def _engine(kernels: LawKernels, axles: int, stops: int) -> ctypes.CDLL | VirtualLaw:
+    try:
+        return load_library(law_source(kernels, axles=axles, stops=stops))
+    except NoCompilerError as error:
+        tell_once(str(error), _SLOWER)
+        return virtual_law(kernels, axles * stops)
 
 
 def law_source(law: LawKernels, *, axles: int, stops: int) -> str:
@@ -145,7 +145,7 @@ def virtual_law(law: LawKernels, lanes: int) -> VirtualLaw:
     )
 
     def by_element(columns: list[Any]) -> Any:
-        return ca.reshape(ca.horzcat(*columns).T, -1, 1)
+        return ca.cse(ca.reshape(ca.horzcat(*columns).T, -1, 1))
 
     starts = [law.start(seen[lane::lanes], gains) for lane in range(lanes)]
     steps = [law.step(state[lane::lanes], seen[lane::lanes], gains) for lane in range(lanes)]

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from wspd_design.codegen.closed_loop import load_closed_loop
-from wspd_design.codegen.compiler import NoCompilerError
+from wspd_design.codegen.compiler import COMPILER_INSTALLATION, NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
 from wspd_design.codegen.notices import tell_once
@@ -106,7 +106,7 @@ def run_loop(
         tell_once(
             str(error),
             "simulating in CasADi's virtual machine, about thirty times slower; "
-            "pip install wspd-design[compiler] brings a compiler",
+            f"{COMPILER_INSTALLATION} brings a compiler",
         )
         output = run_virtual(plant, controller, given, sample_rows=rows, disturbed=disturbed)
         return output, "CasADi virtual machine"

@@ -24,7 +24,13 @@ from wspd_design.cli.exit_codes import GOOD, REFUTED
 from wspd_design.cli.tables import PARQUET_INSTALLATION
 from wspd_design.codegen import prebuilt
 from wspd_design.codegen.closed_loop import closed_loop_source
-from wspd_design.codegen.compiler import NoCompilerError, cache_folder, find_compiler, load_library
+from wspd_design.codegen.compiler import (
+    COMPILER_INSTALLATION,
+    NoCompilerError,
+    cache_folder,
+    find_compiler,
+    load_library,
+)
 from wspd_design.codegen.kernels import plant_kernels
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.exchange.version import program_version
@@ -33,10 +39,9 @@ from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
-_COMPILER_INSTALLATION = 'pip install "wspd-design[compiler]"'
 _INSTALL_COMPILER = (
     "Without one, laws run in CasADi's virtual machine, and plants as well if none came with the package. "
-    f"Install gcc or clang, set CC, or: {_COMPILER_INSTALLATION}"
+    f"Install gcc or clang, set CC, or: {COMPILER_INSTALLATION}"
 )
 _TEST_SOURCE = "#include <math.h>\ndouble doctor(double x) { return sqrt(x); }\n"
 
