@@ -95,7 +95,7 @@ def ideal_stop(
     if instantaneous:
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
-    filling = Unprotected(name="ideal", sample_time=max(_SAMPLE_TIME, scenario.sensing.dead_time))
+    filling = Unprotected(name="ideal", sample_time=_SAMPLE_TIME)
     braked = plant_of(plant, vehicle)
     given = loop_input([(braked, scenario)], filling)
     rails = scenario.axle_rails or (scenario.rail,) * braked.axles

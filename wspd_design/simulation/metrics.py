@@ -3,8 +3,10 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
+from wspd_design.codegen.valves import CLOSED, followed
+from wspd_design.controllers.protocol import Command
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
@@ -66,8 +68,9 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     known = usual and not scenario.patches
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
     ideal_distance = math.nan if ideal is None else ideal.distance
-    per_axle = [[(sample.fill, sample.vent) for sample in samples] for samples in run.axle_samples]
+    per_axle = [[Command(sample.fill, sample.vent) for sample in samples] for samples in run.axle_samples]
     commands = [command for axle in per_axle for command in axle]
+    opened = [_followed(axle, run.sample_time, scenario.sensing.shortest_pulse) for axle in per_axle]
     return Metrics(
         distance=totals.distance,
         stopping_time=time,
@@ -81,7 +84,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         slip_rms=math.sqrt(max(square, 0.0)),
         lock_time=totals.lock_time,
         saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands),
-        valve_switches=round(sum(_switches(axle) for axle in per_axle) / len(per_axle)),
+        valve_switches=round(sum(map(_switches, opened)) / len(opened)),
         vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
         ideal_stop=ideal_distance,
@@ -137,7 +140,16 @@ def _kinetic_energy(vehicle: Vehicle, speed: float, wheel_speeds: Sequence[float
     return 0.5 * vehicle.mass * speed**2 + turning
 
 
-def _switches(commands: list[tuple[float, float]]) -> int:
+def _followed(commands: list[Command], sample_time: float, shortest_pulse: float) -> list[Command]:
+    """What the valves made of the commands, beginning closed."""
+
+    def follow(before: Command, command: Command) -> Command:
+        return followed(command, before, sample_time=sample_time, shortest_pulse=shortest_pulse)
+
+    return list(accumulate(commands, follow, initial=CLOSED))[1:]
+
+
+def _switches(commands: list[Command]) -> int:
     """Count the changes of the valve state over a run, inside the samples and between them."""
     states: list[str] = []
     for fill, vent in commands:

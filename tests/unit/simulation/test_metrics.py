@@ -1,6 +1,7 @@
 """Figures of a stop, on runs whose answers are known by hand."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.comparison import compare
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
+from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Sensing, Totals
 
 SCENARIO = Scenario(rail=load_rail("polach-wet"), initial_speed=30.0)
 ZERO = dict.fromkeys(
@@ -118,6 +119,20 @@ def test_valve_switches_and_saturation(er24pc, commands, switches, saturated):
     judged = metrics(made_up(commands=commands), er24pc, SCENARIO, slip_reference=0.14)
     assert judged.valve_switches == switches
     assert judged.saturated_share == saturated
+
+
+def test_pulses_that_do_not_open_a_valve_are_no_switches(er24pc):
+    commands = [
+        (0.4, 0.05),
+        (0.05, 0.0),
+        (0.0, 1.0),
+        (0.0, 0.05),
+    ]  # fill hold, hold, vent, vent (goes on) hold
+    scenario = replace(SCENARIO, sensing=Sensing(shortest_pulse=0.01))
+    judged = metrics(made_up(commands=commands), er24pc, scenario, slip_reference=0.14)
+    assert judged.valve_switches == 3
+    exact = metrics(made_up(commands=commands), er24pc, SCENARIO, slip_reference=0.14)
+    assert exact.valve_switches == 6
 
 
 def test_a_run_without_standstill_has_no_lag(er24pc):
