@@ -214,8 +214,8 @@ STOP = Form(
         Key(
             name="engine",
             kind="text",
-            meaning="what computed it: compiled, compiled plant with the law in CasADi's virtual machine or in Python, or "
-            "CasADi virtual machine",
+            meaning="what computed it: compiled, compiled plant with the law in CasADi's virtual machine or in Python, "
+            "or CasADi virtual machine",
         ),
         SEED_KEY,
         VERSION_KEY,

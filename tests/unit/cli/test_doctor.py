@@ -73,9 +73,7 @@ def test_plants_of_other_code_are_told(monkeypatch, tmp_path):
     (tmp_path / f"{'0' * 32}-{best}{prebuilt.SUFFIX}").write_bytes(b"")
     finding = doctor._plants()
     assert not finding.good
-    assert (
-        finding.found == f"1 libraries for {best} came with the package, but they are not those of its code"
-    )
+    assert finding.found == f"1 for {best} came with the package, but they are not those of its code"
     assert "install both again" in finding.remedy
     monkeypatch.setattr(prebuilt, "prebuilt_library", lambda _source: object())
     assert doctor._plants().good

@@ -206,7 +206,7 @@ def _plants() -> Finding:
     number = len(list(prebuilt.folder().glob(f"*-{best}{prebuilt.SUFFIX}")))
     kernels = plant_kernels(plant_of(DEFAULT_PLANT, load_vehicle("er24pc")), disturbed=False)
     good = prebuilt.prebuilt_library(closed_loop_source(kernels, stops=1)) is not None
-    found = f"{number} libraries for {best} came with the package" if number else "none came with the package"
+    found = f"{number} for {best} came with the package" if number else "none came with the package"
     remedy = "With a C compiler, a plant is compiled when it is first used, about 1 s."
     if number and not good:
         found += ", but they are not those of its code"
@@ -221,7 +221,8 @@ def _engine() -> Finding:
         warnings.simplefilter("ignore")
         run = simulate(load_vehicle("er24pc"), Unprotected(name="none", sample_time=0.1), scenario)
     good = run.engine == "compiled"
-    return Finding(name="simulation", found=run.engine, good=good, needed=False, remedy=_INSTALL_COMPILER)
+    remedy = "Stops take longer than they could: see the C compiler above."
+    return Finding(name="simulation", found=run.engine, good=good, needed=False, remedy=remedy)
 
 
 def _parquet() -> Finding:
