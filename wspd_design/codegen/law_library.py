@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _SLOWER = (
-    "the law runs in CasADi's virtual machine, and stops take two to three times as long; "
+    "the law runs in CasADi's virtual machine, and stops take up to four times as long; "
     f"{COMPILER_INSTALLATION} brings a compiler"
 )
 
