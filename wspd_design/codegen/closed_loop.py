@@ -184,6 +184,9 @@ def _plant_library(kernels: Kernels, stops: int) -> ctypes.CDLL:
     return prebuilt_library(source) or load_library(source)
 
 
+_TEMPLATES = ("motion.c", "steps.c", "events.c", "sensors.c", "closed_loop.c")
+
+
 def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
     """Return the C source of the loop of a plant with any law."""
     places = {
@@ -205,11 +208,11 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
     lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
     groups = {
         "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
-        lanes: (kernels.lane_constants, kernels.condition, kernels.axle),
+        lanes: (kernels.lane_constants, kernels.contact, kernels.axle, kernels.slope),
         twice: (kernels.window_constants, kernels.actuator),
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
-    parts += [folder.joinpath(name).read_text() for name in ("motion.c", "sensors.c", "closed_loop.c")]
+    parts += [folder.joinpath(name).read_text() for name in _TEMPLATES]
     return "".join(parts)
 
 

@@ -11,14 +11,13 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from wspd_design.controllers.baselines.unprotected import Unprotected
-from wspd_design.model import adhesion
-from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.simulation.loop_input import loop_input
+from wspd_design.simulation.peak import log_speeds, peak_adhesion
 from wspd_design.simulation.records import Ending, Scenario, Start
+from wspd_design.simulation.runaway import runs_away
 from wspd_design.simulation.stop import run_loop
 
 if TYPE_CHECKING:
@@ -27,12 +26,14 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_SPEEDS, _SLIPS = 241, 1001  # grid of the table of peak slips; the peak is flat
 _AT_ONCE = 1e9  # 1/s: a supply that is there at once
 _INSTANT = 1e-6  # s: a cylinder that fills at once
 _SAMPLE_TIME = 0.1  # s: the unprotected brake fills whatever it samples
 
-NO_IDEAL_STOP = "even a brake that holds the best slip is still moving at the time limit"
+NO_IDEAL_STOP = {
+    Ending.TIME_LIMIT: "even a brake that holds the best slip is still moving at the time limit",
+    Ending.RUNAWAY: "the grade pulls harder than rail and resistance can hold",
+}
 """What to say of a train that cannot stop, in place of a distance."""
 
 
@@ -73,8 +74,8 @@ def ideal_stop(
     Returns
     -------
     IdealStop
-        Without ``slip`` its distance is that of the brake that holds the best slip. A train that is still moving
-        at the time limit has neither distance nor time.
+        Without ``slip`` its distance is that of the brake that holds the best slip. A train that cannot stop, or
+        is still moving at the time limit, has neither distance nor time.
 
     Raises
     ------
@@ -92,6 +93,10 @@ def ideal_stop(
         raise UserError(
             "the ideal stop is not known for a change of rail along the track; leave the patches out"
         )
+    what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
+    name = f"{what}, {'full torque at once' if instantaneous else 'with brake build-up'}"
+    if runs_away(vehicle, scenario):
+        return IdealStop(name=name, ending=Ending.RUNAWAY, distance=math.nan, stopping_time=math.nan)
     if instantaneous:
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
@@ -99,29 +104,23 @@ def ideal_stop(
     braked = plant_of(plant, vehicle)
     given = loop_input([(braked, scenario)], filling)
     rails = scenario.axle_rails or (scenario.rail,) * braked.axles
-    speeds = _speeds(scenario.initial_speed)
+    speeds = log_speeds(scenario.initial_speed)
     slips = {rail: _held_slips(vehicle, rail, speeds, slip) for rail in set(rails)}
     given = replace(
         given,
         held_slips=np.array([slips[rail] for rail in rails]),
         held_speeds=(float(speeds[0]), float(speeds[1])),
     )
+    if instantaneous:  # full from the start, so that no step has to find the filling
+        given = replace(given, pressures=np.full(len(given.pressures), vehicle.brake.max_pressure))
     output, _ = run_loop(braked, filling, scenario, given)
-    what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
-    build_up = "full torque at once" if instantaneous else "with brake build-up"
     stopped = bool(output.stopped[0])
     return IdealStop(
-        name=f"{what}, {build_up}",
+        name=name,
         ending=Ending.STOPPED if stopped else Ending.TIME_LIMIT,
         distance=float(output.stop_totals["distance"][0]) if stopped else math.nan,
         stopping_time=float(output.stop_totals["time"][0]) if stopped else math.nan,
     )
-
-
-def _speeds(initial_speed: float) -> "Array":
-    import numpy as np
-
-    return np.geomspace(0.5 * constants().stop_speed, 1.01 * initial_speed, _SPEEDS)
 
 
 def _held_slips(vehicle: Vehicle, rail: Rail, speeds: "Array", slip: float | None) -> "Array":
@@ -129,31 +128,3 @@ def _held_slips(vehicle: Vehicle, rail: Rail, speeds: "Array", slip: float | Non
     import numpy as np
 
     return np.full(len(speeds), slip) if slip is not None else peak_adhesion(vehicle, rail, speeds)[0]
-
-
-def peak_adhesion(vehicle: Vehicle, rail: Rail, speeds: "Array") -> "tuple[Array, Array]":
-    """Slip at which the rail gives most, and the adhesion f/Q there, over train speed under the static load.
-
-    Below the regularization speed the slip is referred to that speed, as in the plant.
-    """
-    import numpy as np
-
-    table, slips, peaks = _peak_table(vehicle, rail, max(float(np.max(speeds)), 1.0))
-    logs = np.log(np.maximum(speeds, table[0]))
-    return np.interp(logs, np.log(table), slips), np.interp(logs, np.log(table), peaks)
-
-
-@lru_cache(maxsize=64)
-def _peak_table(vehicle: Vehicle, rail: Rail, top_speed: float) -> "tuple[Array, Array, Array]":
-    """Train speeds, the slips of their adhesion peaks and the peaks."""
-    import numpy as np
-
-    load = float(static_wheel_load(vehicle))
-    stiffness = adhesion.contact_stiffness(vehicle.contact, load)
-    speeds = _speeds(top_speed)
-    slips = np.geomspace(1e-4, 1.0, _SLIPS)
-    v, s = speeds[:, np.newaxis], slips[np.newaxis, :]
-    referred = s * np.minimum(v / constants().slip_regularization_speed, 1.0)
-    forces = adhesion.creep_force(referred, v * s, load, rail, stiffness)
-    best = forces.argmax(axis=1)
-    return speeds, slips[best], forces[np.arange(len(speeds)), best] / load

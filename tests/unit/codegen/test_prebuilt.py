@@ -157,17 +157,18 @@ def test_a_plant_from_a_wheel_is_not_compiled(er24pc, make_controller, scenario,
 
 @pytest.mark.usefixtures("from_wheel")
 def test_a_library_of_other_code_is_not_taken(er24pc, make_controller, scenario, monkeypatch):
-    # The planted fault: the code was changed after the wheel was built, half the stages' weight.
+    # The planted fault: the code was changed after the wheel was built, another weight of two stages.
     law, true = make_controller("trenitalia"), closed_loop.closed_loop_source
     before = simulate(er24pc, law, scenario).totals.distance
 
     def changed(*arguments, **options):
         source = true(*arguments, **options)
         assert "+ 2.0 * (of(1) + of(2))" in source
-        return source.replace("+ 2.0 * (of(1) + of(2))", "+ 1.0 * (of(1) + of(2))")
+        return source.replace("+ 2.0 * (of(1) + of(2))", "+ 2.0001 * (of(1) + of(2))")
 
     monkeypatch.setattr(closed_loop, "closed_loop_source", changed)
-    assert simulate(er24pc, law, scenario).totals.distance < 0.95 * before
+    after = simulate(er24pc, law, scenario).totals.distance
+    assert 1e-6 < abs(after / before - 1.0) < 1e-2
 
 
 @pytest.mark.parametrize("name", LAWS)
