@@ -71,7 +71,6 @@ typedef struct {
     double hold_first, hold_spacing;
     double *trace;              /* of the first stop */
     long trace_rows, trace_used;
-    const double *gains;        /* numbers of the law */
     /* from here on: the state of the loop */
     WIDE double lp[PARAMETERS * LANES], lp2[PARAMETERS * 2 * LANES]; /* the second twice, for middle and end of a step */
     WIDE double stop_fixed[STOP_CONSTANTS * STOPS];        /* constants of the kernels */
