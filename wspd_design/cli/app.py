@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli.commands import (
+    campaign,
     certify,
     check,
     compare,
@@ -78,6 +79,9 @@ app.command(
     'wspd simulate --runs 1000 --speed-noise "0.05 m/s" -o stops.csv',
 )(simulate.simulate)
 app.command(rich_help_panel=_JUDGING, epilog="Example: wspd compare design.toml afsmc none")(compare.compare)
+app.command(
+    rich_help_panel=_JUDGING, epilog="Example: wspd campaign campaign.toml --workers 8 -o stops.parquet"
+)(campaign.campaign)
 app.command(rich_help_panel=_JUDGING, epilog="Example: wspd report design.toml -o report.html --pdf")(
     report.report
 )

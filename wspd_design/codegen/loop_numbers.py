@@ -23,7 +23,10 @@ LANE_TOTALS = (
     "slip_squared",
     "lock_time",
     "slip_max",
+    "judged_lock_time",
+    "longest_lock",
     "vented_pressure",
+    "valve_switches",
 )
 STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
 RAIL_NUMBERS = 5
@@ -91,7 +94,7 @@ class LoopInput:
     reference_factor: float = 1.0
     load_factors: "Array | None" = None  # (axles, points)
     load_spacing: float = 1.0  # m
-    held_slips: "Array | None" = None  # (axles, points), what an ideal brake never exceeds
+    held_slips: "Array | None" = None  # (lanes, points), what an ideal brake never exceeds
     held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
     trace_rows: int = 0
 

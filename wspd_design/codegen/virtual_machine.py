@@ -42,7 +42,7 @@ def run_virtual(
     kernels = plant_kernels(plant, disturbed=disturbed)
     driven = _VirtualPlant(kernels, _functions(kernels, given.held_slips is not None), given)
     result, samples = drive(driven, _traced(controller), sample_rows)
-    lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), driven.vented])
+    lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), driven.vented, driven.switches])
     stop = [*driven.part("stop"), driven.part("speed")[0]]
     stop_totals = {name: np.array([value]) for name, value in zip(STOP_TOTALS, stop, strict=True)}
     return LoopOutput(
@@ -79,6 +79,8 @@ class _VirtualPlant:
         self.wheels[:] = given.wheel_speeds
         self.edges: tuple[float, ...] = ()
         self.vented = np.zeros(axles)
+        self.switches = np.zeros(axles)
+        self.valves = [-1] * axles  # last states: fill, vent, hold; -1 before the first
         self.recorded = -1.0
         self.sample = self.steps = 0
         self.patch = [0] * axles
@@ -140,6 +142,7 @@ class _VirtualPlant:
     def advance(self, commands: list[Command]) -> int:
         h = self.set.sample_time
         start = self.sample * h
+        self._count_switches(commands)
         result = self._advance_to(start + self.set.dead_time)
         for fill, vent in commands:
             if not (0.0 <= fill <= 1.0 and vent >= 0.0 and fill + vent <= 1.0 + 1e-9):
@@ -149,6 +152,14 @@ class _VirtualPlant:
             self._set_valves(commands)
         self.sample += 1
         return result or self._advance_to(self.sample * h)
+
+    def _count_switches(self, commands: list[Command]) -> None:
+        """Count the changes of the valve state that the commands ask for."""
+        for axle, (fill, vent) in enumerate(commands):
+            for valve, share in enumerate((fill, vent, 1.0 - fill - vent)):
+                if share > 1e-9:
+                    self.switches[axle] += self.valves[axle] not in (-1, valve)
+                    self.valves[axle] = valve
 
     def _set_valves(self, commands: list[Command]) -> None:
         import numpy as np

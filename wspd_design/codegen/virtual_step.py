@@ -14,7 +14,7 @@ from wspd_design.model.number import maximum, minimum, where
 
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
-INTEGRATED = 7  # totals of a lane that are integrals; lock time and largest slip follow
+INTEGRATED = 7  # totals of a lane that are integrals; those of locks and the largest slip follow
 
 
 def _places(sizes: dict[str, int]) -> dict[str, slice]:
@@ -65,11 +65,12 @@ def layout(kernels: Kernels) -> Layout:
                 "transfer": 2 * kernels.transfers,
                 "locked": axles,
                 "held": axles,
+                "lock_length": axles,
                 "pressure": axles,
                 "torque": axles,
                 "filled": axles,
                 "time": 1,
-                "lane": (INTEGRATED + 2) * axles,
+                "lane": (INTEGRATED + 4) * axles,
                 "stop": 5,  # distance, impulse and work of the resistance, judged time, time
             }
         ),
@@ -157,16 +158,20 @@ class _Step:
         slip = minimum(slip, 1.0)
         speed, wheel = reached[0], reached[1 : 1 + axles]
         wheel, locked, held, lost = self._settled(speed, wheel, force, passed, torque[1])
-        most = now["lane"][integrated + axles :]
+        lock_time, most, judged_lock, longest = ca.vertsplit(now["lane"][integrated:], axles)
+        judged = where(speed > given["judging_speed"], now["locked"] * h, 0.0)
+        length = where(now["locked"], now["lock_length"] + judged, 0.0)
         totals = ca.vertcat(
             now["lane"][:axles] + sums[1][:axles] + lost,
             now["lane"][axles:integrated] + sums[1][axles:],
-            now["lane"][integrated : integrated + axles] + now["locked"] * h,
+            lock_time + now["locked"] * h,
             where(speed > given["judging_speed"], maximum(most, slip), most),
+            judged_lock + judged,
+            maximum(longest, length),
         )
         stop = now["stop"] + ca.vertcat(sums[2], h)
         ahead = ca.vertcat(
-            *(speed, wheel, reached[1 + axles :], locked, held),
+            *(speed, wheel, reached[1 + axles :], locked, held, length),
             *(pressure, torque[1], filled, following, totals, stop),
         )
         made = where(given["scale"] < 1.0, 1.0, where(speed < given["stop_speed"], 0.0, 1.0))

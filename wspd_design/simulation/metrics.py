@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
@@ -66,8 +65,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     known = usual and not scenario.patches
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
     ideal_distance = math.nan if ideal is None else ideal.distance
-    per_axle = [[(sample.fill, sample.vent) for sample in samples] for samples in run.axle_samples]
-    commands = [command for axle in per_axle for command in axle]
+    commands = [(sample.fill, sample.vent) for samples in run.axle_samples for sample in samples]
     return Metrics(
         distance=totals.distance,
         stopping_time=time,
@@ -81,7 +79,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         slip_rms=math.sqrt(max(square, 0.0)),
         lock_time=totals.lock_time,
         saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands),
-        valve_switches=round(sum(_switches(axle) for axle in per_axle) / len(per_axle)),
+        valve_switches=round(totals.valve_switches),
         vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
         ideal_stop=ideal_distance,
@@ -135,12 +133,3 @@ def energy_residual(run: Run, vehicle: Vehicle) -> float:
 def _kinetic_energy(vehicle: Vehicle, speed: float, wheel_speeds: Sequence[float]) -> float:
     turning = sum(0.5 * vehicle.wheelset_inertia * wheel_speed**2 for wheel_speed in wheel_speeds)
     return 0.5 * vehicle.mass * speed**2 + turning
-
-
-def _switches(commands: list[tuple[float, float]]) -> int:
-    """Count the changes of the valve state over a run, inside the samples and between them."""
-    states: list[str] = []
-    for fill, vent in commands:
-        shares = (("fill", fill), ("vent", vent), ("hold", 1.0 - fill - vent))
-        states += [state for state, share in shares if share > 1e-9]
-    return sum(a != b for a, b in pairwise(states))

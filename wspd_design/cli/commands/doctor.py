@@ -20,9 +20,9 @@ from rich.text import Text
 
 from wspd_design.cli.console import console, is_interactive, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED
-from wspd_design.cli.tables import PARQUET_INSTALLATION
 from wspd_design.codegen.compiler import NoCompilerError, cache_folder, find_compiler, load_library
 from wspd_design.exchange.version import program_version
+from wspd_design.simulation.parquet import PARQUET_INSTALLATION
 
 _INSTALL_COMPILER = (
     "Without one, stops run in CasADi's virtual machine, many times slower. Install gcc or clang, or set CC."
@@ -183,9 +183,9 @@ def _compiled_code() -> Finding:
 
 
 def _parquet() -> Finding:
-    good = find_spec("duckdb") is not None
-    found = f"DuckDB {version('duckdb')}" if good else "none"
-    remedy = f"Results can be written as CSV only; for Parquet: {PARQUET_INSTALLATION}"
+    good = find_spec("pyarrow") is not None
+    found = f"pyarrow {version('pyarrow')}" if good else "none"
+    remedy = f"Results can be written as CSV only, campaigns have no store; for both: {PARQUET_INSTALLATION}"
     return Finding(name="Parquet", found=found, good=good, needed=False, remedy=remedy)
 
 

@@ -144,12 +144,26 @@ static int awaited(Loop *loop)
     return any;
 }
 
+/* Count the changes of the valve state that a command asks for: first fill, then vent, then hold. */
+static void count_switches(Loop *loop, int l)
+{
+    double share[3] = {loop->fill[l], loop->vent[l], 1.0 - loop->fill[l] - loop->vent[l]};
+    for (int k = 0; k < 3; k++) {
+        if (!(share[k] > 1e-9)) continue;
+        if (loop->valve[l] != 0.0 && loop->valve[l] != k + 1) loop->lane[SWITCHES * LANES + l] += 1.0;
+        loop->valve[l] = k + 1;
+    }
+}
+
 /* Take the commands of the stops that wait for them. */
 static void decide(Loop *loop, const double *fill, const double *vent)
 {
     for (int s = 0; s < STOPS; s++) {
         if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
-        for (int l = s; l < LANES; l += STOPS) loop->fill[l] = fill[l], loop->vent[l] = vent[l];
+        for (int l = s; l < LANES; l += STOPS) {
+            loop->fill[l] = fill[l], loop->vent[l] = vent[l];
+            count_switches(loop, l);
+        }
         loop->goal[s] += loop->set.dead_time; /* the valves still follow the last command */
         loop->phase[s] = ACT;
     }

@@ -15,7 +15,8 @@
 #define EACH_STOP _Pragma("omp simd") for (int s = 0; s < STOPS; s++)
 #define EACH_LANE _Pragma("omp simd") for (int l = 0; l < LANES; l++)
 
-enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, LOCK_TIME, SLIP_MAX, VENTED, LANE_TOTALS };
+enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, LOCK_TIME, SLIP_MAX, JUDGED_LOCK, LONGEST_LOCK, VENTED,
+       SWITCHES, LANE_TOTALS };
 enum { DISTANCE, RESISTANCE, RESISTANCE_WORK, JUDGED, TIME, END_SPEED, STOP_TOTALS };
 enum { GOOD, BUFFER_FULL, BAD_COMMAND };
 enum { DECIDE, ACT, DONE }; /* what a stop does when it reaches its goal */
@@ -52,7 +53,7 @@ typedef struct {
     const double *load_factor;  /* relative wheel load per axle over distance, or null */
     long load_points;
     double load_spacing;
-    const double *hold;         /* slip that an ideal brake never exceeds, per axle over log of speed, or null */
+    const double *hold;         /* slip that an ideal brake never exceeds, per lane over log of speed, or null */
     long hold_points;
     double hold_first, hold_spacing;
     double *trace;              /* of the first stop */
@@ -68,6 +69,8 @@ typedef struct {
     Motion now;
     WIDE double locked[LANES];
     WIDE double held[LANES];
+    WIDE double lock_length[LANES]; /* of the present lock, above the judging speed */
+    WIDE double valve[LANES];    /* last state of the valve: 0 none yet, 1 fill, 2 vent, 3 hold */
     WIDE double start[LANES];    /* of the valve pattern, as the next three */
     WIDE double start_pressure[LANES];
     WIDE double fill_end[LANES];
@@ -115,26 +118,32 @@ static inline void load_wheels(const Loop *loop, double share, const double *tra
     }
 }
 
-/* The slip to be held at a speed, and its slope over speed. */
-static double held_slip(const Loop *loop, int lane, double speed, double *slope)
+/* The slip of every lane to be held at the speeds of the stops, and its slope over speed. */
+static inline void held_slips(const Loop *loop, const double *speed, double *slip, double *slope)
 {
-    double place = (wspd_log(speed) - loop->hold_first) / loop->hold_spacing;
-    long k = (long)place;
-    if (k > loop->hold_points - 2) k = loop->hold_points - 2;
-    if (k < 0) k = 0;
-    const double *row = loop->hold + (lane / STOPS) * loop->hold_points + k;
-    *slope = (row[1] - row[0]) / (loop->hold_spacing * speed);
-    return row[0] + (place - (double)k) * (row[1] - row[0]);
+    WIDE double place[STOPS];
+    EACH_STOP place[s] = (wspd_log(speed[s]) - loop->hold_first) / loop->hold_spacing;
+    for (int l = 0; l < LANES; l++) {
+        int s = l % STOPS;
+        long k = (long)place[s];
+        if (k > loop->hold_points - 2) k = loop->hold_points - 2;
+        if (k < 0) k = 0;
+        const double *row = loop->hold + l * loop->hold_points + k;
+        slope[l] = (row[1] - row[0]) / (loop->hold_spacing * speed[s]);
+        slip[l] = row[0] + (place[s] - (double)k) * (row[1] - row[0]);
+    }
 }
 
 /* Wheels under an ideal brake follow the train; they pass on what that takes. */
 static void hold_wheels(const Loop *loop, const Motion *at, Stage *out)
 {
     const double *radius = loop->lp + RADIUS * LANES, *inertia = loop->lp + INERTIA * LANES;
+    WIDE double slip[LANES], slope[LANES];
+    held_slips(loop, at->speed, slip, slope);
     for (int l = 0; l < LANES; l++) {
         if (loop->held[l] == 0.0) continue;
-        double slope, speed = at->speed[l % STOPS], slip = held_slip(loop, l, speed, &slope);
-        out->wheel[l] = out->acceleration[l % STOPS] / radius[l] * (1.0 - slip - speed * slope);
+        double speed = at->speed[l % STOPS];
+        out->wheel[l] = out->acceleration[l % STOPS] / radius[l] * (1.0 - slip[l] - speed * slope[l]);
         out->passed[l] = 2.0 * (radius[l] * out->force[l] - out->damping[l]) - inertia[l] * out->wheel[l];
     }
 }
@@ -296,6 +305,11 @@ static INLINE void settle_locks(Loop *loop, Stage *last, const double *lane_step
         lane[SLIP_MAX * LANES + l] = slip > most ? slip : most;
         double locked = loop->locked[l], wheel = reached->wheel[l];
         lane[LOCK_TIME * LANES + l] += locked * lane_step[l];
+        double judged = speed[l] > judging ? locked * lane_step[l] : 0.0;
+        double length = locked != 0.0 ? loop->lock_length[l] + judged : 0.0, longest = lane[LONGEST_LOCK * LANES + l];
+        lane[JUDGED_LOCK * LANES + l] += judged;
+        lane[LONGEST_LOCK * LANES + l] = length > longest ? length : longest;
+        loop->lock_length[l] = length;
         double released = loop->torque[l] < 2.0 * radius[l] * last->force[l] ? 0.0 : locked;
         double below = wheel < 0.0 ? wheel : 0.0; /* take back the torque that the brake could not pass on since */
         lane[TORQUE * LANES + l] += inertia[l] * below;
@@ -308,8 +322,10 @@ static INLINE void settle_locks(Loop *loop, Stage *last, const double *lane_step
 static void settle_holds(Loop *loop, const Stage *last, const double *speed, Motion *reached)
 {
     const double *radius = loop->lp + RADIUS * LANES, *inertia = loop->lp + INERTIA * LANES;
+    WIDE double slip[LANES], slope[LANES];
+    held_slips(loop, reached->speed, slip, slope);
     for (int l = 0; l < LANES; l++) {
-        double slope, slip = held_slip(loop, l, speed[l], &slope), rolling = speed[l] * (1.0 - slip) / radius[l];
+        double rolling = speed[l] * (1.0 - slip[l]) / radius[l];
         if (loop->held[l] == 0.0 && loop->locked[l] == 0.0 && reached->wheel[l] <= rolling) {
             loop->lane[TORQUE * LANES + l] += inertia[l] * (reached->wheel[l] - rolling);
             reached->wheel[l] = rolling;
