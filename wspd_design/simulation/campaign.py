@@ -1,7 +1,7 @@
 """Many stops: chunks of rows, computed by any executor and kept in a store as they come."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
@@ -11,7 +11,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -131,8 +131,8 @@ def simulate_many(
             else:
                 take(start, rows)
         progress(int(finished.sum()))
-        with _opened(executor) as pool:
-            for start, rows in _computed(plan, missing, pool, kept):
+        with _opened(executor) as pool, closing(_computed(plan, missing, pool, kept)) as computed:
+            for start, rows in computed:
                 take(start, rows)
                 progress(int(finished.sum()))
     except KeyboardInterrupt:
@@ -208,7 +208,7 @@ def _opened(executor: Executor | None) -> Iterator[Executor]:
 
 def _computed(
     plan: Plan, missing: list[tuple[int, int]], executor: Executor, store: Store | None
-) -> "Iterator[tuple[int, NDArray[Any]]]":
+) -> "Generator[tuple[int, NDArray[Any]], None, None]":
     """Compute chunks, keep each in the store, and yield them as they come."""
     waiting = iter(missing)
     pending: dict[Future[NDArray[Any]], int] = {}
