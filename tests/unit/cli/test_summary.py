@@ -63,9 +63,7 @@ def test_step_checks_are_counted():
     change[[0, 50, 100]] = 1e-9, 2e-6, 3e-7
     slip = np.full(101, math.nan)
     slip[[0, 50, 100]] = 2e-4, 1e-5, 1e-6
-    checks = summarize(
-        campaign(True, step_distance_change=change, step_slip_change=slip), wanted=101
-    ).checks
+    checks = summarize(campaign(True, step_distance_change=change, step_slip_change=slip), wanted=101).checks
     assert (checks.rows, checks.failed) == (3, 2)  # one by its distance, one by its slip
     assert (checks.distance_change, checks.slip_change) == (2e-6, 2e-4)
     nothing = summarize(campaign(True), wanted=101).checks

@@ -43,7 +43,7 @@ def test_parquet_that_fails_leaves_nothing_behind(tmp_path, monkeypatch):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(parquet, "_arrow", full)
-    with pytest.raises(UserError, match="No space left on device.; free some space"):
+    with pytest.raises(UserError, match=r"No space left on device\); free some space"):
         write_table(tmp_path / "a.parquet", [TABLE], force=False)
     assert list(tmp_path.iterdir()) == []
 
