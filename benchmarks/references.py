@@ -173,8 +173,8 @@ def samples(valves: Valves, y: np.ndarray, until: float):
         t = index * LAW.sample_time
 
 
-def scipy_stop(make=make_rates) -> float:
-    """Brake to standstill with ``solve_ivp`` RK45; returns the distance."""
+def scipy_stop(make=make_rates, *, method: str = "RK45", tolerances: dict = TOLERANCES) -> float:
+    """Brake to standstill with ``solve_ivp``; returns the distance."""
     valves, locked, y = Valves(), [False] * AXLES, start()
     rates = make(valves, locked)
 
@@ -191,7 +191,7 @@ def scipy_stop(make=make_rates) -> float:
         for edge in edges:
             while t < edge - 1e-12:
                 solution = solve_ivp(
-                    rates, (t, edge), y, method="RK45", events=(standstill, lock), **TOLERANCES
+                    rates, (t, edge), y, method=method, events=(standstill, lock), **tolerances
                 )
                 t, y = solution.t[-1], solution.y[:, -1]
                 if solution.t_events[0].size:
@@ -199,6 +199,47 @@ def scipy_stop(make=make_rates) -> float:
                 if solution.t_events[1].size:
                     wheel = 1 + int(np.argmin(np.where(locked, np.inf, y[1:5])))
                     y[wheel], locked[wheel - 1] = 0.0, True
+        t, edges = run.send(y)
+
+
+def reference_stop() -> float:
+    """Distance by an implicit method with tolerances near rounding; shares no code with the compiled loop."""
+    return scipy_stop(method="Radau", tolerances={"rtol": 1e-12, "atol": 1e-12})
+
+
+def rk4_stop() -> float:
+    """Brake to standstill as a good engineer would write it: Runge-Kutta in plain Python, one step per segment.
+
+    Near standstill the creep stiffness asks for shorter ones. Returns the distance.
+    """
+    c, rail, contact = VEHICLE, RAIL, VEHICLE.contact
+    slope = 0.25 * pi * contact.shear_modulus * contact.kalker_c11
+    slope *= contact.semi_axis_rolling * contact.semi_axis_lateral
+    fastest = 2.0 / pi * (rail.adhesion_reduction + rail.slip_reduction) * slope * c.wheel_radius**2
+    fastest *= 1.5 / c.wheel_inertia  # the front axle carries more than its share
+    valves, locked, y = Valves(), [False] * AXLES, start()
+    rates = make_rates(valves, locked)
+    run = samples(valves, y, math.inf)
+    t, edges = next(run)
+    while True:
+        for edge in edges:
+            parts = max(1, math.ceil((edge - t) * fastest / (2.0 * max(y[0], 0.1))))
+            h = (edge - t) / parts
+            for _ in range(parts):
+                before = y
+                k1 = np.array(rates(t, y))
+                k2 = np.array(rates(t + 0.5 * h, y + 0.5 * h * k1))
+                k3 = np.array(rates(t + 0.5 * h, y + 0.5 * h * k2))
+                k4 = np.array(rates(t + h, y + h * k3))
+                y = y + h / 6.0 * (k1 + k4 + 2.0 * (k2 + k3))
+                t += h
+                for axle in range(AXLES):
+                    if y[1 + axle] < 0.0:
+                        y[1 + axle], locked[axle] = 0.0, True
+                if y[0] <= STOP_SPEED:
+                    share = (before[0] - STOP_SPEED) / (before[0] - y[0])
+                    return float(before[5] + share * (y[5] - before[5]))
+            t = edge
         t, edges = run.send(y)
 
 

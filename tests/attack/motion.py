@@ -139,6 +139,12 @@ class Adapted:
     highest: Any
 
 
+NEAR, SHORT = (
+    0.8,
+    10.0,
+)  # from this share of the boundary layer on, where the law adapts, steps are shorter by this
+
+
 def adaptive_run(
     case: Case,
     plant: Plant,
@@ -180,8 +186,9 @@ def adaptive_run(
     s_d = dead_zone(case, variable(slip, error))
     value = energy(s_d, weights, psi, speed)
     while alive.any():
-        time = step * speed if scheduled else np.full_like(speed, step)
-        time = np.where(alive, time, 0.0)
+        s = variable(slip, error)
+        span = np.where(abs(s) > NEAR * gains["boundary_layer"], step / SHORT, step)
+        time = np.where(alive, span * speed if scheduled else span, 0.0)
         middle_error = error + time / 2 * (case.slip - slip)
 
         def torque(x: Any, error: Any = middle_error, weights: Any = weights, psi: Any = psi) -> Any:
@@ -189,7 +196,6 @@ def adaptive_run(
             real = np.real(demand)
             return np.where(real > plant.max_torque, plant.max_torque, np.where(real < 0.0, 0.0, demand))
 
-        s = variable(slip, error)
         demand = fuzzy_torque(case, s, weights, psi)
         held = ((demand > plant.max_torque) & (s > 0)) | ((demand < 0.0) & (s < 0))
         change, widening = adaptation(case, s, speed)
@@ -206,8 +212,8 @@ def adaptive_run(
         error = error + time * (case.slip - middle)
         weights, psi, slip = weights + time * change, psi + time * widening, after
         following = dead_zone(case, variable(slip, error))
-        total = total + (abs(s_d) + abs(following)) / 2 * np.where(alive, step, 0.0)
-        steepest = np.maximum(steepest, abs(following - s_d) / step)
+        total = total + (abs(s_d) + abs(following)) / 2 * np.where(alive, span, 0.0)
+        steepest = np.maximum(steepest, abs(following - s_d) / span)
         new = energy(following, weights, psi, speed)
         rise = np.maximum(rise, np.where(alive, (new - value) / (abs(value) + 1.0), -np.inf))
         lowest, highest = np.minimum(lowest, slip), np.maximum(highest, slip)

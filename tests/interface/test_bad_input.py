@@ -203,3 +203,21 @@ def test_the_installed_command(arguments, tmp_path):
     assert finished.stderr.count("\n") == 1
     assert "Traceback" not in finished.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the device that is always full is one of Linux")
+def test_output_on_a_full_disk(tmp_path):
+    with Path("/dev/full").open("w") as full:
+        finished = subprocess.run(
+            [sys.executable, "-c", "from wspd_design.cli import main; main()", "linearize"],
+            cwd=tmp_path,
+            env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+    assert finished.returncode == 2
+    assert finished.stderr.count("\n") == 1
+    assert "no space left" in finished.stderr

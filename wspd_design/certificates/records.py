@@ -99,12 +99,14 @@ class Certificate:
     samples say beside the verdict; no file keeps it.
     """
 
-    name: str
-    title: str
     claim: str
     status: Status
     explanation: str
     method: str
+    name: str = (
+        ""  # of the theorem, as the title and the hash of the model; put in where its verdict is completed
+    )
+    title: str = ""
     margin: Range | None = None
     worst_point: tuple[Point, ...] = ()
     witness: tuple[Point, ...] = ()

@@ -1,5 +1,7 @@
 """The Typer application and the one place where errors become exit codes."""
 
+import errno
+import os
 import signal
 import sys
 import traceback
@@ -118,6 +120,8 @@ def run(arguments: Sequence[str]) -> int:
         fault = fault_in_own_file(error)
         if fault is not None:
             return _refuse(fault)
+        if isinstance(error, OSError) and error.errno == errno.ENOSPC and error.filename is None:
+            return _full_disk()  # the standard output stands on it; files have sentences of their own
         traceback.print_exc()
         print("wspd: this is a fault of the program; please report it with the lines above.", file=sys.stderr)
         return BUG
@@ -131,7 +135,20 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal without Unicode loses a sign, not the answer
-    sys.exit(run(sys.argv[1:]))
+    code = run(sys.argv[1:])
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        code = _full_disk()
+    sys.exit(code)
+
+
+def _full_disk() -> int:
+    """Say that the output could not be written, once: what is still in the buffer goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return _refuse("the output cannot be written (no space left on device); free some or send it elsewhere")
 
 
 def _refuse(message: str) -> int:

@@ -3,6 +3,7 @@
 from difflib import get_close_matches
 
 from wspd_design.cli.options import CONTROLLER, QUARTER
+from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.units import parse_quantity
 from wspd_design.plants.names import PLANTS
@@ -11,6 +12,11 @@ from wspd_design.plants.names import PLANTS
 def parse_speed(text: str) -> float:
     """Read a speed [m/s]."""
     return parse_quantity(text, "speed", what="speed")
+
+
+def initial_speed(written: str | None, specification: Specification) -> float:
+    """Return the speed at which a stop begins [m/s]: the top of the range where nothing was written."""
+    return specification.speeds[1] if written is None else parse_speed(written)
 
 
 def chosen(argument: str | None, option: str | None) -> str:

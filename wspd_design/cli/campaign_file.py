@@ -7,10 +7,10 @@ from pathlib import Path
 from types import UnionType
 from typing import Any, get_args, get_type_hints
 
-from wspd_design.cli.arguments import check_plant
+from wspd_design.cli.arguments import check_plant, initial_speed
 from wspd_design.cli.campaign import Series
 from wspd_design.cli.disturbances import StopOptions
-from wspd_design.cli.options import CONTROLLER, PLANT, SPEED
+from wspd_design.cli.options import CONTROLLER, PLANT
 from wspd_design.cli.stop_options import scenario
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, load_case
 from wspd_design.parameters.errors import UserError
@@ -66,7 +66,7 @@ class _Words:
     vehicle: str = VEHICLE
     rails: list[str]
     plant: str = PLANT
-    speed: str = SPEED
+    speed: str | None = None
     slip: str | None = None
     sample_time: str | None = None
     seed: int = 0
@@ -124,7 +124,12 @@ def read_campaign(path: Path) -> CampaignFile:
             series.append(
                 Series(
                     case=case,
-                    scenario=scenario(case.rail, given, speed=words.speed, seed=words.seed),
+                    scenario=scenario(
+                        case.rail,
+                        given,
+                        initial_speed=initial_speed(words.speed, case.specification),
+                        seed=words.seed,
+                    ),
                     draws=(*(draw for draw in bounded if draw.name not in named), *drawn),
                 )
             )

@@ -77,11 +77,17 @@ QuarterOption: TypeAlias = Annotated[
     typer.Option("--plant", metavar="NAME", help="Model of the vehicle: quarter only.", rich_help_panel=CASE),
 ]
 SpeedOption: TypeAlias = Annotated[
-    str, typer.Option("--speed", metavar="SPEED", help="Initial speed with its unit.", rich_help_panel=CASE)
+    str | None,
+    case_option("--speed", "SPEED", "Initial speed with its unit.", f"top of the design's range, {SPEED}"),
 ]
 StopSpeedOption: TypeAlias = Annotated[
     str | None,
-    case_option("--speed", "SPEED", "Initial speed with its unit.", f"{SPEED}, or that of the witness"),
+    case_option(
+        "--speed",
+        "SPEED",
+        "Initial speed with its unit.",
+        f"top of the design's range, {SPEED}, or that of the witness",
+    ),
 ]
 StopPlantOption: TypeAlias = Annotated[
     str | None,

@@ -1,21 +1,22 @@
 """From the options of a stop to its scenario."""
 
 import re
+from pathlib import Path
 
-from wspd_design.cli.arguments import parse_speed
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail
 from wspd_design.parameters.records import Rail
 from wspd_design.parameters.units import Dimension, parse_quantity
 from wspd_design.simulation.records import Patch, Scenario, Sensing
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
-_PERMILLE = re.compile(r"(?P<number>.*\d)\s*(?:‰|per ?mil(?:le)?)", re.IGNORECASE)
-_GRADE = 'write "5 permille", "0.5 %" or 0.005, negative downhill'
+_RISE_IN_RUN = re.compile(r"(?P<rise>\S+)\s*(?:in|:)\s*(?P<run>\S+)", re.IGNORECASE)
+_GRADE = 'write "5 permille", "0.5 %", "1 in 200" or 0.005, negative downhill'
 
 
-def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) -> Scenario:
+def scenario(rail: Rail, disturbances: StopOptions, *, initial_speed: float, seed: int) -> Scenario:
     """Return the stop that the user asks for.
 
     Parameters
@@ -24,14 +25,14 @@ def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) ->
         Rail below all axles from the start, unless the options say otherwise.
     disturbances : StopOptions
         What disturbs the stop.
-    speed : str
-        Initial speed with its unit.
+    initial_speed : float
+        Of the train [m/s].
     seed : int
         Of all random numbers.
     """
     return Scenario(
         rail=rail,
-        initial_speed=parse_speed(speed),
+        initial_speed=initial_speed,
         seed=seed,
         axle_rails=None if disturbances.axle_rails is None else _axle_rails(disturbances.axle_rails),
         patches=tuple(map(_patch, disturbances.patch or ())),
@@ -49,7 +50,19 @@ def scenario(rail: Rail, disturbances: StopOptions, *, speed: str, seed: int) ->
 
 
 def _axle_rails(text: str) -> tuple[Rail, ...]:
-    return tuple(load_rail(name.strip()) for name in text.split(","))
+    """Read rails between commas; where a part is no rail, the comma belongs to the name of a file."""
+    found: list[Rail] = []
+    name = ""
+    for part in text.split(","):
+        name += part
+        if name.strip() in available("rail") or Path(name.strip()).is_file():
+            found.append(load_rail(name.strip()))
+            name = ""
+        else:
+            name += ","
+    if name:
+        load_rail(name.partition(",")[0].strip())  # which says what is wrong with it
+    return tuple(found)
 
 
 def _patch(text: str) -> Patch:
@@ -63,12 +76,14 @@ def _patch(text: str) -> Patch:
 
 
 def _grade(text: str) -> float:
-    permille = _PERMILLE.fullmatch(text.strip())
+    parts = _RISE_IN_RUN.fullmatch(text.strip())
     try:
-        value = parse_quantity(permille["number"] if permille else text, "ratio", what="grade")
-    except UserError:
+        if parts is None:
+            return parse_quantity(text, "ratio", what="grade")
+        rise, run = (parse_quantity(part, "ratio", what="grade") for part in parts.groups())
+        return rise / run
+    except (UserError, ZeroDivisionError):
         raise UserError(f'grade "{text}" is not a number with permille or %; {_GRADE}') from None
-    return value / 1000.0 if permille else value
 
 
 def _amount(text: str | None, dimension: Dimension, what: str) -> float:

@@ -136,8 +136,8 @@ def load_cases(names: Sequence[str], options: CaseOptions) -> tuple[Case, ...]:
     first = read_design(path)
     options = replace(
         options,
-        vehicle=options.vehicle or _shipped("vehicle", first.vehicle, path),
-        rail=options.rail or _shipped("rail", first.rail, path),
+        vehicle=options.vehicle or _stated("vehicle", first.vehicle, first.vehicle_file, path),
+        rail=options.rail or _stated("rail", first.rail, first.rail_file, path),
     )
     return tuple(load_case(name, options, first.specification) for name in names)
 
@@ -172,8 +172,8 @@ def case_of(made: Design, options: CaseOptions, *, where: str) -> Case:
                 f"{option} {_text(value)} contradicts {where}, which has {_text(stated)} (SI units); "
                 f"leave {option} out or make another design"
             )
-    vehicle_given = options.vehicle or _shipped("vehicle", made.vehicle, where)
-    rail_given = options.rail or _shipped("rail", made.rail, where)
+    vehicle_given = options.vehicle or _stated("vehicle", made.vehicle, made.vehicle_file, where)
+    rail_given = options.rail or _stated("rail", made.rail, made.rail_file, where)
     vehicle, rail = _vehicle(vehicle_given), _rail(rail_given)
     return Case(
         vehicle=vehicle,
@@ -229,10 +229,17 @@ def _specification_of(made: Controller, options: CaseOptions, base: Specificatio
     return replace(specification(replace(options, slip=slip), base), sample_time=made.sample_time)
 
 
-def _shipped(kind: str, name: str, path: str) -> str:
-    """Return the name that a design file states, if it can be loaded by that name."""
+def _stated(kind: str, name: str, file: str, design: str) -> str:
+    """Return the vehicle or rail that a design file states: a file beside it, or a shipped name."""
+    if file:
+        path = Path(design).parent / file
+        if not path.is_file():
+            raise UserError(
+                f"{design} was made for the {kind} of {path}, which is not there; give its file with --{kind}"
+            )
+        return str(path)
     if name not in available(kind):  # type: ignore[arg-type]
-        raise UserError(f"{path} was made for a {kind} of your own, {name}; give its file with --{kind}")
+        raise UserError(f"{design} was made for a {kind} of your own, {name}; give its file with --{kind}")
     return name
 
 

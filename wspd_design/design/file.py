@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from wspd_design.parameters.writing import write_whole
 
 SCHEMA = "wspd-design/2"
 _HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail", "rail_hash")
+_OPTIONAL = ("vehicle_file", "rail_file")  # of vehicles and rails that do not ship with the program
 _FORMS = {float: "one number", bool: "true or false", tuple[float, ...]: "a list of numbers"}
 _SPECIFICATION = {"slip": "-", "speeds": "m/s", "slips": "-", "slip_tolerance": "-", "sample_time": "s"}
 
@@ -22,6 +24,7 @@ _SPECIFICATION = {"slip": "-", "speeds": "m/s", "slips": "-", "slip_tolerance": 
 def design_text(design: Design) -> str:
     """Return the TOML text of a design; reading it gives the same design back."""
     lines = [f"schema = {_toml(SCHEMA)}", *(f"{key} = {_toml(getattr(design, key))}" for key in _HEAD[1:])]
+    lines += [f"{key} = {_toml(getattr(design, key))}" for key in _OPTIONAL if getattr(design, key)]
     lines += ["", "[specification]"]
     for key, unit in _SPECIFICATION.items():
         lines.append(f"{key} = {_toml(getattr(design.specification, key))}  # {unit}")
@@ -42,6 +45,12 @@ def write_design(design: Design, path: str | Path) -> None:
     write_whole(Path(path), lambda part: part.write_text(design_text(design), encoding="utf-8"))
 
 
+def seen_from(design_file: Path, name_or_path: str | Path | None) -> str:
+    """Return the path of a parameter file as seen from the folder of a design file; nothing for a shipped name."""
+    text = str(name_or_path or "")
+    return Path(os.path.relpath(text, design_file.parent)).as_posix() if text.endswith(".toml") else ""
+
+
 def read_design(path: str | Path) -> Design:
     """Read a design file.
 
@@ -57,8 +66,9 @@ def read_design(path: str | Path) -> Design:
             f'{where} is not a design of this version: schema = "{document.get("schema", "")}" '
             f'must be "{SCHEMA}"; re-run wspd design'
         )
-    _check_keys(document, (*_HEAD, "specification", "gains"), where, "")
-    head = {key: _string(document[key], f"{key} in {where}") for key in _HEAD[1:]}
+    _check_keys(document, (*_HEAD, "specification", "gains"), where, "", optional=_OPTIONAL)
+    stated = [*_HEAD[1:], *(key for key in _OPTIONAL if key in document)]
+    head = {key: _string(document[key], f"{key} in {where}") for key in stated}
     law = head["law"]
     if law not in [family.name for family in designed()]:
         choice = ", ".join(family.name for family in designed())
@@ -123,9 +133,11 @@ def _table(value: object, name: str, where: str) -> dict[str, Any]:
     return value
 
 
-def _check_keys(table: dict[str, Any], known: tuple[str, ...], where: str, prefix: str) -> None:
+def _check_keys(
+    table: dict[str, Any], known: tuple[str, ...], where: str, prefix: str, *, optional: tuple[str, ...] = ()
+) -> None:
     for key in table:
-        if key not in known:
+        if key not in (*known, *optional):
             near = get_close_matches(key, known, n=1)
             remedy = f"did you mean {prefix}{near[0]}?" if near else f"allowed: {', '.join(known)}"
             raise UserError(f"unknown key {prefix}{key} in {where}; {remedy}")

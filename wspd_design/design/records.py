@@ -70,6 +70,8 @@ class Design:
     rail_hash: str
     specification: Specification
     gains: tuple[Gain, ...]
+    vehicle_file: str = ""  # of a vehicle of one's own, as seen from the folder of the design file
+    rail_file: str = ""
 
     def gain(self, name: str) -> GainValue:
         """Return the value of a gain by its name, in the unit of the gain."""

@@ -37,6 +37,8 @@ DESIGN_FILE = Form(
         Key(name="vehicle_hash", kind="text", meaning="fingerprint of the vehicle that it was made for"),
         RAIL_KEY,
         Key(name="rail_hash", kind="text", meaning="fingerprint of the rail that it was made for"),
+        Key(name="vehicle_file", kind="text", meaning="of one's own vehicle, from this folder", always=False),
+        Key(name="rail_file", kind="text", meaning="of one's own rail, from this folder", always=False),
         Key(name="specification", kind=SPECIFICATION_TABLE, meaning="what was asked for"),
         Key(name="gains", kind=GAIN_TABLE, by_name=True, meaning="a table for each gain of the law"),
     ),

@@ -29,6 +29,7 @@ _FOLDERS: dict[Kind, str] = {
     "controller": "controllers",
     "track": "track",
 }
+_TINY = 1e-100  # products and quotients of such numbers leave the range of floating point
 _ENTRY_KEYS = ("value", "unit", "bounds", "source", "at", "status", "note")
 _FILE_KEYS = ("title", "base")
 
@@ -84,11 +85,17 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
 def read_toml(file: Traversable | Path, where: str) -> dict[str, Any]:
     """Read a TOML file; whatever is wrong with it becomes one sentence about ``where``."""
     try:
-        return tomllib.loads(file.read_bytes().decode())
+        return tomllib.loads(
+            file.read_bytes().decode("utf-8-sig")
+        )  # some editors begin with a byte order mark
+    except RecursionError:
+        raise UserError(f"{where} is nested too deeply; a file has tables in tables, no more.") from None
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{where} is not valid TOML: {error}; correct that place.") from None
     except UnicodeDecodeError:
         raise UserError(f"{where} is not a text file in UTF-8; save it as such.") from None
+    except ValueError:  # of the integers alone: Python reads no more than some thousand digits
+        raise UserError(f"{where} has a number of thousands of digits; write it with an exponent.") from None
     except FileNotFoundError:
         raise UserError(f"{where} does not exist; check the path.") from None
     except OSError as error:
@@ -276,7 +283,22 @@ def _number(raw: object, quantity: Quantity, unit: str, what: str) -> float:
         raise UserError(
             f"{what} is {raw} [{unit}] but must be {quantity.range_text} in SI units; correct it."
         )
+    if 0.0 < abs(number) < _TINY:
+        raise UserError(f"{what} is {raw}, too small to compute with; write 0 if it may vanish.")
+    if quantity.plausible is not None and not quantity.plausible[0] <= number <= quantity.plausible[1]:
+        raise UserError(f"{what} is {raw} {unit}; {_implausible(float(raw), unit, quantity)}")
     return number
+
+
+def _implausible(raw: float, unit: str, quantity: Quantity) -> str:
+    """Say what railways have, and the unit in which the number would be one of theirs."""
+    assert quantity.plausible is not None
+    low, high = quantity.plausible
+    usual = f"railways have {low:g} to {high:g} {units_of(quantity.dimension)[0]}"
+    for other in units_of(quantity.dimension):
+        if other != unit and low <= to_si(raw, other) <= high:
+            return f"{usual}: did you mean {raw:g} {other}?"
+    return f"{usual}; correct it"
 
 
 def _bounds(raw: object, quantity: Quantity, unit: str, what: str) -> tuple[float, float]:

@@ -35,6 +35,7 @@ class Quantity:
     low: float = -math.inf
     high: float = math.inf
     low_is_allowed: bool = True
+    plausible: tuple[float, float] | None = None  # what railways have, with room to spare
 
     def admits(self, value: float) -> bool:
         """Tell whether an SI value is physically possible."""
@@ -56,8 +57,10 @@ def _any(dimension: Dimension, shape: Shape = "number") -> Quantity:
     return Quantity(dimension=dimension, shape=shape)
 
 
-def _positive(dimension: Dimension, shape: Shape = "number") -> Quantity:
-    return Quantity(dimension=dimension, shape=shape, low=0.0, low_is_allowed=False)
+def _positive(
+    dimension: Dimension, shape: Shape = "number", *, plausible: tuple[float, float] | None = None
+) -> Quantity:
+    return Quantity(dimension=dimension, shape=shape, low=0.0, low_is_allowed=False, plausible=plausible)
 
 
 def _not_negative(dimension: Dimension, shape: Shape = "number") -> Quantity:
@@ -65,7 +68,8 @@ def _not_negative(dimension: Dimension, shape: Shape = "number") -> Quantity:
 
 
 def _share(shape: Shape = "number", *, zero: bool = True) -> Quantity:
-    return Quantity(dimension="ratio", shape=shape, low=0.0, high=1.0, low_is_allowed=zero)
+    least = None if zero else (1e-4, 1.0)  # what must not vanish is not next to nothing either
+    return Quantity(dimension="ratio", shape=shape, low=0.0, high=1.0, low_is_allowed=zero, plausible=least)
 
 
 _CONSTANTS: Schema = {
@@ -76,44 +80,44 @@ _CONSTANTS: Schema = {
 }
 
 _VEHICLE: Schema = {
-    "mass": _positive("mass"),
+    "mass": _positive("mass", plausible=(2e3, 1e6)),
     "wheelsets": _positive("ratio"),
-    "wheel_radius": _positive("length"),
-    "wheelset_inertia": _positive("inertia"),
+    "wheel_radius": _positive("length", plausible=(0.1, 1.5)),
+    "wheelset_inertia": _positive("inertia", plausible=(5.0, 1e4)),
     "wheel_damping": _not_negative("rotational damping"),
     "wheel_damping_decay": _not_negative("rate"),
     "resistance_constant": _not_negative("force"),
     "resistance_linear": _not_negative("linear resistance"),
     "resistance_quadratic": _not_negative("quadratic resistance"),
-    "body_mass": _positive("mass"),
-    "bogie_mass": _positive("mass"),
-    "body_height": _positive("length"),
-    "bogie_height": _positive("length"),
+    "body_mass": _positive("mass", plausible=(1e3, 1e6)),
+    "bogie_mass": _positive("mass", plausible=(100.0, 1e5)),
+    "body_height": _positive("length", plausible=(0.1, 6.0)),
+    "bogie_height": _positive("length", plausible=(0.05, 3.0)),
     "traction_rod_height": _not_negative("length"),
-    "bogie_spacing": _positive("length"),
-    "wheelbase": _positive("length"),
-    "body_pitch_frequency": _positive("frequency"),
-    "bogie_pitch_frequency": _positive("frequency"),
+    "bogie_spacing": _positive("length", plausible=(1.0, 50.0)),
+    "wheelbase": _positive("length", plausible=(0.5, 15.0)),
+    "body_pitch_frequency": _positive("frequency", plausible=(0.05, 100.0)),
+    "bogie_pitch_frequency": _positive("frequency", plausible=(0.05, 100.0)),
     "pitch_damping_ratio": _not_negative("ratio"),
-    "brake.max_torque": _positive("torque"),
-    "brake.max_pressure": _positive("pressure"),
-    "brake.supply_rate": _positive("rate"),
-    "brake.fill_time": _positive("time"),
-    "brake.vent_time": _positive("time"),
+    "brake.max_torque": _positive("torque", plausible=(100.0, 1e6)),
+    "brake.max_pressure": _positive("pressure", plausible=(1e4, 1e7)),
+    "brake.supply_rate": _positive("rate", plausible=(0.01, 1e3)),
+    "brake.fill_time": _positive("time", plausible=(1e-3, 60.0)),
+    "brake.vent_time": _positive("time", plausible=(1e-3, 60.0)),
     "brake.disturbance_gain": _not_negative("ratio"),
     "brake.disturbance_decay": _positive("rate"),
     "brake.disturbance_frequency": _positive("frequency"),
-    "contact.shear_modulus": _positive("pressure"),
-    "contact.semi_axis_rolling": _positive("length"),
-    "contact.semi_axis_lateral": _positive("length"),
-    "contact.kalker_c11": _positive("ratio"),
-    "contact.reference_load": _positive("force"),
+    "contact.shear_modulus": _positive("pressure", plausible=(1e9, 1e12)),
+    "contact.semi_axis_rolling": _positive("length", plausible=(5e-4, 0.05)),
+    "contact.semi_axis_lateral": _positive("length", plausible=(5e-4, 0.05)),
+    "contact.kalker_c11": _positive("ratio", plausible=(0.1, 20.0)),
+    "contact.reference_load": _positive("force", plausible=(1e3, 1e6)),
 }
 
 _RAIL: Schema = {
     "mu0": _share(zero=False),
     "friction_ratio": _share(),
-    "friction_decay": _not_negative("1/speed"),
+    "friction_decay": Quantity(dimension="1/speed", low=0.0, plausible=(0.0, 10.0)),
     "adhesion_reduction": _share(zero=False),
     "slip_reduction": _share(zero=False),
 }

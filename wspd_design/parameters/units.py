@@ -40,13 +40,13 @@ Dimension: TypeAlias = Literal[
 # Spelling -> SI value of one unit, exactly. Radians count as one: spectra over rad/m have powers of 1/m.
 _ONE = Fraction(1)
 _TABLE: dict[Dimension, dict[str, Fraction]] = {
-    "ratio": {"-": _ONE, "%": Fraction(1, 100)},
-    "speed": {"m/s": _ONE, "km/h": Fraction(10, 36)},
+    "ratio": {"-": _ONE, "%": Fraction(1, 100), "permille": Fraction(1, 1000)},
+    "speed": {"m/s": _ONE, "km/h": Fraction(10, 36), "mph": Fraction(44704, 100000)},
     "acceleration": {"m/s^2": _ONE},
     "time": {"s": _ONE, "ms": Fraction(1, 1000), "min": Fraction(60)},
     "rate": {"1/s": _ONE},
     "frequency": {"Hz": _ONE},
-    "length": {"m": _ONE, "mm": Fraction(1, 1000)},
+    "length": {"m": _ONE, "mm": Fraction(1, 1000), "km": Fraction(1000)},
     "mass": {"kg": _ONE, "t": Fraction(1000)},
     "inertia": {"kg m^2": _ONE},
     "force": {"N": _ONE, "kN": Fraction(1000)},
@@ -82,7 +82,11 @@ def _plain(spelling: str) -> str:
     return spelling.replace("²", "2").translate(str.maketrans("", "", " *·^"))
 
 
-_SPELLINGS: dict[str, str] = {_plain(spelling): spelling for spelling in _UNITS}
+_SPELLINGS: dict[str, str] = {_plain(spelling): spelling for spelling in _UNITS} | {
+    "‰": "permille",
+    "permil": "permille",
+}
+_MINUS = str.maketrans("\u2212\u2013", "--")  # what word processors make of a hyphen before a number
 
 
 def units_of(dimension: Dimension) -> tuple[str, ...]:
@@ -173,7 +177,7 @@ def parse_quantity(text: str, dimension: Dimension, *, what: str) -> float:
     UserError
         If the text is not a finite number, or its unit is missing, unknown or of another dimension.
     """
-    match = _NUMBER.fullmatch(text.strip())
+    match = _NUMBER.fullmatch(text.strip().translate(_MINUS))
     allowed = _instruction(dimension)
     if match is None:
         raise UserError(f'{what} = "{text}" is not a finite number with a unit; {allowed}.')

@@ -2,7 +2,7 @@
 
 import errno
 import os
-import tempfile
+import secrets
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -18,7 +18,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     Parameters
     ----------
     path : Path
-        The file to be; one of the same name is replaced.
+        The file to be; one of the same name is replaced and keeps its permissions, behind a link as well.
     write : callable
         Fills the file of the path that it is given.
 
@@ -28,13 +28,14 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
         If the folder does not exist or cannot be written, or there is no space.
     """
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-        os.close(handle)
-        part = Path(name)
+        target = Path(os.path.realpath(path))
+        part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
+        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))  # the user's mask holds
         try:
+            if target.exists():
+                part.chmod(target.stat().st_mode)
             write(part)
-            part.chmod(0o644)  # mkstemp keeps others out
-            os.replace(part, path)
+            os.replace(part, target)
         except BaseException:
             with suppress(OSError):
                 part.unlink()

@@ -1,10 +1,12 @@
 """From options to records."""
 
+from dataclasses import replace
 from functools import cache
 
 import pytest
 
-from wspd_design.cli.arguments import chosen
+from wspd_design.cli.app import run
+from wspd_design.cli.arguments import chosen, initial_speed
 from wspd_design.controllers.family import designed_family
 from wspd_design.design.case import CaseOptions, load_case, load_cases, specification
 from wspd_design.design.file import write_design
@@ -31,6 +33,30 @@ def written(folder, name="made.toml", vehicle="er24pc", rail="polach-dry"):
     path = folder / name
     write_design(designed(vehicle, rail), path)
     return str(path)
+
+
+def test_a_design_finds_the_files_that_it_was_made_with(tmp_path, monkeypatch):
+    """Also where the file is named like a shipped vehicle, and from another working folder."""
+    (tmp_path / "designs").mkdir()
+    own = tmp_path / "er24pc.toml"
+    own.write_text('base = "er24pc"\n[wheelset_inertia]\nvalue = 700\nunit = "kg m^2"\n')
+    monkeypatch.chdir(tmp_path / "designs")
+    assert run(["design", "--vehicle", "../er24pc.toml", "--law", "smc", "-o", "made.toml"]) == 0
+    monkeypatch.chdir("/")
+    path = tmp_path / "designs" / "made.toml"
+    assert load_case(str(path), CaseOptions()).vehicle.wheelset_inertia == 700.0
+    assert load_cases([str(path)], CaseOptions())[0].vehicle.wheelset_inertia == 700.0
+    own.write_text(own.read_text().replace("700", "701"))
+    with pytest.raises(UserError, match="have changed since design"):
+        load_case(str(path), CaseOptions())
+    own.unlink()
+    with pytest.raises(UserError, match="which is not there; give its file with --vehicle"):
+        load_case(str(path), CaseOptions())
+
+
+def test_a_stop_begins_at_the_top_of_the_range():
+    assert initial_speed(None, replace(SPECIFICATION, speeds=(2.0, 20.0))) == 20.0
+    assert initial_speed("90 km/h", SPECIFICATION) == 25.0
 
 
 def test_nothing_written_is_the_papers_case():

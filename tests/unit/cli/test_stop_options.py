@@ -13,7 +13,23 @@ WET, DRY = load_rail("polach-wet"), load_rail("polach-dry")
 
 
 def made(**words):
-    return scenario(WET, StopOptions(**words), speed="120 km/h", seed=3)
+    return scenario(WET, StopOptions(**words), initial_speed=120.0 / 3.6, seed=3)
+
+
+def test_a_comma_may_belong_to_the_name_of_a_rail_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wet,old.toml").write_text('base = "polach-wet"\n')
+    rails = made(axle_rails="wet,old.toml, polach-dry,wet,old.toml,polach-wet").axle_rails
+    assert [rail.name for rail in rails] == ["wet,old", "polach-dry", "wet,old", "polach-wet"]
+    with pytest.raises(UserError, match='unknown rail "wet"'):
+        made(axle_rails="polach-dry,wet,new.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "metres"), [("0.05 km polach-dry", 50.0), ("50 m polach-dry", 50.0), ("5000 mm polach-dry", 5.0)]
+)
+def test_start_of_a_patch(text, metres):
+    assert made(patch=[text]).patches == (Patch(start=metres, rail=DRY),)
 
 
 def test_nothing_written_disturbs_nothing():
@@ -30,6 +46,9 @@ def test_nothing_written_disturbs_nothing():
         ("5permil", 0.005),
         ("12.5 ‰", 0.0125),
         ("0.5 %", 0.005),
+        ("1 in 200", 0.005),
+        ("-1:200", -0.005),
+        ("\u22125 permille", -0.005),
         ("-0.5 %", -0.005),
         ("0.005", 0.005),
         ("0,5 %", 0.005),

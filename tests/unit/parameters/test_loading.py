@@ -6,6 +6,7 @@ import pytest
 
 from wspd_design.parameters import loading
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.schema import schema_of
 
 MASS = '[mass]\nvalue = 80\nunit = "t"\n'
 RAIL = """
@@ -123,6 +124,13 @@ def test_wrong_rail_file(write, text, fragments):
         ('[mass]\nvalue = 0\nunit = "t"\n', ("[mass]", "above 0")),
         (MASS, ("mass = 80000 kg", "76841 kg", "change the three together")),
         ('[wheelsets]\nvalue = 6\nunit = "-"\n', ("wheelsets = 6", "must be 4")),
+        ('[wheel_radius]\nvalue = 550\nunit = "m"\n', ("550 m", "0.1 to 1.5 m", "did you mean 550 mm?")),
+        ('[mass]\nvalue = 76.8\nunit = "kg"\n', ("76.8 kg", "did you mean 76.8 t?")),
+        ('[wheel_radius]\nvalue = 40\nunit = "m"\n', ("40 m", "0.1 to 1.5 m", "correct it")),
+        (
+            '[wheel_radius]\nvalue = 0.55\nbounds = [0.5, 550]\nunit = "m"\n',
+            ("bounds of [wheel_radius]", "did you mean 550 mm?"),
+        ),
     ],
 )
 def test_wrong_vehicle_file(write, text, fragments):
@@ -160,6 +168,39 @@ def test_controllers_have_no_files_of_one_s_own(write):
     path = write("", "trenitalia.toml")
     with pytest.raises(UserError, match="unknown controller"):
         loading.load_entries("controller", path)
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path):
+    path = tmp_path / "wet.toml"
+    path.write_bytes(b'\xef\xbb\xbfbase = "polach-wet"\n')
+    assert loading.load_rail(path).mu0 == loading.load_rail("polach-wet").mu0
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("value = 1" + "0" * 5000 + '\nunit = "s/m"\n', "thousands of digits"),
+        ("value = " + "[" * 20_000 + "\n", "nested too deeply"),
+        ('value = 5e-324\nunit = "s/m"\n', "too small to compute with"),
+    ],
+)
+def test_hostile_numbers(write, text, word):
+    path = write('base = "polach-wet"\n[friction_decay]\n' + text)
+    with pytest.raises(UserError, match=word) as caught:
+        loading.load_rail(path)
+    assert str(path) in str(caught.value)
+    assert len(str(caught.value)) < 300
+
+
+def test_shipped_numbers_keep_away_from_the_ends_of_what_is_plausible():
+    """Otherwise a range would say more about our files than about railways."""
+    for kind in ("vehicle", "rail"):
+        for name in loading.available(kind):
+            parameters = loading.load_entries(kind, name)
+            for key, entry in parameters.entries.items():
+                ends = schema_of(kind, name)[key].plausible
+                if ends is not None and ends[1] > 1.0:
+                    assert 2.0 * ends[0] <= entry.value <= 0.5 * ends[1], (name, key)
 
 
 def test_unreadable_files(tmp_path):

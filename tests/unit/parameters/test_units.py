@@ -84,7 +84,7 @@ def test_wrong_quantities_get_one_sentence_with_the_remedy(text, dimension, frag
 def test_unknown_unit_in_code_names_the_nearest():
     with pytest.raises(UserError, match='"kmh" is not a known unit; did you mean "km/h"'):
         to_si(1.0, "kmh")
-    with pytest.raises(UserError, match="known units: -, %, m/s"):
+    with pytest.raises(UserError, match="known units: -, %, permille, m/s"):
         dimension_of("parsec!")
 
 
@@ -101,6 +101,12 @@ def test_what_is_written_can_be_read(speed, unit):
     assert parse_quantity(format_quantity(speed, unit), "speed", what="v") == pytest.approx(speed, rel=1e-5)
 
 
+def test_words_of_the_trade():
+    assert parse_quantity("75 mph", "speed", what="v") == 75 * 0.44704
+    assert parse_quantity("1.2 km", "length", what="x") == 1200.0
+    assert parse_quantity("\u22125 ‰", "ratio", what="grade") == -0.005
+
+
 def test_si_unit_comes_first():
-    assert units_of("speed") == ("m/s", "km/h")
+    assert units_of("speed") == ("m/s", "km/h", "mph")
     assert math.isinf(to_si(-1e308, "kN"))

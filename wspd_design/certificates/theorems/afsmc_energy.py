@@ -128,8 +128,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "adapted: V' = s_D (u* - T) - a s_D^2/(2 g)."
         )
     return Certificate(
-        name="afsmc_energy",
-        title="Energy of the adaptive law",
         claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} and the speed above "
         f"{problem.speeds[0] * KMH:.3g} km/h, and with T = u inside the limits of the brake, u* stays inside them by "
         f"eta/g, eta/g <= u* <= T_max - eta/g with T_max at least {limit / 1e3:g} kN m. Therefore, from a slip below "

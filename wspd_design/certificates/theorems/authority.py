@@ -190,8 +190,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             hypothesis(f"u* + eta/g <= {upper} for mu0 from {friction[0]:.3g} to {friction[1]:.3g}", *until)
         )
     return Certificate(
-        name="sliding_exists",
-        title="Authority of the brake",
         claim="The torque u* that holds the surface lies inside the limits of the brake with a reserve, "
         f"eta/g <= u* <= T_max - eta/g, eta = {reserve(problem):.3g} m/s2 and g = R/(2 I), {said.text}.",
         status=status,

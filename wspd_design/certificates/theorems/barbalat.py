@@ -132,8 +132,6 @@ def _convergence(problem: Problem, findings: Findings) -> Certificate:
             f"at most {rounded_up(above(steepest))} m/s2 per unit of sigma"
         )
     return Certificate(
-        name="barbalat",
-        title="Convergence after Barbalat",
         claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} down to standstill, and "
         "with T = u inside the limits of the brake, u* stays inside them by eta/g, eta/g <= u* <= T_max - eta/g with "
         f"T_max at least {limit / 1e3:g} kN m. Therefore s_D tends to zero as the train comes to a standstill from "
@@ -193,8 +191,6 @@ def _vacuous(problem: Problem, findings: Findings) -> Certificate:
     )
     said = scope(problem, PLANT)
     return Certificate(
-        name="barbalat",
-        title="Convergence after Barbalat",
         claim="s tends to 0 as t tends to infinity, because the integral of abs(s_D) is finite and s_D is uniformly "
         f"continuous, {said.text}.",
         status=Status.VACUOUS if proved else Status.UNDECIDED,

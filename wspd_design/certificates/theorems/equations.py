@@ -116,8 +116,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"{each.text} leaves {sp.simplify(sp.nsimplify(each.left - each.right))}" for each in wrong
     )
     return Certificate(
-        name="derivation",
-        title="Equations of the model",
         claim="The functions that compute slip, brake, error and energy satisfy (19), (14), (10), (39) and (44) in "
         "its corrected and in its repaired form as identities.",
         status=status,

@@ -38,8 +38,6 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
     largest = Fraction(problem.span("wheelset inertia")[1]) * Fraction(problem.speeds[1])
     smallest = Fraction(problem.span("wheel radius")[0]) / largest if status is Status.PROVED else None
     return Certificate(
-        name="gain_positive",
-        title="Sign of the input gain",
         claim=f"G = R/(2 I v) > 0 on {domain.described(problem, USED)}.",
         status=status,
         explanation=(

@@ -173,8 +173,6 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
     varied = tuple(each for each in VARIED if each in uncertain)
     held = tuple(each for each in OTHERS if each in uncertain)
     return Certificate(
-        name="routh_lag",
-        title="Loop near its reference with valve lag",
         claim=f"At every frozen speed the loop near {rest}, with the averaged valve"
         f"{'' if one_time(problem) else ' at any share of T_max'}{included}, is stable: "
         f"{'; '.join(findings)}. {STATIC.capitalize()}; {domain.described(problem, ('speed', *varied), held)}.",
@@ -323,8 +321,6 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
     adapting = law_of(problem).linear_form(problem.speeds[1]).twice != 0.0
     included = ", and the adaptation of the weights," if adapting else ""
     return Certificate(
-        name="margins",
-        title="Margins of the loop near its reference",
         claim=f"With the nominal parameters{included} the loop near "
         f"slip {problem.slip:g} is stable at every frozen speed from {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h, continuous with the averaged valve and sampled every "

@@ -209,8 +209,6 @@ def _tell_printed(problem: Problem, findings: Findings) -> Certificate:
         reason = " The derivative is not (44), which leaves out G'/2 times the squared errors of weights and bound; "
         reason += "G' > 0 while braking. The proof fails, whatever the slip does."
     return Certificate(
-        name="lyapunov_printed",
-        title="V2 of the paper",
         claim="V2 of (43) does not rise along the closed loop, as (44) says, at any state with "
         f"{problem.speeds[0] * KMH:.3g} to {problem.speeds[1] * KMH:.3g} km/h and slip {SLIPS[0]:g} to {SLIPS[1]:g} on "
         f"{problem.rail.name} with the nominal parameters, for any ideal weights and bound that satisfy (34) there.",
@@ -274,8 +272,6 @@ def _tell_repaired(problem: Problem, findings: Findings) -> Certificate:
         told += " Weights and bound stay bounded. Divided by G, the falling speed helps V to fall instead of making it "
         told += "rise."
     return Certificate(
-        name="lyapunov_repaired",
-        title="Repaired V",
         claim="V = v s_D^2/(2 g) + |b~|^2/(2 alpha1) + psi~^2/(2 alpha2) does not rise along the closed loop of the "
         f"repaired law, at any state with {problem.speeds[0] * KMH:.3g} to {problem.speeds[1] * KMH:.3g} km/h and slip "
         f"{SLIPS[0]:g} to {SLIPS[1]:g} on {problem.rail.name} with the nominal parameters, for any ideal weights and "

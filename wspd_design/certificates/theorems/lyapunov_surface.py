@@ -122,8 +122,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     if status is not Status.REFUTED and numbers and numbers["cut short"]:
         told += f" {numbers['cut short']:.0f} of the runs were cut short."
     return Certificate(
-        name="lyapunov_surface",
-        title="V of the sliding mode",
         claim="V = sbar^2/2, sbar = s/K_P, does not rise at any state outside the layer, abs(sbar) > "
         f"{law.gains.boundary_layer:g}, whatever the integral of the error, on {domain.described(problem)}, the "
         "other numbers of vehicle and rail nominal.",

@@ -55,8 +55,6 @@ def tell_printed(problem: Problem, findings: Findings) -> Certificate:
         else ()
     )
     return Certificate(
-        name="afsmc_energy",
-        title="Energy of the adaptive law",
         claim="V2 of (43) falls along the printed law as (44) says, dV2/dt <= -G abs(s) (psi - abs(xi)), for some "
         f"ideal weights and a psi that bounds the approximation error, from {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h on {problem.rail.name} with the nominal parameters.",

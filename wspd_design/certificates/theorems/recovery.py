@@ -362,8 +362,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         else ()
     )
     return Certificate(
-        name="hard_limits",
-        title="Limits of recovery",
         claim=f"At every frozen speed a deviation of the slip of {DEVIATION:g} above the reference {problem.slip:g}, "
         f"seen one sample of {problem.sample_time * 1e3:g} ms late, is brought back by full venting without passing "
         f"{problem.slips[1]:g}; {STATIC}, on {described}. Where it is not, "

@@ -182,8 +182,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     varied = tuple(name for name in (*creep_slope.USED, *NUMBERS) if name in uncertain)
     held = tuple(name for name in (*creep_slope.HELD, "supply rate") if name in uncertain)
     return Certificate(
-        name="lpv_lyapunov",
-        title="Quadratic function for all speeds",
         claim=f"Around any slip from {near[0]:.6g} to {near[1]:.6g}, taken as the equilibrium, a quadratic function "
         "of the deviations of sliding speed and torque falls along the loop, continuous with the averaged valve and "
         f"sampled every {problem.sample_time * 1e3:g} ms with its pulses, whatever the course of speed from {high:.3g} "
@@ -274,8 +272,6 @@ def _tell_sets(problem: Problem, findings: Findings) -> Certificate:
         margin = Range(low=1.0 - high, high=1.0 - problem.slip, unit="-")
         worst = (Point(name="slip", value=high, unit="-"),)
     return Certificate(
-        name="sampled_invariance",
-        title="Invariant set of the sampled loop",
         claim=claim,
         status=all_of(found),
         explanation=explanation,

@@ -142,8 +142,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         return place(finding.values, tuple(name for name in said.names if name in finding.values))
 
     return Certificate(
-        name="well_posed",
-        title="Signs of the model",
         claim=f"a = (f_d + 8 f)/m >= 0 and G' = G a/v >= 0 for wheels at static load, f >= 0 and G > 0 {said.text}.",
         status=status,
         explanation=f"{meaning}. Found: {values or 'no bound'}.",

@@ -98,8 +98,6 @@ def _tell_balance(problem: Problem, findings: Findings) -> Certificate:
         if numbers
     )
     return Certificate(
-        name="conservation",
-        title="Momentum and energy of the stop",
         claim=f"In the simulated stops of {problem.controller.name} from {problem.speeds[1] * KMH:.3g} km/h on "
         f"{problem.rail.name}, with the nominal parameters, momentum is conserved within {MOMENTUM_LIMIT:g} and energy "
         f"within {ENERGY_LIMIT:g} of what the train has at the start.",
@@ -235,8 +233,6 @@ def _tell_tracking(problem: Problem, findings: Findings) -> Certificate:
         )
         seen += "simulate says how far its steps can be trusted."
     return Certificate(
-        name="tracking",
-        title="Slip of the sampled loop",
         claim="In the simulated stop of the quarter locomotive with nominal parameters, sampling, valves, lag and "
         f"wheel lock, the slip error stays below 2 Phi/K_P = {bound:.3g} around the reference {reference:g} of the law "
         f"from {settled * KMH:.3g} km/h, half of the initial speed, down to {problem.speeds[0] * KMH:.3g} km/h on "

@@ -139,8 +139,6 @@ def _tell_reaching(problem: Problem, findings: Findings) -> Certificate:
     left = high * math.exp(-most * distance / eta)
     where = place(needed.values, said.names) if needed.values else ()
     return Certificate(
-        name="reaching",
-        title="Reaching the sliding surface",
         claim=f"While the slip stays between {problem.slips[0]:g} and {problem.slips[1]:g} and the speed above "
         f"{low * KMH:.3g} km/h, abs(s_D) falls in sigma = integral of dt/v with at least eta = {eta:.3g} m/s2: "
         f"W0 = {gain:.4g} m/s2 outweighs the model error, abs(r) + eta <= rho W0, {said.text}.",
@@ -224,8 +222,6 @@ def _tell_layer(problem: Problem, findings: Findings) -> Certificate:
         explanation += f" Violated: {'; '.join(violated)}."
     distance = point(room - ultimate)
     return Certificate(
-        name="boundary_layer",
-        title="Slip error inside the layer",
         claim="Once the layer is entered, and while the slip stays between "
         f"{problem.slips[0]:g} and {problem.slips[1]:g} and the speed above {problem.speeds[0] * KMH:.3g} km/h, "
         "abs(e) <= 2 Phi/K_P + c abs(E1) exp(-c t), with t the time since the entry and E1 the integral of the error "

@@ -31,8 +31,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     speed = f" = {float(rate):.4g} 1/s" if rate is not None else ""
     halving = math.log(2.0) / float(rate) if rate is not None and float(rate) > 0.0 else math.inf
     return Certificate(
-        name="surface_hurwitz",
-        title="Sliding surface",
         claim=f"While the state is on the surface, the slip error decays: e' + c e = 0 with c = K_I/K_P{speed} > 0.",
         status=found.status,
         explanation={

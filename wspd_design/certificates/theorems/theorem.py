@@ -36,8 +36,6 @@ def silent(theorem: Theorem, problem: Problem) -> Certificate | None:
 
     def without_findings(status: Status, explanation: str, method: str) -> Certificate:
         made = Certificate(
-            name=theorem.name,
-            title=theorem.title,
             claim=theorem.claim,
             status=status,
             explanation=explanation,

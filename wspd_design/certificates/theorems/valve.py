@@ -141,8 +141,6 @@ def _tell_pole(problem: Problem, findings: Findings) -> Certificate:
         Status.UNDECIDED: f"Open: {left_open(findings.values()) or 'it depends on the share of filling and venting'}.",
     }[status]
     return Certificate(
-        name="open_loop_pole",
-        title="Slip pole against the valve",
         claim=f"At every frozen speed the open-loop slip pole p at slip {problem.slip:g} does not exceed the rate of "
         f"the valve, as the equilibrium of a {MEMBERS} needs to be asymptotically stable; for fill and vent times up "
         f"to {slowest_valve(problem):g} s, {STATIC}, on {domain.described(problem, USED)}.",
@@ -208,8 +206,6 @@ def _tell_no_go(problem: Problem, findings: Findings) -> Certificate:
     shown = beyond if proved else nowhere
     valve = f"with the nominal parameters, {STATIC}, and a valve whose faster time constant is {1.0 / limit:.6g} s"
     return Certificate(
-        name="no_go",
-        title="Speeds that feedback of the slip cannot master",
         claim=f"At no frozen speed {where} is an equilibrium at slip {problem.slip:g} asymptotically stable under a "
         f"{MEMBERS}, {valve}."
         if not vacuous
@@ -313,8 +309,6 @@ def _tell_sampling(problem: Problem, findings: Findings) -> Certificate:
     low, high = common_lag(problem) or (lag, lag)
     times = f"{lag:g} s" if low == high else f"{low:g} to {high:g} s"
     return Certificate(
-        name="sampling",
-        title="Slip pole against sampling and valve",
         claim=f"At every frozen speed the slip pole at slip {problem.slip:g} does not exceed p_max, up to which "
         f"proportional feedback of the slip, sampled every {problem.sample_time * 1e3:g} ms, stabilizes it through a "
         f"valve that fills and vents with one time constant of {times}; p_max = {limit:.3g} 1/s at {lag:g} s; "

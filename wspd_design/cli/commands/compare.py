@@ -1,7 +1,7 @@
 """``wspd compare``: the same stop with several controllers."""
 
 from wspd_design.cli import options
-from wspd_design.cli.arguments import check_plant
+from wspd_design.cli.arguments import check_plant, initial_speed
 from wspd_design.cli.console import console, print_json, progress, spaced
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.json_objects import comparison_object
@@ -43,7 +43,7 @@ def compare(
     vehicle: options.VehicleOption = None,
     plant: options.PlantOption = options.PLANT,
     rail: options.RailOption = None,
-    speed: options.SpeedOption = options.SPEED,
+    speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
@@ -61,7 +61,7 @@ def compare(
     stop = scenario(
         cases[0].rail,
         disturbances,
-        speed=speed,
+        initial_speed=initial_speed(speed, cases[0].specification),
         seed=seed,
     )
     trials: list[tuple[Trial, float]] = []

@@ -1,5 +1,6 @@
 """``wspd design``: gains that meet a specification, with their reasons."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +13,7 @@ from wspd_design.cli.output import check_output
 from wspd_design.controllers.family import designed_family
 from wspd_design.design import selection
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
-from wspd_design.design.file import write_design
+from wspd_design.design.file import seen_from, write_design
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 
@@ -42,5 +43,6 @@ def design(
     with progress() as tell:
         tell("choosing the gains")
         made = selection.design_controller(locomotive, friction, wanted, law=chosen)
+    made = replace(made, vehicle_file=seen_from(output, vehicle), rail_file=seen_from(output, rail))
     write_design(made, output)
     show_design(made, output)

@@ -1,6 +1,7 @@
 """``wspd new``: the wizard."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -15,7 +16,7 @@ from wspd_design.cli.output import check_output
 from wspd_design.cli.wizard.draft import ENDING, draft_path, read_draft, write_draft
 from wspd_design.cli.wizard.flow import Ask, Back, complete, walk
 from wspd_design.cli.wizard.steps import SAVE, Answers, Step, steps, vehicle_and_rail, wanted
-from wspd_design.design.file import write_design
+from wspd_design.design.file import seen_from, write_design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
@@ -120,5 +121,6 @@ def _design(answers: Answers, target: Path) -> None:
         made = selection.design_controller(
             load_vehicle(vehicle), load_rail(rail), wanted(answers), law=answers["law"]
         )
+    made = replace(made, vehicle_file=seen_from(target, vehicle), rail_file=seen_from(target, rail))
     write_design(made, target)
     show_design(made, target)

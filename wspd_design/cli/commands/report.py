@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.arguments import check_plant, chosen
+from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.output import check_output
@@ -29,7 +29,7 @@ def report(
     vehicle: options.VehicleOption = None,
     plant: options.PlantOption = options.PLANT,
     rail: options.RailOption = None,
-    speed: options.SpeedOption = options.SPEED,
+    speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
     seed: options.SeedOption = 0,
@@ -53,7 +53,9 @@ def report(
     chosen_name = chosen(name, controller)
     case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
     made = _design(chosen_name, case)
-    stop = scenario(case.rail, disturbances, speed=speed, seed=seed)
+    stop = scenario(
+        case.rail, disturbances, initial_speed=initial_speed(speed, case.specification), seed=seed
+    )
     with progress() as tell:
         computed = dossier(
             made,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.arguments import check_plant, chosen
+from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.campaign import Extent, simulate_runs
 from wspd_design.cli.console import console, print_json, progress
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
@@ -101,7 +101,7 @@ def simulate(
     stop = scenario(
         case.rail,
         disturbances,
-        speed=options.SPEED if speed is None else speed,
+        initial_speed=initial_speed(speed, case.specification),
         seed=seed,
     )
     start = None

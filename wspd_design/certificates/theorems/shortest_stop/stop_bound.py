@@ -73,8 +73,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     described = domain.described(problem, (*USED, "axle load share"))
     stop = f"stops this vehicle from {problem.speeds[1] * KMH:.3g} km/h on {problem.rail.name}"
     return Certificate(
-        name="stop_bound",
-        title="Shortest stop of any controller",
         claim=f"No controller {stop} within less than {_bound(wide.numbers)}, for {described}; with the nominal "
         f"parameters, static wheel loads and all wheelsets alike, not within less than {_bound(known.numbers)}.",
         status=all_of(known, wide),
