@@ -99,7 +99,7 @@ class ProgressLines:
         self._told, self._before = now, done
         rest = f", about {_duration(took * (self._total - done) / made)} left" if made else ""
         print(
-            f"{self._what}: {done} of {self._total} ({done / self._total:.0%}){rest}",
+            f"{self._what}: {done} of {self._total} ({100.0 * done / self._total:.0f} %){rest}",
             file=sys.stderr,
             flush=True,
         )
