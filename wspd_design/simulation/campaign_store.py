@@ -55,7 +55,7 @@ class Store:
         try:
             rows, marks = read_rows(io.BytesIO(content), columns)
         except ValueError:
-            self._remake(path, "is damaged or no file of rows")
+            self._remake(path, "is damaged or not a file of rows")
             return None
         if marks.get("campaign") != self._key:
             self._remake(path, "belongs to another campaign")

@@ -109,7 +109,7 @@ class Choice:
     values: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Refuse an empty list and what is no number."""
+        """Refuse an empty list and what is not a number."""
         if not self.values or not all(math.isfinite(value) for value in self.values):
             raise UserError(f"choice among {list(self.values)}: name one or more finite numbers")
 
@@ -269,7 +269,7 @@ def _check_name(name: str, roots: Mapping[str, Any]) -> None:
     if name not in known:
         near = get_close_matches(name, known, n=1)
         remedy = f'did you mean "{near[0]}"?' if near else f"what can be drawn: {', '.join(known)}"
-        raise UserError(f'"{name}" is no number of vehicle, rail or stop that can be drawn; {remedy}')
+        raise UserError(f'"{name}" is not a number of vehicle, rail or stop that can be drawn; {remedy}')
 
 
 def _check_range(draw: Draw) -> None:

@@ -104,7 +104,7 @@ def other_rows(content):
     return parquet.rows_as_parquet(rows, marks)
 
 
-DAMAGED, CHANGED = "is damaged or no file of rows", "holds other rows than were written"
+DAMAGED, CHANGED = "is damaged or not a file of rows", "holds other rows than were written"
 
 
 @pytest.mark.parametrize(

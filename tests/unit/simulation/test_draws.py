@@ -107,9 +107,12 @@ def test_bounds_of_files_become_draws():
 @pytest.mark.parametrize(
     ("draws", "sentence"),
     [
-        ((replace(MASS, name="vehicle.maas"),), '"vehicle.maas" is no number .* did you mean "vehicle.mass"'),
-        ((replace(MASS, name="stop.seed"),), '"stop.seed" is no number'),
-        ((replace(MASS, name="vehicle.brake"),), '"vehicle.brake" is no number'),
+        (
+            (replace(MASS, name="vehicle.maas"),),
+            '"vehicle.maas" is not a number .* did you mean "vehicle.mass"',
+        ),
+        ((replace(MASS, name="stop.seed"),), '"stop.seed" is not a number'),
+        ((replace(MASS, name="vehicle.brake"),), '"vehicle.brake" is not a number'),
         ((MASS, FILL, MASS), "vehicle.mass is drawn twice"),
         (
             (replace(MU, distribution=Uniform(low=0.3, high=1.2)),),
