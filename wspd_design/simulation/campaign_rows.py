@@ -222,5 +222,9 @@ def _step_check(plan: Plan, row: Any, case: tuple[Any, Scenario]) -> tuple[float
         return math.nan, math.nan
     plant, scenario = case
     run, finer = (simulate_on(plant, plan.controller, scenario, refinement=parts) for parts in (1, 2))
-    change = abs(finer.totals.distance / float(row["distance_m"]) - 1.0)
-    return change, slip_difference(plant.vehicle, run, finer)
+    changes = (
+        abs(finer.totals.distance / float(row["distance_m"]) - 1.0),
+        slip_difference(plant.vehicle, run, finer),
+    )
+    distance, slip = (math.inf if math.isnan(change) else change for change in changes)  # NaN is not checked
+    return distance, slip
