@@ -80,9 +80,12 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
     options = (
         *("--axle-rails", "polach-wet,polach-wet,polach-dry,polach-dry", "--patch", "2 m low-adhesion"),
         *("--grade", "-5 permille", "--pad-vibration", "--speed-noise", "0.05 m/s", "--pulses", "80"),
-        *("--reference-error", "2 %", "--dead-time", "40 ms"),
+        *("--reference-error", "2 %", "--reference-drift", "-0.05 m/s2", "--reference-noise", "0.1 m/s"),
+        *("--torque-error", "-10 %", "--dead-time", "140 ms", "--shortest-pulse", "10 ms", "--period-timing"),
+        *("--load-spread", "4 %"),
     )
     found = only_object(wspd("simulate", "trenitalia", *SLOW, *options, "--json"))
+    assert found["scenario"].pop("load_spread") == pytest.approx(0.04, rel=0.1)
     assert found["scenario"] == {
         "start": {"slip": 0.0, "torque_Nm": 0.0, "braking_time_s": 0.0},
         "axle_rails": ["polach-wet", "polach-wet", "polach-dry", "polach-dry"],
@@ -91,8 +94,13 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
         "pad_vibration": True,
         "speed_noise_m_s": 0.05,
         "pulses_per_turn": 80,
+        "period_timing": True,
         "reference_error": 0.02,
-        "dead_time_s": 0.04,
+        "reference_drift_m_s2": -0.05,
+        "reference_noise_m_s": 0.1,
+        "torque_error": -0.1,
+        "dead_time_s": 0.14,
+        "shortest_pulse_s": 0.01,
     }
     assert found["distance_m"] != pytest.approx(plain["distance_m"], rel=1e-3)
     assert found["ideal_stop_m"] is None  # not known for a change of rail

@@ -269,7 +269,11 @@ def show(summary: Summary, series: Series) -> None:
     )
     distance = summary.spreads["distance_m"]
     if not drawn and distance.min == distance.max and len(campaign.table) > 1:
-        out.print("All stops are the same: nothing in them is random without --speed-noise.", style="yellow")
+        out.print(
+            "All stops are the same: what is random, --speed-noise, --reference-noise or --pulses, is off or "
+            "changes nothing.",
+            style="yellow",
+        )
 
 
 def _checks_sentence(summary: Summary) -> str:

@@ -31,13 +31,19 @@ from wspd_design.simulation.draws import (
 STOP_DIMENSIONS: Mapping[str, Dimension] = {
     "stop.initial_speed": "speed",
     "stop.grade": "ratio",
+    "stop.pad_vibration": "ratio",
     "stop.start.slip": "ratio",
     "stop.start.torque": "torque",
     "stop.start.braking_time": "time",
     "stop.sensing.speed_noise": "speed",
     "stop.sensing.pulses_per_turn": "ratio",
+    "stop.sensing.period_timing": "ratio",
     "stop.sensing.reference_error": "ratio",
+    "stop.sensing.reference_drift": "acceleration",
+    "stop.sensing.reference_noise": "speed",
+    "stop.sensing.torque_error": "ratio",
     "stop.sensing.dead_time": "time",
+    "stop.sensing.shortest_pulse": "time",
 }
 """What the numbers of a stop are measured in; a test holds that every one of them stands here."""
 
@@ -129,6 +135,7 @@ def read_campaign(path: Path) -> CampaignFile:
                         given,
                         initial_speed=initial_speed(words.speed, case.specification),
                         seed=words.seed,
+                        vehicle=case.vehicle,
                     ),
                     draws=(*(draw for draw in bounded if draw.name not in named), *drawn),
                 )

@@ -47,22 +47,51 @@ class StopOptions:
         bool,
         _described("--pad-vibration", None, "Vibration of the brake pads, T_d in Section 7 of the paper."),
     ] = False
+    load_spread: Annotated[
+        str | None,
+        _described(
+            "--load-spread",
+            "SHARE",
+            'Wheel loads vary along a track (ERRI B 176) that the seed draws; standard deviation: "4 %".',
+        ),
+    ] = None
     speed_noise: Annotated[
         str | None, _described("--speed-noise", "SPEED", 'Of the measured rim speed, rms: "0.05 m/s".')
     ] = None
     pulses: Annotated[
         int | None,
         _described(
-            "--pulses", "NUMBER", "Pulses per turn of the wheel that measures the speed, such as 80.", least=1
+            "--pulses",
+            "NUMBER",
+            "Pulses per turn of the wheel that measures the speed, such as 80; they are counted over a sample.",
+            least=1,
         ),
     ] = None
+    period_timing: Annotated[
+        bool,
+        _described("--period-timing", None, "Time the periods between the pulses in place of counting them."),
+    ] = False
     reference_error: Annotated[
         str | None,
         _described("--reference-error", "SHARE", 'Of the train speed that the controller knows: "2 %".'),
     ] = None
-    dead_time: Annotated[
+    reference_drift: Annotated[
         str | None,
-        _described("--dead-time", "TIME", 'From command to valve, at most one sample time: "40 ms".'),
+        _described("--reference-drift", "RATE", 'Of that train speed away from the true one: "-0.05 m/s2".'),
+    ] = None
+    reference_noise: Annotated[
+        str | None, _described("--reference-noise", "SPEED", 'Of that train speed, rms: "0.1 m/s".')
+    ] = None
+    torque_error: Annotated[
+        str | None,
+        _described("--torque-error", "SHARE", 'Of the torque that it computes from the pressure: "-10 %".'),
+    ] = None
+    dead_time: Annotated[str | None, _described("--dead-time", "TIME", 'From command to valve: "60 ms".')] = (
+        None
+    )
+    shortest_pulse: Annotated[
+        str | None,
+        _described("--shortest-pulse", "TIME", 'Shorter ones do not open a valve: "10 ms".'),
     ] = None
 
 

@@ -5,11 +5,13 @@ from pathlib import Path
 from rich.text import Text
 
 from wspd_design.cli.console import WIDE, console, spaced, table
+from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.records import Design, Gain, GainValue
+from wspd_design.parameters.records import Rail, Vehicle
 
 
-def show_design(made: Design, path: Path) -> None:
-    """Print the gains of a design, and where it was written and what to do with it."""
+def show_design(made: Design, path: Path, vehicle: Vehicle, rail: Rail) -> None:
+    """Print the gains of a design, what its brake asks of the rail, where it was written and what to do with it."""
     out = console()
     specification = made.specification
     low, high = specification.speeds
@@ -18,6 +20,7 @@ def show_design(made: Design, path: Path) -> None:
         f"slip {specification.slip:g} within {specification.slip_tolerance:g}, {low * 3.6:g} to "
         f"{high * 3.6:g} km/h, sample time {specification.sample_time * 1e3:g} ms"
     )
+    out.print(adhesion_sentence(vehicle, rail, specification.speeds), markup=False)
     wide = out.width >= WIDE
     shown = table("Gain", "Value", "Why") if wide else table("Gain", "Why")
     for gain in made.gains:

@@ -6,17 +6,21 @@ from pathlib import Path
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
-from wspd_design.parameters.loading import load_rail
-from wspd_design.parameters.records import Rail
+from wspd_design.parameters.loading import load_rail, load_track_spectrum
+from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import Dimension, parse_quantity
-from wspd_design.simulation.records import Patch, Scenario, Sensing
+from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing
+from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
 _RISE_IN_RUN = re.compile(r"(?P<rise>\S+)\s*(?:in|:)\s*(?P<run>\S+)", re.IGNORECASE)
+MOST_SPREAD = 0.2  # of the wheel loads: five standard deviations are the load
 _GRADE = 'write "5 permille", "0.5 %", "1 in 200" or 0.005, negative downhill'
 
 
-def scenario(rail: Rail, disturbances: StopOptions, *, initial_speed: float, seed: int) -> Scenario:
+def scenario(
+    rail: Rail, disturbances: StopOptions, *, initial_speed: float, seed: int, vehicle: Vehicle
+) -> Scenario:
     """Return the stop that the user asks for.
 
     Parameters
@@ -29,6 +33,8 @@ def scenario(rail: Rail, disturbances: StopOptions, *, initial_speed: float, see
         Of the train [m/s].
     seed : int
         Of all random numbers.
+    vehicle : Vehicle
+        Whose axles meet the irregular track one after the other.
     """
     return Scenario(
         rail=rail,
@@ -38,14 +44,45 @@ def scenario(rail: Rail, disturbances: StopOptions, *, initial_speed: float, see
         patches=tuple(map(_patch, disturbances.patch or ())),
         grade=0.0 if disturbances.grade is None else _grade(disturbances.grade),
         pad_vibration=disturbances.pad_vibration,
-        sensing=Sensing(
-            speed_noise=_amount(disturbances.speed_noise, "speed", "speed noise"),
-            pulses_per_turn=disturbances.pulses or 0,
-            reference_error=0.0
-            if disturbances.reference_error is None
-            else _reference_error(disturbances.reference_error),
-            dead_time=_amount(disturbances.dead_time, "time", "dead time"),
-        ),
+        sensing=_sensing(disturbances),
+        load_irregularity=None
+        if disturbances.load_spread is None
+        else _loads(disturbances.load_spread, vehicle, seed),
+    )
+
+
+def _loads(text: str, vehicle: Vehicle, seed: int) -> LoadIrregularity:
+    """Wheel loads with the shape of a drawn track."""
+    spread = parse_quantity(text, "ratio", what="load spread")
+    if not 0.0 <= spread <= MOST_SPREAD:
+        raise UserError(
+            f'load spread "{text}" must lie between 0 and {100.0 * MOST_SPREAD:g} %: a wheel would leave the rail'
+        )
+    track, channel = load_track_spectrum("erri-b176"), "vertical-high"
+    return irregular_load(
+        vehicle,
+        synthesize(track, channel, seed=seed),
+        sigma=standard_deviation(track, channel),
+        spread=spread,
+    )
+
+
+def _sensing(disturbances: StopOptions) -> Sensing:
+    if disturbances.period_timing and disturbances.pulses is None:
+        raise UserError("--period-timing needs a pulse wheel; add --pulses, for example --pulses 100")
+    drift = disturbances.reference_drift
+    return Sensing(
+        speed_noise=_amount(disturbances.speed_noise, "speed", "speed noise"),
+        pulses_per_turn=disturbances.pulses or 0,
+        period_timing=disturbances.period_timing,
+        reference_error=_error(disturbances.reference_error, "reference error", "a speed read"),
+        reference_drift=0.0
+        if drift is None
+        else parse_quantity(drift, "acceleration", what="reference drift"),
+        reference_noise=_amount(disturbances.reference_noise, "speed", "reference noise"),
+        torque_error=_error(disturbances.torque_error, "torque error", "a torque computed"),
+        dead_time=_amount(disturbances.dead_time, "time", "dead time"),
+        shortest_pulse=_amount(disturbances.shortest_pulse, "time", "shortest pulse"),
     )
 
 
@@ -96,10 +133,11 @@ def _amount(text: str | None, dimension: Dimension, what: str) -> float:
     return value
 
 
-def _reference_error(text: str) -> float:
-    value = parse_quantity(text, "ratio", what="reference error")
+def _error(text: str | None, what: str, positive: str) -> float:
+    """Read a relative error; nothing written is none."""
+    if text is None:
+        return 0.0
+    value = parse_quantity(text, "ratio", what=what)
     if not -1.0 < value < 1.0:
-        raise UserError(
-            f'reference error "{text}" must lie between -100 % and 100 %; positive is a speed read too high'
-        )
+        raise UserError(f'{what} "{text}" must lie between -100 % and 100 %; positive is {positive} too high')
     return value

@@ -64,13 +64,14 @@ class ClosedLoop:
         head = Head.from_buffer(buffer)
         trace = np.zeros((given.trace_rows, 3 + 5 * self.axles))
         head.set = given.settings
-        head.quantum, head.reference_factor = given.quantum, given.reference_factor
-        head.trace_rows = given.trace_rows
+        head.trace_rows, head.queue_rows = given.trace_rows, given.waiting_commands
         arrays = {
-            "measured": given.wheel_noise,
+            "disturbance": given.disturbances,
+            "queue": np.empty((given.waiting_commands, 2 * self.axles * self.stops)),
             "patch_start": given.patch_starts,
             "patch_rail": given.patch_rails,
             "load_factor": given.load_factors,
+            "load_spacing": given.load_spacings,
             "hold": given.held_slips,
             "gains": self._gains,
             "trace": trace if given.trace_rows else None,
@@ -78,10 +79,12 @@ class ClosedLoop:
         keep = [np.ascontiguousarray(a, dtype=np.float64) for a in arrays.values() if a is not None]
         for name, array in zip((n for n, a in arrays.items() if a is not None), keep, strict=True):
             setattr(head, name, _pointer(array))
+        seeds = np.ascontiguousarray(given.seeds, dtype=np.uint64)
+        head.seed = seeds.ctypes.data_as(ctypes.POINTER(ctypes.c_uint64))
         if given.patch_starts is not None:
             head.patches = len(given.patch_starts)
         if given.load_factors is not None:
-            head.load_points, head.load_spacing = given.load_factors.shape[1], given.load_spacing
+            head.load_points = given.load_factors.shape[1]
         if given.held_slips is not None:
             first, second = given.held_speeds
             head.hold_points = given.held_slips.shape[1]
@@ -90,7 +93,7 @@ class ClosedLoop:
         initial = (given.speeds, given.wheel_speeds, given.pressures)
         blocks = [np.ascontiguousarray(block, dtype=np.float64) for block in (*numbers, *initial)]
         self._library.wspd_begin(buffer, *(_pointer(block) for block in blocks))
-        return buffer, trace, [keep, blocks]
+        return buffer, trace, [keep, seeds, blocks]
 
     def _output(self, buffer: Any, result: int, trace: "Array", samples: "Array") -> LoopOutput:
         import numpy as np
@@ -209,7 +212,7 @@ def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
         places[name.upper()] = getattr(kernels, name).size1_out(0)
     folder = files("wspd_design").joinpath("codegen", "templates")
     parts = [f"#define {name} {value}\n" for name, value in places.items()]
-    parts.append(folder.joinpath("elementary.h").read_text())
+    parts += [folder.joinpath(name).read_text() for name in ("elementary.h", "random.h")]
     lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
     groups = {
         "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
@@ -218,7 +221,7 @@ def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
     parts += [emit(kernel, lanes, shared=kernel.n_in() - 1) for kernel in (law.start, law.step)]
-    parts += [folder.joinpath(name).read_text() for name in ("motion.c", "closed_loop.c")]
+    parts += [folder.joinpath(name).read_text() for name in ("motion.c", "sensors.c", "closed_loop.c")]
     return "".join(parts)
 
 

@@ -4,6 +4,7 @@ Arrays over lanes or stops have them as their last axis; lane ``axle * stops + s
 """
 
 import ctypes
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,7 @@ LANE_TOTALS = (
     "damping_work",
     "slip",
     "slip_squared",
+    "angle",
     "lock_time",
     "slip_max",
     "judged_lock_time",
@@ -29,6 +31,18 @@ LANE_TOTALS = (
     "valve_switches",
 )
 STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
+DISTURBANCES = (
+    "reference_factor",  # of the train speed that a law is told
+    "reference_drift",  # m/s2
+    "reference_noise",  # m/s rms
+    "speed_noise",  # m/s rms, of the rim speed
+    "pulse_angle",  # rad, 0 for a wheel speed without a pulse wheel
+    "timed",  # 1 where the time between pulses is taken, 0 where they are counted
+    "torque_factor",  # of the torque that a law is told
+    "dead_time",  # s
+    "shortest_pulse",  # s
+)
+"""What disturbs measurement and valves of a stop; in C in the same order."""
 RAIL_NUMBERS = 5
 DOUBLES = ctypes.POINTER(ctypes.c_double)
 
@@ -40,7 +54,6 @@ class Settings(ctypes.Structure):
         (name, ctypes.c_double)
         for name in (
             "sample_time",
-            "dead_time",
             "longest_step",
             "creep_rate",
             "stop_speed",
@@ -57,13 +70,16 @@ class Head(ctypes.Structure):
 
     _fields_ = (
         ("set", Settings),
-        ("measured", DOUBLES),
+        ("disturbance", DOUBLES),
+        ("seed", ctypes.POINTER(ctypes.c_uint64)),
+        ("queue", DOUBLES),
+        ("queue_rows", ctypes.c_long),
         ("patch_start", DOUBLES),
         ("patch_rail", DOUBLES),
         ("patches", ctypes.c_long),
         ("load_factor", DOUBLES),
         ("load_points", ctypes.c_long),
-        ("load_spacing", ctypes.c_double),
+        ("load_spacing", DOUBLES),
         ("hold", DOUBLES),
         ("hold_points", ctypes.c_long),
         ("hold_first", ctypes.c_double),
@@ -71,8 +87,6 @@ class Head(ctypes.Structure):
         ("trace", DOUBLES),
         ("trace_rows", ctypes.c_long),
         ("trace_used", ctypes.c_long),
-        ("quantum", ctypes.c_double),
-        ("reference_factor", ctypes.c_double),
         ("gains", DOUBLES),
     )
 
@@ -87,16 +101,26 @@ class LoopInput:
     wheel_speeds: "Array"  # (lanes,), initial [rad/s]
     pressures: "Array"  # (lanes,), of the cylinders, initial [Pa]
     settings: Settings
-    patch_starts: "Array | None" = None  # (patches,) [m]
-    patch_rails: "Array | None" = None  # (patches, axles, RAIL_NUMBERS)
-    wheel_noise: "Array | None" = None  # (samples, lanes) [rad/s]
-    quantum: float = 0.0  # rad/s
-    reference_factor: float = 1.0
-    load_factors: "Array | None" = None  # (axles, points)
-    load_spacing: float = 1.0  # m
+    disturbances: "Array"  # (DISTURBANCES, stops)
+    seeds: "NDArray[np.uint64]"  # (stops,)
+    patch_starts: "Array | None" = None  # (patches, stops) [m], inf where a stop has fewer
+    patch_rails: "Array | None" = None  # (patches, stops, RAIL_NUMBERS)
+    load_factors: "Array | None" = None  # (lanes, points)
+    load_spacings: "Array | None" = None  # (stops,) [m]
     held_slips: "Array | None" = None  # (lanes, points), what an ideal brake never exceeds
     held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
     trace_rows: int = 0
+
+    @property
+    def waiting_commands(self) -> int:
+        """Most commands that wait for their dead time at once."""
+        longest = min(float(self.disturbance("dead_time").max()), float(self.settings.time_limit))
+        return math.floor(longest / float(self.settings.sample_time)) + 2
+
+    def disturbance(self, name: str) -> "Array":
+        """One of the disturbances of every stop."""
+        row: Array = self.disturbances[DISTURBANCES.index(name)]
+        return row
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,6 +4,7 @@ Steps, their order and the events are those of ``templates/closed_loop.c``; a te
 """
 
 import math
+from collections import deque
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,8 @@ from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
+from wspd_design.codegen.valves import CLOSED, followed
+from wspd_design.codegen.virtual_sensors import VirtualSensors
 from wspd_design.codegen.virtual_step import INERTIA, RADIUS, StepFunctions, step_functions
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State
 from wspd_design.plants.protocol import Plant
@@ -81,6 +84,9 @@ class _VirtualPlant:
         self.vented = np.zeros(axles)
         self.switches = np.zeros(axles)
         self.valves = [-1] * axles  # last states: fill, vent, hold; -1 before the first
+        self.sensors = VirtualSensors(given, self.parameters[RADIUS])
+        self.waiting: deque[tuple[float, list[Command]]] = deque()
+        self.following = [CLOSED] * axles
         self.recorded = -1.0
         self.sample = self.steps = 0
         self.patch = [0] * axles
@@ -124,38 +130,42 @@ class _VirtualPlant:
     def running(self) -> bool:
         return self.moving and self.part("time")[0] <= self.set.time_limit
 
-    def measure(self) -> list[Measurement]:
-        import numpy as np
+    @property
+    def angles(self) -> "Array":
+        """Angles that the wheels have turned [rad]."""
+        angles: Array = self.part("lane").reshape(-1, self.layout.axles)[LANE_TOTALS.index("angle")]
+        return angles
 
-        given = self.given
-        wheels = self.wheels.copy()
-        if given.wheel_noise is not None:
-            wheels += given.wheel_noise[self.sample]
-        if given.quantum > 0.0:
-            wheels = given.quantum * np.floor(wheels / given.quantum + 0.5)
-        speed = float(self.part("speed")[0]) * given.reference_factor
-        return [
-            Measurement(speed=speed, wheel_speed=max(float(w), 0.0), torque=float(t))
-            for w, t in zip(wheels, self.part("torque"), strict=True)
-        ]
+    def measure(self) -> list[Measurement]:
+        return self.sensors.measure(
+            time=float(self.part("time")[0]),
+            speed=float(self.part("speed")[0]),
+            wheels=self.wheels,
+            angles=self.angles,
+            torques=self.part("torque"),
+        )
 
     def advance(self, commands: list[Command]) -> int:
-        h = self.set.sample_time
+        h, dead_time = self.set.sample_time, float(self.given.disturbance("dead_time")[0])
         start = self.sample * h
-        self._count_switches(commands)
-        result = self._advance_to(start + self.set.dead_time)
         for fill, vent in commands:
             if not (0.0 <= fill <= 1.0 and vent >= 0.0 and fill + vent <= 1.0 + 1e-9):
                 self.bad_command = (start, fill, vent)
                 return BAD_COMMAND
-        if self.moving:
-            self._set_valves(commands)
+        self.sensors.decided(self.angles)
+        self.waiting.append((start + dead_time, commands))
         self.sample += 1
-        return result or self._advance_to(self.sample * h)
+        end, result = self.sample * h, GOOD
+        while self.waiting and self.waiting[0][0] <= end and result == GOOD:
+            time, due = self.waiting.popleft()
+            result = self._advance_to(time)
+            if self.moving:
+                self._set_valves(due)
+        return result or self._advance_to(end)
 
-    def _count_switches(self, commands: list[Command]) -> None:
-        """Count the changes of the valve state that the commands ask for."""
-        for axle, (fill, vent) in enumerate(commands):
+    def _count_switches(self) -> None:
+        """Count the changes of the valve state that the commands make."""
+        for axle, (fill, vent) in enumerate(self.following):
             for valve, share in enumerate((fill, vent, 1.0 - fill - vent)):
                 if share > 1e-9:
                     self.switches[axle] += self.valves[axle] not in (-1, valve)
@@ -165,7 +175,13 @@ class _VirtualPlant:
         import numpy as np
 
         present, h = float(self.part("time")[0]), self.set.sample_time
-        fill, vent = np.array(commands, dtype=np.float64).T
+        shortest = float(self.given.disturbance("shortest_pulse")[0])
+        self.following = [
+            followed(command, before, sample_time=h, shortest_pulse=shortest)
+            for command, before in zip(commands, self.following, strict=True)
+        ]
+        self._count_switches()
+        fill, vent = np.array(self.following, dtype=np.float64).T
         fill_end = present + fill * h
         vent_end = np.where(1.0 - fill - vent < 1e-12, present + h, fill_end + vent * h)
         self.vented += self.part("filled") - self.part("pressure")
@@ -209,11 +225,11 @@ class _VirtualPlant:
             self._look_up(min(h, change))
         rows = self._step(number)
         kept = int(rows[:, self.layout.row].sum())  # a step that is not made is the last one
-        result = self._record(rows[:kept])
+        result = self._follow(rows[:kept])
         if kept < number and rows[kept, self.layout.row + 1] < self.set.stop_speed:
             ahead = float(self.part("speed")[0])
             self._give("scale", (ahead - self.set.stop_speed) / (ahead - rows[kept, self.layout.row + 1]))
-            result = result or self._record(self._step(1))
+            result = result or self._follow(self._step(1))
             kept += 1
         self.steps += kept
         self.moving = bool(self.part("speed")[0] > self.set.stop_speed * (1.0 + 1e-6))
@@ -235,15 +251,15 @@ class _VirtualPlant:
         for axle in range(self.layout.axles):
             place = self.part("stop")[0] - self.parameters[_OFFSET, axle]
             reached = self.patch[axle]
-            while reached < len(given.patch_starts) and given.patch_starts[reached] <= place:
+            while reached < len(given.patch_starts) and given.patch_starts[reached, 0] <= place:
                 reached += 1
             if reached != self.patch[axle]:
-                rail = given.patch_rails[reached - 1, axle]
+                rail = given.patch_rails[reached - 1, 0]
                 self.parameters[_FIRST_RAIL : _FIRST_RAIL + RAIL_NUMBERS, axle] = rail
                 self.patch[axle] = reached
                 changed = True
             if reached < len(given.patch_starts):
-                soonest = min(soonest, float(given.patch_starts[reached] - place) / speed + 1e-9)
+                soonest = min(soonest, float(given.patch_starts[reached, 0] - place) / speed + 1e-9)
         if changed:
             self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
         return soonest
@@ -253,8 +269,8 @@ class _VirtualPlant:
         import numpy as np
 
         given, speed = self.given, float(self.part("speed")[0])
-        if given.load_factors is not None:
-            points = np.arange(given.load_factors.shape[1]) * given.load_spacing
+        if given.load_factors is not None and given.load_spacings is not None:
+            points = np.arange(given.load_factors.shape[1]) * given.load_spacings[0]
             places = self.part("stop")[0] + np.array([0.0, 0.5, 1.0]) * h * speed
             factors = [np.interp(places, points, row) for row in given.load_factors]
             self._give("load_factors", np.transpose(factors).ravel())
@@ -267,6 +283,13 @@ class _VirtualPlant:
             here, above = given.held_slips[:, k], given.held_slips[:, k + 1]
             below = given.held_slips[:, k - 1] if k > 0 else 2.0 * here - above
             self._give("hold", np.concatenate([[first, spacing, k], below, here, above]))
+
+    def _follow(self, rows: "Array") -> int:
+        """Tell the sensors and the traces of the steps that were made."""
+        axles = self.layout.axles
+        for row in rows if self.sensors.timed else ():
+            self.sensors.follow(float(row[0]), row[-axles:].copy(), row[3 : 3 + axles].copy())
+        return self._record(rows)
 
     def _record(self, rows: "Array") -> int:
         """Keep a row of the traces whenever the interval has passed, and the last one."""

@@ -14,7 +14,7 @@ from wspd_design.model.number import maximum, minimum, where
 
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
-INTEGRATED = 7  # totals of a lane that are integrals; those of locks and the largest slip follow
+INTEGRATED = 8  # totals of a lane that are integrals; those of locks and the largest slip follow
 
 
 def _places(sizes: dict[str, int]) -> dict[str, slice]:
@@ -44,7 +44,7 @@ class Layout:
     def row(self) -> int:
         """Length of a row of the trace.
 
-        After it come whether the step was made, and the speed at its end.
+        After it come whether the step was made, the speed at its end, and the angles that the wheels have turned.
         """
         return 3 + 5 * self.axles
 
@@ -176,7 +176,8 @@ class _Step:
         )
         made = where(given["scale"] < 1.0, 1.0, where(speed < given["stop_speed"], 0.0, 1.0))
         made = where(following > now["time"], made, 0.0)
-        row = ca.vertcat(stop[4], speed, stop[0], wheel, slip, passed, load, torque[1], made, speed)
+        turned = totals[(INTEGRATED - 1) * axles : integrated]
+        row = ca.vertcat(stop[4], speed, stop[0], wheel, slip, passed, load, torque[1], made, speed, turned)
         return [where(made, ahead, self.whole), row]
 
     def _length(self) -> tuple[Any, Any]:
@@ -269,6 +270,7 @@ class _Step:
             2.0 * damping * wheel,
             judged * slip,
             judged * slip * slip,
+            wheel,
         )
         stop = ca.vertcat(speed, resistance, resistance * speed, judged)
         rates = ca.vertcat(acceleration, rolling, others, transferring)

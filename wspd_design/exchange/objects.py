@@ -70,6 +70,7 @@ def stop_object(
 def scenario_object(scenario: Scenario) -> dict[str, Any]:
     """Return where a stop starts and what disturbs it."""
     rails, sensing, start = scenario.axle_rails, scenario.sensing, scenario.start
+    loads = scenario.load_irregularity
     return {
         "start": {
             "slip": start.slip,
@@ -80,10 +81,16 @@ def scenario_object(scenario: Scenario) -> dict[str, Any]:
         "patches": [{"from_m": patch.start, "rail": patch.rail.name} for patch in scenario.patches],
         "grade": scenario.grade,
         "pad_vibration": scenario.pad_vibration,
+        "load_spread": 0.0 if loads is None else loads.spread,
         "speed_noise_m_s": sensing.speed_noise,
         "pulses_per_turn": sensing.pulses_per_turn,
+        "period_timing": sensing.period_timing,
         "reference_error": sensing.reference_error,
+        "reference_drift_m_s2": sensing.reference_drift,
+        "reference_noise_m_s": sensing.reference_noise,
+        "torque_error": sensing.torque_error,
         "dead_time_s": sensing.dead_time,
+        "shortest_pulse_s": sensing.shortest_pulse,
     }
 
 

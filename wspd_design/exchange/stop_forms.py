@@ -51,14 +51,40 @@ SCENARIO = Form(
         Key(name="patches", kind=PATCH, many=ANY, meaning="changes of rail along the track"),
         Key(name="grade", kind="number", meaning="rise over run, positive uphill"),
         Key(name="pad_vibration", kind="flag", meaning="T_d of Section 7"),
+        Key(
+            name="load_spread",
+            kind="number",
+            meaning="root mean square of what the relative wheel loads differ from 1 by, along the table",
+        ),
         Key(name="speed_noise_m_s", kind="number", meaning="rms, of the measured rim speed"),
-        Key(name="pulses_per_turn", kind="integer", meaning="of the pulse wheel; 0 for an exact measurement"),
+        Key(
+            name="pulses_per_turn",
+            kind="integer",
+            meaning="of the pulse wheel; 0 for a wheel speed that is known at each instant",
+        ),
+        Key(
+            name="period_timing",
+            kind="flag",
+            meaning="whether the time between pulses gives the wheel speed, in place of their count over a sample",
+        ),
         Key(
             name="reference_error",
             kind="number",
             meaning="relative error of the train speed that the controller knows",
         ),
+        Key(
+            name="reference_drift_m_s2",
+            kind="number",
+            meaning="by which that speed moves away from the true one",
+        ),
+        Key(name="reference_noise_m_s", kind="number", meaning="rms, of that speed"),
+        Key(
+            name="torque_error",
+            kind="number",
+            meaning="relative error of the torque that the controller computes from the pressure",
+        ),
         Key(name="dead_time_s", kind="number", meaning="from the command to the valve"),
+        Key(name="shortest_pulse_s", kind="number", meaning="shorter ones do not open a valve"),
     ),
 )
 WITNESS = Form(

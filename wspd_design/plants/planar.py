@@ -76,15 +76,19 @@ class Planar(RigidWheelsets):
         transfers: tuple[Number, ...],
         grade_force: Number = 0.0,
     ) -> TrainMotion:
-        """Acceleration of the train, eq. (1) with one creep force per wheel of each axle, and pitch response."""
+        """Acceleration of the train, eq. (1) with one creep force per wheel of each axle, and pitch response.
+
+        What tips body and bogies is the force on them beside gravity: by mass the deceleration less g times the grade.
+        """
         vehicle = self.vehicle
         resistance = slip_model.resistance(vehicle, speed, grade_force)
         acceleration = slip_model.train_acceleration(vehicle, sum(creep_forces) / self.axles, resistance)
+        held = -acceleration - grade_force / vehicle.mass
         height = vehicle.body_height - vehicle.traction_rod_height
-        targets = [vehicle.body_mass * -acceleration * height / vehicle.bogie_spacing]
+        targets = [vehicle.body_mass * held * height / vehicle.bogie_spacing]
         for bogie in range(self.bogies):
             front, rear = creep_forces[_AXLES * bogie : _AXLES * (bogie + 1)]
-            targets.append(_bogie_target(vehicle, 2.0 * (front + rear), -acceleration))
+            targets.append(_bogie_target(vehicle, 2.0 * (front + rear), held))
         frequencies = (vehicle.body_pitch_frequency, *(vehicle.bogie_pitch_frequency,) * self.bogies)
         values, rates = transfers[: self.transfers], transfers[self.transfers :]
         damping = vehicle.pitch_damping_ratio
@@ -108,9 +112,9 @@ def _body_shares(number: int) -> tuple[float, ...]:
     return tuple(place / squares for place in places)
 
 
-def _bogie_target(vehicle: Vehicle, force: Number, deceleration: Number) -> Number:
-    """Quasi-static load transfer within a bogie: its own inertia, and the body's pull on the traction rod [N]."""
-    own = vehicle.bogie_mass * deceleration
+def _bogie_target(vehicle: Vehicle, force: Number, held: Number) -> Number:
+    """Quasi-static load transfer within a bogie: what holds its own mass, and the body's pull on the rod [N]."""
+    own = vehicle.bogie_mass * held
     moment = own * vehicle.bogie_height + (force - own) * vehicle.traction_rod_height
     return moment / vehicle.wheelbase
 

@@ -1,7 +1,7 @@
 """Stops side by side in one compiled loop, and one after another where that cannot be."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from wspd_design.codegen.closed_loop import load_closed_loop
@@ -68,31 +68,15 @@ def run_batch(
 def _side_by_side(
     cases: Cases, controller: Controller, numbers: Callable[[Cases], LoopInput]
 ) -> list[LoopOutput]:
-    """Run all stops in one compiled loop; empty where they or this machine do not allow it."""
-    if len(cases) != STOPS_SIDE_BY_SIDE or any(
-        _shared(scenario) != _shared(cases[0][1]) for _, scenario in cases
-    ):
+    """Run all stops in one compiled loop; empty where their number or this machine does not allow it."""
+    if len(cases) != STOPS_SIDE_BY_SIDE:
         return []
-    plant, scenario = cases[0]
+    shaken = any(scenario.pad_vibration for _, scenario in cases)
     try:
-        loop = load_closed_loop(plant, controller, stops=len(cases), disturbed=scenario.pad_vibration)
+        loop = load_closed_loop(cases[0][0], controller, stops=len(cases), disturbed=shaken)
     except (NoCompilerError, UntraceableError):
         return []
     return [loop.run(numbers(cases))]
-
-
-def _shared(scenario: Scenario) -> tuple[object, ...]:
-    """What :func:`loop_input` takes from the first of the stops that run side by side."""
-    sensing = scenario.sensing
-    noisy = sensing.speed_noise > 0.0
-    return (
-        scenario.patches,
-        scenario.grade,
-        scenario.pad_vibration,
-        scenario.load_irregularity,
-        noisy,
-        replace(sensing, speed_noise=0.0),
-    )
 
 
 def _together(outputs: Sequence[LoopOutput], axles: int) -> Batch:

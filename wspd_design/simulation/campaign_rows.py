@@ -20,9 +20,9 @@ from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import plant_of
 from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE, Batch, Cases, run_batch
 from wspd_design.simulation.draws import Deck, Draw
-from wspd_design.simulation.ideal import filling_brake, ideal_input
+from wspd_design.simulation.ideal import FILLING, ideal_input
 from wspd_design.simulation.loop_input import first_slip, loop_input
-from wspd_design.simulation.records import Scenario, Start
+from wspd_design.simulation.records import Scenario, Sensing, Start
 from wspd_design.simulation.self_check import slip_difference
 from wspd_design.simulation.stop import simulate_on
 
@@ -201,19 +201,15 @@ def _ideal_distances(cases: Cases, runs: str) -> "Array":
     if any(scenario.patches or scenario.start != Start() for _, scenario in cases):
         return np.full(len(cases), np.nan)
     unseeing = [(plant, _unseeing(scenario)) for plant, scenario in cases]
-    filling = filling_brake([scenario for _, scenario in unseeing])
     alike = all(case == unseeing[0] for case in unseeing)
-
-    def numbers(some: Cases) -> Any:
-        return ideal_input(some, filling)
-
-    batch: Batch = run_batch(unseeing[:1] if alike else unseeing, filling, numbers, what=runs)
+    batch: Batch = run_batch(unseeing[:1] if alike else unseeing, FILLING, ideal_input, what=runs)
     found = np.where(batch.stopped, batch.stops["distance"], np.nan)
     return np.broadcast_to(found, len(cases)) if alike else found
 
 
 def _unseeing(scenario: Scenario) -> Scenario:
-    return replace(scenario, seed=0, sensing=replace(scenario.sensing, speed_noise=0.0))
+    of_valves = Sensing(dead_time=scenario.sensing.dead_time, shortest_pulse=scenario.sensing.shortest_pulse)
+    return replace(scenario, seed=0, sensing=of_valves)
 
 
 def _step_check(plan: Plan, row: Any, case: tuple[Any, Scenario]) -> tuple[float, float]:

@@ -12,12 +12,21 @@ def rails_of(stop: Scenario) -> str:
 def disturbances_of(stop: Scenario) -> str:
     """Say what disturbs a stop besides its rails; empty for nothing."""
     sensing = stop.sensing
+    loads = stop.load_irregularity
     said = (
         (stop.grade, f"grade {1e3 * stop.grade:g} permille"),
         (stop.pad_vibration, "pad vibration"),
+        (loads, f"wheel loads that vary by {100.0 * loads.spread:.2g} % rms" if loads else ""),
         (sensing.speed_noise, f"speed noise {sensing.speed_noise:g} m/s rms"),
-        (sensing.pulses_per_turn, f"{sensing.pulses_per_turn} pulses per turn"),
+        (
+            sensing.pulses_per_turn,
+            f"{sensing.pulses_per_turn} pulses per turn, {'timed' if sensing.period_timing else 'counted'}",
+        ),
         (sensing.reference_error, f"reference error {100.0 * sensing.reference_error:g} %"),
+        (sensing.reference_drift, f"reference drift {sensing.reference_drift:g} m/s2"),
+        (sensing.reference_noise, f"reference noise {sensing.reference_noise:g} m/s rms"),
+        (sensing.torque_error, f"torque error {100.0 * sensing.torque_error:g} %"),
         (sensing.dead_time, f"dead time {1e3 * sensing.dead_time:g} ms"),
+        (sensing.shortest_pulse, f"shortest pulse {1e3 * sensing.shortest_pulse:g} ms"),
     )
     return ", ".join(words for present, words in said if present)

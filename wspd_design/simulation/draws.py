@@ -28,6 +28,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _PER_COUNT = 4  # numbers that Philox makes of one state of its counter
+_CASTS: Mapping[Any, Callable[[float], Any]] = {
+    float: float,
+    int: round,
+    bool: bool,
+}  # of fields that can be drawn
 _NEVER = ("seed", "wheelsets", "rail", "bounds", "load_irregularity")  # of each stop anyway, or no number
 
 
@@ -131,7 +136,7 @@ class Draw:
 
     Its name is the path of its record: ``vehicle.mass``, ``vehicle.brake.fill_time``, ``rail.mu0``,
     ``stop.initial_speed``, ``stop.sensing.speed_noise``. Every number of :class:`Vehicle`, :class:`Rail` and
-    :class:`Scenario` can be drawn.
+    :class:`Scenario` can be drawn, and what is on or off as 0 and 1.
     """
 
     name: str
@@ -230,15 +235,15 @@ def _below(columns: Mapping[str, int], root: str) -> dict[str, int]:
 def _maker(record: Any, columns: Mapping[str, int]) -> Callable[..., Any]:
     """Return what puts a row of drawn numbers into the fields of a record, several times faster than ``replace``."""
     kind, base = type(record), {field.name: getattr(record, field.name) for field in fields(record)}
-    whole = {field.name for field in fields(record) if field.type is int}
-    own = [(name, column, name in whole) for name, column in columns.items() if "." not in name]
+    kinds = {field.name: field.type for field in fields(record)}
+    own = [(name, column, _CASTS[kinds[name]]) for name, column in columns.items() if "." not in name]
     heads = dict.fromkeys(name.partition(".")[0] for name in columns if "." in name)
     inner = [(head, _maker(base[head], _below(columns, head))) for head in heads]
 
     def make(row: list[float], **known: object) -> Any:
         changed = base | known
-        for name, column, rounded in own:
-            changed[name] = round(row[column]) if rounded else row[column]
+        for name, column, cast in own:
+            changed[name] = cast(row[column])
         for name, below in inner:
             changed[name] = below(row)
         return kind(**changed)
@@ -253,7 +258,7 @@ def drawable(record: Any, path: str) -> list[str]:
         value, name = getattr(record, field.name), f"{path}.{field.name}"
         if field.name in _NEVER:
             continue
-        if field.type in (int, float):
+        if field.type in _CASTS:
             found.append(name)
         elif is_dataclass(value):
             found += drawable(value, name)

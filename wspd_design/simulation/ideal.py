@@ -37,8 +37,9 @@ _SECTIONS = 9  # golden sections within the hump: to 0.3 % of the slip, where th
 _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 _AT_ONCE = 1e9  # 1/s: a supply that is there at once
 _INSTANT = 1e-6  # s: a cylinder that fills at once
-_SAMPLE_TIME = 0.1  # s: the unprotected brake fills whatever it samples
 
+FILLING = Unprotected(name="ideal", sample_time=0.1)
+"""Law of an ideal brake, which fills whatever it samples."""
 NO_IDEAL_STOP = "even a brake that holds the best slip is still moving at the time limit"
 """What to say of a train that cannot stop, in place of a distance."""
 
@@ -101,8 +102,7 @@ def ideal_stop(
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
     braked = plant_of(plant, vehicle)
-    filling = filling_brake([scenario])
-    output, _ = run_loop(braked, filling, scenario, ideal_input([(braked, scenario)], filling, slip=slip))
+    output, _ = run_loop(braked, FILLING, scenario, ideal_input([(braked, scenario)], slip=slip))
     what = "adhesion peak" if slip is None else f"constant slip {slip:g}"
     build_up = "full torque at once" if instantaneous else "with brake build-up"
     stopped = bool(output.stopped[0])
@@ -114,16 +114,7 @@ def ideal_stop(
     )
 
 
-def filling_brake(scenarios: Sequence[Scenario]) -> Unprotected:
-    """Return the law of an ideal brake, which fills until the slip is there."""
-    return Unprotected(
-        name="ideal", sample_time=max(_SAMPLE_TIME, *(each.sensing.dead_time for each in scenarios))
-    )
-
-
-def ideal_input(
-    cases: Sequence[tuple[Plant, Scenario]], filling: Unprotected, *, slip: float | None = None
-) -> LoopInput:
+def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None = None) -> LoopInput:
     """Numbers of one or several ideal stops for the closed loop; those of one campaign share a table of speeds."""
     import numpy as np
 
@@ -139,7 +130,7 @@ def ideal_input(
     else:
         held = np.full((len(lanes), len(speeds)), slip)
     return replace(
-        loop_input(cases, filling), held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1]))
+        loop_input(cases, FILLING), held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1]))
     )
 
 

@@ -2,22 +2,25 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from wspd_design.codegen.kernels import Surroundings, parameter_values
-from wspd_design.codegen.loop_numbers import LoopInput, Settings
+from wspd_design.codegen.loop_numbers import DISTURBANCES, RAIL_NUMBERS, LoopInput, Settings
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Rail, Vehicle
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import Plant
-from wspd_design.simulation.records import Scenario, Start
+from wspd_design.simulation.records import LoadIrregularity, Scenario, Sensing, Start
 from wspd_design.simulation.start import available_torque
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
 
 LONGEST_STEP = 1e-3  # s
 STEPS_PER_CREEP_TIME = 0.5  # Runge-Kutta of order four is stable up to 2.8 creep times
@@ -31,24 +34,23 @@ def loop_input(
 ) -> LoopInput:
     """Numbers of one or several stops for the closed loop.
 
-    Stops side by side may differ in the numbers of vehicle, rail, initial speed, start and seed; patches, grade,
-    sensing and load irregularity are those of the first.
+    Stops side by side share the kind of the plant, its number of wheelsets and the controller.
     """
     import numpy as np
 
-    plant, scenario = cases[0]
-    sensing, axles = scenario.sensing, plant.axles
-    _check(scenario, controller, plant)
+    axles = cases[0][0].axles
     for each_plant, each in cases:
+        _check(each, controller, each_plant)
         _check_start(each_plant.vehicle, each.start)
-    grade = constants().gravity * scenario.grade
+    gravity = constants().gravity
+    shaken = any(each.pad_vibration for _, each in cases)
     columns = [
         [
             parameter_values(
-                each_plant.vehicle,
+                each_plant.vehicle if each.pad_vibration or not shaken else _calm(each_plant.vehicle),
                 _rails(each, each_plant)[axle],
                 Surroundings(
-                    grade_force=each_plant.vehicle.mass * grade,
+                    grade_force=each_plant.vehicle.mass * (gravity * each.grade),
                     axle_offset=each_plant.offsets[axle],
                     braking_time=each.start.braking_time,
                 ),
@@ -57,8 +59,9 @@ def loop_input(
         ]
         for axle in range(axles)
     ]
-    irregularity = scenario.load_irregularity
-    pulses = sensing.pulses_per_turn * controller.sample_time
+    scenarios = [each for _, each in cases]
+    starts, rails = _patches(scenarios)
+    factors, spacings = _load_factors(scenarios, axles)
     return LoopInput(
         stop_parameters=np.array(columns[0]).T,
         lane_parameters=np.array([row for axle in columns for row in axle]).T,
@@ -66,13 +69,12 @@ def loop_input(
         wheel_speeds=np.tile([_rim_speed(each) / p.vehicle.wheel_radius for p, each in cases], axles),
         pressures=np.tile([_pressure(p.vehicle.brake, each.start) for p, each in cases], axles),
         settings=_settings(cases, controller, refinement),
-        patch_starts=np.array([patch.start for patch in scenario.patches]) if scenario.patches else None,
-        patch_rails=_patch_rails(scenario, axles) if scenario.patches else None,
-        wheel_noise=_wheel_noise(cases, controller) if sensing.speed_noise else None,
-        quantum=2.0 * math.pi / pulses if pulses else 0.0,
-        reference_factor=1.0 + sensing.reference_error,
-        load_factors=np.array(irregularity.factors) if irregularity else None,
-        load_spacing=irregularity.spacing if irregularity else 1.0,
+        disturbances=np.array([_disturbances(each.sensing) for each in scenarios]).T,
+        seeds=np.array([each.seed for each in scenarios], dtype=np.uint64),
+        patch_starts=starts,
+        patch_rails=rails,
+        load_factors=factors,
+        load_spacings=spacings,
     )
 
 
@@ -81,10 +83,10 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
         raise UserError(
             f"sample time = {controller.sample_time:g} s of controller {controller.name} must lie between 1 ms and 10 s"
         )
-    if not 0.0 <= scenario.sensing.dead_time <= controller.sample_time:
+    if scenario.sensing.shortest_pulse > controller.sample_time:
         raise UserError(
-            f"dead time = {scenario.sensing.dead_time:g} s must lie between 0 and the sample time "
-            f"of {controller.sample_time:g} s"
+            f"shortest pulse = {scenario.sensing.shortest_pulse:g} s must not exceed the sample time of "
+            f"{controller.sample_time:g} s of controller {controller.name}, whose valves would never open"
         )
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
@@ -137,7 +139,6 @@ def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, r
     fixed = constants()
     return Settings(
         sample_time=controller.sample_time,
-        dead_time=cases[0][1].sensing.dead_time,
         longest_step=LONGEST_STEP / refinement,
         creep_rate=steepest * LOAD_MARGIN ** (2.0 / 3.0) * STEPS_PER_CREEP_TIME * refinement,
         stop_speed=fixed.stop_speed,
@@ -148,27 +149,61 @@ def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, r
     )
 
 
-def _patch_rails(scenario: Scenario, axles: int) -> "NDArray[np.float64]":
+def _calm(vehicle: Vehicle) -> Vehicle:
+    """The same vehicle with pads that do not vibrate, for a stop beside others where they do."""
+    return replace(vehicle, brake=replace(vehicle.brake, disturbance_gain=0.0))
+
+
+def _disturbances(sensing: Sensing) -> list[float]:
+    pulses = sensing.pulses_per_turn
+    numbers = {
+        "reference_factor": 1.0 + sensing.reference_error,
+        "reference_drift": sensing.reference_drift,
+        "reference_noise": sensing.reference_noise,
+        "speed_noise": sensing.speed_noise,
+        "pulse_angle": 2.0 * math.pi / pulses if pulses else 0.0,
+        "timed": float(sensing.period_timing),
+        "torque_factor": 1.0 + sensing.torque_error,
+        "dead_time": sensing.dead_time,
+        "shortest_pulse": sensing.shortest_pulse,
+    }
+    return [numbers[name] for name in DISTURBANCES]
+
+
+def _patches(scenarios: Sequence[Scenario]) -> "tuple[Array, Array] | tuple[None, None]":
+    """Starts and rails of the patches of every stop, filled up with patches that no train reaches."""
     import numpy as np
 
-    rows = [
-        (r.mu0, r.friction_ratio, r.friction_decay, r.adhesion_reduction, r.slip_reduction)
-        for r in (patch.rail for patch in scenario.patches)
-    ]
-    return np.repeat(np.array(rows)[:, np.newaxis, :], axles, axis=1)
+    most = max(len(each.patches) for each in scenarios)
+    if not most:
+        return None, None
+    starts = np.full((most, len(scenarios)), np.inf)
+    rails = np.zeros((most, len(scenarios), RAIL_NUMBERS))
+    for stop, each in enumerate(scenarios):
+        for row, patch in enumerate(each.patches):
+            r = patch.rail
+            starts[row, stop] = patch.start
+            rails[row, stop] = (
+                *(r.mu0, r.friction_ratio, r.friction_decay),
+                *(r.adhesion_reduction, r.slip_reduction),
+            )
+    return starts, rails
 
 
-def _wheel_noise(cases: Sequence[tuple[Plant, Scenario]], controller: Controller) -> "NDArray[np.float64]":
-    """Noise of the measured wheel speeds [rad/s]; each stop draws from its own seed."""
+def _load_factors(scenarios: Sequence[Scenario], axles: int) -> "tuple[Array, Array] | tuple[None, None]":
+    """Tables of the wheel loads of every stop, as long as the longest (the last value stays), and their spacings."""
     import numpy as np
 
-    rows, axles = sample_rows(controller), cases[0][0].axles
-    draws = [
-        np.random.default_rng(np.random.SeedSequence([scenario.seed, 0])).standard_normal((rows, axles))
-        * (scenario.sensing.speed_noise / plant.vehicle.wheel_radius)
-        for plant, scenario in cases
-    ]
-    return np.stack(draws, axis=2).reshape(rows, axles * len(cases))
+    if not any(each.load_irregularity for each in scenarios):
+        return None, None
+    even = LoadIrregularity(spacing=1.0, factors=((1.0, 1.0),) * axles)
+    given = [each.load_irregularity or even for each in scenarios]
+    points = max(len(row) for each in given for row in each.factors)
+    table = np.empty((axles, len(given), points))
+    for stop, each in enumerate(given):
+        for axle, row in enumerate(each.factors):
+            table[axle, stop] = (*row, *(row[-1],) * (points - len(row)))
+    return table.reshape(axles * len(given), points), np.array([each.spacing for each in given])
 
 
 def sample_rows(controller: Controller) -> int:

@@ -26,12 +26,65 @@ class Patch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sensing:
-    """What disturbs a real WSP; everything is off by default."""
+    """What disturbs a real WSP between the train and its controller and back; everything is off by default.
+
+    A pulse wheel is counted as by an incremental encoder: the wheel speed is that of the whole pulses since the last
+    sample, and the rest of the angle stays for the next one. With ``period_timing`` it is one pulse over the time
+    between the last two, and never more than one pulse over the time since the last one, which is the rule where no
+    pulse comes: a faster wheel would have given one. The clock is exact; the times of the pulses are interpolated
+    within the steps, and the speeds agree with the true angle to 3e-5 up to 1000 pulses in steps of 0.2 ms. Before the
+    stop the wheel turned at its first speed; where it stands at the start is drawn.
+
+    The train speed that all controllers of the train know is v (1 + error) + drift t + noise, t from the start of the
+    stop, and never negative.
+
+    A command takes effect after the dead time, with as many others on their way as there are samples within it. A
+    pulse of filling or venting that is shorter than the shortest one is left out of its command, unless the valve is
+    open already: what moves in a valve has not left its seat before. The size of all these is the user's; no measured
+    one is known here.
+    """
 
     speed_noise: float = 0.0  # m/s rms of the measured rim speed, independent at each sample and axle
-    pulses_per_turn: int = 0  # of the pulse wheel; the speed is counted over one sample time, 0 for exact
+    pulses_per_turn: int = 0  # of the pulse wheel; 0 for a wheel speed that is known at each instant
+    period_timing: bool = (
+        False  # the time between pulses gives the speed, in place of their count over a sample
+    )
     reference_error: float = 0.0  # -, relative error of the train speed that the controller knows
-    dead_time: float = 0.0  # s, from the command to the valve; at most one sample time
+    reference_drift: float = 0.0  # m/s2, by which that speed moves away from the true one
+    reference_noise: float = 0.0  # m/s rms of that speed, independent at each sample
+    torque_error: float = (
+        0.0  # -, relative error of the torque that the controller computes from the pressure
+    )
+    dead_time: float = 0.0  # s, from the command to the valve
+    shortest_pulse: float = 0.0  # s, that opens a valve; at most one sample time
+
+    def __post_init__(self) -> None:
+        """Refuse what is no disturbance."""
+        for name, value, unit in (
+            ("speed noise", self.speed_noise, "m/s"),
+            ("reference noise", self.reference_noise, "m/s"),
+            ("dead time", self.dead_time, "s"),
+            ("shortest pulse", self.shortest_pulse, "s"),
+        ):
+            if not 0.0 <= value < math.inf:
+                raise UserError(f"{name} = {value:g} {unit} must be finite and not negative; 0 is none")
+        for name, value, positive in (
+            ("reference error", self.reference_error, "a speed read"),
+            ("torque error", self.torque_error, "a torque computed"),
+        ):
+            if not -1.0 < value < 1.0:
+                raise UserError(
+                    f"{name} = {value:g} must lie between -1 and 1, -100 % and 100 %; positive is {positive} too high"
+                )
+        if not math.isfinite(self.reference_drift):
+            raise UserError(f"reference drift = {self.reference_drift:g} m/s2 must be finite; 0 is none")
+        if self.pulses_per_turn < 0 or self.pulses_per_turn != int(self.pulses_per_turn):
+            raise UserError(
+                f"pulses per turn = {self.pulses_per_turn:g} must be a whole number from 1 on, such as 80; 0 is no "
+                "pulse wheel"
+            )
+        if self.period_timing and not self.pulses_per_turn:
+            raise UserError("period timing needs a pulse wheel; give the pulses per turn, such as 100")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,6 +93,23 @@ class LoadIrregularity:
 
     spacing: float  # m
     factors: tuple[tuple[float, ...], ...]  # per axle, at multiples of the spacing; the last value stays
+
+    @property
+    def spread(self) -> float:
+        """Root mean square of what the relative wheel loads differ from 1 by [-]."""
+        values = [value - 1.0 for row in self.factors for value in row]
+        return math.sqrt(math.fsum(value * value for value in values) / len(values))
+
+    def __post_init__(self) -> None:
+        """Refuse what is no table of wheel loads."""
+        if not 0.0 < self.spacing < math.inf:
+            raise UserError(f"load irregularity: spacing = {self.spacing:g} m must be finite and above 0")
+        for axle, row in enumerate(self.factors, start=1):
+            if not row or not all(0.0 <= value < math.inf for value in row):
+                raise UserError(
+                    f"load irregularity: the relative wheel loads of axle {axle} must be one or more finite numbers "
+                    "that are not negative; 1 is the static load"
+                )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,6 +163,8 @@ class Scenario:
             )
         if not -0.1 <= self.grade <= 0.1:
             raise UserError(f"grade = {self.grade:g} must lie in [-0.1, 0.1]; for 10 per mille write 0.01")
+        if not 0 <= self.seed < 2**63:
+            raise UserError(f"seed = {self.seed} must lie between 0 and 2^63 - 1")
         starts = [patch.start for patch in self.patches]
         if starts != sorted(starts) or any(start < 0.0 for start in starts):
             raise UserError(f"patches start at {starts} m; their starts must rise and not be negative")

@@ -180,7 +180,8 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     static = static_wheel_load(plant.vehicle)
     referred = slip * min(speed / constants().slip_regularization_speed, 1.0)
     alike = (speed * (1.0 - slip) / plant.vehicle.wheel_radius, referred)
-    torques = output.samples[0, -axles:]  # as the first sample saw them
+    # As the first sample saw them, without the error of their measurement.
+    torques = output.samples[0, -axles:] / (1.0 + scenario.sensing.torque_error)
     return np.concatenate(
         [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques]
     )

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 from wspd_design.model.generated.track import irregularity_spectrum
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import SpectrumCoefficients, TrackSpectrum
+from wspd_design.parameters.records import SpectrumCoefficients, TrackSpectrum, Vehicle
+from wspd_design.plants.planar import Planar
+from wspd_design.simulation.records import LoadIrregularity
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+SPACING = 0.5  # m of tables of the wheel loads, a sixth of the shortest wavelength
 _GRID = 4001  # points of the integral over a band
 _BLOCK = 4096  # points that are summed up at once, so that memory stays small
 
@@ -137,6 +140,39 @@ def synthesize(
         phases=generator.uniform(0.0, 2.0 * math.pi, harmonics),
         fade_in=fade_in,
     )
+
+
+def irregular_load(
+    vehicle: Vehicle, vertical: Irregularity, *, sigma: float, spread: float
+) -> LoadIrregularity:
+    """Give the wheel loads the shape of a vertical profile.
+
+    Each axle meets the profile when it gets there. How a load follows a profile depends on suspension and masses
+    that the paper does not print; only shape and spread are claimed here.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        For the distances of its axles.
+    vertical : Irregularity
+        Profile over distance.
+    sigma : float
+        Standard deviation of the profile [m].
+    spread : float
+        That of the relative wheel loads to be [-].
+
+    Returns
+    -------
+    LoadIrregularity
+        Of every axle of the vehicle on its bogies.
+    """
+    import numpy as np
+
+    # The profile fades in and the last axle begins behind the first one.
+    offsets = Planar(vehicle).offsets
+    distance = np.arange(0.0, vertical.period, SPACING)
+    rows = (1.0 + spread / sigma * vertical.profile(np.maximum(distance - offset, 0.0)) for offset in offsets)
+    return LoadIrregularity(spacing=SPACING, factors=tuple(tuple(row.tolist()) for row in rows))
 
 
 def welch_spectrum(values: "Array", spacing: float, segment: float) -> "tuple[Array, Array]":

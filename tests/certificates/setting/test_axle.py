@@ -13,6 +13,7 @@ from wspd_design.certificates.setting import axle
 from wspd_design.certificates.setting.axle import Pitching
 from wspd_design.model.slip import resistance, static_wheel_load
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.loading import constants
 from wspd_design.plants.planar import Planar
 
 GRAVITY = 9.81
@@ -78,17 +79,32 @@ def test_undamped_pitch_has_no_bound(problem):
         axle.load_share(loose, Pitching.ANY)
 
 
-def static_shares(vehicle, adhesions, speed):
+def static_shares(vehicle, adhesions, speed, grade=0.0):
     """Loads over the static load, and deceleration, with the pitch at rest where each axle uses some adhesion."""
+    weight = vehicle.mass * constants().gravity
     static, plant = static_wheel_load(vehicle), Planar(vehicle)
     loads, rest = np.full(4, static), (0.0,) * 6
     frequencies = np.array([vehicle.body_pitch_frequency, *[vehicle.bogie_pitch_frequency] * 2])
     for _ in range(100):
         # With no pitch yet the second derivative over the squared frequency is the static transfer.
-        motion = plant.train_motion(speed=speed, creep_forces=tuple(adhesions * loads), transfers=rest)
+        motion = plant.train_motion(
+            speed=speed,
+            creep_forces=tuple(adhesions * loads),
+            transfers=rest,
+            grade_force=weight * grade,
+        )
         transfers = np.array(motion.transfer_rates[3:]) / (2.0 * math.pi * frequencies) ** 2
         loads = np.array(plant.wheel_loads((*transfers, *rest[3:])))
     return loads / static, -motion.acceleration
+
+
+@pytest.mark.parametrize("grade", [-0.1, 0.1])
+def test_a_grade_changes_the_deceleration_and_no_load(problem, grade):
+    adhesions = np.array([0.3, 0.1, 0.2, 0.0])
+    level, slowing = static_shares(problem.vehicle, adhesions, 20.0)
+    there, steeper = static_shares(problem.vehicle, adhesions, 20.0, grade)
+    np.testing.assert_allclose(there, level, rtol=1e-12)
+    assert steeper - slowing == pytest.approx(constants().gravity * grade, rel=1e-12)
 
 
 def test_static_range_contains_and_nearly_reaches_the_loads_of_the_plant(problem):

@@ -1,11 +1,13 @@
 """From the options of a stop to its scenario."""
 
+from dataclasses import asdict
+
 import pytest
 
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.stop_options import scenario
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import load_rail
+from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Patch, Scenario, Sensing
 
@@ -13,7 +15,8 @@ WET, DRY = load_rail("polach-wet"), load_rail("polach-dry")
 
 
 def made(**words):
-    return scenario(WET, StopOptions(**words), initial_speed=120.0 / 3.6, seed=3)
+    vehicle = load_vehicle("er24pc")
+    return scenario(WET, StopOptions(**words), initial_speed=120.0 / 3.6, seed=3, vehicle=vehicle)
 
 
 def test_a_comma_may_belong_to_the_name_of_a_rail_file(tmp_path, monkeypatch):
@@ -91,10 +94,29 @@ def test_axle_rails_are_front_first():
 
 
 def test_sensing():
-    stop = made(speed_noise="0.18 km/h", pulses=80, reference_error="-2 %", dead_time="40 ms")
-    assert stop.sensing == Sensing(
-        speed_noise=pytest.approx(0.05), pulses_per_turn=80, reference_error=-0.02, dead_time=0.04
+    stop = made(
+        speed_noise="0.18 km/h",
+        pulses=80,
+        period_timing=True,
+        reference_error="-2 %",
+        reference_drift="-0.05 m/s2",
+        reference_noise="0.36 km/h",
+        torque_error="15 %",
+        dead_time="40 ms",
+        shortest_pulse="10 ms",
     )
+    right = Sensing(
+        speed_noise=0.05,
+        pulses_per_turn=80,
+        period_timing=True,
+        reference_error=-0.02,
+        reference_drift=-0.05,
+        reference_noise=0.1,
+        torque_error=0.15,
+        dead_time=0.04,
+        shortest_pulse=0.01,
+    )
+    assert asdict(stop.sensing) == pytest.approx(asdict(right), rel=1e-15)
 
 
 def test_all_is_said_to_the_reader():
@@ -106,10 +128,24 @@ def test_all_is_said_to_the_reader():
         speed_noise="0.05 m/s",
         pulses=80,
         reference_error="2 %",
+        reference_drift="-0.05 m/s2",
+        reference_noise="0.1 m/s",
+        torque_error="-10 %",
         dead_time="40 ms",
+        shortest_pulse="10 ms",
     )
     assert rails_of(stop) == "polach-wet/polach-wet/polach-dry/polach-dry, low-adhesion from 50 m"
     assert disturbances_of(stop) == (
-        "grade -5 permille, pad vibration, speed noise 0.05 m/s rms, 80 pulses per turn, reference error 2 %, "
-        "dead time 40 ms"
+        "grade -5 permille, pad vibration, speed noise 0.05 m/s rms, 80 pulses per turn, counted, "
+        "reference error 2 %, reference drift -0.05 m/s2, reference noise 0.1 m/s rms, torque error -10 %, "
+        "dead time 40 ms, shortest pulse 10 ms"
     )
+    assert "100 pulses per turn, timed" in disturbances_of(made(pulses=100, period_timing=True))
+
+
+def test_load_spread():
+    loads = made(load_spread="4 %").load_irregularity
+    assert len(loads.factors) == 4
+    assert loads.spread == pytest.approx(0.04, rel=0.1)
+    assert loads == made(load_spread="4 %").load_irregularity
+    assert "wheel loads that vary by 4 % rms" in disturbances_of(made(load_spread="4 %"))

@@ -14,7 +14,7 @@ from wspd_design.codegen.laws import law_kernels
 from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.planar import Planar
 from wspd_design.simulation.loop_input import loop_input, sample_rows
-from wspd_design.simulation.records import Scenario, Sensing, Start
+from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing, Start
 
 SPEEDS = (10.0, 9.0, 4.0, 10.0, 0.5, 7.0, 10.0, 8.5)
 
@@ -64,6 +64,40 @@ def test_stops_side_by_side_start_where_each_of_them_starts(er24pc, law, scenari
     for stop, single in enumerate(singles):
         np.testing.assert_array_equal(results(beside, stop, 2), single)
     assert not np.array_equal(*singles)
+
+
+WAVES = tuple(tuple(1.0 + 0.05 * (-1) ** (k + axle) for k in range(5 + axle)) for axle in range(4))
+APART = (
+    {},
+    {"sensing": Sensing(speed_noise=0.05, dead_time=0.25, shortest_pulse=0.01)},
+    {"sensing": Sensing(pulses_per_turn=80), "grade": 0.02},
+    {"sensing": Sensing(pulses_per_turn=100, period_timing=True, dead_time=0.03)},
+    {"sensing": Sensing(reference_error=0.02, reference_drift=-0.1, reference_noise=0.1)},
+    {"pad_vibration": True, "sensing": Sensing(torque_error=-0.1)},
+    {
+        "patches": (
+            Patch(start=3.0, rail=load_rail("low-adhesion")),
+            Patch(start=9.0, rail=load_rail("polach-wet")),
+        )
+    },
+    {"load_irregularity": LoadIrregularity(spacing=0.7, factors=WAVES), "grade": -0.02},
+)
+
+
+def test_every_disturbance_is_that_of_its_own_stop(er24pc, law, scenario):
+    several = [(Planar(er24pc), replace(scenario, **changes, seed=k)) for k, changes in enumerate(APART)]
+    shared = load_closed_loop(Planar(er24pc), law, stops=len(several), disturbed=True)
+    beside = shared.run(loop_input(several, law))
+    assert beside.stopped.all()
+    singles = []
+    for stop, (plant, each) in enumerate(several):
+        alone = load_closed_loop(plant, law, disturbed=each.pad_vibration).run(
+            loop_input([(plant, each)], law)
+        )
+        singles.append(results(alone))
+        np.testing.assert_array_equal(results(beside, stop, len(several)), singles[-1])
+    distances = [single[len(single) - len(beside.stop_totals)] for single in singles]
+    assert len(set(distances)) == len(several)  # each of them does something
 
 
 def test_samples_of_stops_side_by_side(er24pc, law, scenario):

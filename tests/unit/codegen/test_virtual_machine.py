@@ -83,6 +83,12 @@ FEATURES = {
         "sensing": Sensing(speed_noise=0.02, pulses_per_turn=80, reference_error=0.01, dead_time=0.04)
     },
     "dead time of a whole sample": {"sensing": Sensing(dead_time=0.1)},
+    "dead time of several samples": {"sensing": Sensing(dead_time=0.25)},
+    "pulses that are timed": {"sensing": Sensing(pulses_per_turn=100, period_timing=True)},
+    "a train speed that drifts and is noisy": {
+        "sensing": Sensing(reference_drift=-0.05, reference_noise=0.1)
+    },
+    "shortest pulse": {"sensing": Sensing(shortest_pulse=0.0955)},
     "grade": {"grade": -0.02},
     "start with slip and torque": {"start": Start(slip=0.2, torque=20e3, braking_time=2.0)},
     "start while the pads vibrate, and a dead time": {

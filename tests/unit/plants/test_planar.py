@@ -82,6 +82,47 @@ def test_the_transfers_settle_where_the_moments_balance(er24pc, axles):
     assert still.transfer_rates[plant.transfers] == pytest.approx(omega**2 * settled[0], rel=1e-12)
 
 
+def transfers_at_rest(plant, forces, grade):
+    """Load transfers that have settled under creep forces on a grade, and the deceleration."""
+    vehicle, none = plant.vehicle, (0.0,) * (2 * plant.transfers)
+    weight = vehicle.mass * constants().gravity
+    motion = plant.train_motion(speed=20.0, creep_forces=forces, transfers=none, grade_force=weight * grade)
+    frequencies = (vehicle.body_pitch_frequency, *(vehicle.bogie_pitch_frequency,) * plant.bogies)
+    rates = motion.transfer_rates[plant.transfers :]
+    settled = (rate / (2.0 * math.pi * f) ** 2 for rate, f in zip(rates, frequencies, strict=True))
+    return tuple(settled), -motion.acceleration
+
+
+@pytest.mark.parametrize("grade", [-0.05, 0.0, 0.05])
+@pytest.mark.parametrize("axles", [4, 6])
+def test_the_moments_about_the_rail_balance_on_a_grade(er24pc, axles, grade):
+    """The wheels turn back what inertia and gravity along the track do at the heights of body and bogies."""
+    smooth = replace(er24pc, resistance_constant=0.0, resistance_linear=0.0, resistance_quadratic=0.0)
+    bogie_mass = (smooth.mass - smooth.body_mass) * 2.0 / axles  # so that the parts weigh what the whole does
+    plant = Planar(with_axles(replace(smooth, bogie_mass=bogie_mass), axles))
+    forces = tuple(RNG.uniform(3e3, 9e3, axles))
+    settled, deceleration = transfers_at_rest(plant, forces, grade)
+    none = (0.0,) * (2 * plant.transfers)
+    changes = np.subtract(plant.wheel_loads((*settled, *none[plant.transfers :])), plant.wheel_loads(none))
+    moment = -2.0 * float(changes @ np.array(plant.offsets))
+    along = deceleration - constants().gravity * grade
+    first_moment = smooth.body_mass * smooth.body_height + plant.bogies * bogie_mass * smooth.bogie_height
+    assert moment == pytest.approx(first_moment * along, rel=1e-12)
+    assert deceleration - 2.0 * sum(forces) / smooth.mass == pytest.approx(constants().gravity * grade)
+
+
+def test_a_grade_moves_no_load_by_itself(er24pc):
+    """What rolls freely slows down by g times the grade, and nothing holds it; a train held on a slope leans down."""
+    smooth = replace(er24pc, resistance_constant=0.0, resistance_linear=0.0, resistance_quadratic=0.0)
+    settled, deceleration = transfers_at_rest(Planar(smooth), (0.0,) * 4, 0.03)
+    assert deceleration == pytest.approx(0.03 * constants().gravity, rel=1e-12)
+    np.testing.assert_allclose(settled, 0.0, atol=1e-9)
+    holding = (smooth.mass * constants().gravity * 0.03 / 8.0,) * 4
+    held, still = transfers_at_rest(Planar(smooth), holding, -0.03)
+    assert still == pytest.approx(0.0, abs=1e-12)
+    assert min(held) > 0.0
+
+
 @pytest.mark.parametrize("axles", [1, 2, 3, 5, 7])
 def test_what_stands_on_no_two_bogies_is_refused(er24pc, axles):
     vehicle = with_axles(er24pc, axles)

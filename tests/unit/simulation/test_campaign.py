@@ -3,7 +3,7 @@
 import itertools
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pytest
@@ -156,30 +156,39 @@ def test_a_lock_that_is_not_ended_is_seen(er24pc, monkeypatch):
     assert row["longest_lock_s_1"] == row["total_lock_s_1"]  # the test above sees two locks
 
 
+SPREADS = {
+    "speed_noise": Choice(values=(0.0, 0.05)),
+    "pulses_per_turn": Choice(values=(80.0, 100.0)),
+    "period_timing": Choice(values=(0.0, 1.0)),
+    "reference_error": Uniform(low=-0.02, high=0.02),
+    "reference_drift": Uniform(low=-0.05, high=0.05),
+    "reference_noise": Choice(values=(0.0, 0.05)),
+    "torque_error": Uniform(low=-0.2, high=0.2),
+    "dead_time": Uniform(low=0.0, high=0.25),
+    "shortest_pulse": Choice(values=(0.0, 0.02)),
+}
+
+
 def test_every_disturbance_differs_from_stop_to_stop(er24pc, make_controller, scenario):
-    """Rows with drawn noise, pulses, reference, dead time and grade are those stops alone, bit for bit."""
-    law = make_controller("trenitalia", RAIL)
+    """Rows in which all disturbances are drawn are those stops alone."""
+    assert set(SPREADS) == {field.name for field in fields(Sensing)}
+    law = make_controller("torque-feedback", RAIL)
     drawn = (
-        Draw(name="stop.sensing.speed_noise", distribution=Choice(values=(0.0, 0.05))),
-        Draw(name="stop.sensing.pulses_per_turn", distribution=Choice(values=(0.0, 80.0, 100.0))),
-        Draw(name="stop.sensing.reference_error", distribution=Uniform(low=-0.02, high=0.02)),
-        Draw(name="stop.sensing.dead_time", distribution=Uniform(low=0.0, high=0.08)),
+        *(Draw(name=f"stop.sensing.{name}", distribution=spread) for name, spread in SPREADS.items()),
         Draw(name="stop.grade", distribution=Uniform(low=-0.01, high=0.01)),
+        Draw(name="stop.pad_vibration", distribution=Choice(values=(0.0, 1.0))),
         Draw(name="stop.initial_speed", distribution=Uniform(low=5.0, high=8.0)),
     )
-    table = simulate_many(er24pc, law, scenario, count=8, draws=drawn).table
+    table = simulate_many(er24pc, law, scenario, count=16, draws=drawn).table
     for row in table:
+        kinds = {field.name: field.type for field in fields(Sensing)}
         stop = replace(
             scenario,
             seed=int(row["seed"]),
             grade=float(row["stop.grade"]),
             initial_speed=float(row["stop.initial_speed"]),
-            sensing=Sensing(
-                speed_noise=float(row["stop.sensing.speed_noise"]),
-                pulses_per_turn=int(row["stop.sensing.pulses_per_turn"]),
-                reference_error=float(row["stop.sensing.reference_error"]),
-                dead_time=float(row["stop.sensing.dead_time"]),
-            ),
+            pad_vibration=bool(row["stop.pad_vibration"]),
+            sensing=Sensing(**{name: kinds[name](row[f"stop.sensing.{name}"]) for name in SPREADS}),
         )
         assert simulate(er24pc, law, stop).totals.distance == pytest.approx(row["distance_m"], rel=1e-9)
     assert len(set(table["distance_m"])) == len(table)

@@ -12,7 +12,7 @@ from wspd_design.model.number import where
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.comparison import compare
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
+from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Sensing, Totals
 from wspd_design.simulation.stop import simulate
 
 SCENARIO = Scenario(rail=load_rail("polach-wet"), initial_speed=30.0)
@@ -151,6 +151,16 @@ class Listed:
         for k, (a, b) in reversed(list(enumerate(self.commands[:-1]))):
             fill, vent = where(number < k + 0.5, a, fill), where(number < k + 0.5, b, vent)
         return (number + 1.0,), Command(fill=fill, vent=vent)
+
+
+@pytest.mark.parametrize(("shortest", "switches"), [(0.0, 6), (0.001, 3)])
+def test_pulses_that_do_not_open_a_valve_are_no_switches(er24pc, shortest, switches):
+    # fill hold, hold, vent, vent (goes on) hold
+    law = Listed(commands=((0.4, 0.05), (0.05, 0.0), (0.0, 1.0), (0.0, 0.05), (0.0, 0.0)))
+    sensing = Sensing(shortest_pulse=shortest)
+    stop = Scenario(rail=load_rail("polach-wet"), initial_speed=0.3, sensing=sensing)
+    run = simulate(er24pc, law, stop, plant="quarter")
+    assert metrics(run, er24pc, stop, slip_reference=0.14).valve_switches == switches
 
 
 def test_a_run_without_standstill_has_no_lag(er24pc):

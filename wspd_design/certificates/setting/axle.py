@@ -2,12 +2,13 @@
 
 Body and bogies pitch as in :mod:`wspd_design.plants.planar`. With B and G the transfer by body and bogie over the
 static wheel load, the loads of the four axles are 1 + B + G, 1 + B - G, 1 - B + G, 1 - B - G. Without inertia of the
-pitch, at a deceleration d,
+pitch, at a deceleration d on level track,
 
     B = 2 (body mass / mass) (d / g) (body height - rod height) / spacing,
     G = 4 (bogie mass / mass) (d / g) (bogie height - rod height) / wheelbase + 2 mu (1 +- B) (rod height) / wheelbase,
 
-mu being what the wheels of the bogie make use of. The body takes up what the mass gains or loses.
+mu being what the wheels of the bogie make use of. The body takes up what the mass gains or loses. On a grade i,
+positive uphill, the vehicle slows down by d + g i, of which d, with the same range as on level track, moves the load.
 
 Each transfer follows its static value u as y'' = w^2 (u - y) - 2 zeta w y'. With the impulse response h,
 the integral of h is 1 and that of abs(h) is N = coth(pi zeta / (2 sqrt(1 - zeta^2))), the bang-bang input being the

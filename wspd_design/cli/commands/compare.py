@@ -63,6 +63,7 @@ def compare(
         disturbances,
         initial_speed=initial_speed(speed, cases[0].specification),
         seed=seed,
+        vehicle=cases[0].vehicle,
     )
     trials: list[tuple[Trial, float]] = []
     with progress() as tell:

@@ -45,4 +45,4 @@ def design(
         made = selection.design_controller(locomotive, friction, wanted, law=chosen)
     made = replace(made, vehicle_file=seen_from(output, vehicle), rail_file=seen_from(output, rail))
     write_design(made, output)
-    show_design(made, output)
+    show_design(made, output, locomotive, friction)

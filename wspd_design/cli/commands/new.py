@@ -115,12 +115,11 @@ def _review(answers: Answers) -> None:
 def _design(answers: Answers, target: Path) -> None:
     from wspd_design.design import selection
 
-    vehicle, rail = vehicle_and_rail(answers)
+    vehicle_name, rail_name = vehicle_and_rail(answers)
+    vehicle, rail = load_vehicle(vehicle_name), load_rail(rail_name)
     with progress() as tell:
         tell("choosing the gains")
-        made = selection.design_controller(
-            load_vehicle(vehicle), load_rail(rail), wanted(answers), law=answers["law"]
-        )
-    made = replace(made, vehicle_file=seen_from(target, vehicle), rail_file=seen_from(target, rail))
+        made = selection.design_controller(vehicle, rail, wanted(answers), law=answers["law"])
+    made = replace(made, vehicle_file=seen_from(target, vehicle_name), rail_file=seen_from(target, rail_name))
     write_design(made, target)
-    show_design(made, target)
+    show_design(made, target, vehicle, rail)

@@ -53,9 +53,8 @@ def report(
     chosen_name = chosen(name, controller)
     case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
     made = _design(chosen_name, case)
-    stop = scenario(
-        case.rail, disturbances, initial_speed=initial_speed(speed, case.specification), seed=seed
-    )
+    braked_from = initial_speed(speed, case.specification)
+    stop = scenario(case.rail, disturbances, initial_speed=braked_from, seed=seed, vehicle=case.vehicle)
     with progress() as tell:
         computed = dossier(
             made,

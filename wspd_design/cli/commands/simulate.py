@@ -103,6 +103,7 @@ def simulate(
         disturbances,
         initial_speed=initial_speed(speed, case.specification),
         seed=seed,
+        vehicle=case.vehicle,
     )
     start = None
     if witness is not None:

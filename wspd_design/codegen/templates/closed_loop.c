@@ -17,7 +17,6 @@ static void write_trace(Loop *loop, const Stage *stage)
 static void finish(Loop *loop, int stop)
 {
     loop->active[stop] = 0.0;
-    if (loop->phase[stop] == ACT) loop->sample[stop]++; /* the last command came too late to act */
     loop->phase[stop] = DONE;
     loop->running--;
 }
@@ -73,6 +72,7 @@ static int advance(Loop *loop)
     spread(reached.speed, speed);
     settle_locks(loop, &stage[3], lane_step, speed, &reached);
     if (loop->hold) settle_holds(loop, &stage[3], speed, &reached);
+    if (loop->timed) follow_pulses(loop, lane_step, &reached);
     loop->now = reached;
     loop->steps++;
     for (int s = 0; s < STOPS; s++) {
@@ -103,33 +103,56 @@ static void set_windows(Loop *loop)
     window_constants(loop->lp2, window, loop->window_fixed);
 }
 
-/* Set the valves of the stops whose command takes effect now. */
-static int act(Loop *loop)
+/* What a stop does next, and when: take the next sample, or follow the command that has waited longest. */
+static void schedule(Loop *loop, int s)
+{
+    double h = loop->set.sample_time, sampling = loop->sample[s] * h;
+    double acting = loop->acted[s] * h + DISTURBANCE(DEAD_TIME, s);
+    int waiting = loop->acted[s] < loop->sample[s] && acting <= sampling;
+    loop->phase[s] = waiting ? ACT : DECIDE;
+    loop->goal[s] = waiting ? acting : sampling;
+}
+
+/* Count the changes of the valve state that a command makes: first fill, then vent, then hold. */
+static void count_switches(Loop *loop, int l)
+{
+    double share[3] = {loop->fill[l], loop->vent[l], 1.0 - loop->fill[l] - loop->vent[l]};
+    for (int k = 0; k < 3; k++) {
+        if (!(share[k] > 1e-9)) continue;
+        if (loop->valve[l] != 0.0 && loop->valve[l] != k + 1) loop->lane[SWITCHES * LANES + l] += 1.0;
+        loop->valve[l] = k + 1;
+    }
+}
+
+/* Set the valves of the stops whose command takes effect now. A pulse that is too short to open its valve is left out,
+   unless the valve is open already. */
+static void act(Loop *loop)
 {
     double h = loop->set.sample_time;
     int any = 0;
     for (int s = 0; s < STOPS; s++) {
         if (loop->phase[s] != ACT || loop->time[s] < loop->goal[s]) continue;
-        double begin = loop->sample[s] * h, present = loop->time[s];
+        double present = loop->time[s], least = DISTURBANCE(SHORTEST_PULSE, s) - SHORTEST;
+        const double *command = loop->queue + loop->acted[s] % loop->queue_rows * 2 * LANES;
         for (int l = s; l < LANES; l += STOPS) {
-            double a = loop->fill[l], b = loop->vent[l];
-            if (!(a >= 0.0 && a <= 1.0 && b >= 0.0 && a + b <= 1.0 + 1e-9)) {
-                loop->bad[0] = begin, loop->bad[1] = a, loop->bad[2] = b;
-                return BAD_COMMAND;
-            }
+            double a = command[l], b = command[LANES + l];
+            int filling = 1.0 - loop->fill[l] < 1e-12;
+            int venting = !filling && 1.0 - loop->fill[l] - loop->vent[l] < 1e-12;
+            if (a * h < least && !filling) a = 0.0;
+            if (b * h < least && !(venting && a == 0.0)) b = 0.0;
+            loop->fill[l] = a, loop->vent[l] = b;
+            count_switches(loop, l);
             loop->lane[VENTED * LANES + l] += loop->filled[l] - loop->pressure[l];
             loop->start[l] = present;
             loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];
             loop->fill_end[l] = present + a * h;
             loop->vent_end[l] = 1.0 - a - b < 1e-12 ? present + h : loop->fill_end[l] + b * h;
         }
-        loop->sample[s]++;
-        loop->goal[s] = loop->sample[s] * h;
-        loop->phase[s] = DECIDE;
+        loop->acted[s]++;
+        schedule(loop, s);
         any = 1;
     }
     if (any) set_windows(loop);
-    return GOOD;
 }
 
 /* Tell whether a stop waits for the decision of its controllers; end the stops that take too long. */
@@ -144,29 +167,25 @@ static int awaited(Loop *loop)
     return any;
 }
 
-/* Count the changes of the valve state that a command asks for: first fill, then vent, then hold. */
-static void count_switches(Loop *loop, int l)
-{
-    double share[3] = {loop->fill[l], loop->vent[l], 1.0 - loop->fill[l] - loop->vent[l]};
-    for (int k = 0; k < 3; k++) {
-        if (!(share[k] > 1e-9)) continue;
-        if (loop->valve[l] != 0.0 && loop->valve[l] != k + 1) loop->lane[SWITCHES * LANES + l] += 1.0;
-        loop->valve[l] = k + 1;
-    }
-}
-
 /* Take the commands of the stops that wait for them. */
-static void decide(Loop *loop, const double *fill, const double *vent)
+static int decide(Loop *loop, const double *fill, const double *vent)
 {
     for (int s = 0; s < STOPS; s++) {
         if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
+        double *command = loop->queue + loop->sample[s] % loop->queue_rows * 2 * LANES;
         for (int l = s; l < LANES; l += STOPS) {
-            loop->fill[l] = fill[l], loop->vent[l] = vent[l];
-            count_switches(loop, l);
+            double a = fill[l], b = vent[l];
+            if (!(a >= 0.0 && a <= 1.0 && b >= 0.0 && a + b <= 1.0 + 1e-9)) {
+                loop->bad[0] = loop->sample[s] * loop->set.sample_time, loop->bad[1] = a, loop->bad[2] = b;
+                return BAD_COMMAND;
+            }
+            command[l] = a, command[LANES + l] = b;
+            if (DISTURBANCE(PULSE_ANGLE, s) > 0.0) loop->counted[l] = pulses(loop, l, loop->lane[ANGLE * LANES + l]);
         }
-        loop->goal[s] += loop->set.dead_time; /* the valves still follow the last command */
-        loop->phase[s] = ACT;
+        loop->sample[s]++;
+        schedule(loop, s);
     }
+    return GOOD;
 }
 
 long wspd_size(void) { return (long)sizeof(Loop); }
@@ -199,6 +218,7 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     loop->running = STOPS;
     for (int s = 0; s < STOPS; s++) loop->active[s] = 1.0, loop->now.speed[s] = speed[s];
     for (int l = 0; l < LANES; l++) loop->now.wheel[l] = wheel[l], loop->start_pressure[l] = pressure[l];
+    start_pulses(loop);
     set_windows(loop);
     actuator_kernel(loop->window_fixed, present, pressures, torques, filled);
     for (int l = 0; l < LANES; l++) {
@@ -207,26 +227,14 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     }
 }
 
-/* What the controllers see: speed, wheel speed, torque of every lane. */
-void wspd_measure(const Loop *loop, double *restrict out)
-{
-    for (int l = 0; l < LANES; l++) {
-        double wheel = loop->now.wheel[l];
-        if (loop->measured) wheel += loop->measured[loop->sample[l % STOPS] * LANES + l];
-        if (loop->quantum > 0.0) wheel = loop->quantum * floor(wheel / loop->quantum + 0.5);
-        out[l] = loop->now.speed[l % STOPS] * loop->reference_factor;
-        out[LANES + l] = wheel > 0.0 ? wheel : 0.0;
-        out[2 * LANES + l] = loop->torque[l];
-    }
-}
-
 /* Run until a controller is asked or all stops have ended. */
 static int to_next_decision(Loop *loop)
 {
-    int result = act(loop);
+    int result = GOOD;
+    act(loop);
     while (result == GOOD && loop->running > 0 && !awaited(loop)) {
         result = advance(loop);
-        if (result == GOOD) result = act(loop);
+        if (result == GOOD) act(loop);
     }
     return result;
 }
@@ -234,8 +242,8 @@ static int to_next_decision(Loop *loop)
 /* Run a single stop to the next sample with the given shares of filling and venting. */
 int wspd_sample(Loop *loop, const double *fill, const double *vent)
 {
-    decide(loop, fill, vent);
-    return to_next_decision(loop);
+    int result = decide(loop, fill, vent);
+    return result == GOOD ? to_next_decision(loop) : result;
 }
 
 /* Keep what the controllers of the waiting stops saw, decided and remember. */

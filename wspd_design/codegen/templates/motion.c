@@ -15,14 +15,14 @@
 #define EACH_STOP _Pragma("omp simd") for (int s = 0; s < STOPS; s++)
 #define EACH_LANE _Pragma("omp simd") for (int l = 0; l < LANES; l++)
 
-enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, LOCK_TIME, SLIP_MAX, JUDGED_LOCK, LONGEST_LOCK, VENTED,
-       SWITCHES, LANE_TOTALS };
+enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, ANGLE, LOCK_TIME, SLIP_MAX, JUDGED_LOCK,
+       LONGEST_LOCK, VENTED, SWITCHES, LANE_TOTALS };
 enum { DISTANCE, RESISTANCE, RESISTANCE_WORK, JUDGED, TIME, END_SPEED, STOP_TOTALS };
 enum { GOOD, BUFFER_FULL, BAD_COMMAND };
 enum { DECIDE, ACT, DONE }; /* what a stop does when it reaches its goal */
 
 typedef struct {
-    double sample_time, dead_time, longest_step, creep_rate, stop_speed, regularization_speed, time_limit;
+    double sample_time, longest_step, creep_rate, stop_speed, regularization_speed, time_limit;
     double judging_speed, record_interval;
 } Settings;
 
@@ -44,22 +44,28 @@ typedef struct {
     WIDE double resistance[STOPS];
 } Stage;
 
+typedef struct {                /* a step of one wheelset within which a pulse of its pulse wheel came */
+    double begin, length, from, to, speed_from, speed_to; /* time, angle and speed at both ends */
+    double pulse;               /* angle of the pulse */
+} Passing;
+
 typedef struct {
     Settings set;
-    const double *measured;     /* per sample and lane: offset of the measured wheel speed, or null */
-    const double *patch_start;  /* positions at which the rail changes, rising, for all axles */
-    const double *patch_rail;   /* RAIL numbers per patch and axle */
+    const double *disturbance;  /* DISTURBANCES numbers per stop */
+    const uint64_t *seed;       /* of the random numbers, per stop */
+    double *queue;              /* commands that wait for the dead time: fill, then vent of every lane */
+    long queue_rows;
+    const double *patch_start;  /* per patch and stop: positions at which the rail changes for all axles, rising */
+    const double *patch_rail;   /* RAIL numbers per patch and stop */
     long patches;
-    const double *load_factor;  /* relative wheel load per axle over distance, or null */
+    const double *load_factor;  /* relative wheel load per lane over distance, or null */
     long load_points;
-    double load_spacing;
+    const double *load_spacing; /* per stop */
     const double *hold;         /* slip that an ideal brake never exceeds, per lane over log of speed, or null */
     long hold_points;
     double hold_first, hold_spacing;
     double *trace;              /* of the first stop */
     long trace_rows, trace_used;
-    double quantum;             /* rad/s, resolution of the measured wheel speed; 0 for none */
-    double reference_factor;    /* measured over true train speed */
     const double *gains;        /* numbers of the law */
     /* from here on: the state of the loop */
     WIDE double lp[PARAMETERS * LANES], lp2[PARAMETERS * 2 * LANES]; /* the second twice, for middle and end of a step */
@@ -78,7 +84,7 @@ typedef struct {
     WIDE double pressure[LANES]; /* at the present time, as the next two */
     WIDE double torque[LANES];
     WIDE double filled[LANES];   /* pressure without the venting since the last command */
-    WIDE double fill[LANES];     /* command */
+    WIDE double fill[LANES];     /* command that the valves follow */
     WIDE double vent[LANES];
     WIDE double time[STOPS];
     WIDE double goal[STOPS];
@@ -87,8 +93,10 @@ typedef struct {
     WIDE double lane[LANE_TOTALS * LANES];
     WIDE double stop[STOP_TOTALS * STOPS];
     double recorded, bad[3];
-    long sample[STOPS], patch[LANES], steps;
-    int phase[STOPS], running;
+    double offset[LANES], counted[LANES], followed[LANES]; /* pulse wheel: start, pulses at the last sample, angle */
+    Passing last[LANES], previous[LANES]; /* the last two pulses */
+    long sample[STOPS], acted[STOPS], patch[LANES], steps; /* samples that were taken, commands that have acted */
+    int phase[STOPS], running, timed;
 } Loop;
 
 static inline void spread(const double *restrict stop, double *restrict lane)
@@ -100,11 +108,11 @@ static inline void spread(const double *restrict stop, double *restrict lane)
 /* Relative wheel load of a lane at a distance: linear between the points of a table, and its last value beyond. */
 static double load_at(const Loop *loop, int lane, double distance)
 {
-    double place = distance / loop->load_spacing;
+    const double *row = loop->load_factor + lane * loop->load_points;
+    double place = distance / loop->load_spacing[lane % STOPS];
+    if (place >= (double)(loop->load_points - 1)) return row[loop->load_points - 1];
     long k = (long)place;
-    if (k > loop->load_points - 2) k = loop->load_points - 2;
-    if (place > (double)(k + 1)) place = (double)(k + 1);
-    const double *row = loop->load_factor + (lane / STOPS) * loop->load_points + k;
+    row += k;
     return row[0] + (place - (double)k) * (row[1] - row[0]);
 }
 
@@ -196,6 +204,7 @@ static INLINE void integrate(Loop *loop, const Motion *const at[4], const Stage 
         #define DAMPED_WORK(k) stage[k].damping[l] * at[k]->wheel[l]
         #define SLIPPED(k) (speed[k][l] > judging ? stage[k].slip[l] : 0.0)
         #define SLIPPED_SQUARED(k) (speed[k][l] > judging ? stage[k].slip[l] * stage[k].slip[l] : 0.0)
+        #define TURNING(k) at[k]->wheel[l]
         lane[TORQUE * LANES + l] += part * SUM(PASSED);
         lane[DAMPING * LANES + l] += 2.0 * part * SUM(DAMPED);
         lane[BRAKE_WORK * LANES + l] += part * SUM(BRAKED);
@@ -203,6 +212,7 @@ static INLINE void integrate(Loop *loop, const Motion *const at[4], const Stage 
         lane[DAMPING_WORK * LANES + l] += 2.0 * part * SUM(DAMPED_WORK);
         lane[SLIP * LANES + l] += part * SUM(SLIPPED);
         lane[SLIP_SQUARED * LANES + l] += part * SUM(SLIPPED_SQUARED);
+        lane[ANGLE * LANES + l] += part * SUM(TURNING);
     }
     EACH_STOP {
         double part = loop->step[s] * (1.0 / 6.0);
@@ -225,15 +235,15 @@ static void lay_rails(Loop *loop)
         int s = l % STOPS;
         double place = loop->stop[DISTANCE * STOPS + s] - loop->lp[OFFSET * LANES + l];
         long reached = loop->patch[l];
-        while (reached < loop->patches && loop->patch_start[reached] <= place) reached++;
+        while (reached < loop->patches && loop->patch_start[reached * STOPS + s] <= place) reached++;
         if (reached != loop->patch[l]) {
-            const double *rail = loop->patch_rail + ((reached - 1) * AXLES + l / STOPS) * RAIL;
+            const double *rail = loop->patch_rail + ((reached - 1) * STOPS + s) * RAIL;
             for (int k = 0; k < RAIL; k++) loop->lp[(FIRST_RAIL + k) * LANES + l] = rail[k];
             loop->patch[l] = reached;
             changed = 1;
         }
         if (reached < loop->patches && loop->active[s] != 0.0) {
-            double wait = (loop->patch_start[reached] - place) / loop->now.speed[s] + 1e-9;
+            double wait = (loop->patch_start[reached * STOPS + s] - place) / loop->now.speed[s] + 1e-9;
             if (wait < loop->step[s]) loop->step[s] = wait;
         }
     }

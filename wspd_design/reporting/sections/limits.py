@@ -44,13 +44,13 @@ def _of_scenario(scenario: Scenario) -> list[str]:
     ]
     sensing = scenario.sensing
     dead = "" if sensing.dead_time else "dead times, "
-    exact = replace(sensing, dead_time=0.0) == Sensing()
+    exact = replace(sensing, dead_time=0.0, shortest_pulse=0.0) == Sensing()
     disturbances = disturbances_of(scenario)
     return [
         f"The track is {numbers.listing(track)}; no cleaning of the rail by the wheels ahead, no sand.",
-        "Train and wheel speed are measured without error, delay or quantization, and the train speed is known."
+        "Speeds and torque are measured without error, delay or quantization, and the train speed is known."
         if exact
-        else "Train and wheel speed have the stated disturbances of their measurement and no other ones.",
+        else "Speeds and torque have the stated disturbances of their measurement and no other ones.",
         f"The valve follows its time constants; {dead}leakage, and a limit of the air supply are not modeled.",
         *(
             [f"The stops are disturbed ({disturbances}); the checks know nothing of it."]

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.records import TrackSpectrum, Vehicle
-from wspd_design.plants.planar import Planar
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.records import LoadIrregularity, Scenario
 from wspd_design.simulation.stop import simulate
 from wspd_design.simulation.track import (
-    Irregularity,
+    SPACING,
     band,
     spectrum,
     standard_deviation,
@@ -46,7 +45,6 @@ CHANNELS = {
 LOAD_SPREAD = 0.04
 """Assumed standard deviation of the relative wheel load: multibody simulations of this track give 0.03 to 0.05."""
 
-SPACING = 0.5  # m, a sixth of the shortest wavelength
 SHOWN = 300.0  # m of the profile
 WELCH_HARMONICS, WELCH_SEGMENT = 2000, 200.0  # repeats after 6.8 km, m
 MARGIN = 0.06  # rad/m, two lines of the estimate, which the edges of the band blur
@@ -103,32 +101,6 @@ def track_channel(track: TrackSpectrum, channel: str, *, seed: int) -> TrackChan
         distance=distance,
         profile=short.profile(distance),
     )
-
-
-def irregular_load(vehicle: Vehicle, vertical: Irregularity, *, sigma: float) -> LoadIrregularity:
-    """Give the wheel loads the shape of a vertical profile and the assumed spread.
-
-    Each axle meets the profile when it gets there. How a load follows a profile depends on suspension and masses
-    that the paper does not print; only shape and spread are claimed here.
-
-    Parameters
-    ----------
-    vehicle : Vehicle
-        For the distances of its axles.
-    vertical : Irregularity
-        Profile over distance.
-    sigma : float
-        Standard deviation of the profile [m].
-    """
-    import numpy as np
-
-    # The profile fades in and the last axle begins behind the first one.
-    offsets = Planar(vehicle).offsets
-    distance = np.arange(0.0, vertical.period, SPACING)
-    rows = (
-        1.0 + LOAD_SPREAD / sigma * vertical.profile(np.maximum(distance - offset, 0.0)) for offset in offsets
-    )
-    return LoadIrregularity(spacing=SPACING, factors=tuple(tuple(row.tolist()) for row in rows))
 
 
 def disturbance(

@@ -15,18 +15,18 @@ from wspd_design.parameters.records import Rail, TrackSpectrum, Vehicle
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.records import Run, Scenario
-from wspd_design.simulation.track import standard_deviation, synthesize
+from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
 from wspd_design.studies.dossier import Provenance, versions
 from wspd_design.studies.paper.ablation import IDEAL_FILL_TIME, IDEAL_SAMPLE_TIME, ablation
 from wspd_design.studies.paper.conclusions import conclusions
 from wspd_design.studies.paper.conclusions.records import Conclusion
 from wspd_design.studies.paper.disturbances import (
     CHANNELS,
+    LOAD_SPREAD,
     Disturbance,
     TrackChannel,
     disturbance,
     ideal_change,
-    irregular_load,
     track_channel,
 )
 from wspd_design.studies.paper.evidence import (
@@ -109,7 +109,9 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
     progress("track irregularities")
     spectra = load_track_spectrum("erri-b176")
     sigma = standard_deviation(spectra, "vertical-high")
-    load = irregular_load(vehicle, synthesize(spectra, "vertical-high", seed=seed), sigma=sigma)
+    load = irregular_load(
+        vehicle, synthesize(spectra, "vertical-high", seed=seed), sigma=sigma, spread=LOAD_SPREAD
+    )
     disturbances = [
         disturbance(
             vehicle,

@@ -5,13 +5,11 @@ import pytest
 
 from wspd_design.parameters.loading import load_rail, load_track_spectrum
 from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.track import standard_deviation, synthesize
+from wspd_design.simulation.track import SPACING, irregular_load, standard_deviation, synthesize
 from wspd_design.studies.paper.disturbances import (
     LOAD_SPREAD,
-    SPACING,
     Disturbance,
     ideal_change,
-    irregular_load,
     largest_change,
 )
 
@@ -21,7 +19,7 @@ TRACK = load_track_spectrum("erri-b176")
 @pytest.fixture(scope="module")
 def load(er24pc):
     sigma = standard_deviation(TRACK, "vertical-high")
-    return irregular_load(er24pc, synthesize(TRACK, "vertical-high", seed=1), sigma=sigma)
+    return irregular_load(er24pc, synthesize(TRACK, "vertical-high", seed=1), sigma=sigma, spread=LOAD_SPREAD)
 
 
 def test_loads_have_the_stated_spread_about_the_static_load(load):
