@@ -74,7 +74,15 @@ def _numbers(loop: LoopInput) -> np.ndarray:
         g.bound_rate,
     )
     rules = (*g.initial_weights, g.initial_bound, *g.centres, *g.widths, g.torque_unit)
-    run = (SPEED, s.sample_time, s.longest_step, s.creep_rate, s.stop_speed, s.regularization_speed)
+    run = (
+        SPEED,
+        s.sample_time,
+        s.longest_step,
+        s.creep_rate,
+        s.slope_limit,
+        s.stop_speed,
+        s.regularization_speed,
+    )
     ends = (s.judging_speed, s.time_limit, constants().gravity)
     parts = (mechanics, resistance, body, pitch, brake, contact, rail, gains, rules, run, ends)
     return np.array([number for part in parts for number in part])

@@ -1,5 +1,6 @@
 /* One stop of the four-axle locomotive with the printed adaptive fuzzy law, written by hand the usual way: one
-   axle after the other, libm, no vectors. Same equations, steps, events and integrals as the compiled loop. */
+   axle after the other, libm, no vectors. Same equations, integrals and order as the compiled loop, and the same steps as
+   long as the slope of the creep curve does not limit them: here that is the steepest slope, whatever the wheels do. */
 #include <math.h>
 
 #define AXLES 4
@@ -14,7 +15,7 @@ typedef struct {
     double mu0, ratio, decay, kA, kS;
     double slip_reference, kp, ki, layer, weight_rate, bound_rate, weights[RULES], bound, centres[RULES], widths[RULES];
     double torque_unit;
-    double speed, sample_time, longest_step, creep_rate, stop_speed, regularization, judging_speed, time_limit;
+    double speed, sample_time, longest_step, creep_rate, slope_limit, stop_speed, regularization, judging_speed, time_limit;
     double gravity;
 } Input;
 
@@ -53,17 +54,19 @@ static double follow(double target, double value, double rate, double frequency,
     return omega * omega * (target - value) - 2.0 * damping * omega * rate;
 }
 
-static void rates(const Input *in, const State *y, const int *locked, const double *torque, const double *stiffness,
-                  double damping, Stage *out)
+static void rates(const Input *in, const State *y, const int *locked, const double *torque, double damping,
+                  Stage *out)
 {
     double load[AXLES], judged = y->v > in->judging_speed ? 1.0 : 0.0, sum = 0.0;
     double reference = y->v > in->regularization ? y->v : in->regularization;
+    double scale = 0.25 * M_PI * in->c11 * in->semi_lateral * in->semi_rolling * in->shear;
     wheel_loads(in, y, load);
     out->integrand.judged = judged;
     for (int a = 0; a < AXLES; a++) {
         double sliding = y->v - in->radius * y->w[a], slip = sliding / reference;
         double mu = in->mu0 * (in->ratio + (1.0 - in->ratio) * exp(-in->decay * fabs(sliding)));
-        double eps = stiffness[a] * slip / (mu * load[a]), x = in->kA * eps;
+        double stiffness = scale * pow(load[a] / in->reference_load, 2.0 / 3.0);
+        double eps = stiffness * slip / (mu * load[a]), x = in->kA * eps;
         double f = 2.0 * mu * load[a] / M_PI * (x / (1.0 + x * x) + atan(in->kS * eps));
         double passed = locked[a] ? 2.0 * in->radius * f : torque[a], braked = damping * y->w[a];
         sum += f;
@@ -159,34 +162,30 @@ void stop(const Input *in, Output *out)
             for (int a = 0; a < AXLES; a++)
                 if (fill_end[a] > time + 1e-9 && fill_end[a] < until - 1e-9) until = fill_end[a];
             double slowest = y.v > in->regularization ? y.v : in->regularization;
-            double wanted = slowest / in->creep_rate, span = until - time;
+            double wanted = slowest * in->slope_limit / in->creep_rate, span = until - time;
             if (wanted > in->longest_step) wanted = in->longest_step;
             double count = ceil(span / wanted * (1.0 - 1e-12)), h = count > 1.0 ? span / count : span;
             double next = time + h;
             if (next > until - 1e-12) next = until, h = until - time;
-            double middle[AXLES], last[AXLES], stiffness[AXLES], load[AXLES];
-            State ahead = y;
-            ahead.body += 0.5 * h * y.body_rate, ahead.front += 0.5 * h * y.front_rate, ahead.rear += 0.5 * h * y.rear_rate;
-            wheel_loads(in, &ahead, load);
-            double scale = 0.25 * M_PI * in->c11 * in->semi_lateral * in->semi_rolling * in->shear;
+            double middle[AXLES], last[AXLES];
             for (int a = 0; a < AXLES; a++) {
                 double unit = in->max_torque / in->max_pressure;
                 middle[a] = unit * pressure(in, time + 0.5 * h, begin, from[a], fill_end[a], vent_end[a]);
                 p[a] = pressure(in, next, begin, from[a], fill_end[a], vent_end[a]);
                 last[a] = unit * p[a];
-                stiffness[a] = scale * pow(load[a] / in->reference_load, 2.0 / 3.0);
             }
-            double damping = in->damping * exp(-in->damping_decay * (time + 0.5 * h));
+            double damping[3];
+            for (int k = 0; k < 3; k++) damping[k] = in->damping * exp(-in->damping_decay * (time + 0.5 * k * h));
             Stage k1, k2, k3, k4;
             State y2, y3, y4, reached;
-            rates(in, &y, locked, torque, stiffness, damping, &k1);
+            rates(in, &y, locked, torque, damping[0], &k1);
             for (int attempt = 0; attempt < 2; attempt++) {
                 move(&y, &k1.rate, 0.5 * h, &y2);
-                rates(in, &y2, locked, middle, stiffness, damping, &k2);
+                rates(in, &y2, locked, middle, damping[1], &k2);
                 move(&y, &k2.rate, 0.5 * h, &y3);
-                rates(in, &y3, locked, middle, stiffness, damping, &k3);
+                rates(in, &y3, locked, middle, damping[1], &k3);
                 move(&y, &k3.rate, h, &y4);
-                rates(in, &y4, locked, last, stiffness, damping, &k4);
+                rates(in, &y4, locked, last, damping[2], &k4);
                 const double *a = (const double *)&y, *b1 = (const double *)&k1.rate, *b2 = (const double *)&k2.rate;
                 const double *b3 = (const double *)&k3.rate, *b4 = (const double *)&k4.rate;
                 for (unsigned k = 0; k < sizeof(State) / sizeof(double); k++)

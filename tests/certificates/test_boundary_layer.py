@@ -8,9 +8,9 @@ import pytest
 from tests.certificates.round_trip import keep, no_proof_can_be_missed, no_word_can_be_changed, not_for
 from wspd_design.certificates.checks.ideal_run import sliding_run
 from wspd_design.certificates.checks.sliding import boundary_layer, reaching
+from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search import together
-from wspd_design.certificates.search.memory import remembering
 from wspd_design.certificates.setting.plant import plant_with
 
 

@@ -21,6 +21,12 @@ from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.bounds import EXACT
 
 
+def in_control(*arguments, **named):
+    """Return a loop as python-control's."""
+    opened = margins.loop(*arguments, **named)
+    return control.ss(*opened[:3], 0.0, opened.dt)
+
+
 def test_known_loop():
     """4/(s (s + 1) (s + 3)): gain margin 3 at sqrt(3) rad/s; the phase margin follows from its own crossing."""
     opened = control.tf([4.0], np.polymul([1.0, 0.0], np.polymul([1.0, 1.0], [1.0, 3.0])))
@@ -77,7 +83,7 @@ def test_disk_margin_over_speed(make_problem, make_controller, name, sample_time
     """Margins below 0.01 belong to peaks that are narrower than a grid of some hundred frequencies."""
     problem = make_problem(make_controller(name, "polach-wet"), rail="polach-wet")
     loops = [
-        margins.loop(problem, float(speed), sample_time=sample_time)
+        in_control(problem, float(speed), sample_time=sample_time)
         for speed in np.geomspace(*problem.speeds, 13)
     ]
     found = [(opened, margins.margins(opened)) for opened in loops]
@@ -93,18 +99,39 @@ def test_the_printed_law_has_no_margin_at_any_speed(make_problem, make_controlle
     """Audit M1: with its adaptation; with held weights it looked stable on the wet rail."""
     problem = make_problem(make_controller("afsmc", "polach-wet"), rail="polach-wet")
     for speed in np.geomspace(*problem.speeds, 13):
-        assert not margins.margins(margins.loop(problem, float(speed))).stable
+        assert not margins.margins(in_control(problem, float(speed))).stable
 
 
 def test_gain_and_phase_at_the_edge_of_the_disk(problem):
     """A factor on the rim of the disk makes the loop unstable, a little inside none does."""
-    opened = margins.loop(problem, 12.0, sample_time=0.02)
+    opened = in_control(problem, 12.0, sample_time=0.02)
     disk = margins.margins(opened).disk
     for size, unstable in ((1.001 * disk, True), (0.999 * disk, False)):
         turns = size * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 721))
         factors = (1.0 + turns / 2.0) / (1.0 - turns / 2.0)
         closed = [opened.A - factor * opened.B @ opened.C for factor in factors]
         assert (np.abs(np.linalg.eigvals(closed)).max() > 1.0) is np.bool_(unstable)
+
+
+@pytest.mark.parametrize("sample_time", [None, 0.02])
+def test_gain_and_phase_margins_are_those_of_python_control(problem, sample_time):
+    """Stable at all speeds; python-control takes the transfer function apart."""
+    compared = 0
+    for speed in np.geomspace(*problem.speeds, 7):
+        opened = in_control(problem, float(speed), sample_time=sample_time)
+        found = margins.margins(opened)
+        gains, phases, _, _, crossings, _ = control.stability_margins(opened, returnall=True)
+        ends = [opened(z, warn_infinite=False).real for z in ((1.0, -1.0) if sample_time else (0.0,))]
+        factors = [*gains, *(-1.0 / end for end in ends if -np.inf < end < 0.0)]
+        lags = np.radians(np.mod(phases, 360.0))
+        up = min((f for f in factors if f > 1.0), default=margins.MOST_GAIN)
+        down = max((f for f in factors if f < 1.0), default=1.0 / margins.MOST_GAIN)
+        assert found.gain_up == pytest.approx(min(up, margins.MOST_GAIN), rel=1e-6)
+        assert found.gain_down == pytest.approx(max(down, 1.0 / margins.MOST_GAIN), rel=1e-6)
+        assert found.phase == pytest.approx(min([np.pi, *np.minimum(lags, 2.0 * np.pi - lags)]), rel=1e-6)
+        assert found.delay == pytest.approx(min([margins.MOST_DELAY, *(lags / crossings)]), rel=1e-6)
+        compared += len(phases)
+    assert compared > 3
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +142,7 @@ def problem(make_problem, make_controller):
 @pytest.mark.parametrize("sample_time", [None, 0.02])
 @pytest.mark.parametrize("speed", [3.0, 25.0])
 def test_gain_margin_is_where_the_loop_becomes_unstable(problem, sample_time, speed):
-    opened = margins.loop(problem, speed, sample_time=sample_time)
+    opened = in_control(problem, speed, sample_time=sample_time)
     found = margins.margins(opened)
     assert found.stable
     for factor, side in ((found.gain_up, 1.0), (found.gain_down, -1.0)):
@@ -141,7 +168,7 @@ def test_sampled_loop_is_the_law_between_samples(problem, fill, vent):
     brake = replace(problem.vehicle.brake, fill_time=fill, vent_time=vent)
     vehicle = replace(problem.vehicle, brake=brake)
     changed = replace(problem, vehicle=vehicle, bounds=EXACT)
-    opened = margins.loop(changed, speed, sample_time=span)
+    opened = in_control(changed, speed, sample_time=span)
     closed = np.sort_complex(control.feedback(opened, 1).poles())
     plant = read_data("er24pc", "polach-dry").plant
     pole, gain = float(slip_pole(plant, 0.14, speed)), float(attacker_gain(plant, speed))
@@ -216,7 +243,7 @@ def test_enclosed_poles_are_those_of_the_floats(make_problem, make_controller, n
     problem = make_problem(make_controller(name))
     for speed in (3.0, 9.0, 30.0):
         sample_time = problem.sample_time if sampled else None
-        opened = margins.loop(problem, speed, sample_time=sample_time)
+        opened = in_control(problem, speed, sample_time=sample_time)
         poles = control.feedback(opened, 1).poles()
         expected = np.abs(poles).max() if sampled else poles.real.max()
         found = outermost(problem, speed, sampled=sampled)

@@ -9,10 +9,10 @@ from wspd_design.certificates import suite
 from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.quantities import AXLE, QUANTITIES
-from wspd_design.certificates.records import Status
+from wspd_design.certificates.records import Certificate, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems.table import THEOREMS
-from wspd_design.certificates.theorems.theorem import silent, told
+from wspd_design.certificates.theorems.theorem import asked, told
 from wspd_design.cli.verification import _SHOWN
 from wspd_design.reporting.blocks import Status as Shown
 from wspd_design.reporting.sections.checks import MEANINGS
@@ -32,11 +32,10 @@ BAD = {Status.REFUTED, Status.LIMITATION}
 
 def nothing_stated(theorem, problem):
     """Tell a theorem of which nothing is stated, as a file without findings does."""
-    made = silent(theorem, problem)
-    if made is not None:
-        return made
-    found = {each.key: each.decide(Stated(), Work()) for each in theorem.obligations(problem)}
-    return told(theorem, problem, found)
+    wanted = asked(theorem, problem)
+    if isinstance(wanted, Certificate):
+        return wanted
+    return told(theorem, problem, {each.key: each.decide(Stated(), Work()) for each in wanted})
 
 
 @pytest.fixture(scope="module", params=LAWS)

@@ -124,16 +124,18 @@ def test_stop_from_a_witness(wspd, witness_file):
     assert many["distance_m"]["max"] == pytest.approx(found["distance_m"], rel=1e-9)
 
 
-def test_a_chaotic_stop_gives_its_spread(wspd, monkeypatch):
-    def chaotic(*arguments, **options):
+def test_sensitive_and_unresolved_are_two_findings(wspd, monkeypatch):
+    def sensitive(*arguments, **options):
         made = trial(*arguments, **options)
-        return replace(made, check=replace(made.check, chaotic=True, spread=0.25, refinement=8))
+        return replace(made, check=replace(made.check, sensitive=True, spread=0.25))
 
-    monkeypatch.setattr(simulate, "trial", chaotic)
+    monkeypatch.setattr(simulate, "trial", sensitive)
     found = only_object(wspd("simulate", "none", *SLOW, "--json"))
-    assert (found["step_check"]["chaotic"], found["step_check"]["spread_m"]) == (True, 0.25)
+    check = found["step_check"]
+    assert (check["sensitive"], check["unresolved"], check["spread_m"]) == (True, False, 0.25)
     shown = wspd("simulate", "none", *SLOW).out
-    assert "chaotic" in shown
+    assert "sensitive" in shown
+    assert "unresolved" not in shown
     assert "0.25 m" in shown
 
 
@@ -211,11 +213,11 @@ def test_a_train_that_cannot_stop_has_no_ideal_stop(wspd):
     )
     found = only_object(wspd(*case, "--json"))
     assert_form(found, STOP)
-    assert (found["ending"], found["ideal_ending"]) == ("time_limit", "time_limit")
+    assert (found["ending"], found["ideal_ending"]) == ("runaway", "runaway")
     assert (found["ideal_stop_m"], found["efficiency"]) == (None, None)
     for shown in (wspd(*case).out, wspd("compare", *case[1:]).out):
         words = " ".join(shown.split())
-        assert f"No ideal stop: {NO_IDEAL_STOP}." in words
+        assert f"No ideal stop: {NO_IDEAL_STOP[Ending.RUNAWAY]}." in words
         assert "no controller stops shorter" not in words
 
 

@@ -5,6 +5,7 @@ controllers. Cylinder pressures are integrated, SciPy steps from valve edge to v
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -21,11 +22,27 @@ SIGNS = np.array(
 V, W, X, P, Z, DZ = 0, slice(1, 5), 5, slice(6, 10), slice(10, 13), slice(13, 16)
 
 
+class Below(NamedTuple):
+    """Friction below the axles."""
+
+    mu0: np.ndarray
+    friction_ratio: np.ndarray
+    friction_decay: np.ndarray
+    adhesion_reduction: np.ndarray
+    slip_reduction: np.ndarray
+
+
 class IndependentFourAxles:
     """State: v, four omega, distance, four P / P_max, load transfer of body and bogies [N] and its rates."""
 
-    def __init__(self, vehicle, rail):
-        self.vehicle, self.rail, self.brake = vehicle, rail, vehicle.brake
+    def __init__(self, vehicle, rail, *, patches=(), grade=0.0, rtol=1e-8):
+        self.vehicle, self.brake, self.rtol = vehicle, vehicle.brake, rtol
+        self.rails, self.starts = [rail, *(rail for _, rail in patches)], [start for start, _ in patches]
+        self.reached = np.zeros(AXLES, dtype=int)  # of the rails, per axle
+        self.behind = np.array(
+            [0.0, vehicle.wheelbase, vehicle.bogie_spacing, vehicle.bogie_spacing + vehicle.wheelbase]
+        )
+        self.climbing = vehicle.mass * GRAVITY * grade
         self.static = vehicle.mass * GRAVITY / 8.0
         contact = vehicle.contact
         self.slope = 0.25 * math.pi * contact.shear_modulus * contact.kalker_c11
@@ -38,8 +55,14 @@ class IndependentFourAxles:
             )
         )
 
+    @property
+    def friction(self):
+        """Numbers of the rails below the axles, as vectors."""
+        below = [self.rails[k] for k in self.reached]
+        return Below(*(np.array([getattr(rail, name) for rail in below]) for name in Below._fields))
+
     def creep_forces(self, v, omega, load):
-        rail, sliding = self.rail, v - self.vehicle.wheel_radius * omega
+        rail, sliding = self.friction, v - self.vehicle.wheel_radius * omega
         slip = sliding / max(v, SLIP_REFERENCE_SPEED)
         mu = rail.mu0 * (
             (1.0 - rail.friction_ratio) * np.exp(-rail.friction_decay * abs(sliding)) + rail.friction_ratio
@@ -57,14 +80,16 @@ class IndependentFourAxles:
         c, v, omega, p = self.vehicle, y[V], y[W], y[P]
         f = self.creep_forces(v, omega, self.loads(y[Z]))
         resistance = c.resistance_constant + c.resistance_linear * v + c.resistance_quadratic * v**2
+        resistance += self.climbing
         a = -(resistance + 2.0 * f.sum()) / c.mass
         damping = c.wheel_damping * math.exp(-c.wheel_damping_decay * t)
         turning = (c.wheel_radius * f - 0.5 * self.brake.max_torque * p - damping * omega) / (
             0.5 * c.wheelset_inertia
         )
         # Quasi-static transfer: the body's inertia above the traction rods, the rods' pull and the bogie's inertia.
-        body = c.body_mass * -a * (c.body_height - c.traction_rod_height) / c.bogie_spacing
-        inertia = c.bogie_mass * -a
+        held = -a - self.climbing / c.mass  # what is held beside gravity
+        body = c.body_mass * held * (c.body_height - c.traction_rod_height) / c.bogie_spacing
+        inertia = c.bogie_mass * held
         bogies = [
             (inertia * c.bogie_height + (2.0 * pair.sum() - inertia) * c.traction_rod_height) / c.wheelbase
             for pair in (f[:2], f[2:])
@@ -118,15 +143,30 @@ class IndependentFourAxles:
             lock_or_release.terminal, lock_or_release.direction = True, -1.0
             return lock_or_release
 
+        def change_of_rail(axle):
+            start = self.starts[self.reached[axle]] if self.reached[axle] < len(self.starts) else math.inf
+
+            def place(_t, y):
+                return y[X] - self.behind[axle] - start if start < math.inf else -1.0
+
+            place.terminal, place.direction = True, 1.0
+            return place
+
         standstill.terminal = True
         solution = solve_ivp(
             lambda t, y: self.rates(t, y, fill, vent, locked),
             (t, end),
             y,
             method="Radau",
-            rtol=1e-8,
-            atol=np.concatenate([[1e-10], np.full(4, 1e-9), [1e-7], np.full(4, 1e-11), np.full(6, 1e-5)]),
-            events=[standstill, *(change(axle) for axle in range(AXLES))],
+            rtol=self.rtol,
+            atol=0.01
+            * self.rtol
+            * np.concatenate([[1.0], np.full(4, 10.0), [1e3], np.full(4, 0.1), np.full(6, 1e5)]),
+            events=[
+                standstill,
+                *(change(axle) for axle in range(AXLES)),
+                *(change_of_rail(axle) for axle in range(AXLES)),
+            ],
         )
         assert solution.success, solution.message
         y, locked = solution.y[:, -1].copy(), locked.copy()
@@ -134,4 +174,6 @@ class IndependentFourAxles:
             if solution.t_events[1 + axle].size > 0:
                 locked[axle] = not locked[axle]
                 y[W][axle] = 0.0
+            if solution.t_events[1 + AXLES + axle].size > 0:
+                self.reached[axle] += 1
         return solution.t[-1], y, locked, solution.t_events[0].size > 0

@@ -4,16 +4,18 @@ Nothing is searched. The file gives proofs, places and the effort of the search;
 """
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from functools import partial
 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import HEARSAY, read_certificate, sentences, stated_findings
 from wspd_design.certificates.kernel.finding import Finding, Stated
-from wspd_design.certificates.kernel.obligation import Obligation, Sampled
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Sampled
+from wspd_design.certificates.memory import is_remembering, recall
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.theorems.table import THEOREMS
-from wspd_design.certificates.theorems.theorem import silent, told
+from wspd_design.certificates.theorems.theorem import asked, told
 
 DECIDED = (Status.PROVED, Status.LIMITATION, Status.REFUTED, Status.VACUOUS)
 """Statuses that rest on what the checkers decide."""
@@ -55,11 +57,13 @@ def replay(problem: Problem, text: str) -> Replayed:
         if check not in THEOREMS:
             raise Refused(f'there is no check "{check}"')
         theorem, stated = THEOREMS[check], stated_findings(content)
-        made = silent(theorem, problem)
-        if made is None:
-            made = told(theorem, problem, _findings(theorem.obligations(problem), stated))
+        wanted = asked(theorem, problem)
+        if not isinstance(wanted, Certificate):
+            made = told(theorem, problem, _findings(wanted, stated))
         elif stated:
-            raise Refused(f"{check} is {made.status.name} here, but the file states findings")
+            raise Refused(f"{check} is {wanted.status.name} here, but the file states findings")
+        else:
+            made = wanted
         expected = sentences(made)
         if content.keys() != expected.keys() | set(HEARSAY):
             raise Refused("the file has other entries than a certificate")
@@ -79,7 +83,24 @@ def _findings(wanted: tuple[Obligation, ...], stated: Mapping[str, Stated]) -> d
             raise Refused(f"the check asks for nothing of the name {key!a}")
         if each.numbers and not isinstance(known[key], Sampled):
             raise Refused(f"{key} rests on no samples, but the file states some")
-    return {key: each.decide(stated.get(key, Stated()), work) for key, each in known.items()}
+    return {
+        key: decided("decide", each, given := stated.get(key, Stated()), partial(each.decide, given, work))
+        for key, each in known.items()
+    }
+
+
+def decided(how: str, obligation: Obligation, given: Stated, decide: Callable[[], Finding]) -> Finding:
+    """Decide, unless the same verification has decided in the same way about the same inequality and proof."""
+    if not (isinstance(obligation, Inequality) and is_remembering()):
+        return decide()
+    asked_about = [
+        obligation.claim.statement(),
+        obligation.text,
+        given.proof,
+        given.place,
+        asdict(given.effort),
+    ]
+    return recall([how, *asked_about], decide)
 
 
 def _canonical(entry: object) -> str:

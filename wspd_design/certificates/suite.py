@@ -23,10 +23,10 @@ from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invaria
 from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
 from wspd_design.certificates.checks.stop import stop_bound, tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
+from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
-from wspd_design.certificates.search.memory import remembering
 from wspd_design.certificates.search.progress import Listener, listening
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.controllers.offers import Linear

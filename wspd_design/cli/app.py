@@ -10,26 +10,9 @@ from typing import Annotated
 
 import typer
 
-from wspd_design.cli.commands import (
-    campaign,
-    certify,
-    check,
-    compare,
-    design,
-    doctor,
-    equations,
-    linearize,
-    new,
-    report,
-    reproduce,
-    simulate,
-    sources,
-    verify,
-)
 from wspd_design.cli.exit_codes import BUG, INTERRUPTED, WRONG_USE
+from wspd_design.cli.lazy import LazyGroup
 from wspd_design.cli.notices import plain_notices
-from wspd_design.design.own_controller import fault_in_own_file
-from wspd_design.exchange.version import program_version
 from wspd_design.parameters.errors import UserError
 
 # Newer versions of Typer carry their own copy of Click; the parent of this class is the usage error of either.
@@ -37,6 +20,7 @@ _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 
 app = typer.Typer(
     name="wspd",
+    cls=LazyGroup,
     add_completion=False,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
@@ -46,6 +30,8 @@ app = typer.Typer(
 
 def _show_version(wanted: bool) -> None:
     if wanted:
+        from wspd_design.exchange.version import program_version
+
         print(f"wspd {program_version()}")
         raise typer.Exit
 
@@ -63,35 +49,9 @@ def _start(
 ) -> None:
     """Design, prove and validate controllers for railway wheel slide protection."""
     if context.invoked_subcommand is None:
+        from wspd_design.cli.commands import new
+
         new.new()
-
-
-_DESIGNING, _JUDGING, _KNOWING = "Design", "Prove and validate", "Look up"
-
-app.command(rich_help_panel=_DESIGNING, epilog="Example: wspd new -o design.toml")(new.new)
-app.command(rich_help_panel=_DESIGNING, epilog='Example: wspd design --law smc --slip "14 %" -o design.toml')(
-    design.design
-)
-app.command(rich_help_panel=_JUDGING, epilog="Example: wspd verify design.toml")(verify.verify)
-app.command(rich_help_panel=_JUDGING, epilog="Example: wspd certify design.toml")(certify.certify)
-app.command(rich_help_panel=_JUDGING, epilog="Example: wspd check design.certificates/*.json")(check.check)
-app.command(
-    rich_help_panel=_JUDGING,
-    epilog='Examples: wspd simulate afsmc --rail polach-dry --speed "100 km/h"; '
-    'wspd simulate --runs 1000 --speed-noise "0.05 m/s" -o stops.csv',
-)(simulate.simulate)
-app.command(rich_help_panel=_JUDGING, epilog="Example: wspd compare design.toml afsmc none")(compare.compare)
-app.command(
-    rich_help_panel=_JUDGING, epilog="Example: wspd campaign campaign.toml --workers 8 -o stops.parquet"
-)(campaign.campaign)
-app.command(rich_help_panel=_JUDGING, epilog="Example: wspd report design.toml -o report.html --pdf")(
-    report.report
-)
-app.command(rich_help_panel=_JUDGING, epilog="Example: wspd reproduce -o reproduction")(reproduce.reproduce)
-app.command(rich_help_panel=_KNOWING, epilog="Example: wspd linearize --rail polach-dry")(linearize.linearize)
-app.command(rich_help_panel=_KNOWING, epilog="Example: wspd equations 19")(equations.equations)
-app.command(rich_help_panel=_KNOWING, epilog="Example: wspd sources er24pc")(sources.sources)
-app.command(rich_help_panel=_KNOWING, epilog="Example: wspd doctor")(doctor.doctor)
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -117,6 +77,8 @@ def run(arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
     except Exception as error:
+        from wspd_design.design.own_controller import fault_in_own_file
+
         fault = fault_in_own_file(error)
         if fault is not None:
             return _refuse(fault)

@@ -10,7 +10,8 @@ from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.self_check import StepCheck
 
-CHAOTIC = "chaotic: the last digit of anything moves the result"
+SENSITIVE = "sensitive: a change of the initial speed that nobody can measure moves the result"
+UNRESOLVED = "unresolved: half of the shortest steps still change the stop"
 
 
 def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
@@ -44,21 +45,21 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     shown.add_row("wheels locked", f"{figures.lock_time:.2f}", "s")
     shown.add_row("vented air per wheelset", f"{figures.vented_air:.2f}", "cylinders")
     shown.add_row("valve switches per wheelset", f"{figures.valve_switches}", "")
-    shown.add_row("samples at a limit", f"{100.0 * figures.saturated_share:.0f}", "%")
+    shown.add_row("samples at a limit", number(100.0 * figures.saturated_share, ".0f"), "%")
     shown.add_row("momentum balance, relative", f"{figures.momentum_residual:.1e}", "-")
     shown.add_row("energy balance, relative", f"{figures.energy_residual:.1e}", "-")
     shown.add_row("step check, distance, relative", f"{made.check.distance:.1e}", "-")
     shown.add_row("step check, slip", f"{made.check.slip:.1e}", "-")
     out.print(spaced(shown))
-    if figures.ideal_ending is Ending.TIME_LIMIT:
-        out.print(f"No ideal stop: {NO_IDEAL_STOP}.", style="bold yellow")
+    if figures.ideal_ending in NO_IDEAL_STOP:
+        out.print(f"No ideal stop: {NO_IDEAL_STOP[figures.ideal_ending]}.", style="bold yellow")
     out.print(_trust(made.check))
     out.print("Slip figures count above 10 km/h.", style="dim")
 
 
 def _ideal_stop(figures: Metrics) -> tuple[str, str]:
     """Return the distance of the ideal stop and its unit; a word for a train that cannot stop."""
-    if figures.ideal_ending is Ending.TIME_LIMIT:
+    if figures.ideal_ending in NO_IDEAL_STOP:
         return "none", ""
     return number(figures.ideal_stop, ".1f"), "m"
 
@@ -70,11 +71,14 @@ def number(value: float, form: str) -> str:
 
 def _trust(check: StepCheck) -> Text:
     """Say what the step check means."""
-    if check.chaotic:
-        return Text(
-            f"This stop is {CHAOTIC}, and no step is short enough. Over slightly different initial speeds "
-            f"the distance spreads by {check.spread:.2g} m.",
+    said = Text()
+    if check.sensitive:
+        said.append(
+            f"This stop is {SENSITIVE}. Over slightly different initial speeds the distance spreads by "
+            f"{check.spread:.2g} m. ",
             style="yellow",
         )
+    if check.unresolved:
+        return said.append(f"This stop is {UNRESOLVED}.", style="yellow")
     divided = f", divided by {check.refinement}," if check.refinement > 1 else ""
-    return Text(f"The steps{divided} are short enough: half of them give the same stop.", style="dim")
+    return said.append(f"The steps{divided} are short enough: half of them give the same stop.", style="dim")

@@ -216,7 +216,7 @@ def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
     lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
     groups = {
         "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
-        lanes: (kernels.lane_constants, kernels.condition, kernels.axle),
+        lanes: (kernels.lane_constants, kernels.contact, kernels.axle, kernels.slope),
         twice: (kernels.window_constants, kernels.actuator),
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]

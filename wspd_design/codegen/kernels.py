@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from wspd_design.codegen.hoisting import hoist
 from wspd_design.codegen.memory import Memory
+from wspd_design.model import adhesion
 from wspd_design.model import brake as brake_model
 from wspd_design.model.generated import brake as generated
 from wspd_design.model.number import maximum, minimum, where
@@ -65,14 +66,15 @@ class Kernels(NamedTuple):
     """CasADi functions of dense vectors; the first inputs of a kernel are the constants made for it."""
 
     stop_constants: Any  # (p) -> constants of loads and train
-    lane_constants: Any  # (p) -> constants of condition and axle
+    lane_constants: Any  # (p) -> constants of contact and axle
     window_constants: Any  # (p, [start, start pressure, fill end, vent end]) -> constants of actuator
     loads: Any  # (constants, transfers) -> wheel load of each axle
     train: Any  # (constants, speed, force of each axle, transfers) -> acceleration, resistance, transfers'
-    condition: Any  # (constants, time, load) -> [stiffness, damping]
-    axle: Any  # (constants, speed, axle states, load, torque, locked, [stiffness, damping])
+    contact: Any  # (constants, load) -> stiffness there, and the reciprocal of the load: where a step begins
+    axle: Any  # (constants, speed, axle states, load, torque, locked, contact, damping)
     #           -> force, axle states', slip, damping torque, torque that is passed on
-    actuator: Any  # (constants, time) -> pressure, torque, pressure without venting
+    slope: Any  # (constants, speed, axle states, load, contact, damping) -> slope of the wheel's acceleration
+    actuator: Any  # (constants, time) -> pressure, torque, pressure without venting, damping
 
     @property
     def axles(self) -> int:
@@ -125,16 +127,17 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
     track = Rail(**{**rail, **symbols["rail"]})
     functions = _functions(blank.on(vehicle), track, p, Surroundings(**symbols["surroundings"]), disturbed)
     stop_constants, (loads, train) = hoist(functions[:2], 1, "stop_constants")
-    lane_constants, (condition, axle) = hoist(functions[2:4], 1, "lane_constants")
-    window_constants, (actuator,) = hoist(functions[4:], 2, "window_constants")
+    lane_constants, (contact, axle, slope) = hoist(functions[2:5], 1, "lane_constants")
+    window_constants, (actuator,) = hoist(functions[5:], 2, "window_constants")
     return Kernels(
         stop_constants=stop_constants,
         lane_constants=lane_constants,
         window_constants=window_constants,
         loads=loads,
         train=train,
-        condition=condition,
+        contact=contact,
         axle=axle,
+        slope=slope,
         actuator=actuator,
     )
 
@@ -147,7 +150,7 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
     speed, load, demand, locked, time = (
         ca.SX.sym(name) for name in ("speed", "load", "torque", "locked", "time")
     )
-    held, force = ca.SX.sym("condition", 2), ca.SX.sym("force", plant.axles)
+    begin, damped, force = ca.SX.sym("contact", 2), ca.SX.sym("damping"), ca.SX.sym("force", plant.axles)
     states, transfers = ca.SX.sym("states", plant.axle_states), ca.SX.sym("transfers", 2 * plant.transfers)
     loads = plant.wheel_loads(_elements(transfers))
     train = plant.train_motion(
@@ -157,14 +160,17 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
         grade_force=surroundings.grade_force,
     )
     braking_time = time + surroundings.braking_time
-    condition = plant.axle_condition(time=braking_time, wheel_load=load)
+    contact = plant.axle_condition(time=0.0, wheel_load=load).stiffness
+    damping = plant.axle_condition(time=braking_time, wheel_load=1.0).damping
     axle = plant.axle_motion(
         track,
         speed=speed,
         states=_elements(states),
         wheel_load=load,
         torque=demand,
-        condition=AxleCondition(stiffness=held[0], damping=held[1]),
+        condition=AxleCondition(
+            stiffness=begin[0] * adhesion.stiffness_growth(load * begin[1]), damping=damped
+        ),
     )
     wheel, *others = axle.rates
     rates = ca.vertcat(where(locked != 0.0, 0.0, wheel), *others)
@@ -181,13 +187,18 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
             [p, speed, force, transfers],
             [train.acceleration, train.resistance, ca.vertcat(ca.SX(0, 1), *train.transfer_rates)],
         ),
-        ca.Function("condition_kernel", [p, time, load], [ca.vertcat(*condition)]),
+        ca.Function("contact_kernel", [p, load], [ca.vertcat(contact, 1.0 / load)]),
         ca.Function(
             "axle_kernel",
-            [p, speed, states, load, demand, locked, held],
+            [p, speed, states, load, demand, locked, begin, damped],
             [axle.creep_force, rates, axle.slip, axle.damping_torque, passed],
         ),
-        ca.Function("actuator_kernel", [p, valves, time], [pressures[0], torque, pressures[1]]),
+        ca.Function(
+            "slope_kernel",
+            [p, speed, states, load, begin, damped],
+            [ca.substitute(ca.jacobian(wheel, states)[0], demand, 0.0)],
+        ),
+        ca.Function("actuator_kernel", [p, valves, time], [pressures[0], torque, pressures[1], damping]),
     ]
 
 

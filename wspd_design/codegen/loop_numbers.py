@@ -56,6 +56,7 @@ class Settings(ctypes.Structure):
             "sample_time",
             "longest_step",
             "creep_rate",
+            "slope_limit",
             "stop_speed",
             "regularization_speed",
             "time_limit",

@@ -89,14 +89,16 @@ class _VirtualPlant:
         self.following = [CLOSED] * axles
         self.recorded = -1.0
         self.sample = self.steps = 0
+        self._last_step = given.settings.longest_step
         self.patch = [0] * axles
-        self.moving = True
+        self.moving = bool(given.speeds[0] > given.settings.stop_speed)  # or at rest already
         self.rows: list[NDArray[np.float64]] = []
         self.bad_command = (0.0, 0.0, 0.0)
         self._steps = {
             number: _Bound(function, self.state, self.inputs)
             for number, function in ((1, functions.single), *functions.batches.items())
         }
+        self._observe = _Bound(functions.observe, self.state, self.inputs)
         self._window = np.zeros((axles, 4))
         self._window_constants = _Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
@@ -116,11 +118,12 @@ class _VirtualPlant:
 
     def _write_fixed_inputs(self) -> None:
         settings = self.set
-        for name in ("longest_step", "regularization_speed", "stop_speed", "judging_speed"):
+        for name in ("longest_step", "creep_rate", "slope_limit"):
             self._give(name, getattr(settings, name))
-        self._give("per_creep_rate", 1.0 / settings.creep_rate)
+        for name in ("regularization_speed", "stop_speed", "judging_speed"):
+            self._give(name, getattr(settings, name))
         self._give("scale", 1.0)
-        self._give("load_factors", 1.0)
+        self._give("load_factors", [0.0, *[1.0] * self.layout.axles, *[0.0] * self.layout.axles])
         self._give("radius", self.parameters[RADIUS])
         self._give("inertia", self.parameters[INERTIA])
         constants = self.kernels.stop_constants(self.given.stop_parameters[:, 0])
@@ -192,8 +195,11 @@ class _VirtualPlant:
         """Begin with these pressures in the cylinders."""
         self._set_windows(0.0, pressures, 0.0, 0.0)
         present = [self.kernels.actuator(constants, 0.0) for constants in self._window_constants.outputs[0]]
-        for name, values in zip(("pressure", "torque", "filled"), zip(*present, strict=True), strict=True):
+        names = ("pressure", "torque", "filled", "damping")
+        for name, values in zip(names, zip(*present, strict=True), strict=True):
             self.part(name)[:] = [float(value) for value in values]
+        self._look_up()
+        self._work_out_stage()
 
     def _set_windows(self, *pattern: "float | Array") -> None:
         """Work out the constants of the actuators: start, pressure there, end of filling, end of venting."""
@@ -209,28 +215,38 @@ class _VirtualPlant:
             result = self._advance_some(next(near, goal))
         return result
 
+    def _work_out_stage(self) -> None:
+        self._observe.call()
+        self.state[:] = self._observe.outputs[0][0]
+
     def _advance_some(self, until: float) -> int:
         """Make one step, or several where nothing has to be looked up on the way."""
-        time, speed = float(self.part("time")[0]), float(self.part("speed")[0])
-        wanted = min(
-            max(speed, self.set.regularization_speed) * (1.0 / self.set.creep_rate), self.set.longest_step
-        )
-        change = self._lay_rails(speed)
-        needed = max(math.ceil((until - time) / wanted * (1.0 - 1e-12)), 1)
-        h, number = (until - time) / needed, 1
-        if change > until - time and self.given.load_factors is None and self.given.held_slips is None:
+        time = float(self.part("time")[0])
+        soonest, number = self._lay_rails(), 1
+        if soonest > until - time and self.given.held_slips is None:
+            needed = math.ceil((until - time) / min(self._last_step, self.set.longest_step))
             number = next((batch for batch in _BATCHES if batch <= needed), 1)
-        self._give("until", until if change >= h else time + change)
-        if number == 1:
-            self._look_up(min(h, change))
+        self._give("until", until)
+        self._give("soonest", soonest)
+        self._give("scale", 1.0)
+        self._give("last_cut", 0.0)
+        self._look_up()
         rows = self._step(number)
-        kept = int(rows[:, self.layout.row].sum())  # a step that is not made is the last one
+        kept = int(rows[:, self.layout.row].sum())
         result = self._follow(rows[:kept])
-        if kept < number and rows[kept, self.layout.row + 1] < self.set.stop_speed:
-            ahead = float(self.part("speed")[0])
-            self._give("scale", (ahead - self.set.stop_speed) / (ahead - rows[kept, self.layout.row + 1]))
-            result = result or self._follow(self._step(1))
+        cut = kept < number and float(self.part("time")[0]) < until and rows[kept, self.layout.row + 1] < 1.0
+        if cut:  # once more up to the event
+            scale = rows[kept, self.layout.row + 1]
+            self._give("scale", scale)
+            rows = self._step(1)
+            if not rows[0, self.layout.row]:  # an event is found by interpolation, and once more
+                self._give("scale", scale * rows[0, self.layout.row + 1])
+                self._give("last_cut", 1.0)
+                rows = self._step(1)
+            result = result or self._follow(rows)
             kept += 1
+        else:
+            self._last_step = (float(self.part("time")[0]) - time) / kept
         self.steps += kept
         self.moving = bool(self.part("speed")[0] > self.set.stop_speed * (1.0 + 1e-6))
         return result
@@ -242,38 +258,52 @@ class _VirtualPlant:
         self.state[:] = steps.outputs[0][0]
         return steps.outputs[1]
 
-    def _lay_rails(self, speed: float) -> float:
-        """Put the wheels on the rail of their place; the time to the next change at the present speed."""
+    def _lay_rails(self) -> float:
+        """Put the wheels on the rail of their place; the time to the next change of rail or kink of the loads."""
         given, soonest = self.given, math.inf
-        if given.patch_starts is None or given.patch_rails is None:
-            return soonest
-        changed = False
-        for axle in range(self.layout.axles):
-            place = self.part("stop")[0] - self.parameters[_OFFSET, axle]
-            reached = self.patch[axle]
-            while reached < len(given.patch_starts) and given.patch_starts[reached, 0] <= place:
-                reached += 1
-            if reached != self.patch[axle]:
-                rail = given.patch_rails[reached - 1, 0]
-                self.parameters[_FIRST_RAIL : _FIRST_RAIL + RAIL_NUMBERS, axle] = rail
-                self.patch[axle] = reached
-                changed = True
-            if reached < len(given.patch_starts):
-                soonest = min(soonest, float(given.patch_starts[reached, 0] - place) / speed + 1e-9)
-        if changed:
-            self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
+        distance = float(self.part("distance")[0])
+        if given.patch_starts is not None and given.patch_rails is not None:
+            changed = False
+            for axle in range(self.layout.axles):
+                place = distance - self.parameters[_OFFSET, axle]
+                reached = self.patch[axle]
+                while reached < len(given.patch_starts) and given.patch_starts[reached, 0] <= place:
+                    reached += 1
+                if reached != self.patch[axle]:
+                    rail = given.patch_rails[reached - 1, 0]
+                    self.parameters[_FIRST_RAIL : _FIRST_RAIL + RAIL_NUMBERS, axle] = rail
+                    self.patch[axle] = reached
+                    changed = True
+            if changed:
+                self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
+                self._work_out_stage()
+            for axle, reached in enumerate(self.patch):
+                if reached < len(given.patch_starts):
+                    place = distance - self.parameters[_OFFSET, axle]
+                    soonest = min(soonest, self._wait_for(float(given.patch_starts[reached, 0] - place)))
+        if given.load_factors is not None and given.load_spacings is not None:
+            point = math.floor(distance / given.load_spacings[0] + 1e-6) + 1
+            if point < given.load_factors.shape[1]:
+                soonest = min(soonest, self._wait_for(point * given.load_spacings[0] - distance))
         return soonest
 
-    def _look_up(self, h: float) -> None:
-        """Take the wheel loads and the slips to be held from their tables, for a step of this length."""
+    def _wait_for(self, ahead: float) -> float:
+        """Time to a place ahead under the present deceleration, and a little more so that it is reached."""
+        speed = float(self.part("speed")[0])
+        square = speed * speed + 2.0 * float(self.part("rates")[0]) * ahead
+        return 2.0 * ahead / (speed + math.sqrt(square)) + _SHORTEST if square > 0.0 else math.inf
+
+    def _look_up(self) -> None:
+        """Take the wheel loads and the slips to be held from their tables."""
         import numpy as np
 
         given, speed = self.given, float(self.part("speed")[0])
         if given.load_factors is not None and given.load_spacings is not None:
-            points = np.arange(given.load_factors.shape[1]) * given.load_spacings[0]
-            places = self.part("stop")[0] + np.array([0.0, 0.5, 1.0]) * h * speed
-            factors = [np.interp(places, points, row) for row in given.load_factors]
-            self._give("load_factors", np.transpose(factors).ravel())
+            distance, spacing = float(self.part("distance")[0]), float(given.load_spacings[0])
+            k = math.floor(distance / spacing + 1e-6)
+            last = given.load_factors.shape[1] - 1
+            here, above = (given.load_factors[:, min(point, last)] for point in (k, k + 1))
+            self._give("load_factors", np.concatenate([[k * spacing], here, (above - here) / spacing]))
         if given.held_slips is not None:
             first, spacing = (
                 math.log(given.held_speeds[0]),

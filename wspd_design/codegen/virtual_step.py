@@ -1,7 +1,7 @@
 """One integration step of the closed loop as a CasADi function, and several of them in one call.
 
-The formulas are those of ``templates/motion.c``. Steps beyond the goal, and the one that would end below the
-stop speed, leave the state as it is, so that a call may hold more steps than are needed.
+The formulas are those of ``templates/motion.c``. Steps beyond the goal, and one that would go across an event, leave
+the state as it is, so that a call may hold more steps than are needed.
 """
 
 from collections.abc import Iterable
@@ -15,6 +15,9 @@ from wspd_design.model.number import maximum, minimum, where
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
 INTEGRATED = 8  # totals of a lane that are integrals; those of locks and the largest slip follow
+BALANCED = 1e-10  # relative: torques that differ by less are equal
+SPEED_SHARE = 0.1  # of the speed, that a step may take from it where the slope limit is one
+EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event of a wheel
 
 
 def _places(sizes: dict[str, int]) -> dict[str, slice]:
@@ -44,7 +47,8 @@ class Layout:
     def row(self) -> int:
         """Length of a row of the trace.
 
-        After it come whether the step was made, the speed at its end, and the angles that the wheels have turned.
+        After it come whether the step was made, the share of it before its first event, and the angles that the wheels
+        have turned.
         """
         return 3 + 5 * self.axles
 
@@ -63,13 +67,22 @@ def layout(kernels: Kernels) -> Layout:
                 "speed": 1,
                 "axle": kernels.axle_states * axles,  # first the wheel speeds
                 "transfer": 2 * kernels.transfers,
+                "distance": 1,
                 "locked": axles,
                 "held": axles,
                 "lock_length": axles,
                 "pressure": axles,
                 "torque": axles,
                 "filled": axles,
+                "damping": axles,
                 "time": 1,
+                "rates": 2 + kernels.axle_states * axles + 2 * kernels.transfers,  # the present stage
+                "integrands": INTEGRATED * axles + 2,
+                "force": axles,
+                "slip": axles,
+                "load": axles,
+                "passed": axles,
+                "contact": 2 * axles,
                 "lane": (INTEGRATED + 4) * axles,
                 "stop": 5,  # distance, impulse and work of the resistance, judged time, time
             }
@@ -82,15 +95,19 @@ def layout(kernels: Kernels) -> Layout:
                 "radius": axles,
                 "inertia": axles,
                 "until": 1,
-                "scale": 1,
+                "scale": 1,  # share of a step up to its first event
+                "last_cut": 1,
+                "soonest": 1,  # time to the next change of rail or loads
                 "longest_step": 1,
-                "per_creep_rate": 1,
+                "creep_rate": 1,
+                "slope_limit": 1,
                 "regularization_speed": 1,
                 "stop_speed": 1,
                 "judging_speed": 1,
-                "load_factors": 3 * axles,  # at the start, middle and end of the step
-                "hold": 3
-                + 3 * axles,  # first point, spacing and place of the table; slip there and beside it
+                "load_factors": 1
+                + 2 * axles,  # a place, relative loads there, and their slopes over distance
+                # First point, spacing and place of the table; slip there and beside it.
+                "hold": 3 + 3 * axles,
             }
         ),
     )
@@ -100,6 +117,7 @@ class StepFunctions(NamedTuple):
     """What runs a stop without a compiler."""
 
     layout: Layout
+    observe: Any  # (state, inputs) -> state with the present stage
     single: Any  # (state, inputs) -> state, row with what follows it
     batches: dict[int, Any]  # number of steps -> (state, inputs) -> state, one column per step
 
@@ -110,8 +128,9 @@ def step_functions(kernels: Kernels, *, holding: bool, batches: Iterable[int]) -
 
     places = layout(kernels)
     state, given = ca.SX.sym("state", places.states), ca.SX.sym("given", places.inputs)
-    outputs = ca.cse(_Step(kernels, places, state, given, holding).outputs())
-    single = ca.Function("step", [state, given], outputs)
+    step = _Step(kernels, places, state, given, holding)
+    observe = ca.Function("observe", [state, given], ca.cse([step.observed()]))
+    single = ca.Function("step", [state, given], ca.cse(step.outputs()))
     repeated = {}
     for number in batches:
         following, rows = ca.MX.sym("state", places.states), []
@@ -120,14 +139,28 @@ def step_functions(kernels: Kernels, *, holding: bool, batches: Iterable[int]) -
             following, row = single(following, inputs[1])
             rows.append(row)
         repeated[number] = ca.Function(f"steps{number}", inputs, [following, ca.horzcat(*rows)])
-    return StepFunctions(layout=places, single=single, batches=repeated)
+    return StepFunctions(layout=places, observe=observe, single=single, batches=repeated)
+
+
+class _Stage(NamedTuple):
+    """Everything at one moment of a step."""
+
+    motion: Any
+    torque: Any
+    rates: Any  # of the motion
+    integrands: Any  # of the totals of lanes and stop
+    force: Any
+    slip: Any
+    load: Any
+    passed: Any
 
 
 class _Step:
     """The expressions of one step."""
 
     def __init__(self, kernels: Kernels, places: Layout, state: Any, given: Any, holding: bool) -> None:
-        self.kernels, self.holding, self.whole, self.axles = kernels, holding, state, places.axles
+        self.kernels, self.holding, self.axles = kernels, holding, places.axles
+        self.whole, self.places = state, places
         self.state = {name: state[place] for name, place in places.state.items()}
         self.given = {name: given[place] for name, place in places.given.items()}
 
@@ -137,144 +170,250 @@ class _Step:
         size = values.size1() // self.axles
         return values[axle * size : (axle + 1) * size]
 
+    def motion(self, state: dict[str, Any]) -> Any:
+        """Put together what is integrated with stages."""
+        import casadi as ca
+
+        return ca.vertcat(*(state[name] for name in ("speed", "axle", "transfer", "distance")))
+
+    def observed(self) -> Any:
+        """The state with the present stage worked out anew."""
+        import casadi as ca
+
+        return ca.vertcat(*self._observe(dict(self.state)).values())
+
     def outputs(self) -> list[Any]:
         import casadi as ca
 
         now, given, axles = self.state, self.given, self.axles
         integrated = INTEGRATED * axles
         h, following = self._length()
-        pressure, torque, filled = self._actuators(now["time"] + 0.5 * h, following)
-        condition = self._conditions(h)
-        motion = ca.vertcat(now["speed"], now["axle"], now["transfer"])
-        shares = ((0.0, 0, now["torque"], 1.0), (0.5, 1, torque[0], 2.0), (0.5, 1, torque[0], 2.0))
-        rates, sums = ca.SX.zeros(motion.size1()), [ca.SX(0)] * 3
-        last: list[Any] = []
-        for share, column, demand, weight in (*shares, (1.0, 2, torque[1], 1.0)):
-            rates, lane, stop, last = self._stage(motion + share * h * rates, demand, condition, column)
-            for k, part in enumerate((rates, lane, stop)):
-                sums[k] += h / 6.0 * weight * part
-        reached = motion + sums[0]
-        force, slip, load, passed = last
-        slip = minimum(slip, 1.0)
+        pressure, torque, filled, damping = self._actuators(now["time"] + 0.5 * h, following)
+        motion = self.motion(now)
+        present = _Stage(
+            motion,
+            now["torque"],
+            *(now[name] for name in ("rates", "integrands", "force", "slip", "load", "passed")),
+        )
+        stages = [present]
+        for share, column in ((0.5, 0), (0.5, 0), (1.0, 1)):
+            at = motion + share * h * stages[-1].rates
+            stages.append(self._stage(at, torque[column], damping[column], now))
+        reached, totals = (
+            h / 6.0 * sum((2.0 * part for part in parts[1:3]), parts[0] + parts[3])
+            for parts in ([stage.rates for stage in stages], [stage.integrands for stage in stages])
+        )
+        reached += motion
+        share = self._before_event(stages, reached)
+        lane, stop = totals[:integrated], totals[integrated:]
+        judged = where(now["speed"] > given["judging_speed"], 1.0, 0.0)
         speed, wheel = reached[0], reached[1 : 1 + axles]
-        wheel, locked, held, lost = self._settled(speed, wheel, force, passed, torque[1])
+        wheel, locked, held, lost = self._settled(speed, wheel)
         lock_time, most, judged_lock, longest = ca.vertsplit(now["lane"][integrated:], axles)
-        judged = where(speed > given["judging_speed"], now["locked"] * h, 0.0)
-        length = where(now["locked"], now["lock_length"] + judged, 0.0)
-        totals = ca.vertcat(
-            now["lane"][:axles] + sums[1][:axles] + lost,
-            now["lane"][axles:integrated] + sums[1][axles:],
+        locked_for = judged * now["locked"] * h
+        length = where(now["locked"], now["lock_length"] + locked_for, 0.0)
+        after = dict(now)
+        after |= {
+            "speed": speed,
+            "axle": ca.vertcat(wheel, reached[1 + axles : 1 + now["axle"].size1()]),
+            "transfer": reached[1 + now["axle"].size1() : -1],
+            "distance": reached[-1],
+            "locked": locked,
+            "held": held,
+            "lock_length": length,
+            "pressure": pressure,
+            "torque": torque[1],
+            "filled": filled,
+            "damping": damping[1],
+            "time": following,
+        }
+        after = self._observe(after)
+        after["lane"] = ca.vertcat(
+            now["lane"][:axles] + lane[:axles] + lost,
+            now["lane"][axles : 5 * axles] + lane[axles : 5 * axles],
+            now["lane"][5 * axles : 7 * axles] + judged * lane[5 * axles : 7 * axles],
+            now["lane"][7 * axles : integrated] + lane[7 * axles :],
             lock_time + now["locked"] * h,
-            where(speed > given["judging_speed"], maximum(most, slip), most),
-            judged_lock + judged,
+            where(speed > given["judging_speed"], maximum(most, after["slip"]), most),
+            judged_lock + locked_for,
             maximum(longest, length),
         )
-        stop = now["stop"] + ca.vertcat(sums[2], h)
-        ahead = ca.vertcat(
-            *(speed, wheel, reached[1 + axles :], locked, held, length),
-            *(pressure, torque[1], filled, following, totals, stop),
-        )
-        made = where(given["scale"] < 1.0, 1.0, where(speed < given["stop_speed"], 0.0, 1.0))
+        after["stop"] = ca.vertcat(reached[-1], now["stop"][1:] + ca.vertcat(stop, judged * h, h))
+        made = where(given["last_cut"], 1.0, share >= 1.0)
         made = where(following > now["time"], made, 0.0)
-        turned = totals[(INTEGRATED - 1) * axles : integrated]
-        row = ca.vertcat(stop[4], speed, stop[0], wheel, slip, passed, load, torque[1], made, speed, turned)
-        return [where(made, ahead, self.whole), row]
+        made = where(now["speed"] > given["stop_speed"] * (1.0 + 1e-6), made, 0.0)
+        row = ca.vertcat(
+            *(
+                after["stop"][4],
+                speed,
+                after["stop"][0],
+                wheel,
+                after["slip"],
+                after["passed"],
+                after["load"],
+            ),
+            *(torque[1], made, share, after["lane"][(INTEGRATED - 1) * axles : integrated]),
+        )
+        return [where(made, ca.vertcat(*after.values()), self.whole), row]
 
     def _length(self) -> tuple[Any, Any]:
         """Length of the step, and the time after it."""
         import casadi as ca
 
         given, time = self.given, self.state["time"]
-        slowest = maximum(self.state["speed"], given["regularization_speed"])
-        wanted = minimum(slowest * given["per_creep_rate"], given["longest_step"])
         span = given["until"] - time
-        count = ca.ceil(span / wanted * (1.0 - 1e-12))
-        h = where(count > 1.0, span / maximum(count, 1.0), span)
+        count = ca.ceil(span / minimum(self._allowed(), given["longest_step"]) * (1.0 - 1e-12))
+        h = minimum(where(count > 1.0, span / maximum(count, 1.0), span), given["soonest"])
         last = time + h > given["until"] - 1e-12
-        return where(last, span, h) * given["scale"], where(last, given["until"], time + h)
+        h = where(last, span, h) * given["scale"]
+        return h, where(last, where(given["scale"] < 1.0, time + h, given["until"]), time + h)
 
-    def _actuators(self, middle: Any, end: Any) -> tuple[Any, tuple[Any, Any], Any]:
-        """Pressure at the end, torque in the middle and at the end, pressure without venting at the end."""
+    def _allowed(self) -> Any:
+        """Step that the slopes of the creep curves allow, now and where the wheels would be after a step."""
+        now, given, axles = self.state, self.given, self.axles
+        speed, wheels, acceleration = now["speed"], now["axle"][:axles], now["rates"][0]
+        slowest = maximum(speed, given["regularization_speed"])
+        allowed = slowest * (given["slope_limit"] / given["creep_rate"])
+        if self.holding:
+            return allowed
+        later = maximum(speed + given["longest_step"] * acceleration, given["regularization_speed"])
+        rolling = later / given["radius"]
+        steep = abs(self._slopes(speed, now["axle"]))
+        moved = wheels + self._limited(steep) * now["rates"][1 : 1 + axles]
+        side = where(speed > given["radius"] * wheels, 1.0, -1.0)
+        states = now["axle"] + 0.0
+        states[:axles] = where(side * (rolling - moved) > 0.0, moved, rolling)
+        steepest = maximum(steep, abs(self._slopes(later, states)))
+        limits = self._limited(where(now["locked"], 0.0, steepest))
+        most, braking = SPEED_SHARE * given["slope_limit"] * speed, abs(acceleration)
+        bound = given["longest_step"] * braking > most
+        least = where(bound, most / where(bound, braking, 1.0), given["longest_step"])
+        for axle in range(axles):
+            least = minimum(least, limits[axle])
+        bound = allowed < given["longest_step"]
+        return where(bound, maximum(least, allowed), allowed)
+
+    def _limited(self, steep: Any) -> Any:
+        limit, longest = self.given["slope_limit"], self.given["longest_step"]
+        bound = longest * steep > limit
+        return where(bound, limit / where(bound, steep, 1.0), longest)
+
+    def _slopes(self, speed: Any, states: Any) -> Any:
+        """Slopes of the wheels' accelerations over their speeds under the present loads."""
+        import casadi as ca
+
+        now = self.state
+        return ca.vertcat(
+            *(
+                self.kernels.slope(
+                    self.per_axle("lane_constants", a),
+                    speed,
+                    states[a :: self.axles],
+                    now["load"][a],
+                    now["contact"][a :: self.axles],
+                    now["damping"][a],
+                )
+                for a in range(self.axles)
+            )
+        )
+
+    def _actuators(self, middle: Any, end: Any) -> tuple[Any, Any, Any, Any]:
+        """Pressure at the end, torque in the middle and at the end, pressure without venting, damping at both."""
         import casadi as ca
 
         half, full = (
             [
-                self.kernels.actuator(self.per_axle("window_constants", axle), time)
-                for axle in range(self.axles)
+                ca.vertcat(*column)
+                for column in zip(
+                    *(
+                        self.kernels.actuator(self.per_axle("window_constants", axle), time)
+                        for axle in range(self.axles)
+                    ),
+                    strict=True,
+                )
             ]
             for time in (middle, end)
         )
-        pressure, torque, filled = (ca.vertcat(*column) for column in zip(*full, strict=True))
-        return pressure, (ca.vertcat(*(column[1] for column in half)), torque), filled
+        return full[0], (half[1], full[1]), full[2], (half[3], full[3])
 
-    def _conditions(self, h: Any) -> list[Any]:
+    def _loads(self, motion: Any) -> Any:
+        """Wheel loads of the axles: those of the plant times the table, which is straight up to its next point."""
+        first = 1 + self.kernels.axle_states * self.axles
+        table = self.given["load_factors"]
+        here, rise = table[1 : 1 + self.axles], table[1 + self.axles :]
+        loads = self.kernels.loads(self.given["stop_constants"], motion[first:-1])
+        return loads * (here + rise * (motion[-1] - table[0]))
+
+    def _observe(self, state: dict[str, Any]) -> dict[str, Any]:
+        """Work out the present stage; wheels whose brake gives less than rail or slip take are let go."""
         import casadi as ca
 
-        transfer, half = self.state["transfer"], self.kernels.transfers
-        ahead = ca.vertcat(transfer[:half] + 0.5 * h * transfer[half:], ca.SX.zeros(half))
-        loads = self._loads(ahead, 1)
-        time = self.state["time"] + 0.5 * h
-        return [
-            self.kernels.condition(self.per_axle("lane_constants", axle), time, loads[axle])
-            for axle in range(self.axles)
+        motion, radius, torque = self.motion(state), self.given["radius"], state["torque"]
+        load = self._loads(motion)
+        begins = [
+            self.kernels.contact(self.per_axle("lane_constants", a), load[a]) for a in range(self.axles)
         ]
+        state = {**state, "contact": ca.reshape(ca.horzcat(*begins).T, -1, 1)}
+        for _ in range(2):
+            stage = self._stage(motion, torque, state["damping"], state)
+            brake = torque * (1.0 - BALANCED)
+            state["locked"] = where(brake < 2.0 * radius * stage.force, 0.0, state["locked"])
+            state["held"] = where(brake < stage.passed, 0.0, state["held"])
+        return {
+            **state,
+            **{name: getattr(stage, name) for name in _Stage._fields if name in state},
+            "torque": torque,
+        }
 
-    def _loads(self, transfer: Any, column: int) -> Any:
-        factors = self.given["load_factors"][column * self.axles : (column + 1) * self.axles]
-        return self.kernels.loads(self.given["stop_constants"], transfer) * factors
-
-    def _stage(
-        self, at: Any, demand: Any, condition: list[Any], column: int
-    ) -> tuple[Any, Any, Any, list[Any]]:
-        """Rates of the motion, integrands of the totals of lanes and stop, and what is recorded."""
+    def _stage(self, motion: Any, torque: Any, damping: Any, state: dict[str, Any]) -> _Stage:
+        """Everything at one moment; locks, holds and contact are those of the state."""
         import casadi as ca
 
-        size = self.kernels.axle_states * self.axles
-        speed, states, transfer = at[0], at[1 : 1 + size], at[1 + size :]
-        wheel = states[: self.axles]
-        locked, radius = self.state["locked"], self.given["radius"]
-        load = self._loads(transfer, column)
+        given, size = self.given, self.kernels.axle_states * self.axles
+        speed, states, transfer = motion[0], motion[1 : 1 + size], motion[1 + size : -1]
+        wheel, radius, load = states[: self.axles], given["radius"], self._loads(motion)
         axles = [
             self.kernels.axle(
                 self.per_axle("lane_constants", a),
                 speed,
                 states[a :: self.axles],
                 load[a],
-                demand[a],
-                locked[a],
-                condition[a],
+                torque[a],
+                state["locked"][a],
+                state["contact"][a :: self.axles],
+                damping[a],
             )
             for a in range(self.axles)
         ]
-        force, rolling, slip, damping, passed = (
+        force, rolling, slip, damped, passed = (
             # Element by element, each for all axles, as the state has them.
             ca.reshape(ca.horzcat(*column).T, -1, 1)
             for column in zip(*axles, strict=True)
         )
         rolling, others = rolling[: self.axles], rolling[self.axles :]
         acceleration, resistance, transferring = self.kernels.train(
-            self.given["stop_constants"], speed, force, transfer
+            given["stop_constants"], speed, force, transfer
         )
         if self.holding:
             held_slip, slope = self._held_slip(speed)
             following = acceleration / radius * (1.0 - held_slip - speed * slope)
-            taken = 2.0 * (radius * force - damping) - self.given["inertia"] * following
-            rolling = where(self.state["held"], following, rolling)
-            passed = where(self.state["held"], taken, passed)
-        judged = where(speed > self.given["judging_speed"], 1.0, 0.0)
-        lane = (
+            taken = 2.0 * (radius * force - damped) - given["inertia"] * following
+            rolling = where(state["held"], following, rolling)
+            passed = where(state["held"], taken, passed)
+        integrands = (
             passed,
-            2.0 * damping,
+            2.0 * damped,
             passed * wheel,
             2.0 * force * (speed - radius * wheel),
-            2.0 * damping * wheel,
-            judged * slip,
-            judged * slip * slip,
+            2.0 * damped * wheel,
+            slip,
+            slip * slip,
             wheel,
+            resistance,
+            resistance * speed,
         )
-        stop = ca.vertcat(speed, resistance, resistance * speed, judged)
-        rates = ca.vertcat(acceleration, rolling, others, transferring)
-        return rates, ca.vertcat(*lane), stop, [force, slip, load, passed]
+        rates = ca.vertcat(acceleration, rolling, others, transferring, speed)
+        return _Stage(motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed)
 
     def _held_slip(self, speed: Any) -> tuple[Any, Any]:
         """The slip to be held at a speed, and its slope over speed."""
@@ -288,19 +427,59 @@ class _Step:
         rise = where(beyond >= 0.0, above - here, here - below)
         return here + beyond * rise, rise / (spacing * speed)
 
-    def _settled(
-        self, speed: Any, wheel: Any, force: Any, passed: Any, torque: Any
-    ) -> tuple[Any, Any, Any, Any]:
+    def _rolling(self, speed: Any) -> Any:
+        """Wheel speeds below which wheels are caught: locked, or held at a slip."""
+        if not self.holding:
+            return 0.0 * self.given["radius"]
+        return speed * (1.0 - self._held_slip(speed)[0]) / self.given["radius"]
+
+    def _before_event(self, stages: list[_Stage], reached: Any) -> Any:
+        """Share of the step up to its first event."""
+        import casadi as ca
+
+        now, given, axles = self.state, self.given, self.axles
+        judging = given["judging_speed"]
+        target = where(now["speed"] > judging, judging, given["stop_speed"])
+        ends = (stages[0].motion, stages[2].motion, reached)
+        values = [
+            ca.vertcat(
+                motion[0] - target,
+                where(
+                    now["locked"],
+                    stage.torque - 2.0 * given["radius"] * stage.force,
+                    where(
+                        now["held"],
+                        stage.torque - stage.passed,
+                        motion[1 : 1 + axles] - self._rolling(motion[0]),
+                    ),
+                ),
+            )
+            for motion, stage in zip(ends, (stages[0], stages[2], stages[3]), strict=True)
+        ]
+        first = ca.SX(1.0)
+        for event in range(1 + axles):
+            begin, middle, end = (value[event] for value in values)
+            crosses = where(begin > 0.0, minimum(middle, end) < 0.0, 0.0)
+            share = maximum(_crossing(where(crosses, begin, 1.0), middle, end), EVENT_SHARE if event else 0.0)
+            first = where(crosses, minimum(first, share), first)
+        return where(first < 1.0 - 1e-6, first, 1.0)
+
+    def _settled(self, speed: Any, wheel: Any) -> tuple[Any, Any, Any, Any]:
         """Wheel speeds, locks and holds after the step, and the impulse that the brake could not pass on."""
-        radius, inertia, held = self.given["radius"], self.given["inertia"], self.state["held"]
-        below = minimum(wheel, 0.0)
-        released = where(torque < 2.0 * radius * force, 0.0, self.state["locked"])
-        locked, wheel, lost = where(below < 0.0, 1.0, released), wheel - below, inertia * below
+        inertia, held, below = self.given["inertia"], self.state["held"], minimum(wheel, 0.0)
+        locked = where(below < 0.0, 1.0, self.state["locked"])
+        wheel, lost = wheel - below, inertia * below
         if not self.holding:
             return wheel, locked, held, lost
-        slip, _ = self._held_slip(speed)
-        rolling = speed * (1.0 - slip) / radius
+        rolling = self._rolling(speed)
         caught = where(held, 0.0, where(locked, 0.0, wheel <= rolling))
         lost += where(caught, inertia * (wheel - rolling), 0.0)
-        kept = where(held, where(passed > torque, 0.0, 1.0), 0.0)
-        return where(caught, rolling, wheel), locked, where(caught, 1.0, kept), lost
+        return where(caught, rolling, wheel), locked, where(caught, 1.0, held), lost
+
+
+def _crossing(begin: Any, middle: Any, end: Any) -> Any:
+    """Share of a step after which a positive quantity gets below zero, from three of its values."""
+    import casadi as ca
+
+    bend, fall = 2.0 * (begin - 2.0 * middle + end), 3.0 * begin - 4.0 * middle + end
+    return 2.0 * begin / (fall + ca.sqrt(maximum(fall * fall - 4.0 * bend * begin, 0.0))) + 1e-9

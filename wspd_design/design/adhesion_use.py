@@ -3,7 +3,7 @@
 from wspd_design.analysis.stopping import demanded_adhesion
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH
-from wspd_design.simulation.ideal import peak_adhesion
+from wspd_design.simulation.peak import peak_adhesion
 
 
 def used_adhesion(vehicle: Vehicle, rail: Rail, speeds: tuple[float, float]) -> tuple[float, float]:

@@ -128,14 +128,19 @@ STEP_CHECK = Form(
             meaning="by which the steps were divided until they were short enough",
         ),
         Key(
-            name="chaotic",
+            name="sensitive",
             kind="flag",
-            meaning="no step is short enough: the closed loop amplifies the last digits",
+            meaning="the closed loop amplifies: runs from slightly different initial speeds diverge",
+        ),
+        Key(
+            name="unresolved",
+            kind="flag",
+            meaning="no step is short enough: half of the shortest steps still change the stop",
         ),
         Key(
             name="spread_m",
             kind="number",
-            meaning="range of the distance over slightly different initial speeds; 0 unless chaotic",
+            meaning="range of the distance over slightly different initial speeds; 0 unless sensitive",
         ),
     ),
 )
@@ -158,7 +163,7 @@ STOP = Form(
             name="ending",
             kind="text",
             words=ENDINGS,
-            meaning="stopped, or time_limit for a train that was still moving",
+            meaning="stopped; time_limit for a train that was still moving; runaway for one that no brake can stop",
         ),
         Key(name="distance_m", kind="number", meaning="to standstill or to the time limit"),
         Key(name="stopping_time_s", kind="number", meaning="to standstill or to the time limit"),
@@ -177,7 +182,8 @@ STOP = Form(
             kind="text",
             words=ENDINGS,
             nullable=True,
-            meaning="of the ideal stop; time_limit for a train that no brake of this vehicle stops in time. null where "
+            meaning="of the ideal stop; time_limit for a train that no brake of this vehicle stops in time, "
+            "runaway for one that none can stop. null where "
             "it is not known: changes of rail along the track, starts from a witness",
         ),
         nullable("efficiency", "ideal stop over distance"),
@@ -195,11 +201,7 @@ STOP = Form(
             meaning="changes of the valve state, mean of the wheelsets",
         ),
         Key(name="vented_air", kind="number", meaning="full brake cylinders let out, mean of the wheelsets"),
-        Key(
-            name="saturated_share",
-            kind="number",
-            meaning="share of the samples that fill or vent all the time",
-        ),
+        nullable("saturated_share", "share of the samples that fill or vent all the time"),
         Key(
             name="momentum_residual",
             kind="number",

@@ -1,8 +1,15 @@
 """Adhesion between wheel and rail: Polach's creep force for the records of a rail and a contact."""
 
+import math
+
 from wspd_design.model.generated import adhesion as generated
 from wspd_design.model.number import Number
 from wspd_design.parameters.records import Contact, Rail
+
+_LOAD_EXPONENT = (
+    2.0 / 3.0
+)  # of the stiffness: both semi-axes of Hertz's ellipse grow with the cube root of the load
+_BINOMIALS = tuple(math.prod((_LOAD_EXPONENT - j) / (j + 1) for j in range(k)) for k in range(5))
 
 
 def contact_stiffness(contact: Contact, wheel_load: Number) -> Number:
@@ -25,7 +32,24 @@ def contact_stiffness(contact: Contact, wheel_load: Number) -> Number:
     at_reference = generated.contact_stiffness(
         contact.shear_modulus, contact.semi_axis_rolling, contact.semi_axis_lateral, contact.kalker_c11
     )
-    return at_reference * (wheel_load / contact.reference_load) ** (2.0 / 3.0)
+    return at_reference * (wheel_load / contact.reference_load) ** _LOAD_EXPONENT
+
+
+def stiffness_growth(ratio: Number) -> Number:
+    """Growth of :func:`contact_stiffness` with a load that stays near its first value, by its power series.
+
+    Within 5 % of the load the error is below 1e-8, and it falls with the fifth power of the change: an integrator
+    of order four can follow the load within a step without a logarithm in each stage.
+
+    Parameters
+    ----------
+    ratio : number
+        Load over its first value [-].
+    """
+    change, growth = ratio - 1.0, 0.0
+    for coefficient in reversed(_BINOMIALS):
+        growth = coefficient + change * growth
+    return growth
 
 
 def creep_force(

@@ -16,6 +16,9 @@ TEXT_WIDTH = 6.53
 FONT_FAMILY = "DejaVu Sans"
 """Ships with Matplotlib, so that every machine can set it."""
 
+POINTS = 72
+"""Of an inch: SVG counts in points, and so does the layout."""
+
 INK, MUTED, GRID = "#1b1f24", "#5c6670", "#d9dee3"
 SERIES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", INK)
 """Okabe and Ito's colors, safe for color-blind readers, without the yellow that white paper swallows."""
@@ -91,7 +94,16 @@ def new_figure(*, height: float, width: float = TEXT_WIDTH) -> "Figure":
 
 def figure_svg(figure: "Figure") -> str:
     """Return a figure as SVG: the same figure gives the same characters, on every day and every machine."""
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     buffer = StringIO()
     with figure_style():
+        # Matplotlib would draw every figure with a layout engine twice, the first time for the layout alone.
+        FigureCanvasSVG(figure)
+        figure.set_dpi(POINTS)
+        layout = figure.get_layout_engine()
+        if layout is not None:
+            layout.execute(figure)
+            figure.set_layout_engine("none")
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
     return canonical(buffer.getvalue(), FONT_FAMILY)

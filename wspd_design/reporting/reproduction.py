@@ -74,7 +74,7 @@ def reproduction_document(made: Reproduction, timestamp: datetime) -> Document:
 
 
 def _limits(made: Reproduction) -> tuple[Block, ...]:
-    chaotic = {each.controller for each in made.evidence.stops if each.check.chaotic}
+    sensitive = {each.controller for each in made.evidence.stops if each.check.sensitive}
     return (
         Heading(text="What this page does not show", anchor="limits"),
         Bullets(
@@ -84,10 +84,10 @@ def _limits(made: Reproduction) -> tuple[Block, ...]:
                 "the sources of any report for each number.",
                 "The rule tables of Knorr-Bremse and Mitsubishi are lost and were reconstructed: what stands here "
                 "about them is about the reconstruction.",
-                f"Digits that are not there: {', '.join(sorted(chaotic))} can be chaotic, and then amplifies the last "
-                "digit of anything. Such distances carry half their spread."
-                if chaotic
-                else "No closed loop is chaotic; all distances are good to a millionth.",
+                f"Digits that are not there: the closed loops of {', '.join(sorted(sensitive))} can be sensitive, "
+                "and then amplify what nobody can measure. Such distances carry half their spread."
+                if sensitive
+                else "No closed loop is sensitive; all distances are good to a millionth.",
                 "Speeds are measured exactly and the train speed is known, as in the paper.",
             )
         ),

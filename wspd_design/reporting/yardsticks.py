@@ -24,10 +24,10 @@ def ideal_distance(figures: Metrics) -> str:
     match figures.ideal_ending:
         case Ending.STOPPED:
             return f"{numbers.decimals(figures.ideal_stop, 1)} m"
-        case Ending.TIME_LIMIT:
-            return "none"
         case None:
             return "not known"
+        case _:
+            return "none"
 
 
 def ideal_sentence(figures: Metrics) -> str:
@@ -38,13 +38,13 @@ def ideal_sentence(figures: Metrics) -> str:
                 f"The ideal stop takes {ideal_distance(figures)}: a simulation of a brake with the same build-up "
                 "that holds every wheelset at the adhesion peak."
             )
-        case Ending.TIME_LIMIT:
-            return f"There is no ideal stop: {NO_IDEAL_STOP}."
         case None:
             return (
                 "The ideal stop is not known: it needs one rail from end to end, and a start that rolls with "
                 "empty cylinders."
             )
+        case ending:
+            return f"There is no ideal stop: {NO_IDEAL_STOP[ending]}."
 
 
 def proved_bound(certificates: Iterable[Certificate]) -> ProvedBound | None:

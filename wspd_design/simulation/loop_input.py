@@ -14,6 +14,7 @@ from wspd_design.parameters.records import Brake, Rail, Vehicle
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import LoadIrregularity, Scenario, Sensing, Start
+from wspd_design.simulation.runaway import runs_away
 from wspd_design.simulation.start import available_torque
 
 if TYPE_CHECKING:
@@ -22,10 +23,11 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-LONGEST_STEP = 1e-3  # s
-STEPS_PER_CREEP_TIME = 0.5  # Runge-Kutta of order four is stable up to 2.8 creep times
+LONGEST_STEP = 5e-3  # s
+SLOPE_LIMIT = 2.0  # step over creep time; Runge-Kutta of order four is stable up to 2.8
 LOAD_MARGIN = 1.3  # wheel load under braking against the static one, at most
 RECORD_INTERVAL = 2e-3  # s, of the traces
+_RUNAWAY_TIME = 10.0  # s, that are simulated of a stop of trains that cannot stop
 JUDGING_SPEED = 10.0 / 3.6  # m/s, slip statistics count above it
 
 
@@ -137,13 +139,15 @@ def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, r
         for rail in {*_rails(scenario, plant), *(patch.rail for patch in scenario.patches)}
     )
     fixed = constants()
+    hopeless = all(runs_away(plant.vehicle, scenario) for plant, scenario in cases)
     return Settings(
         sample_time=controller.sample_time,
         longest_step=LONGEST_STEP / refinement,
-        creep_rate=steepest * LOAD_MARGIN ** (2.0 / 3.0) * STEPS_PER_CREEP_TIME * refinement,
+        creep_rate=steepest * LOAD_MARGIN ** (2.0 / 3.0),
+        slope_limit=SLOPE_LIMIT / refinement,
         stop_speed=fixed.stop_speed,
         regularization_speed=fixed.slip_regularization_speed,
-        time_limit=fixed.time_limit,
+        time_limit=min(fixed.time_limit, _RUNAWAY_TIME) if hopeless else fixed.time_limit,
         judging_speed=JUDGING_SPEED,
         record_interval=RECORD_INTERVAL,
     )

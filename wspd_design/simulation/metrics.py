@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
-from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
+from wspd_design.simulation.ideal import ideal_stop
+from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario, Start
 
 
@@ -62,6 +63,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     square = (
         totals.slip_squared / judged - 2.0 * slip_reference * mean + slip_reference**2 if judged else math.nan
     )
+    moved = totals.distance > 0.0  # a start below the stop speed is at rest at once
     known = usual and not scenario.patches
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
     ideal_distance = math.nan if ideal is None else ideal.distance
@@ -70,21 +72,23 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         distance=totals.distance,
         stopping_time=time,
         torque_integral=totals.torque,
-        lag=2.0 * totals.distance / run.initial_speed - time if stopped and usual else math.nan,
+        lag=2.0 * totals.distance / run.initial_speed - time if stopped and usual and moved else math.nan,
         plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed))
-        if stopped and usual
+        if stopped and usual and moved
         else math.nan,
         slip_mean=mean,
         slip_max=run.slip_max,
         slip_rms=math.sqrt(max(square, 0.0)),
         lock_time=totals.lock_time,
-        saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands),
+        saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands)
+        if commands
+        else math.nan,
         valve_switches=round(totals.valve_switches),
         vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
         ideal_stop=ideal_distance,
         ideal_ending=None if ideal is None else ideal.ending,
-        efficiency=ideal_distance / totals.distance if stopped else math.nan,
+        efficiency=ideal_distance / totals.distance if stopped and moved else math.nan,
         momentum_residual=momentum_residual(run, vehicle),
         energy_residual=energy_residual(run, vehicle),
     )
@@ -93,11 +97,11 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
 def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> float:
     """Impulse of the creep forces over that of the adhesion peak at each speed, under the static load [-].
 
-    NaN for a change of rail along the track.
+    NaN for a change of rail along the track, and for a train that is at rest at once.
     """
     import numpy as np
 
-    if scenario.patches:
+    if scenario.patches or len(run.time) == 1:
         return math.nan
     rails = scenario.axle_rails or (scenario.rail,)
     peak = np.mean([peak_adhesion(vehicle, rail, run.speed)[1] for rail in rails], axis=0)

@@ -183,6 +183,10 @@ class Ending(Enum):
         "the train was still moving at the time limit; more brake torque, another controller "
         "or a lower initial speed is needed"
     )
+    RUNAWAY = (
+        "no brake can stop this train: the grade pulls harder than rail and resistance can hold; only its first "
+        "seconds were simulated"
+    )
 
 
 class Sample(NamedTuple):

@@ -1,8 +1,9 @@
 """The check that every run carries: what changes when all integration steps are halved.
 
-A run that changes is repeated with shorter steps until it does not. Rule tables and relays on falling friction can
-be chaotic: they amplify the last digit of anything until it moves the result, and no step makes them accurate. Such
-a run says so and gives the spread over slightly different initial speeds in place of a digit that it does not have.
+A run that changes is repeated with shorter steps until it does not; if it still does with the shortest ones, it is
+*unresolved*. Whether a run is *sensitive* is another question: rule tables and relays on falling friction can amplify
+a change that nobody can measure until it moves the result. Steps may then be short enough for this very run, but its
+neighbours end elsewhere, so that it gives the spread over them in place of a digit that it does not have.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +21,8 @@ LOWEST_SPEED = 0.3  # m/s, below it the slip is not compared
 REFINEMENTS = (1, 2, 4, 8)
 PERTURBATION = 1e-6  # relative, of the initial speed: far below what anybody can measure
 PERTURBED_RUNS = 8
-AMPLIFICATION = 10.0  # of the perturbation in the distance, from which on a loop counts as chaotic
+AMPLIFICATION = 10.0  # of the perturbation in the distance, from which on a loop counts as sensitive
+SLIP_AMPLIFICATION = 1e4  # the same in the slip, which moves quickly wherever a wheel is let go
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,13 +32,13 @@ class StepCheck:
     distance: float  # -, relative
     slip: float  # -, largest at any sample above 0.3 m/s
     refinement: int  # by which the steps were divided
-    chaotic: bool  # no step is short enough: the closed loop amplifies the last digits
-    spread: float  # m, of the distance over slightly perturbed runs; 0 where the steps are short enough
+    sensitive: bool  # the closed loop amplifies: runs from slightly different initial speeds diverge
+    spread: float  # m, of the distance over such runs; 0 unless sensitive
 
     @property
-    def passed(self) -> bool:
-        """Tell whether the steps are short enough."""
-        return self.distance <= DISTANCE_TOLERANCE and self.slip <= SLIP_TOLERANCE
+    def unresolved(self) -> bool:
+        """Tell whether none of the steps is short enough."""
+        return not (self.distance <= DISTANCE_TOLERANCE and self.slip <= SLIP_TOLERANCE)
 
 
 def simulate_checked(
@@ -52,41 +54,50 @@ def simulate_checked(
     Returns
     -------
     run : Run
-        The run whose steps passed, or the one with the shortest steps.
+        The run whose steps are short enough, or the one with the shortest steps.
     check : StepCheck
         How far it can be trusted.
     """
     braked = plant_of(plant, vehicle)
-    run = simulate_on(braked, controller, scenario)
+    first = run = simulate_on(braked, controller, scenario)
+    spread = perturbed_spread(braked, controller, scenario, first)
     for refinement in REFINEMENTS:
         finer = simulate_on(braked, controller, scenario, refinement=2 * refinement)
         check = StepCheck(
-            distance=abs(finer.totals.distance / run.totals.distance - 1.0),
+            distance=_apart(finer, run),
             slip=slip_difference(vehicle, run, finer),
             refinement=refinement,
-            chaotic=False,
-            spread=0.0,
+            sensitive=spread > 0.0,
+            spread=spread,
         )
-        if check.passed:
+        if not check.unresolved:
             return run, check
         run = finer
-    spread = perturbed_spread(braked, controller, scenario)
-    # A stop from a speed that is higher by a share is longer by twice that share.
-    expected = 2.0 * PERTURBATION * PERTURBED_RUNS * run.totals.distance
-    return run, replace(check, chaotic=spread > AMPLIFICATION * expected, spread=spread)
+    return run, check
 
 
-def perturbed_spread(plant: Plant, controller: Controller, scenario: Scenario) -> float:
-    """Range of the distance over slightly different initial speeds [m]."""
-    distances = [
-        simulate_on(
-            plant,
-            controller,
-            replace(scenario, initial_speed=scenario.initial_speed * (1.0 + PERTURBATION * k)),
-        ).totals.distance
-        for k in range(PERTURBED_RUNS + 1)
-    ]
+def perturbed_spread(plant: Plant, controller: Controller, scenario: Scenario, run: Run) -> float:
+    """Range of the distance over slightly different initial speeds [m]; 0 where a neighbour stays near the run."""
+
+    def neighbour(number: int) -> Run:
+        speed = scenario.initial_speed * (1.0 - PERTURBATION * number)
+        return simulate_on(plant, controller, replace(scenario, initial_speed=speed))
+
+    nearest, distance = neighbour(1), run.totals.distance
+    # A stop from a speed that is lower by a share is shorter by twice that share.
+    moved = _apart(nearest, run) > AMPLIFICATION * 2.0 * PERTURBATION
+    slipped = slip_difference(plant.vehicle, run, nearest) > SLIP_AMPLIFICATION * PERTURBATION
+    if not moved and not slipped:
+        return 0.0
+    further = (neighbour(number).totals.distance for number in range(2, PERTURBED_RUNS + 1))
+    distances = (distance, nearest.totals.distance, *further)
     return max(distances) - min(distances)
+
+
+def _apart(run: Run, other: Run) -> float:
+    """Relative difference of the distances; none between trains that are at rest at once."""
+    distance = other.totals.distance
+    return abs(run.totals.distance / distance - 1.0) if distance > 0.0 else 0.0
 
 
 def slip_difference(vehicle: Vehicle, run: Run, other: Run) -> float:

@@ -24,6 +24,7 @@ from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import RECORD_INTERVAL, first_slip, loop_input, sample_rows
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
+from wspd_design.simulation.runaway import runs_away
 
 if TYPE_CHECKING:
     import numpy as np
@@ -127,7 +128,7 @@ def _run_record(
         plant=plant.name,
         sample_time=controller.sample_time,
         initial_speed=scenario.initial_speed,
-        ending=Ending.STOPPED if output.stopped[0] else Ending.TIME_LIMIT,
+        ending=_ending(plant, scenario, output),
         time=trace[:, 0],
         speed=trace[:, 1],
         distance=trace[:, 2],
@@ -160,6 +161,12 @@ def _run_record(
     )
 
 
+def _ending(plant: Plant, scenario: Scenario, output: LoopOutput) -> Ending:
+    if output.stopped[0]:
+        return Ending.STOPPED
+    return Ending.RUNAWAY if runs_away(plant.vehicle, scenario) else Ending.TIME_LIMIT
+
+
 def _samples(times: "NDArray[np.float64]", rows: "NDArray[np.float64]", states: int) -> tuple[Sample, ...]:
     """Samples of one wheelset from rows of its states, fill, vent and what it saw."""
     columns = (
@@ -180,8 +187,10 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     static = static_wheel_load(plant.vehicle)
     referred = slip * min(speed / constants().slip_regularization_speed, 1.0)
     alike = (speed * (1.0 - slip) / plant.vehicle.wheel_radius, referred)
+    at_rest = len(output.samples) == 0  # a start below the stop speed
     # As the first sample saw them, without the error of their measurement.
-    torques = output.samples[0, -axles:] / (1.0 + scenario.sensing.torque_error)
+    factor = 1.0 + scenario.sensing.torque_error
+    torques = np.full(axles, scenario.start.torque) if at_rest else output.samples[0, -axles:] / factor
     return np.concatenate(
         [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques]
     )

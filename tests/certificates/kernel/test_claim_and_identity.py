@@ -7,9 +7,10 @@ import pytest
 import sympy
 
 from wspd_design.certificates.kernel.checker import Refused, Work, decide, number
-from wspd_design.certificates.kernel.claim import Claim, Variable, steps_of, text, variable
+from wspd_design.certificates.kernel.claim import Claim, Variable, steps_of, variable
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.kernel.obligation import Identity, proof_of
+from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Status
 
 x, y = sympy.symbols("x y", positive=True)

@@ -1,15 +1,16 @@
 """The prover's interval arithmetic: both backends against 300-bit references, and wrong ones against the same."""
 
 import math
+import sys
 
 import flint
 import ival
 import numpy as np
 import pytest
 
-from wspd_design.certificates.search import intervals, outward
+from wspd_design.certificates.search import intervals, outward, tight
 
-BACKENDS = {"ival": ival, "outward": outward}
+BACKENDS = {"tight": tight, "outward": outward}
 FUNCTIONS = {
     "exp": lambda x: x.exp(),
     "log": lambda x: x.log(),
@@ -114,14 +115,24 @@ def test_outward_arithmetic_survives_the_ends_of_the_number_line():
     assert np.all((huge / zero).lo == -math.inf)
 
 
+@pytest.mark.parametrize("name", [*ARITHMETIC, *FUNCTIONS])
+def test_the_short_way_into_the_library_gives_the_bits_of_the_long_one(name):
+    """With signs, zeros, infinities and shapes that NumPy broadcasts."""
+    ends = np.sort(np.random.default_rng(3).normal(0.0, 2.0, (2, 2, 6, 40)), axis=1)
+    ends[0, 0, 0, :5], ends[0, 1, 1, :5], ends[0, :, 2, :5] = -math.inf, math.inf, 0.0
+    one, other = ([module.Interval(*ends[0]), module.Interval(*ends[1, :, 0])] for module in (tight, ival))
+    if name in ARITHMETIC:
+        pairs = [(ARITHMETIC[name](*each), ARITHMETIC[name](*each[::-1])) for each in (one, other)]
+    else:
+        pairs = [(getattr(module, name)(each[0]),) for module, each in ((tight, one), (ival, other))]
+    for found, wanted in zip(*pairs, strict=True):
+        assert found.ends.shape == (2, 6, 40)
+        assert found.lo.tobytes() == wanted.lo.tobytes()
+        assert found.hi.tobytes() == wanted.hi.tobytes()
+
+
 def test_fallback_where_the_wheel_is_missing(monkeypatch):
-    assert intervals.default_backend() is ival
-    honest = intervals.import_module
-
-    def missing(name):
-        if name == "ival":
-            raise OSError("libival.so not found")
-        return honest(name)
-
-    monkeypatch.setattr(intervals, "import_module", missing)
+    assert intervals.default_backend() is tight
+    monkeypatch.setitem(sys.modules, "ival", None)
+    monkeypatch.delitem(sys.modules, tight.__name__)
     assert intervals.default_backend() is outward

@@ -3,7 +3,6 @@
 from dataclasses import replace
 from fractions import Fraction
 
-import ival
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 
 from wspd_design.certificates.kernel.checker import Work, value
 from wspd_design.certificates.kernel.claim import Claim, variable
-from wspd_design.certificates.search import outward
+from wspd_design.certificates.search import outward, tight
 from wspd_design.certificates.search.tape import trace
 from wspd_design.model.number import atan, exp
 from wspd_design.parameters.loading import load_rail, load_vehicle
@@ -35,7 +34,7 @@ CLAIM = Claim(
     unit="-",
 )
 STATEMENT = CLAIM.statement()
-TAPES = {module.__name__: trace(CLAIM, module) for module in (ival, outward)}
+TAPES = {module.__name__: trace(CLAIM, module) for module in (tight, outward)}
 unit = st.floats(0.0, 1.0)
 boxes = st.tuples(st.tuples(unit, unit), st.tuples(unit, unit))
 
@@ -65,6 +64,15 @@ def test_enclosure_contains_every_sample(name, box, shares):
 
 
 @pytest.mark.parametrize("name", TAPES)
+def test_samples_in_doubles_are_the_function(name):
+    points = np.random.default_rng(0).uniform(0.0, 1.0, (2, 50))
+    found, enclosed = TAPES[name].sample(points), TAPES[name].evaluate(points, points).value
+    slack = 1e-12 * (1.0 + np.abs(found))
+    assert np.all((enclosed.lo - slack <= found) & (found <= enclosed.hi + slack))
+    assert np.all(enclosed.hi - enclosed.lo < 1e-11)
+
+
+@pytest.mark.parametrize("name", TAPES)
 @given(box=boxes, shares=st.tuples(unit, unit))
 @settings(max_examples=30, deadline=None)
 def test_slopes_contain_every_difference_quotient(name, box, shares):
@@ -86,12 +94,12 @@ def test_slopes_contain_every_difference_quotient(name, box, shares):
 @settings(max_examples=60, deadline=None)
 def test_halves_are_never_worse(box, axis):
     low, high = _arrays(box)
-    whole = TAPES["ival"].evaluate(low, high)
+    whole = TAPES[tight.__name__].evaluate(low, high)
     middle = 0.5 * (low[axis] + high[axis])
     for side in (0, 1):
         part = [low.copy(), high.copy()]
         part[1 - side][axis] = middle
-        half = TAPES["ival"].evaluate(*part)
+        half = TAPES[tight.__name__].evaluate(*part)
         assert half.value.lo[0] >= whole.value.lo[0]
         assert half.value.hi[0] <= whole.value.hi[0]
         assert np.all(half.gradient.lo >= whole.gradient.lo)
@@ -116,7 +124,7 @@ def test_scaling_of_a_variable_does_not_change_the_verdict(settled, power, bound
 @pytest.mark.parametrize(("offset", "slopes"), [(1.0, (1.0, 1.0)), (-1.0, (-1.0, -1.0)), (-0.3, (-1.0, 1.0))])
 def test_magnitude_has_the_slopes_of_its_sign(offset, slopes):
     claim = replace(CLAIM, expression=lambda x: abs(x["s"] + offset))
-    found = trace(claim, ival).evaluate(np.array([[0.0], [0.0]]), np.array([[1.0], [1.0]]))
+    found = trace(claim, tight).evaluate(np.array([[0.0], [0.0]]), np.array([[1.0], [1.0]]))
     (slip,) = (v for v in claim.free if v.name == "s")
     width = float(slip.high - slip.low)
     assert found.gradient.lo[0, 0] == pytest.approx(slopes[0] * width)
@@ -130,7 +138,7 @@ def test_operation_without_interval_form_is_refused():
     from wspd_design.model.number import sin
 
     with pytest.raises(ValueError, match="OP_SIN has no interval form"):
-        trace(replace(CLAIM, expression=lambda x: sin(x["s"])), ival)
+        trace(replace(CLAIM, expression=lambda x: sin(x["s"])), tight)
 
 
 def test_known_parts_are_done_once():
@@ -141,6 +149,6 @@ def test_known_parts_are_done_once():
         variables=CLAIM.variables + known,
         expression=lambda x: exp(-x["mu0"]) * x["m"] * x["s"] * x["v"],
     )
-    operations = [instruction.operation for instruction in trace(claim, ival).instructions]
+    operations = [instruction.operation for instruction in trace(claim, tight).instructions]
     assert "OP_EXP" not in operations
     assert operations.count("OP_MUL") == 2

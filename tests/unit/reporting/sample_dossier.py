@@ -109,7 +109,7 @@ def trial(
         momentum_residual=1.2e-9,
         energy_residual=-3.4e-8,
     )
-    check = StepCheck(distance=2e-9, slip=3e-7, refinement=1, chaotic=spread > 0.0, spread=spread)
+    check = StepCheck(distance=2e-9, slip=3e-7, refinement=1, sensitive=spread > 0.0, spread=spread)
     return Trial(run=run, metrics=replace(figures, **changes), check=check)
 
 

@@ -169,15 +169,15 @@ def test_the_ranking_says_what_separates_the_stops():
     assert "Between" not in alone
 
 
-def test_chaos_is_told_where_the_numbers_stand():
+def test_sensitivity_is_told_where_the_numbers_stand():
     trials = (trial("mine"), trial("mitsubishi", spread=1.8, distance=350.64))
     document = report_document(sample_dossier(trials=trials), DATE)
-    _, chaotic = _table(document.blocks, "stops-table").rows
-    assert plain(chaotic[1]) == "350.6 ± 0.9"
-    trusted, chaotic = _table(document.blocks, "accuracy-table").rows
+    _, sensitive = _table(document.blocks, "stops-table").rows
+    assert plain(sensitive[1]) == "350.6 ± 0.9"
+    trusted, sensitive = _table(document.blocks, "accuracy-table").rows
     assert plain(trusted[1].text) == "1/1"
-    assert plain(chaotic[1].text) == "chaotic"
-    assert plain(chaotic[4]) == "1.8"
+    assert plain(sensitive[1].text) == "1/1"  # that its steps are short enough is another finding
+    assert plain(sensitive[4]) == "1.8"
     limits = [plain(item) for each in document.blocks if isinstance(each, Bullets) for item in each.items]
     assert any(item.startswith("A digit that it does not have") and "mitsubishi" in item for item in limits)
     calm = report_document(sample_dossier(trials=trials[:1]), DATE)
@@ -206,7 +206,7 @@ def test_programs_read_the_same_numbers(document):
     Draft202012Validator(read_schema(REPORT.schema)).validate(read)
     assert read["stops"][0]["distance_m"] == dossier.trials[0].metrics.distance
     assert [each["status"] for each in read["checks"]] == [each.status.name for each in dossier.certificates]
-    assert read["stops"][0]["step_check"]["chaotic"] is False
+    assert read["stops"][0]["step_check"]["sensitive"] is False
     assert read["stops"][0]["ideal_stop_m"] == 174.25
     assert read["parameters"][0]["entries"][0]["name"] == "mass"
 

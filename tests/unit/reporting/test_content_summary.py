@@ -119,7 +119,7 @@ def test_two_valve_times_are_both_said():
     assert "there, between 1.67 1/s of filling and 6.67 1/s of venting" in said
 
 
-def test_a_chaotic_stop_keeps_only_the_digits_that_it_has():
+def test_a_sensitive_stop_keeps_only_the_digits_that_it_has():
     tiles, _ = summary(sample_dossier(trials=(trial("mine", spread=1.8),)))
     assert isinstance(tiles, KeyNumbers)
     assert tiles.numbers[0].value == "187.7 ± 0.9"

@@ -57,7 +57,10 @@ def test_only_a_proof_makes_a_bound(status):
 
 @pytest.mark.parametrize(
     ("ending", "said"),
-    [(Ending.TIME_LIMIT, f"There is no ideal stop: {NO_IDEAL_STOP}."), (None, "The ideal stop is not known")],
+    [
+        (Ending.TIME_LIMIT, f"There is no ideal stop: {NO_IDEAL_STOP[Ending.TIME_LIMIT]}."),
+        (None, "The ideal stop is not known"),
+    ],
 )
 def test_without_an_ideal_stop_words_stand_in_its_place(ending, said):
     own = trial("mine", ideal_stop=math.nan, ideal_ending=ending, efficiency=math.nan)

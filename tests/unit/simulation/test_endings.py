@@ -11,9 +11,13 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.model.number import where
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants, load_rail
+from wspd_design.simulation import ideal
 from wspd_design.simulation import loop_input as module
+from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.runaway import runs_away
+from wspd_design.simulation.self_check import simulate_checked
 from wspd_design.simulation.stop import simulate
 
 
@@ -108,3 +112,57 @@ def test_sampling_instants(er24pc, make_controller, period):
     np.testing.assert_allclose([s.time for s in run.samples], period * np.arange(len(run.samples)), atol=1e-9)
     assert len(run.samples) == math.ceil(run.time[-1] / period)
     assert run.sample_time == period
+
+
+@pytest.mark.parametrize("speed", [0.005, 0.01 / 3.6, 1e-9])
+@pytest.mark.parametrize("plant", ["quarter", "four-axle"])
+def test_a_start_below_the_stop_speed_is_at_rest_at_once(er24pc, make_controller, plant, speed):
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=speed)
+    run, check = simulate_checked(er24pc, make_controller("afsmc"), scenario, plant=plant)
+    assert run.ending is Ending.STOPPED
+    assert (run.totals.distance, run.totals.torque, run.time.tolist(), run.samples) == (0.0, 0.0, [0.0], ())
+    assert (check.distance, check.spread, check.refinement) == (0.0, 0.0, 1)
+    judged = metrics(run, er24pc, scenario, slip_reference=0.14)
+    assert (judged.momentum_residual, judged.energy_residual, judged.ideal_stop) == (0.0, 0.0, 0.0)
+    for figure in (judged.efficiency, judged.lag, judged.plateau, judged.adhesion_utilization):
+        assert math.isnan(figure)
+    table = simulate_many(er24pc, make_controller("afsmc"), scenario, runs=3, plant=plant).table
+    assert table["stopped"].all()
+    assert (table["distance_m"] == 0.0).all()
+
+
+def test_a_start_above_the_stop_speed_moves(er24pc, make_controller):
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=0.006)
+    run = simulate(er24pc, make_controller("none"), scenario)
+    assert 0.0 < run.totals.distance <= 0.006 * run.time[-1]
+
+
+SLIPPERY = Scenario(rail=load_rail("low-adhesion"), initial_speed=60.0 / 3.6, grade=-0.08)
+
+
+def test_a_train_that_cannot_stop_is_told_at_once(er24pc, make_controller):
+    run, check = simulate_checked(er24pc, make_controller("none"), SLIPPERY, plant="quarter")
+    assert run.ending is Ending.RUNAWAY
+    assert run.time[-1] < 10.2
+    assert not check.unresolved
+    judged = metrics(run, er24pc, SLIPPERY, slip_reference=0.14)
+    assert judged.ideal_ending is Ending.RUNAWAY
+    assert math.isnan(judged.ideal_stop)
+    assert "no brake can stop this train" in run.ending.value
+
+
+def test_who_runs_away_gains_speed_even_at_the_best_slip(er24pc, monkeypatch):
+    # The grade that decides lies where the ideal brake just does not slow the train: searched, and simulated.
+    low, high = -0.1, -0.05
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        gone = runs_away(er24pc, replace(SLIPPERY, grade=middle))
+        low, high = (middle, high) if gone else (low, middle)
+    for grade, stops in ((low, False), (high + 0.004, True)):
+        monkeypatch.setattr(ideal, "runs_away", lambda *_: False)
+        monkeypatch.setattr(module, "runs_away", lambda *_: False)
+        ideal.ideal_stop.cache_clear()
+        found = ideal.ideal_stop(er24pc, replace(SLIPPERY, grade=grade), plant="quarter")
+        assert (found.ending is Ending.STOPPED) == stops
+    assert not runs_away(er24pc, replace(SLIPPERY, grade=0.08))
+    assert not runs_away(er24pc, replace(SLIPPERY, grade=0.0))

@@ -1,6 +1,7 @@
-"""Every run is repeated with half the steps; chaos is told apart from steps that are too long."""
+"""Every run is repeated with half the steps; sensitive loops are told apart from steps that are too long."""
 
 from dataclasses import dataclass
+from itertools import product
 
 import pytest
 
@@ -12,26 +13,70 @@ from wspd_design.simulation.self_check import simulate_checked, slip_difference
 from wspd_design.simulation.stop import simulate
 
 SPEED = 120.0 / 3.6
+LAWS = (
+    "afsmc",
+    "afsmc-repaired",
+    "smc",
+    "trenitalia",
+    "knorr-bremse",
+    "mitsubishi",
+    "none",
+    "torque-feedback",
+)
+RAILS = ("table10-dry", "table10-wet", "polach-dry", "polach-wet")
+SENSITIVE = {
+    ("smc", "polach-wet"),
+    ("trenitalia", "polach-wet"),
+    ("knorr-bremse", "polach-wet"),
+    ("mitsubishi", "polach-wet"),
+    ("mitsubishi", "polach-dry"),
+    ("mitsubishi", "table10-wet"),
+}
+"""On four axles a millionth of the initial speed moves the distance by a millionth of its own many times over, or the
+slip by more than 0.01; on every other rail these laws stay within a half of that."""
 
 
-@pytest.mark.parametrize("rail", ["table10-dry", "table10-wet", "polach-dry", "polach-wet"])
-@pytest.mark.parametrize("name", ["afsmc", "trenitalia", "knorr-bremse", "none"])
-def test_steps_are_short_enough(er24pc, make_controller, name, rail):
-    _, check = simulate_checked(
-        er24pc, make_controller(name), Scenario(rail=load_rail(rail), initial_speed=SPEED)
-    )
-    assert check.passed
-    assert not check.chaotic
-    assert check.distance <= 1e-6
-    assert check.slip <= 1e-4
+@pytest.fixture(scope="module")
+def checked(er24pc, make_controller):
+    def check(name, rail):
+        scenario = Scenario(rail=load_rail(rail), initial_speed=SPEED)
+        return simulate_checked(er24pc, make_controller(name, rail), scenario)
+
+    return check
 
 
-def test_a_chaotic_loop_says_so_and_gives_a_spread(er24pc, make_controller):
-    scenario = Scenario(rail=load_rail("polach-dry"), initial_speed=SPEED)
-    run, check = simulate_checked(er24pc, make_controller("mitsubishi"), scenario)
-    assert check.chaotic
-    assert not check.passed
-    assert 0.01 < check.spread < 0.1 * run.totals.distance
+SLOW = {("torque-feedback", "table10-dry"), ("torque-feedback", "polach-dry")}  # to design
+
+
+@pytest.mark.parametrize(
+    ("name", "rail"),
+    [pytest.param(*case, marks=pytest.mark.slow if case in SLOW else ()) for case in product(LAWS, RAILS)],
+)
+def test_every_stop_is_resolved_with_two_refinements_or_sensitive(checked, name, rail):
+    run, check = checked(name, rail)
+    assert check.sensitive == ((name, rail) in SENSITIVE)
+    assert (check.spread > 0.0) == check.sensitive
+    assert check.spread < 0.1 * run.totals.distance
+    if not check.sensitive:
+        assert not check.unresolved
+        assert check.distance <= 1e-6
+        assert check.slip <= 1e-4
+        assert check.refinement <= 4
+
+
+def test_a_sensitive_stop_may_be_resolved_or_not(checked):
+    # Steps are short enough for this very run, though its neighbours end elsewhere.
+    _, resolved = checked("trenitalia", "polach-wet")
+    assert (resolved.sensitive, resolved.unresolved) == (True, False)
+    _, lost = checked("mitsubishi", "polach-dry")
+    assert (lost.sensitive, lost.unresolved) == (True, True)
+
+
+def test_the_demo_passes_at_100_hertz(er24pc, make_controller):
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=SPEED)
+    _, check = simulate_checked(er24pc, make_controller("afsmc", "polach-wet", sample_time=0.01), scenario)
+    assert not check.unresolved
+    assert check.refinement <= 4
 
 
 @dataclass(frozen=True)
@@ -64,14 +109,21 @@ def test_a_run_that_is_not_aligned_with_the_valve_edges_fails(er24pc, make_contr
     assert slip_difference(er24pc, coarse, fine) > 10 * self_check.SLIP_TOLERANCE
 
 
-def test_steps_that_are_too_long_are_refined(er24pc, make_controller, monkeypatch):
+def test_steps_that_are_too_long_are_refined_or_unresolved(er24pc, make_controller, monkeypatch):
+    # A quick law on the rail where friction falls: its errors fall with the steps.
     scenario = Scenario(rail=load_rail("table10-dry"), initial_speed=SPEED)
     law = make_controller("smc", "table10-dry")
-    monkeypatch.setattr("wspd_design.simulation.loop_input.LONGEST_STEP", 2e-3)
     _, check = simulate_checked(er24pc, law, scenario)
-    assert check.passed
+    assert (check.unresolved, check.sensitive) == (False, False)
     assert check.refinement > 1
-    monkeypatch.setattr("wspd_design.simulation.loop_input.LONGEST_STEP", 8e-3)
+    monkeypatch.setattr("wspd_design.simulation.loop_input.LONGEST_STEP", 20e-3)
+    monkeypatch.setattr(self_check, "REFINEMENTS", (1, 2))
     _, check = simulate_checked(er24pc, law, scenario)
-    assert not check.passed
-    assert not check.chaotic  # the steps are too long, which is no fault of the loop
+    assert check.unresolved
+    assert not check.sensitive  # the steps are too long, which is no fault of the loop
+
+
+def test_the_start_of_the_fastest_train_has_neighbours(er24pc, make_controller):
+    scenario = Scenario(rail=load_rail("table10-dry"), initial_speed=149.99999)
+    _, check = simulate_checked(er24pc, make_controller("none"), scenario)
+    assert check.spread == 0.0

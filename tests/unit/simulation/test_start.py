@@ -99,6 +99,7 @@ def test_the_holding_torque_holds(er24pc, slip):
             Hold(),
             scenario(Start(slip=slip, torque=share * torque, braking_time=time)),
             plant="quarter",
+            refinement=5,
         )
         at = slip_dynamics(still, DRY, slip, SPEED)
         expected = at.drift + at.gain * share * torque

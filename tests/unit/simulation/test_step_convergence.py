@@ -1,87 +1,143 @@
-"""The integration step: halving it changes nothing that counts, except where the closed loop itself is chaotic."""
+"""The order of the integration: on four axles every state and integral converges with the fourth power of the step."""
 
-from itertools import product
+import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from wspd_design.codegen import closed_loop
+from wspd_design.codegen import closed_loop, kernels
+from wspd_design.codegen.closed_loop import load_closed_loop
+from wspd_design.codegen.memory import Memory
+from wspd_design.codegen.virtual_machine import run_virtual
+from wspd_design.model import adhesion
 from wspd_design.parameters.loading import load_rail
-from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.stop import simulate
+from wspd_design.plants.planar import Planar
+from wspd_design.simulation import loop_input as module
+from wspd_design.simulation.loop_input import loop_input, sample_rows
+from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario
 
-CONTROLLERS = ("afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
-RAILS = ("table10-dry", "table10-wet", "polach-dry", "polach-wet")
+SPEED = 120.0 / 3.6
+LONG, SHORT, FINE = 10e-3, 2.5e-3, 0.25e-3  # s
+ROUNDING = 2e-12  # relative: below it no order can be seen
 
-# Closed loops in which a change of the initial speed by 1e-9 grows to more than 1e-5 of the distance: the rules of
-# Mitsubishi's table, with repeated locks, on the two wet rails. Nobody can compute these distances to 1e-6.
-CHAOTIC = {("mitsubishi", "table10-wet"), ("mitsubishi", "polach-wet")}
-PERTURBATIONS = (1e-9, -1e-9, 2e-9, -2e-9, 3e-9)
-SPREAD = 1e-2  # of the distance, over slightly perturbed runs
-
-CASES = list(product(CONTROLLERS, RAILS))
+WAVES = tuple(tuple(1.0 + 0.04 * math.sin(0.7 * k + axle) for k in range(200)) for axle in range(4))
+SCENARIOS = {
+    "plain": {},
+    "grade": {"grade": -0.02},
+    "change of rail": {
+        "patches": (
+            Patch(start=20.0, rail=load_rail("polach-dry")),
+            Patch(start=45.0, rail=load_rail("polach-wet")),
+        )
+    },
+    "loads over distance": {"load_irregularity": LoadIrregularity(spacing=0.5, factors=WAVES)},
+    "vibration of the pads": {"pad_vibration": True},
+}
 
 
 @pytest.fixture
-def run_with(er24pc, make_controller):
-    """Simulate with finer steps and a relative change of the initial speed."""
+def end_of(er24pc, make_controller, monkeypatch):
+    """Everything that the loop knows at a time, with steps of a length: states and integrals by name."""
 
-    def simulated(controller, rail, *, refinement=1, change=0.0, sample_time=0.1):
-        scenario = Scenario(rail=load_rail(rail), initial_speed=120.0 / 3.6 * (1.0 + change))
-        law = make_controller(controller, rail, sample_time=sample_time)
-        return simulate(er24pc, law, scenario, plant="quarter", refinement=refinement)
+    def ended(name, scenario, step, time, engine="compiled"):
+        limited = replace(module.constants(), time_limit=time - 0.05)
+        monkeypatch.setattr(module, "constants", lambda: limited)
+        monkeypatch.setattr(module, "LONGEST_STEP", step)
+        # Where the law switches is no matter of the integrator.
+        law, plant = make_controller(name, "polach-wet"), Planar(er24pc)
+        given = replace(loop_input([(plant, scenario)], law), trace_rows=50_000)
+        given.settings.record_interval = 0.0
+        rows, disturbed = sample_rows(law), scenario.pad_vibration
+        if engine == "compiled":
+            output = load_closed_loop(plant, law, disturbed=disturbed).run(given, sample_rows=rows)
+        else:
+            output = run_virtual(plant, law, given, sample_rows=rows, disturbed=disturbed)
+        last = output.trace[-1]
+        assert last[0] == pytest.approx(time, rel=1e-12)
+        numbers = {"speed": last[1:2], "distance": last[2:3], "wheel speeds": last[3:7], "loads": last[15:19]}
+        lanes = {name: output.lane_totals[name] for name in ("torque", "brake_work", "sliding_work", "slip")}
+        return {**numbers, **lanes, "resistance": output.stop_totals["resistance_work"]}
 
-    return simulated
-
-
-def largest_slip_difference(one, other):
-    """Largest difference of the slip at the sampling instants above 0.3 m/s."""
-    fast = [(a.seen, b.seen) for a, b in zip(one.samples, other.samples, strict=False) if a.seen.speed > 0.3]
-    assert len(fast) > 90
-    return max(0.55 * abs(a.wheel_speed / a.speed - b.wheel_speed / b.speed) for a, b in fast)
-
-
-@pytest.mark.parametrize(("controller", "rail"), [case for case in CASES if case not in CHAOTIC])
-def test_half_the_step_gives_the_same_stop(stop, run_with, controller, rail):
-    whole, half = stop(controller, rail), run_with(controller, rail, refinement=2)
-    assert half.totals.distance == pytest.approx(whole.totals.distance, rel=1e-6)
-    assert largest_slip_difference(whole, half) < 1e-4
-
-
-@pytest.mark.parametrize(
-    ("controller", "rail"), [("trenitalia", "polach-wet"), ("mitsubishi", "table10-dry")]
-)
-def test_a_small_perturbation_stays_small_elsewhere(stop, run_with, controller, rail):
-    whole, other = stop(controller, rail), run_with(controller, rail, change=1e-9)
-    assert other.totals.distance == pytest.approx(whole.totals.distance, rel=1e-6)
+    return ended
 
 
-@pytest.mark.parametrize(("controller", "rail"), sorted(CHAOTIC))
-def test_chaotic_loops_have_a_spread_and_not_a_digit(stop, run_with, controller, rail):
-    distance = stop(controller, rail).totals.distance
-    perturbed = [run_with(controller, rail, change=change).totals.distance for change in PERTURBATIONS]
-    spread = (max(perturbed) - min(perturbed)) / distance
-    assert 1e-5 < spread < SPREAD  # it is chaotic, and this much is known of it
-    half = run_with(controller, rail, refinement=2).totals.distance
-    assert abs(half - distance) / distance < SPREAD
+def ratios(end_of, name, scenario, time, **engine):
+    """Per quantity, how many times smaller the error of a step is that is half as long."""
+    long, short, fine = (end_of(name, scenario, step, time, **engine) for step in (LONG, SHORT, FINE))
+    found = {}
+    for what, true in fine.items():
+        worse, better = (np.abs(x[what] - true).max() / np.abs(true).max() for x in (long, short))
+        if worse > 200.0 * ROUNDING:
+            found[what] = math.sqrt(worse / max(better, ROUNDING))  # over two halvings
+    return found
 
 
-# Faults planted in the compiled loop: what is replaced, and by what.
+@pytest.mark.parametrize("case", SCENARIOS)
+def test_every_quantity_converges_to_order_four(end_of, case):
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=SPEED, **SCENARIOS[case])
+    found = ratios(end_of, "none", scenario, 2.9)
+    assert {"wheel speeds", "loads", "brake_work", "sliding_work", "slip"} <= set(found)
+    assert min(found.values()) > 11.0, found
+
+
+@pytest.mark.parametrize("name", ["trenitalia", "afsmc"])
+def test_valve_edges_and_locks_do_not_spoil_the_order(end_of, name):
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=SPEED)
+    found = ratios(end_of, name, scenario, 6.0)
+    assert {"speed", "distance", "wheel speeds", "loads", "brake_work", "sliding_work", "slip"} <= set(found)
+    assert min(found.values()) > 12.0, found
+
+
+def test_the_virtual_machine_has_the_same_order(end_of):
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=SPEED)
+    found = ratios(end_of, "none", scenario, 2.0, engine="virtual machine")
+    assert {"wheel speeds", "loads"} <= set(found)
+    assert min(found.values()) > 12.0, found
+
+
+# Faults planted in the compiled loop: what is replaced, by what, and in which scenario it is seen.
+FROZEN = """choose_steps(loop, next);
+    Motion middle = loop->now;
+    WIDE double load[LANES];
+    for (int k = 0; k < TRANSFERS * STOPS; k++)
+        middle.transfer[k] += 0.5 * loop->step[k % STOPS] * loop->now.transfer[TRANSFERS * STOPS + k];
+    load_wheels(loop, &middle, load);
+    contact_kernel(loop->lane_fixed, load, loop->contact);"""
 FAULTS = {
-    "steps that run across the valve edges": (
-        "edge = edge < before ? edge : 1e300;",
-        "edge = 1e300;",
+    "stiffness of the contact frozen at the middle of a step": ("choose_steps(loop, next);", FROZEN, "plain"),
+    "damping frozen at the end of a step": (
+        "evaluate(loop, &moved[k], torque + later, damping + later, &further[k]);",
+        "evaluate(loop, &moved[k], torque + later, damping + LANES, &further[k]);",
+        "plain",
+    ),
+    "steps that run across the points of the table of loads": (
+        "if (point < (double)loop->load_points && wait < step) step = wait;",
+        "",
+        "loads over distance",
+    ),
+    "loads at the place where the step began": (
+        "EACH_STOP to->distance[s] = FMA(share * step[s], at->speed[s], from->distance[s]);",
+        "EACH_STOP to->distance[s] = from->distance[s];",
+        "loads over distance",
+    ),
+    "steps that run across the change of rail": (
+        "double wait = wait_for(loop, s, loop->patch_start[loop->patch[l]] - place);",
+        "double wait = 1e300;",
+        "change of rail",
     ),
     "the method of Euler": (
-        "step[s] * (1.0 / 6.0) * SUM(ACCELERATION)",
-        "step[s] * ACCELERATION(0)",
+        "#define SUM(of) ((of(0) + of(3)) + 2.0 * (of(1) + of(2)))",
+        "#define SUM(of) (6.0 * of(0))",
+        "plain",
     ),
 }
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_of_the_integration_fails_this_test(monkeypatch, run_with, fault):
+def test_a_fault_of_the_integration_spoils_the_order(monkeypatch, end_of, fault):
     true = closed_loop.closed_loop_source
-    old, new = FAULTS[fault]
+    old, new, case = FAULTS[fault]
 
     def faulty(*arguments, **options):
         source = true(*arguments, **options)
@@ -89,7 +145,26 @@ def test_a_fault_of_the_integration_fails_this_test(monkeypatch, run_with, fault
         return source.replace(old, new)
 
     monkeypatch.setattr(closed_loop, "closed_loop_source", faulty)
-    period = 0.0973  # s; at 0.1 s the steps end at the valve edges anyhow
-    whole, half = (run_with("trenitalia", "polach-wet", refinement=n, sample_time=period) for n in (1, 2))
-    apart = abs(half.totals.distance / whole.totals.distance - 1.0)
-    assert apart > 1e-6 or largest_slip_difference(whole, half) > 1e-4
+    for module_, name in ((closed_loop, "_loops"), (closed_loop, "_libraries"), (kernels, "_memory")):
+        monkeypatch.setattr(module_, name, Memory(8))
+    if new == FROZEN:
+        monkeypatch.setattr(adhesion, "stiffness_growth", lambda _ratio: 1.0)
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=SPEED, **SCENARIOS[case])
+    found = ratios(end_of, "none", scenario, 2.9)
+    assert min(found.values()) < 6.0, found
+
+
+def test_the_growth_of_the_stiffness_is_good_to_order_four(er24pc):
+    load = 9e4
+    begin = adhesion.contact_stiffness(er24pc.contact, load)
+    errors = [
+        abs(
+            begin
+            * adhesion.stiffness_growth(1.0 + x)
+            / adhesion.contact_stiffness(er24pc.contact, load * (1.0 + x))
+            - 1.0
+        )
+        for x in (0.05, -0.05, 0.025, -0.025)
+    ]
+    assert max(errors) < 1e-8
+    assert errors[0] / errors[2] > 25.0  # of order five, so that the step stays of order four

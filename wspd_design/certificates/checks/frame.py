@@ -2,15 +2,17 @@
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Finding, Stated
-from wspd_design.certificates.kernel.obligation import Inequality, Obligation
+from wspd_design.certificates.kernel.obligation import Obligation
+from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Certificate, Map, Problem, Role, Series
-from wspd_design.certificates.search.memory import recall, remembering
-from wspd_design.certificates.theorems.theorem import Theorem, silent, told
+from wspd_design.certificates.replay import decided
+from wspd_design.certificates.theorems.theorem import Theorem, asked, told
 
 if TYPE_CHECKING:
     import numpy as np
@@ -48,12 +50,12 @@ class Check:
     def run(self, problem: Problem, *, figures: bool = True) -> Certificate:
         """Search, let the checkers decide about what was found, and tell; with plots, if they are wanted."""
         started = time.perf_counter()
-        made = silent(self.theorem, problem)
-        if made is None:
-            with remembering():
-                found = accepted(self.theorem.obligations(problem), self.search(problem))
-                made = told(self.theorem, problem, found)
-                made = illustrated(self, problem, made) if figures else made
+        wanted = asked(self.theorem, problem)
+        if isinstance(wanted, Certificate):
+            return replace(wanted, seconds=time.perf_counter() - started)
+        with remembering():
+            made = told(self.theorem, problem, accepted(wanted, self.search(problem)))
+            made = illustrated(self, problem, made) if figures else made
         return replace(made, seconds=time.perf_counter() - started)
 
 
@@ -72,20 +74,8 @@ def accepted(wanted: Sequence[Obligation], stated: Mapping[str, Stated]) -> dict
             work.left = left  # no file holds the proof, so that it costs nothing
             return obligation.decide(replace(given, proof=None), work)
 
-    def known(obligation: Obligation) -> Finding:
-        given = stated.get(obligation.key, Stated())
-        if not isinstance(obligation, Inequality):
-            return decide(obligation, given)
-        asked = [
-            obligation.claim.statement(),
-            obligation.text,
-            given.proof,
-            given.place,
-            asdict(given.effort),
-        ]
-        return recall(["decide", *asked], lambda: decide(obligation, given))
-
-    return {each.key: known(each) for each in wanted}
+    found = {each.key: (each, stated.get(each.key, Stated())) for each in wanted}
+    return {key: decided("accept", *each, partial(decide, *each)) for key, each in found.items()}
 
 
 def illustrated(check: Check, problem: Problem, certificate: Certificate) -> Certificate:

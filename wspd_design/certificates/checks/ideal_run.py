@@ -1,9 +1,10 @@
 """Runs of the idealized loop: speed, slip, the integral of the error and what the law adapts, as one smooth system."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from wspd_design.certificates.checks.rosenbrock import Rates, Track, integrate
 from wspd_design.certificates.theorems.ideal_loop import Flow, adaptive_flow, sliding_flow
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzyGains
 from wspd_design.controllers.sliding_mode import SlidingMode
@@ -66,51 +67,61 @@ def adaptive_run(
         Lowest and highest speed [m/s]; the run goes from the highest down to the lowest.
     """
     start = [speeds[1], 0.0, 0.0, *gains.initial_weights, gains.initial_bound]
-    return _run(adaptive_flow(vehicle, rail, gains), start, speeds[0])
+    return _runs([adaptive_flow(vehicle, rail, gains)], [start], speeds[0])[0]
+
+
+def sliding_runs(
+    plants: Sequence[tuple[Vehicle, Rail]],
+    law: SlidingMode,
+    *,
+    speeds: tuple[float, float],
+    slips: Sequence[float],
+) -> list[ProofRun]:
+    """Brake each plant with the sliding-mode law, from the initial slip of the same place; speeds as above."""
+    flows = [sliding_flow(vehicle, rail, law) for vehicle, rail in plants]
+    return _runs(flows, [[speeds[1], slip, 0.0] for slip in slips], speeds[0])
 
 
 def sliding_run(
     vehicle: Vehicle, rail: Rail, law: SlidingMode, *, speeds: tuple[float, float], slip: float
 ) -> ProofRun:
-    """Brake from an initial slip with the sliding-mode law; parameters as in :func:`adaptive_run`."""
-    return _run(sliding_flow(vehicle, rail, law), [speeds[1], slip, 0.0], speeds[0])
+    """Brake one plant with the sliding-mode law."""
+    return sliding_runs([(vehicle, rail)], law, speeds=speeds, slips=[slip])[0]
 
 
-def _run(rates: Flow, start: list[float], lowest_speed: float) -> ProofRun:
-    """Integrate until the lowest speed."""
+def _runs(flows: Sequence[Flow], starts: Sequence[Sequence[float]], lowest_speed: float) -> list[ProofRun]:
+    """Integrate until the lowest speed, or until the wheel no longer turns and slips forwards."""
     import numpy as np
-    from scipy.integrate import solve_ivp
 
-    def derivative(_: float, state: "Array") -> list[float]:
-        return rates(state.tolist())
+    def limits(states: "Array") -> "Array":
+        speed, slip = states[:, 0], states[:, 1]
+        return np.array([speed - lowest_speed, np.minimum(slip + 1e-3, 1.0 - slip)])
 
-    def slow_enough(_: float, state: "Array") -> float:
-        return float(state[0]) - lowest_speed
-
-    def inside(_: float, state: "Array") -> float:
-        """Positive while the wheel turns forwards and slips forwards."""
-        return min(float(state[1]) + 1e-3, 1.0 - float(state[1]))
-
-    slow_enough.terminal = inside.terminal = True  # type: ignore[attr-defined]
-    solution = solve_ivp(
-        derivative,
-        (0.0, constants().time_limit),
-        start,
-        method="Radau",
-        rtol=RELATIVE_TOLERANCE,
-        atol=ABSOLUTE_TOLERANCE,
-        events=(slow_enough, inside),
+    tracks = integrate(
+        Rates(flows, len(starts[0])),
+        np.array(starts),
+        limits,
+        until=constants().time_limit,
+        relative=RELATIVE_TOLERANCE,
+        absolute=ABSOLUTE_TOLERANCE,
     )
-    end, cut = f"{solution.t[-1]:.3g} s", ""
-    if solution.status == 0:
-        cut = f"the train does not slow down to {lowest_speed:g} m/s within {end}"
-    elif solution.status < 0:
-        cut = f"the integration fails at {end}"
-    elif solution.t_events[1].size:
+    return [_run(flow, track, lowest_speed) for flow, track in zip(flows, tracks, strict=True)]
+
+
+def _run(flow: Flow, track: Track, lowest_speed: float) -> ProofRun:
+    """Say how a run ended."""
+    import numpy as np
+
+    end, cut = f"{track.times[-1]:.3g} s", ""
+    if track.event == 1:
         cut = f"the slip leaves the range 0 to 1 at {end}, where the wheel locks or outruns the train"
-    states = np.asarray(solution.y)
-    derivatives = np.array([rates(column) for column in states.T.tolist()]).T
-    return ProofRun(time=np.asarray(solution.t), states=states, rates=derivatives, cut=cut)
+    elif track.failed:
+        cut = f"the integration fails at {end}"
+    elif track.event is None:
+        cut = f"the train does not slow down to {lowest_speed:g} m/s within {end}"
+    states = np.array(track.states).T
+    rates = np.array([np.broadcast_to(each, states.shape[1:]) for each in flow(states)], dtype=np.float64)
+    return ProofRun(time=np.array(track.times), states=states, rates=rates, cut=cut)
 
 
 def numeric_rate(candidate: Callable[["Array"], "Array"], run: ProofRun) -> "Array":

@@ -9,6 +9,8 @@ from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeAlias
 
+from flint import arb, fmpq
+
 Ball: TypeAlias = Any
 """A ``flint.arb``."""
 
@@ -20,8 +22,8 @@ def ball(low: float | Fraction, high: float | Fraction) -> Ball:
 
 def point(value: float | Fraction) -> Ball:
     """Return a ball around one number."""
-    from flint import arb, fmpq
-
+    if type(value) is float:  # asked first, since isinstance takes long where the answer is no
+        return arb(value)
     return arb(fmpq(value.numerator, value.denominator)) if isinstance(value, Fraction) else arb(value)
 
 

@@ -2,8 +2,8 @@
 
 A number means the double that the program computes with, exactly: 0.55 is the double beside 55/100. A claim thus
 speaks about the model as it stands in memory, evaluated without rounding. The expression is a function that runs
-the model's kernels on whatever numbers it is given: on CasADi symbols for the prover, on SymPy symbols for the
-statement that the checker reads.
+the model's kernels on whatever numbers it is given: on CasADi symbols for the prover, on terms for the statement that
+the checker reads.
 """
 
 from collections.abc import Callable, Mapping
@@ -12,6 +12,7 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Literal, TypeAlias
 
+from wspd_design.certificates.kernel.term import Step, Terms, steps, text
 from wspd_design.model.number import Number
 
 Expression: TypeAlias = Callable[[Mapping[str, Number]], Number]
@@ -19,17 +20,8 @@ Expression: TypeAlias = Callable[[Mapping[str, Number]], Number]
 
 Relation: TypeAlias = Literal["<=", ">="]
 
-Step: TypeAlias = tuple[Any, ...]
-"""One step of a formula, as the checker reads it."""
-
 OPERATIONS = ("add", "mul", "abs", "exp", "atan")
 """Of a formula, beside powers; in the words of the checker."""
-
-
-def text(rational: Fraction) -> str:
-    """Write a rational without loss: a decimal stands for the double that Python reads from it, else p/q."""
-    near = float(rational)
-    return repr(near) if Fraction(near) == rational else f"{rational.numerator}/{rational.denominator}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,14 +112,11 @@ class Claim:
         return ca.Function("claim", [symbols], [ca.SX((self.form or self.expression)(values))])
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def formula(expression: Expression, variables: tuple[Variable, ...]) -> tuple[Step, ...]:
-    """Run an expression on SymPy symbols and write it as steps; nothing is simplified on the way."""
-    import sympy
-
-    with sympy.evaluate(False):
-        found = sympy.sympify(expression({v.name: sympy.Symbol(v.name) for v in variables}))
-    return steps_of(found)
+    """Run an expression on terms and write it as steps; nothing is simplified on the way."""
+    terms = Terms()
+    return steps(terms.number(expression({v.name: terms.variable(v.name) for v in variables})))
 
 
 def steps_of(symbolic: Any) -> tuple[Step, ...]:
@@ -139,17 +128,17 @@ def steps_of(symbolic: Any) -> tuple[Step, ...]:
         If it contains a function or a number that a claim may not contain.
     """
     places: dict[Any, int] = {}
-    steps: list[Step] = []
+    found: list[Step] = []
 
     def visit(node: Any) -> int:
         if node not in places:
             step = _step(node, visit)
-            places[node] = len(steps)
-            steps.append(step)
+            places[node] = len(found)
+            found.append(step)
         return places[node]
 
     visit(symbolic)
-    return tuple(steps)
+    return tuple(found)
 
 
 def _step(node: Any, visit: Callable[[Any], int]) -> Step:

@@ -12,8 +12,8 @@ from math import isfinite
 from typing import Any
 
 from wspd_design.certificates.kernel.checker import Refused, number, read
-from wspd_design.certificates.kernel.claim import text
 from wspd_design.certificates.kernel.finding import Effort, Stated
+from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Certificate, Point, Status
 
 SCHEMA = "wspd-certificate/2"

@@ -13,8 +13,9 @@ from typing import Any, Protocol, TypeAlias
 
 from wspd_design.certificates.kernel import checker
 from wspd_design.certificates.kernel.checker import FORMAT, Refused, Work
-from wspd_design.certificates.kernel.claim import Claim, steps_of, text
+from wspd_design.certificates.kernel.claim import Claim, steps_of
 from wspd_design.certificates.kernel.finding import Finding, Place, Stated, above, below
+from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Status
 
 Ends: TypeAlias = tuple[float, float]

@@ -23,6 +23,7 @@ SAMPLES = 2000  # of the slip, for a peak
 MARGIN = 5e-5  # -, of a peak above its samples
 DECIMALS = 6
 LEAST_SLIP = 1e-6  # that is sampled
+NEAR_LAST = Fraction(4, 5)  # of the last cut at the speed before, from where the rest may be one part
 FIRST, WIDER, NARROWER, LEAST_STEP = 0.5, 1.5, 0.6, 1e-4  # relative steps from cut to cut
 
 
@@ -30,7 +31,10 @@ def search(plants: Extremes, start: float, intervals: int = SPEEDS) -> dict[str,
     """Return a certificate of the adhesion peaks from standstill to the initial speed [m/s]."""
     speeds = tuple(_decimal(start * (k / intervals) ** CROWDING) for k in range(intervals))
     tops = peaks(plants, speeds)
-    cuts = (_cuts(part_test(plants, speed), top) for speed, top in zip(speeds, tops, strict=True))
+    cuts: list[tuple[Fraction, ...]] = []
+    for speed, top in zip(speeds, tops, strict=True):
+        last = cuts[-1][-1] if cuts and cuts[-1] else Fraction(0)
+        cuts.append(_cuts(part_test(plants, speed), top, last))
     return {
         "format": FORMAT,
         "speeds": _written(speeds),
@@ -52,17 +56,22 @@ def peaks(plants: Extremes, speeds: tuple[Fraction, ...]) -> tuple[Fraction, ...
     return tuple(_decimal(float(top) / load + MARGIN) for top in forces.max(axis=1))
 
 
-def _cuts(holds: PartTest, top: Fraction) -> tuple[Fraction, ...]:
-    """Go from cut to cut as far as the test of a part allows; give up where it allows next to nothing."""
+def _cuts(holds: PartTest, top: Fraction, last: Fraction) -> tuple[Fraction, ...]:
+    """Go from cut to cut as far as the test of a part allows; give up where it allows next to nothing.
+
+    Whether the rest is one part is asked near the last cut of the speed before, since the peak moves little.
+    """
     cuts: list[Fraction] = []
     low, step = Fraction(0), 1.0
-    while len(cuts) < MOST_CUTS and step > LEAST_STEP and not holds(low, Fraction(1), top):
-        high = _decimal(float(low) * (1.0 + step) if low else step)
-        if low < high < 1 and holds(low, high, top):
-            cuts.append(high)
-            low, step = high, step * WIDER if len(cuts) > 1 else FIRST
-        else:
+    while len(cuts) < MOST_CUTS and not (low >= NEAR_LAST * last and holds(low, Fraction(1), top)):
+        high = low
+        while not (low < high < 1 and holds(low, high, top)) and step > LEAST_STEP:
+            high = _decimal(float(low) * (1.0 + step) if low else step)
             step *= NARROWER
+        if step <= LEAST_STEP:
+            break
+        cuts.append(high)
+        low, step = high, step / NARROWER * WIDER if len(cuts) > 1 else FIRST
     return tuple(cuts)
 
 

@@ -1,7 +1,7 @@
 """Interval arithmetic on arrays, behind the few operations that the prover needs.
 
-The default is ``ival`` (PyPI crival), whose results are the tightest doubles around the exact ones. Where its
-wheel is missing, :mod:`outward` does the same in NumPy with a few units in the last place to spare.
+The default is :mod:`tight`, whose results are the tightest doubles around the exact ones. Where the wheel that it calls
+is missing, :mod:`outward` does the same in NumPy with a few units in the last place to spare.
 """
 
 from collections.abc import Callable
@@ -31,9 +31,9 @@ class Backend(Protocol):
 
 
 def default_backend() -> Backend:
-    """Return ``ival``, or the NumPy fallback where it is not installed."""
+    """Return the tight arithmetic, or the one in NumPy where its wheel is not installed."""
     try:
-        found: Backend = import_module("ival")
+        found: Backend = import_module("wspd_design.certificates.search.tight")
     except (ImportError, OSError):
         found = import_module("wspd_design.certificates.search.outward")
     return found

@@ -5,7 +5,6 @@ lies below the threshold; otherwise it is reduced to a face where the expression
 slope matters most. Internally every claim is an upper bound; one from below is turned around.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
@@ -26,9 +25,8 @@ if TYPE_CHECKING:
 
 BATCH = 512
 DENIED_BOXES = 2048  # that are looked at when a claim is known to be false
-SAMPLES = 2048  # of the first look at the box
+SAMPLES = 2048  # of a round that looks for a good point
 POLISH = 12  # rounds of narrowing around the best sample
-BEST = 8  # samples of a round that are enclosed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,41 +157,27 @@ class _Search:
     def _look_around(self, size: int) -> None:
         """Find a good point by sampling and narrowing, so that most boxes are decided at first sight.
 
-        Doubles choose the points; intervals say what is reached there.
+        Doubles choose a point in each round; intervals say at the end what is reached there.
         """
         import numpy as np
 
         generator = np.random.default_rng(0)
-        center, width = np.full((size, 1), 0.5), 0.5
-        hint = self._hint()
+        best, reached, width = np.full((size, 1), 0.5), -inf, 0.5
+        tried = [best]
         for _ in range(POLISH):
-            offsets = generator.uniform(-1.0, 1.0, (size, SAMPLES))
+            points = best + width * generator.uniform(-1.0, 1.0, (size, SAMPLES))
             # A third of the samples keeps each coordinate or goes to an end of the box, where extremes like to be.
             choice = generator.integers(0, 6, (size, SAMPLES))
-            points = np.clip(center + width * offsets, 0.0, 1.0)
-            points = np.where(choice == 0, center, points)
-            points = np.where(choice == 1, np.round(np.clip(center, 0.0, 1.0)), points)
-            self._try(points[:, np.argsort(-hint(points), kind="stable")[:BEST]])
-            if self.best_place is not None:
-                center = self.best_place[:, None]
+            points = np.where(choice == 0, best, np.clip(points, 0.0, 1.0))
+            points = np.where(choice == 1, np.round(best), points)
+            found = self.sign * self.tape.sample(points)
+            found = np.where(np.isfinite(found), found, -inf)
+            winner = int(np.argmax(found))
+            if found[winner] > reached:
+                best, reached = points[:, [winner]], float(found[winner])
+                tried.append(best)
             width *= 0.45
-
-    def _hint(self) -> "Callable[[Array], Array]":
-        """Return the expression in doubles, turned so that the largest value is sought; undefined ones come last."""
-        import numpy as np
-
-        function, variables = self.claim.function(), self.claim.variables
-        low = np.array([float(v.low) for v in variables])[:, None]
-        span = np.array([float(v.high - v.low) for v in variables])[:, None]
-        free = [k for k, v in enumerate(variables) if v.free]
-
-        def hint(points: "Array") -> "Array":
-            at = np.repeat(low, points.shape[1], axis=1)
-            at[free] += span[free] * points
-            found = self.sign * np.asarray(function(at), dtype=np.float64).ravel()
-            return np.where(np.isfinite(found), found, -inf)
-
-        return hint
+        self._try(np.hstack(tried))
 
     def _try(self, points: "Array") -> None:
         """Keep the best of some points."""

@@ -58,7 +58,8 @@ def sample(problem: Problem) -> Samples:
     # Each edge of the box once, from the corners at the lower end of its mass or mu0.
     edges = [*((MASS, each) for each in held[:4]), *((MU0, each) for each in held[::2])]
     tried = np.array([*held, *(just_held(problem, each, column) for column, each in edges)])
-    exact = np.array([recoverable(problem, each) for each in tried])
+    everywhere = np.concatenate([*tried, at(nominal, problem.slip)])
+    exact = recoverable(problem, everywhere).reshape(-1, SPEEDS)
     shares, poles = [], []
     for corner in corners:
         fall = -dynamics_at(problem, at(corner, problem.slip)).drift
@@ -66,12 +67,12 @@ def sample(problem: Problem) -> Samples:
             pole = dynamics_at(problem, at(corner, float(slip))).pole
             shares.append(per_deviation(problem, vehicle.brake.vent_time, pole, pole / fall))
             poles.append(pole)
-    smallest = exact.argmin(axis=0)
+    worst = exact[:-1]
     return Samples(
         speeds=speeds,
-        nominal=recoverable(problem, at(nominal, problem.slip)),
-        worst=exact.min(axis=0),
-        tightest=tried[smallest, np.arange(SPEEDS)],
+        nominal=exact[-1],
+        worst=worst.min(axis=0),
+        tightest=tried[worst.argmin(axis=0), np.arange(SPEEDS)],
         guaranteed=1.0 / np.max(shares, axis=0),
         growth=np.exp(problem.sample_time * np.max(poles, axis=0)),
     )

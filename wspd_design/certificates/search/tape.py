@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from math import inf, nextafter
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.claim import Claim
+from wspd_design.certificates.search.doubles import Doubles, is_whole
 from wspd_design.certificates.search.intervals import Backend, Intervals
 
 if TYPE_CHECKING:
@@ -75,6 +77,30 @@ class Tape:
         found = work[self.output]
         return Enclosure(_filled(found.value, low.shape[1:]), found.slope)
 
+    def sample(self, points: "Array") -> "Array":
+        """Evaluate the expression in doubles, which proves nothing.
+
+        Parameters
+        ----------
+        points : ndarray
+            Coordinates (free variables, points), in [0, 1].
+        """
+        import numpy as np
+
+        places = {
+            k: float(v.low) + float(v.high - v.low) * points[row]
+            for row, (k, v) in enumerate((k, v) for k, v in enumerate(self.claim.variables) if v.free)
+        }
+        plain = Doubles(self.backend)
+        work = {k: np.asarray(0.5 * (jet.value.lo + jet.value.hi)) for k, jet in self.known.items()}
+        with np.errstate(all="ignore"):
+            for operation, operands, result in self.instructions:
+                if operation == "OP_INPUT":
+                    work[result] = places[operands[0]]
+                else:
+                    work[result] = plain.apply(operation, [work[k] for k in operands])
+        return np.broadcast_to(work[self.output], points.shape[1:])
+
     def _inputs(self, low: "Array", high: "Array", derivatives: bool) -> dict[int, Jet]:
         """Return the free variables on the boxes, by their numbers among all variables."""
         import numpy as np
@@ -108,9 +134,7 @@ def trace(claim: Claim, backend: Backend) -> Tape:
     ValueError
         If it contains an operation that has no interval form.
     """
-    import casadi as ca
-
-    names = {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}
+    names = _names()
     function = claim.function()
     ring = Ring(backend)
     place: dict[
@@ -143,6 +167,14 @@ def trace(claim: Claim, backend: Backend) -> Tape:
             raise ValueError(f"{claim.name}: the operation {operation} has no interval form")
         place[results[0]] = k
     return Tape(claim, backend, known, tuple(instructions), output)
+
+
+@lru_cache(maxsize=1)
+def _names() -> dict[int, str]:
+    """Names of CasADi's operations by their numbers."""
+    import casadi as ca
+
+    return {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}
 
 
 OPERATIONS = frozenset(
@@ -240,7 +272,7 @@ class Ring:
     def power(self, x: Jet, y: Jet) -> Jet:
         """Power with a constant exponent; a broken one needs a positive base."""
         exponent = float(y.value.lo[0])
-        if y.slope is None and exponent == y.value.hi[0] and exponent.is_integer() and abs(exponent) <= 16:
+        if y.slope is None and exponent == y.value.hi[0] and is_whole(exponent):
             whole = self.integer_power(x, int(abs(exponent)))
             return whole if exponent >= 0.0 else self.inv(whole)
         return self.exp(self.mul(y, self.log(x)))

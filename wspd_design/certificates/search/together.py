@@ -6,8 +6,8 @@ from fractions import Fraction
 
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.kernel.obligation import Inequality, proof_of
+from wspd_design.certificates.memory import recall
 from wspd_design.certificates.search.budget import budget
-from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.search.prover import Outcome, extreme, prove
 from wspd_design.certificates.search.settle import settle, stated_of, tightest
 

@@ -191,8 +191,7 @@ def dynamics_at(
     held : mapping, optional
         One point, such as a worst one, from which the other uncertain numbers are taken; without it they are nominal.
     """
-    point = held or {}
-    others = {name: point[name] for name in domain.uncertain(problem) if name in point}
+    others = {name: held[name] for name in domain.uncertain(problem) if name in held} if held else {}
     columns = {name: points[..., k] for k, name in enumerate(names)}
     return plant_dynamics(problem, complete(problem, {**others, **columns}))
 

@@ -73,15 +73,18 @@ def sample_of(times: Times, poles: Interval, span: Fraction, duties: Interval = 
         Range of the duty u that holds the torque [-].
     """
     h = point(span)
-    corners = [(point(f), point(v), point(u)) for f, v, u in product(times.fill, times.vent, duties)]
+    fills, vents, shares = (
+        dict.fromkeys(each) for each in (times.fill, times.vent, duties)
+    )  # known ones once
+    corners = [(point(f), point(v), point(u)) for f, v, u in product(fills, vents, shares)]
     # The exponent is affine in u, 1/T_F and 1/T_V; the crest rises with u and T_V and falls with T_F.
     kept = [(-u * h / f - (1 - u) * h / v).exp() for f, v, u in corners]
     crests = [_crest(f, v, u, h) for f, v, u in corners]
-    venting = [(-(1 - point(u)) * h / point(v)).exp() for v, u in product(times.vent, duties)]
+    venting = [(-(1 - point(u)) * h / point(v)).exp() for v, u in product(vents, shares)]
     low_crest, high_crest = _hull(crests)
     slopes = [
         (1 - point(c)) / point(f) + point(c) / point(v)
-        for c, f, v in product((low_crest, high_crest), times.fill, times.vent)
+        for c, f, v in product((low_crest, high_crest), fills, vents)
     ]
     (least, most), (kept_least, kept_most) = _hull(slopes), _hull(venting)
     slow, fast = rates(times)

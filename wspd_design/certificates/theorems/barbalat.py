@@ -224,7 +224,7 @@ def _vacuous(problem: Problem, findings: Findings) -> Certificate:
         varied=said.varied,
         held=said.held,
         method="a positive deceleration by interval branch and bound, replayed by the independent checker; a run with "
-        "Radau's method, trapezoids between its instants",
+        "the Rosenbrock method RODAS, trapezoids between its instants",
         reference="eqs. (45)-(48); docs/theory.md#barbalat",
     )
 

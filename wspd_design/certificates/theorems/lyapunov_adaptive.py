@@ -220,8 +220,8 @@ def _tell_printed(problem: Problem, findings: Findings) -> Certificate:
         hypotheses=tuple(hypothesis(each.asked, each) for each in formulas),
         assumptions=(*ASSUMPTIONS, "continuous adaptation", CHOICE),
         held=domain.not_varied(problem, ()),
-        method="a run with Radau's method; derivatives by differences along the flow, outside the layer; a rise below "
-        f"{TOLERANCE:g} of the maximum counts as rounding; at a witness forward derivatives in balls",
+        method="a run with the Rosenbrock method RODAS; derivatives by differences along the flow, outside the layer; "
+        f"a rise below {TOLERANCE:g} of the maximum counts as rounding; at a witness forward derivatives in balls",
         reference="eqs. (39)-(44); docs/theory.md#printed",
     )
 
@@ -286,7 +286,7 @@ def _tell_repaired(problem: Problem, findings: Findings) -> Certificate:
         ),
         assumptions=(*ASSUMPTIONS, "continuous adaptation", same, CHOICE),
         held=domain.not_varied(problem, ()),
-        method="a run with Radau's method; derivatives by differences along the flow; a rise below "
+        method="a run with the Rosenbrock method RODAS; derivatives by differences along the flow; a rise below "
         f"{TOLERANCE:g} of the maximum counts as rounding; at a witness forward derivatives in balls",
         reference="eqs. (39)-(44) repaired; docs/theory.md#energy",
     )

@@ -139,9 +139,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         ),
         varied=PARAMETERS,
         held=domain.not_varied(problem, PARAMETERS),
-        method="runs with Radau's method, with nominal parameters and all corners of those that are named, each from "
-        f"both ends of the range of slip; a rise below {TOLERANCE:g} of the maximum counts as rounding; at a witness "
-        "forward derivatives in balls",
+        method="runs with the Rosenbrock method RODAS, with nominal parameters and all corners of those that are "
+        f"named, each from both ends of the range of slip; a rise below {TOLERANCE:g} of the maximum counts as "
+        "rounding; at a witness forward derivatives in balls",
         reference="eqs. (24), (25); docs/theory.md#reaching",
     )
 

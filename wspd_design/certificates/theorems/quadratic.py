@@ -26,8 +26,8 @@ from itertools import product
 from typing import Any, NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.checker import Refused, Work, number
-from wspd_design.certificates.kernel.claim import text
 from wspd_design.certificates.kernel.finding import above, below
+from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.pulsed_valve import Interval, Sample, Times, rates, sample_of
 from wspd_design.certificates.setting.traced_law import written_law

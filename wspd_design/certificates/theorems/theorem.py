@@ -31,8 +31,11 @@ class Theorem:
     tell: Callable[[Problem, Findings], Certificate]
 
 
-def silent(theorem: Theorem, problem: Problem) -> Certificate | None:
-    """Return the certificate of a theorem that does not speak about a design, or that leaves the model; else None."""
+def asked(theorem: Theorem, problem: Problem) -> tuple[Obligation, ...] | Certificate:
+    """Return what a theorem needs shown about a design.
+
+    Of a theorem that does not speak about it, or that leaves the model, return the certificate that says so.
+    """
 
     def without_findings(status: Status, explanation: str, method: str) -> Certificate:
         made = Certificate(
@@ -48,10 +51,9 @@ def silent(theorem: Theorem, problem: Problem) -> Certificate | None:
         said = f"{problem.controller.name} {reason}."
         return without_findings(Status.NOT_APPLICABLE, said, "form of the law")
     try:
-        theorem.obligations(problem)
+        return theorem.obligations(problem)
     except OutsideModel as outside:
         return without_findings(Status.UNDECIDED, f"The check could not be evaluated: {outside}.", "none")
-    return None
 
 
 def told(theorem: Theorem, problem: Problem, findings: Findings) -> Certificate:

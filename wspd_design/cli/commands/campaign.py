@@ -75,7 +75,7 @@ def campaign(
         ),
     ] = None,
 ) -> None:
-    """Simulate many stops as FILE says. What is finished stays in the store, and the same command goes on from there.
+    """Simulate many stops as FILE says; what is finished stays, and the same command goes on from there.
 
     Rows are the same bit by bit with any executor, any number of workers and any division into parts.
     """

@@ -5,7 +5,7 @@ from wspd_design.cli.arguments import check_plant, initial_speed
 from wspd_design.cli.console import console, print_json, progress, spaced
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.json_objects import comparison_object
-from wspd_design.cli.stop_figures import CHAOTIC
+from wspd_design.cli.stop_figures import SENSITIVE, UNRESOLVED
 from wspd_design.cli.stop_options import scenario
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.controllers.family import FAMILIES
@@ -108,18 +108,21 @@ def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> N
         f"rms about {_references(trials, references)}; lock: how long the wheels were locked{more}.",
         style="dim",
     )
-    if first.metrics.ideal_ending is Ending.TIME_LIMIT:
-        out.print(f"No ideal stop: {NO_IDEAL_STOP}.", style="bold yellow")
+    if first.metrics.ideal_ending in NO_IDEAL_STOP:
+        out.print(f"No ideal stop: {NO_IDEAL_STOP[first.metrics.ideal_ending]}.", style="bold yellow")
     if len(stopped) < len(trials):
-        out.print(f"* {Ending.TIME_LIMIT.value}.", style="yellow")
-    spreads = [f"{made.run.controller} {made.check.spread:.2g} m" for made in trials if made.check.chaotic]
+        (ending, *_) = {made.run.ending for made in trials if made.run.ending is not Ending.STOPPED}
+        out.print(f"* {ending.value}.", style="yellow")
+    spreads = [f"{made.run.controller} {made.check.spread:.2g} m" for made in trials if made.check.sensitive]
     if spreads:
         out.print(
-            f"~ {CHAOTIC}. Spread of the distance over slightly different initial speeds: "
+            f"~ {SENSITIVE}. Spread of the distance over slightly different initial speeds: "
             f"{', '.join(spreads)}.",
             style="yellow",
             markup=False,
         )
+    if any(made.check.unresolved for made in trials):
+        out.print(f"? {UNRESOLVED}.", style="yellow")
 
 
 def _references(trials: list[Trial], references: list[float]) -> str:
@@ -131,8 +134,9 @@ def _references(trials: list[Trial], references: list[float]) -> str:
 
 
 def _marked(made: Trial) -> str:
-    """Return the name of a controller with the marks of a stop that did not end and of one that is chaotic."""
-    return made.run.controller + " *" * (made.run.ending is not Ending.STOPPED) + " ~" * made.check.chaotic
+    """Return the name of a controller with the marks of a stop that did not end, is sensitive or unresolved."""
+    marks = " *" * (made.run.ending is not Ending.STOPPED) + " ~" * made.check.sensitive
+    return made.run.controller + marks + " ?" * made.check.unresolved
 
 
 def _is_best(made: Trial, shortest: float) -> bool:

@@ -1,7 +1,8 @@
 /* Closed loop of vehicles with one sampled controller per wheelset: steps, their ends, samples, results. */
 
-static void write_trace(Loop *loop, const Stage *stage)
+static void write_trace(Loop *loop)
 {
+    const Stage *stage = &loop->present;
     double *row = loop->trace + loop->trace_used++ * (3 + 5 * AXLES);
     loop->recorded = loop->time[0];
     *row++ = loop->stop[TIME * STOPS], *row++ = loop->now.speed[0], *row++ = loop->stop[DISTANCE * STOPS];
@@ -24,56 +25,51 @@ static void finish(Loop *loop, int stop)
 /* One Runge-Kutta step of every stop, and what happens at its end. */
 static int advance(Loop *loop)
 {
-    Motion at[3], reached;
-    Stage stage[4];
-    WIDE double next[STOPS], pressure[2 * LANES], torque[2 * LANES], filled[2 * LANES], condition[2 * LANES];
-    WIDE double lane_step[LANES], speed[LANES];
+    Motion moved[3], reached;
+    Stage further[3];
+    const Motion *const at[4] = {&loop->now, &moved[0], &moved[1], &moved[2]};
+    const Stage *const stage[4] = {&loop->present, &further[0], &further[1], &further[2]};
+    WIDE double next[STOPS], pressure[2 * LANES], torque[2 * LANES], filled[2 * LANES], damping[2 * LANES];
+    WIDE double lane_step[LANES];
     double *step = loop->step, stop_speed = loop->set.stop_speed;
+    if (loop->patches > 0) lay_rails(loop);
     choose_steps(loop, next);
-    prepare(loop, next, pressure, torque, filled, condition);
-    evaluate(loop, 0.0, &loop->now, loop->torque, condition, &stage[0]);
-    for (int attempt = 0; attempt < 2; attempt++) {
-        double lowest = 1e300;
+    for (int cuts = 0;; cuts++) { /* an event is found by interpolation, and once more */
+        follow_valves(loop, next, pressure, torque, filled, damping);
         spread(step, lane_step);
-        move(&loop->now, &stage[0], step, lane_step, 0.5, &at[0]);
-        evaluate(loop, 0.5, &at[0], torque, condition, &stage[1]);
-        move(&loop->now, &stage[1], step, lane_step, 0.5, &at[1]);
-        evaluate(loop, 0.5, &at[1], torque, condition, &stage[2]);
-        move(&loop->now, &stage[2], step, lane_step, 1.0, &at[2]);
-        evaluate(loop, 1.0, &at[2], torque + LANES, condition, &stage[3]);
-        #define ACCELERATION(k) stage[k].acceleration[s]
-        EACH_STOP reached.speed[s] = loop->now.speed[s] + step[s] * (1.0 / 6.0) * SUM(ACCELERATION);
-        for (int s = 0; s < STOPS; s++) {
-            double end = loop->active[s] != 0.0 ? reached.speed[s] : 1e300;
-            lowest = end < lowest ? end : lowest;
+        for (int k = 0; k < 3; k++) {
+            int later = k == 2 ? LANES : 0; /* the last stage stands at the end of the step */
+            move(&loop->now, at[k], stage[k], step, lane_step, k == 2 ? 1.0 : 0.5, &moved[k]);
+            evaluate(loop, &moved[k], torque + later, damping + later, &further[k]);
         }
-        if (lowest >= stop_speed || attempt > 0) break;
-        for (int s = 0; s < STOPS; s++) /* once more with the step that ends at the stop speed */
-            if (loop->active[s] != 0.0 && reached.speed[s] < stop_speed)
-                step[s] *= (loop->now.speed[s] - stop_speed) / (loop->now.speed[s] - reached.speed[s]);
-    }
-    for (int k = 0; k < AXLE_STATES; k++) {
-        #define TURNED(j) stage[j].wheel[k * LANES + l]
-        EACH_LANE reached.wheel[k * LANES + l] =
-            loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
+        #define ACCELERATION(k) stage[k]->acceleration[s]
+        EACH_STOP reached.speed[s] = loop->now.speed[s] + step[s] * (1.0 / 6.0) * SUM(ACCELERATION);
+        for (int k = 0; k < AXLE_STATES; k++) {
+            #define TURNED(j) stage[j]->wheel[k * LANES + l]
+            EACH_LANE reached.wheel[k * LANES + l] =
+                loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
+        }
+        if (cuts == 2 || !shorten(loop, at, stage, torque, &reached, next)) break;
     }
     for (int k = 0; k < TRANSFER_STATES; k++) {
-        #define TRANSFERRED(j) stage[j].transfer[k * STOPS + s]
+        #define TRANSFERRED(j) stage[j]->transfer[k * STOPS + s]
         EACH_STOP reached.transfer[k * STOPS + s] =
             loop->now.transfer[k * STOPS + s] + step[s] * (1.0 / 6.0) * SUM(TRANSFERRED);
     }
-    const Motion *const points[4] = {&loop->now, &at[0], &at[1], &at[2]};
-    integrate(loop, points, stage, lane_step);
+    integrate(loop, at, stage, lane_step);
+    EACH_STOP reached.distance[s] = loop->stop[DISTANCE * STOPS + s];
     EACH_LANE {
         loop->pressure[l] = pressure[LANES + l];
         loop->torque[l] = torque[LANES + l];
         loop->filled[l] = filled[LANES + l];
+        loop->damping[l] = damping[LANES + l];
     }
-    spread(reached.speed, speed);
-    settle_locks(loop, &stage[3], lane_step, speed, &reached);
-    if (loop->hold) settle_holds(loop, &stage[3], speed, &reached);
+    settle_locks(loop, lane_step, &reached);
+    if (loop->hold) settle_holds(loop, &reached);
     if (loop->timed) follow_pulses(loop, lane_step, &reached);
     loop->now = reached;
+    observe(loop);
+    note_slips(loop);
     loop->steps++;
     for (int s = 0; s < STOPS; s++) {
         if (loop->active[s] == 0.0) continue;
@@ -85,7 +81,7 @@ static int advance(Loop *loop)
     double since = loop->time[0] - loop->recorded;
     if (loop->trace && (since >= loop->set.record_interval || (since > 0.0 && loop->active[0] == 0.0))) {
         if (loop->trace_used == loop->trace_rows) return BUFFER_FULL;
-        write_trace(loop, &stage[3]);
+        write_trace(loop);
     }
     return GOOD;
 }
@@ -207,7 +203,8 @@ long wspd_samples(const Loop *loop)
 void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *speed, const double *wheel,
                 const double *pressure)
 {
-    WIDE double present[2 * LANES] = {0}, pressures[2 * LANES], torques[2 * LANES], filled[2 * LANES];
+    WIDE double present[2 * LANES] = {0}, pressures[2 * LANES], torques[2 * LANES];
+    WIDE double filled[2 * LANES], damping[2 * LANES];
     memset(loop->lp, 0, (char *)(loop + 1) - (char *)loop->lp);
     memcpy(loop->lp, lp, sizeof loop->lp);
     for (int k = 0; k < PARAMETERS; k++)
@@ -220,10 +217,15 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     for (int l = 0; l < LANES; l++) loop->now.wheel[l] = wheel[l], loop->start_pressure[l] = pressure[l];
     start_pulses(loop);
     set_windows(loop);
-    actuator_kernel(loop->window_fixed, present, pressures, torques, filled);
+    actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping);
     for (int l = 0; l < LANES; l++) {
         loop->pressure[l] = pressures[l], loop->filled[l] = filled[l];
-        loop->torque[l] = torques[l];
+        loop->torque[l] = torques[l], loop->damping[l] = damping[l];
+    }
+    observe(loop);
+    for (int s = 0; s < STOPS; s++) {
+        loop->stop[END_SPEED * STOPS + s] = speed[s];
+        if (speed[s] <= loop->set.stop_speed) finish(loop, s); /* at rest already */
     }
 }
 

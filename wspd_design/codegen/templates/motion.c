@@ -3,12 +3,16 @@
    Lane a * STOPS + s is axle a of stop s; element k of a vector over lanes stands at k * LANES + lane. Every stop
    has its own time, so that its numbers do not depend on the stops beside it. Between two samples the cylinder
    pressure has a closed form; speed, states of the axles and load transfers are integrated by Runge-Kutta of order
-   four with a step that the creep stiffness allows and that ends at every valve edge. Wheel lock is a state: a locked
-   wheel passes on what the rail gives, until the brake gives less. A stop ends with a step that is cut at the stop
+   four with a step that the slope of the creep curve allows and that ends at every valve edge. Wheel lock is a state:
+   a locked wheel passes on what the rail gives, until the brake gives less. What the right-hand side does not follow
+   smoothly is an event, and the step is cut there: lock and release, the ends of a rail, the judging and the stop
    speed. */
 #define LANES (AXLES * STOPS)
 #define TRANSFER_STATES (2 * TRANSFERS) /* the load transfers, then their rates */
 #define SHORTEST 1e-9 /* s: edges closer together than this are one */
+#define BALANCED 1e-10 /* relative: torques that differ by less are equal, so that an event ends where it was found */
+#define SPEED_SHARE 0.1 /* of the speed, that a step may take from it where the slope limit is one */
+#define EVENT_SHARE 1e-4 /* of a step: none is cut shorter at an event of a wheel, so that time goes on */
 #define RAIL 5 /* numbers of a rail, side by side in the parameter vector from FIRST_RAIL on */
 #define WIDE __attribute__((aligned(64)))
 #define INLINE inline __attribute__((always_inline))
@@ -22,7 +26,7 @@ enum { GOOD, BUFFER_FULL, BAD_COMMAND };
 enum { DECIDE, ACT, DONE }; /* what a stop does when it reaches its goal */
 
 typedef struct {
-    double sample_time, longest_step, creep_rate, stop_speed, regularization_speed, time_limit;
+    double sample_time, longest_step, creep_rate, slope_limit, stop_speed, regularization_speed, time_limit;
     double judging_speed, record_interval;
 } Settings;
 
@@ -30,10 +34,11 @@ typedef struct {
     WIDE double speed[STOPS];
     WIDE double wheel[AXLE_STATES * LANES]; /* and the further states of the axle */
     WIDE double transfer[TRANSFER_STATES * STOPS];
+    WIDE double distance[STOPS];
 } Motion;
 
 typedef struct {
-    WIDE double acceleration[STOPS]; /* rates of Motion */
+    WIDE double acceleration[STOPS]; /* rates of Motion; that of the distance is its speed */
     WIDE double wheel[AXLE_STATES * LANES];
     WIDE double transfer[TRANSFER_STATES * STOPS];
     WIDE double force[LANES];
@@ -73,6 +78,8 @@ typedef struct {
     WIDE double lane_fixed[LANE_CONSTANTS * LANES];
     WIDE double window_fixed[WINDOW_CONSTANTS * 2 * LANES]; /* of the valve pattern */
     Motion now;
+    Stage present;               /* at the present time */
+    WIDE double contact[2 * LANES]; /* stiffness and reciprocal load there */
     WIDE double locked[LANES];
     WIDE double held[LANES];
     WIDE double lock_length[LANES]; /* of the present lock, above the judging speed */
@@ -81,8 +88,9 @@ typedef struct {
     WIDE double start_pressure[LANES];
     WIDE double fill_end[LANES];
     WIDE double vent_end[LANES];
-    WIDE double pressure[LANES]; /* at the present time, as the next two */
+    WIDE double pressure[LANES]; /* at the present time, as the next three */
     WIDE double torque[LANES];
+    WIDE double damping[LANES];
     WIDE double filled[LANES];   /* pressure without the venting since the last command */
     WIDE double fill[LANES];     /* command that the valves follow */
     WIDE double vent[LANES];
@@ -116,30 +124,35 @@ static double load_at(const Loop *loop, int lane, double distance)
     return row[0] + (place - (double)k) * (row[1] - row[0]);
 }
 
-/* Wheel loads at a share of the step; the load transfer is that of the same moment. */
-static inline void load_wheels(const Loop *loop, double share, const double *transfer, double *load)
+static inline void load_wheels(const Loop *loop, const Motion *at, double *load)
 {
-    loads_kernel(loop->stop_fixed, transfer, load);
-    for (int l = 0; loop->load_factor && l < LANES; l++) {
-        int s = l % STOPS;
-        load[l] *= load_at(loop, l, loop->stop[DISTANCE * STOPS + s] + share * loop->step[s] * loop->now.speed[s]);
-    }
+    loads_kernel(loop->stop_fixed, at->transfer, load);
+    for (int l = 0; loop->load_factor && l < LANES; l++) load[l] *= load_at(loop, l, at->distance[l % STOPS]);
 }
 
-/* The slip of every lane to be held at the speeds of the stops, and its slope over speed. */
+/* Place of a speed in the table of the slips to be held. */
+static inline double hold_place(const Loop *loop, double speed)
+{
+    return (wspd_log(speed) - loop->hold_first) / loop->hold_spacing;
+}
+
+/* The slip to be held at a speed and its place, and its slope over speed. */
+static inline double held_slip(const Loop *loop, int lane, double speed, double place, double *slope)
+{
+    long k = (long)place;
+    if (k > loop->hold_points - 2) k = loop->hold_points - 2;
+    if (k < 0) k = 0;
+    const double *row = loop->hold + lane * loop->hold_points + k;
+    *slope = (row[1] - row[0]) / (loop->hold_spacing * speed);
+    return row[0] + (place - (double)k) * (row[1] - row[0]);
+}
+
+/* The same for every lane at the speeds of the stops. */
 static inline void held_slips(const Loop *loop, const double *speed, double *slip, double *slope)
 {
     WIDE double place[STOPS];
-    EACH_STOP place[s] = (wspd_log(speed[s]) - loop->hold_first) / loop->hold_spacing;
-    for (int l = 0; l < LANES; l++) {
-        int s = l % STOPS;
-        long k = (long)place[s];
-        if (k > loop->hold_points - 2) k = loop->hold_points - 2;
-        if (k < 0) k = 0;
-        const double *row = loop->hold + l * loop->hold_points + k;
-        slope[l] = (row[1] - row[0]) / (loop->hold_spacing * speed[s]);
-        slip[l] = row[0] + (place[s] - (double)k) * (row[1] - row[0]);
-    }
+    EACH_STOP place[s] = hold_place(loop, speed[s]);
+    for (int l = 0; l < LANES; l++) slip[l] = held_slip(loop, l, speed[l % STOPS], place[l % STOPS], &slope[l]);
 }
 
 /* Wheels under an ideal brake follow the train; they pass on what that takes. */
@@ -156,23 +169,42 @@ static void hold_wheels(const Loop *loop, const Motion *at, Stage *out)
     }
 }
 
-static INLINE void evaluate(const Loop *loop, double share, const Motion *at, const double *torque,
-                            const double *condition, Stage *out)
+static INLINE void evaluate(const Loop *loop, const Motion *at, const double *torque, const double *damping,
+                            Stage *out)
 {
     WIDE double speed[LANES];
-    load_wheels(loop, share, at->transfer, out->load);
+    load_wheels(loop, at, out->load);
     spread(at->speed, speed);
-    axle_kernel(loop->lane_fixed, speed, at->wheel, out->load, torque, loop->locked, condition,
+    axle_kernel(loop->lane_fixed, speed, at->wheel, out->load, torque, loop->locked, loop->contact, damping,
                 out->force, out->wheel, out->slip, out->damping, out->passed);
     train_kernel(loop->stop_fixed, at->speed, out->force, at->transfer, out->acceleration, out->resistance, out->transfer);
     if (loop->hold) hold_wheels(loop, at, out);
 }
 
-/* to = from + share * step * rates */
-static INLINE void move(const Motion *from, const Stage *rates, const double *step, const double *lane_step,
-                        double share, Motion *to)
+/* Work out the present stage. Wheels whose brake gives less than rail or slip take are let go. */
+static INLINE void observe(Loop *loop)
+{
+    const double *radius = loop->lp + RADIUS * LANES;
+    WIDE double load[LANES];
+    double released = 0.0;
+    load_wheels(loop, &loop->now, load);
+    contact_kernel(loop->lane_fixed, load, loop->contact);
+    evaluate(loop, &loop->now, loop->torque, loop->damping, &loop->present);
+    for (int l = 0; l < LANES; l++) {
+        const Stage *at = &loop->present;
+        double given = loop->torque[l] * (1.0 - BALANCED);
+        if (loop->locked[l] != 0.0 && given < 2.0 * radius[l] * at->force[l]) loop->locked[l] = 0.0, released = 1.0;
+        if (loop->held[l] != 0.0 && given < at->passed[l]) loop->held[l] = 0.0, released = 1.0;
+    }
+    if (released != 0.0) evaluate(loop, &loop->now, loop->torque, loop->damping, &loop->present);
+}
+
+/* to = from + share * step * rates, which are those at another moment */
+static INLINE void move(const Motion *from, const Motion *at, const Stage *rates, const double *step,
+                        const double *lane_step, double share, Motion *to)
 {
     EACH_STOP to->speed[s] = FMA(share * step[s], rates->acceleration[s], from->speed[s]);
+    EACH_STOP to->distance[s] = FMA(share * step[s], at->speed[s], from->distance[s]);
     for (int k = 0; k < AXLE_STATES; k++)
         EACH_LANE {
             int j = k * LANES + l;
@@ -189,73 +221,136 @@ static INLINE void move(const Motion *from, const Stage *rates, const double *st
 #define SUM(of) ((of(0) + of(3)) + 2.0 * (of(1) + of(2)))
 
 /* Add a step to the integrals, with the stages and weights of the states. */
-static INLINE void integrate(Loop *loop, const Motion *const at[4], const Stage *stage, const double *lane_step)
+static INLINE void integrate(Loop *loop, const Motion *const at[4], const Stage *const stage[4],
+                             const double *lane_step)
 {
     double *lane = loop->lane, *stop = loop->stop;
     const double *radius = loop->lp + RADIUS * LANES, judging = loop->set.judging_speed;
-    WIDE double speed[4][LANES];
+    WIDE double speed[4][LANES], begin[LANES];
     for (int k = 0; k < 4; k++) spread(at[k]->speed, speed[k]);
+    EACH_LANE begin[l] = speed[0][l] > judging ? 1.0 : 0.0; /* no step goes across the judging speed */
     EACH_LANE {
-        double part = lane_step[l] * (1.0 / 6.0);
-        #define PASSED(k) stage[k].passed[l]
-        #define DAMPED(k) stage[k].damping[l]
-        #define BRAKED(k) stage[k].passed[l] * at[k]->wheel[l]
-        #define SLID(k) stage[k].force[l] * (speed[k][l] - radius[l] * at[k]->wheel[l])
-        #define DAMPED_WORK(k) stage[k].damping[l] * at[k]->wheel[l]
-        #define SLIPPED(k) (speed[k][l] > judging ? stage[k].slip[l] : 0.0)
-        #define SLIPPED_SQUARED(k) (speed[k][l] > judging ? stage[k].slip[l] * stage[k].slip[l] : 0.0)
+        double part = lane_step[l] * (1.0 / 6.0), judged = begin[l] * part;
+        #define PASSED(k) stage[k]->passed[l]
+        #define DAMPED(k) stage[k]->damping[l]
+        #define BRAKED(k) stage[k]->passed[l] * at[k]->wheel[l]
+        #define SLID(k) stage[k]->force[l] * (speed[k][l] - radius[l] * at[k]->wheel[l])
+        #define DAMPED_WORK(k) stage[k]->damping[l] * at[k]->wheel[l]
+        #define SLIPPED(k) stage[k]->slip[l]
+        #define SLIPPED_SQUARED(k) stage[k]->slip[l] * stage[k]->slip[l]
         #define TURNING(k) at[k]->wheel[l]
         lane[TORQUE * LANES + l] += part * SUM(PASSED);
         lane[DAMPING * LANES + l] += 2.0 * part * SUM(DAMPED);
         lane[BRAKE_WORK * LANES + l] += part * SUM(BRAKED);
         lane[SLIDING_WORK * LANES + l] += 2.0 * part * SUM(SLID);
         lane[DAMPING_WORK * LANES + l] += 2.0 * part * SUM(DAMPED_WORK);
-        lane[SLIP * LANES + l] += part * SUM(SLIPPED);
-        lane[SLIP_SQUARED * LANES + l] += part * SUM(SLIPPED_SQUARED);
+        lane[SLIP * LANES + l] += judged * SUM(SLIPPED);
+        lane[SLIP_SQUARED * LANES + l] += judged * SUM(SLIPPED_SQUARED);
         lane[ANGLE * LANES + l] += part * SUM(TURNING);
     }
     EACH_STOP {
         double part = loop->step[s] * (1.0 / 6.0);
         #define SPEED(k) at[k]->speed[s]
-        #define RESISTED(k) stage[k].resistance[s]
-        #define RESISTED_WORK(k) stage[k].resistance[s] * at[k]->speed[s]
-        #define JUDGING(k) (at[k]->speed[s] > judging ? 1.0 : 0.0)
+        #define RESISTED(k) stage[k]->resistance[s]
+        #define RESISTED_WORK(k) stage[k]->resistance[s] * at[k]->speed[s]
         stop[DISTANCE * STOPS + s] += part * SUM(SPEED);
         stop[RESISTANCE * STOPS + s] += part * SUM(RESISTED);
         stop[RESISTANCE_WORK * STOPS + s] += part * SUM(RESISTED_WORK);
-        stop[JUDGED * STOPS + s] += part * SUM(JUDGING);
+        stop[JUDGED * STOPS + s] += at[0]->speed[s] > judging ? loop->step[s] : 0.0;
     }
 }
 
-/* Put the wheels on the rail of their place, and shorten the steps to the next change at the present speed. */
-static void lay_rails(Loop *loop)
+/* Time to a place ahead under the present deceleration, and a little more so that it is reached. */
+static double wait_for(const Loop *loop, int s, double ahead)
+{
+    double speed = loop->now.speed[s], square = speed * speed + 2.0 * loop->present.acceleration[s] * ahead;
+    return square > 0.0 ? 2.0 * ahead / (speed + sqrt(square)) + SHORTEST : 1e300;
+}
+
+/* Put the wheels on the rail of their place. */
+static INLINE void lay_rails(Loop *loop)
 {
     int changed = 0;
     for (int l = 0; l < LANES; l++) {
         int s = l % STOPS;
-        double place = loop->stop[DISTANCE * STOPS + s] - loop->lp[OFFSET * LANES + l];
+        double place = loop->now.distance[s] - loop->lp[OFFSET * LANES + l];
         long reached = loop->patch[l];
         while (reached < loop->patches && loop->patch_start[reached * STOPS + s] <= place) reached++;
-        if (reached != loop->patch[l]) {
-            const double *rail = loop->patch_rail + ((reached - 1) * STOPS + s) * RAIL;
-            for (int k = 0; k < RAIL; k++) loop->lp[(FIRST_RAIL + k) * LANES + l] = rail[k];
-            loop->patch[l] = reached;
-            changed = 1;
-        }
-        if (reached < loop->patches && loop->active[s] != 0.0) {
-            double wait = (loop->patch_start[reached * STOPS + s] - place) / loop->now.speed[s] + 1e-9;
-            if (wait < loop->step[s]) loop->step[s] = wait;
-        }
+        if (reached == loop->patch[l]) continue;
+        const double *rail = loop->patch_rail + ((reached - 1) * STOPS + s) * RAIL;
+        for (int k = 0; k < RAIL; k++) loop->lp[(FIRST_RAIL + k) * LANES + l] = rail[k];
+        loop->patch[l] = reached;
+        changed = 1;
     }
-    if (changed) lane_constants(loop->lp, loop->lane_fixed);
+    if (!changed) return;
+    lane_constants(loop->lp, loop->lane_fixed);
+    observe(loop);
 }
 
-/* Step of every stop: what the creep stiffness allows, in equal parts up to the next valve edge or goal. */
+/* Shorten a step to the next change of rail or point of the table of loads, where the forces have a kink. */
+static double before_change(const Loop *loop, int s, double step)
+{
+    for (int l = s; l < LANES; l += STOPS) {
+        double place = loop->now.distance[s] - loop->lp[OFFSET * LANES + l];
+        if (loop->patch[l] < loop->patches) {
+            double wait = wait_for(loop, s, loop->patch_start[loop->patch[l] * STOPS + s] - place);
+            step = wait < step ? wait : step;
+        }
+    }
+    if (loop->load_factor) {
+        double spacing = loop->load_spacing[s], point = floor(loop->now.distance[s] / spacing + 1e-6) + 1.0;
+        double wait = wait_for(loop, s, point * spacing - loop->now.distance[s]);
+        if (point < (double)loop->load_points && wait < step) step = wait;
+    }
+    return step;
+}
+
+/* Lengthen the steps where the creep curves are flat, as they are at a sliding wheel: a step is limited by the steeper
+   of the slopes now and where the wheel would be after the step. A wheel on its way to rolling is taken as rolling.
+   The train may lose a share of its speed in a step. */
+static INLINE void lengthen(const Loop *loop, double *allowed)
+{
+    const Settings *set = &loop->set;
+    const double *radius = loop->lp + RADIUS * LANES, *load = loop->present.load, *damping = loop->damping;
+    double longest = set->longest_step;
+    WIDE double speed[LANES], later[LANES], ahead[STOPS], wheel[AXLE_STATES * LANES], slope[LANES], further[LANES];
+    EACH_STOP {
+        double moved = FMA(longest, loop->present.acceleration[s], loop->now.speed[s]);
+        ahead[s] = moved > set->regularization_speed ? moved : set->regularization_speed;
+    }
+    spread(loop->now.speed, speed);
+    spread(ahead, later);
+    slope_kernel(loop->lane_fixed, speed, loop->now.wheel, load, loop->contact, damping, slope);
+    memcpy(wheel, loop->now.wheel, sizeof wheel);
+    EACH_LANE {
+        double rolling = later[l] / radius[l], side = speed[l] > radius[l] * wheel[l] ? 1.0 : -1.0;
+        double steep = fabs(slope[l]), step = longest * steep > set->slope_limit ? set->slope_limit / steep : longest;
+        double moved = FMA(step, loop->present.wheel[l], wheel[l]);
+        wheel[l] = side * (rolling - moved) > 0.0 ? moved : rolling;
+    }
+    slope_kernel(loop->lane_fixed, later, wheel, load, loop->contact, damping, further);
+    EACH_LANE {
+        double steep = fabs(slope[l]), next = fabs(further[l]);
+        steep = next > steep ? next : steep;
+        steep = loop->locked[l] != 0.0 ? 0.0 : steep;
+        slope[l] = longest * steep > set->slope_limit ? set->slope_limit / steep : longest;
+    }
+    EACH_STOP {
+        double braking = fabs(loop->present.acceleration[s]), slow = loop->now.speed[s];
+        double least = longest * braking > SPEED_SHARE * set->slope_limit * slow
+            ? SPEED_SHARE * set->slope_limit * slow / braking : longest;
+        least = slope[s] < least ? slope[s] : least;
+        for (int a = 1; a < AXLES; a++) least = slope[a * STOPS + s] < least ? slope[a * STOPS + s] : least;
+        allowed[s] = least > allowed[s] ? least : allowed[s];
+    }
+}
+
+/* Step of every stop: what the slope of the creep curve allows, in equal parts up to the next valve edge or goal. */
 static INLINE void choose_steps(Loop *loop, double *next)
 {
     const Settings *set = &loop->set;
-    double per_rate = 1.0 / set->creep_rate;
-    WIDE double until[STOPS];
+    double per_speed = set->slope_limit / set->creep_rate, bound = 0.0;
+    WIDE double until[STOPS], allowed[STOPS], span[STOPS];
     EACH_STOP {
         double after = loop->time[s] + SHORTEST, before = loop->goal[s] - SHORTEST, nearest = loop->goal[s];
         for (int a = 0; a < AXLES; a++) {
@@ -268,14 +363,24 @@ static INLINE void choose_steps(Loop *loop, double *next)
         until[s] = nearest;
     }
     EACH_STOP {
-        double slow = loop->now.speed[s], span = until[s] - loop->time[s];
+        double slow = loop->now.speed[s];
         slow = slow > set->regularization_speed ? slow : set->regularization_speed;
-        double wanted = slow * per_rate;
-        wanted = wanted < set->longest_step ? wanted : set->longest_step;
-        double count = ceil(span / wanted * (1.0 - 1e-12));
-        loop->step[s] = count > 1.0 ? span / count : span;
+        allowed[s] = slow * per_speed; /* on the steepest rail, rolling */
+        span[s] = until[s] - loop->time[s];
     }
-    if (loop->patches > 0) lay_rails(loop);
+    for (int s = 0; s < STOPS; s++) {
+        double most = span[s] < set->longest_step ? span[s] : set->longest_step;
+        bound = allowed[s] < most && loop->active[s] != 0.0 ? 1.0 : bound;
+    }
+    if (bound != 0.0 && !loop->hold) lengthen(loop, allowed); /* the table of held slips is fine at low speed */
+    EACH_STOP {
+        double wanted = allowed[s] < set->longest_step ? allowed[s] : set->longest_step;
+        double count = ceil(span[s] / wanted * (1.0 - 1e-12));
+        loop->step[s] = count > 1.0 ? span[s] / count : span[s];
+    }
+    for (int s = 0; s < STOPS; s++)
+        if (loop->active[s] != 0.0 && (loop->patches > 0 || loop->load_factor))
+            loop->step[s] = before_change(loop, s, loop->step[s]);
     EACH_STOP {
         double reached = loop->time[s] + loop->step[s];
         int last = reached > until[s] - 1e-12;
@@ -285,64 +390,126 @@ static INLINE void choose_steps(Loop *loop, double *next)
     }
 }
 
-/* Pressure and torque in the middle and at the end of the step, and what the stages share: stiffness and damping. */
-static INLINE void prepare(const Loop *loop, const double *next, double *pressure, double *torque, double *filled,
-                           double *condition)
+/* Pressure, torque and damping in the middle and at the end of the step. */
+static INLINE void follow_valves(const Loop *loop, const double *next, double *pressure, double *torque,
+                                 double *filled, double *damping)
 {
-    WIDE double when[2 * LANES], transfer[TRANSFER_STATES * STOPS], load[LANES];
+    WIDE double when[2 * LANES];
     for (int a = 0; a < AXLES; a++)
         EACH_STOP {
             when[a * STOPS + s] = loop->time[s] + 0.5 * loop->step[s];
             when[LANES + a * STOPS + s] = next[s];
         }
-    actuator_kernel(loop->window_fixed, when, pressure, torque, filled);
-    for (int k = 0; k < TRANSFERS; k++)
-        EACH_STOP transfer[k * STOPS + s] = loop->now.transfer[k * STOPS + s]
-            + 0.5 * loop->step[s] * loop->now.transfer[(TRANSFERS + k) * STOPS + s];
-    load_wheels(loop, 0.5, transfer, load);
-    condition_kernel(loop->lane_fixed, when, load, condition);
+    actuator_kernel(loop->window_fixed, when, pressure, torque, filled, damping);
 }
 
-/* Lock the wheels that stopped within the step, and release those whose brake gives less than the rail. */
-static INLINE void settle_locks(Loop *loop, Stage *last, const double *lane_step, const double *speed,
-                                Motion *reached)
+/* Share of a step after which a positive quantity gets below zero, from its values at begin, middle and end. */
+static double crossing(double begin, double middle, double end)
 {
-    const double *radius = loop->lp + RADIUS * LANES, *inertia = loop->lp + INERTIA * LANES;
-    double *lane = loop->lane, judging = loop->set.judging_speed;
+    double bend = 2.0 * (begin - 2.0 * middle + end), fall = 3.0 * begin - 4.0 * middle + end;
+    return 2.0 * begin / (fall + sqrt(fall * fall - 4.0 * bend * begin)) + 1e-9; /* a little below zero */
+}
+
+/* Share of a step up to its first event: a wheel locks, is let go, or comes to the slip to be held; or the train comes
+   to the judging or the stop speed. */
+static double before_event(const Loop *loop, int s, const Motion *const at[4], const Stage *const stage[4],
+                           const double *torque, const Motion *reached)
+{
+    const double *radius = loop->lp + RADIUS * LANES;
+    double speed = loop->now.speed[s], first = 1.0, judging = loop->set.judging_speed;
+    double target = speed > judging ? judging : loop->set.stop_speed;
+    if (reached->speed[s] < target) first = crossing(speed - target, at[2]->speed[s] - target, reached->speed[s] - target);
+    for (int l = s; l < LANES; l += STOPS) {
+        double value[3], brake[3] = {loop->torque[l], torque[l], torque[LANES + l]};
+        for (int k = 0; k < 3; k++) {
+            const Stage *taken = stage[k == 0 ? 0 : k + 1];
+            const Motion *moved = k == 0 ? at[0] : k == 1 ? at[2] : reached;
+            double slope, limit = 0.0;
+            double fast = moved->speed[s];
+            if (loop->hold) limit = fast * (1.0 - held_slip(loop, l, fast, hold_place(loop, fast), &slope)) / radius[l];
+            if (loop->locked[l] != 0.0) value[k] = brake[k] - 2.0 * radius[l] * taken->force[l];
+            else if (loop->held[l] != 0.0) value[k] = brake[k] - taken->passed[l];
+            else value[k] = moved->wheel[l] - limit;
+        }
+        int below = value[0] > 0.0 && (value[1] < 0.0 || value[2] < 0.0);
+        double share = below ? crossing(value[0], value[1], value[2]) : 1.0;
+        share = share > EVENT_SHARE ? share : EVENT_SHARE;
+        first = share < first ? share : first;
+    }
+    return first < 1.0 - 1e-6 ? first : 1.0;
+}
+
+/* Shorten the steps to their first events; tells whether any was. */
+static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *const stage[4], const double *torque,
+                          const Motion *reached, double *next)
+{
+    const double *radius = loop->lp + RADIUS * LANES, judging = loop->set.judging_speed;
+    double any = 0.0;
+    WIDE double target[STOPS];
+    EACH_STOP target[s] = at[0]->speed[s] > judging ? judging : loop->set.stop_speed;
+    for (int s = 0; s < STOPS; s++) any = reached->speed[s] < target[s] ? 1.0 : any;
+    for (int l = 0; l < LANES; l++) {
+        double taken = 2.0 * radius[l] * stage[2]->force[l], later = 2.0 * radius[l] * stage[3]->force[l];
+        any = at[2]->wheel[l] < 0.0 || reached->wheel[l] < 0.0 ? 1.0 : any;
+        any = loop->locked[l] != 0.0 && (torque[l] < taken || torque[LANES + l] < later) ? 1.0 : any;
+    }
+    if (any == 0.0 && !loop->hold) return 0;
+    any = 0.0;
+    for (int s = 0; s < STOPS; s++) {
+        double share = loop->active[s] != 0.0 ? before_event(loop, s, at, stage, torque, reached) : 1.0;
+        if (share >= 1.0) continue;
+        loop->step[s] *= share;
+        next[s] = loop->time[s] + loop->step[s];
+        any = 1.0;
+    }
+    return any != 0.0;
+}
+
+/* Lock the wheels that stopped within the step. */
+static INLINE void settle_locks(Loop *loop, const double *lane_step, Motion *reached)
+{
+    const double *inertia = loop->lp + INERTIA * LANES;
+    double *lane = loop->lane;
+    WIDE double speed[LANES]; /* before the step, which ends where the train comes to the judging speed */
+    spread(loop->now.speed, speed);
     EACH_LANE {
-        last->slip[l] = last->slip[l] > 1.0 ? 1.0 : last->slip[l]; /* it may turn a stopping wheel back */
-        double slip = speed[l] > judging ? last->slip[l] : 0.0, most = lane[SLIP_MAX * LANES + l];
-        lane[SLIP_MAX * LANES + l] = slip > most ? slip : most;
         double locked = loop->locked[l], wheel = reached->wheel[l];
         lane[LOCK_TIME * LANES + l] += locked * lane_step[l];
-        double judged = speed[l] > judging ? locked * lane_step[l] : 0.0;
+        double judged = speed[l] > loop->set.judging_speed ? locked * lane_step[l] : 0.0;
         double length = locked != 0.0 ? loop->lock_length[l] + judged : 0.0, longest = lane[LONGEST_LOCK * LANES + l];
         lane[JUDGED_LOCK * LANES + l] += judged;
         lane[LONGEST_LOCK * LANES + l] = length > longest ? length : longest;
         loop->lock_length[l] = length;
-        double released = loop->torque[l] < 2.0 * radius[l] * last->force[l] ? 0.0 : locked;
         double below = wheel < 0.0 ? wheel : 0.0; /* take back the torque that the brake could not pass on since */
         lane[TORQUE * LANES + l] += inertia[l] * below;
         reached->wheel[l] = wheel - below;
-        loop->locked[l] = below < 0.0 ? 1.0 : released;
+        loop->locked[l] = below < 0.0 ? 1.0 : locked;
     }
 }
 
 /* The same for wheels that come to the slip that an ideal brake never exceeds. */
-static void settle_holds(Loop *loop, const Stage *last, const double *speed, Motion *reached)
+static void settle_holds(Loop *loop, Motion *reached)
 {
     const double *radius = loop->lp + RADIUS * LANES, *inertia = loop->lp + INERTIA * LANES;
     WIDE double slip[LANES], slope[LANES];
     held_slips(loop, reached->speed, slip, slope);
     for (int l = 0; l < LANES; l++) {
-        double rolling = speed[l] * (1.0 - slip[l]) / radius[l];
-        if (loop->held[l] == 0.0 && loop->locked[l] == 0.0 && reached->wheel[l] <= rolling) {
-            loop->lane[TORQUE * LANES + l] += inertia[l] * (reached->wheel[l] - rolling);
-            reached->wheel[l] = rolling;
-            loop->held[l] = 1.0;
-        } else if (loop->held[l] != 0.0 && last->passed[l] > loop->torque[l]) {
-            loop->held[l] = 0.0; /* the brake cannot give what the slip takes */
-        }
+        double rolling = reached->speed[l % STOPS] * (1.0 - slip[l]) / radius[l];
+        if (loop->held[l] != 0.0 || loop->locked[l] != 0.0 || reached->wheel[l] > rolling) continue;
+        loop->lane[TORQUE * LANES + l] += inertia[l] * (reached->wheel[l] - rolling);
+        reached->wheel[l] = rolling;
+        loop->held[l] = 1.0;
     }
 }
 
+/* Keep the largest slip above the judging speed. */
+static INLINE void note_slips(Loop *loop)
+{
+    double judging = loop->set.judging_speed, *most = loop->lane + SLIP_MAX * LANES;
+    WIDE double speed[LANES];
+    spread(loop->now.speed, speed);
+    EACH_LANE {
+        double slip = speed[l] > judging ? loop->present.slip[l] : 0.0;
+        most[l] = slip > most[l] ? slip : most[l];
+    }
+}

@@ -68,7 +68,7 @@ def _slips(made: Reproduction, controller: str, number: int) -> Figure:
     return Figure(
         svg=picture(draw, height=3.75),
         caption=f"Figure {number} of the paper: slip ratio of the wheelsets with {TITLES[controller]}. Dashed: "
-        f"{made.specification.slip:g}.{_chaos(stops)}",
+        f"{made.specification.slip:g}.{_sensitivity(stops)}",
         alt="Slip ratio over time: "
         + "; ".join(
             f"{each.rail} mean {each.metrics.slip_mean:.3f}, largest {each.metrics.slip_max:.3f} above 10 km/h, "
@@ -141,11 +141,11 @@ def _forces(made: Reproduction) -> Figure:
     )
 
 
-def _chaos(stops: list[StopFigures]) -> str:
-    rails = [each.rail for each in stops if each.check.chaotic]
+def _sensitivity(stops: list[StopFigures]) -> str:
+    rails = [each.rail for each in stops if each.check.sensitive]
     if not rails:
         return ""
-    return f" On {numbers.listing(rails)} the closed loop is chaotic: this is one of many courses."
+    return f" On {numbers.listing(rails)} the closed loop is sensitive: this is one of many courses."
 
 
 def _word(rails: tuple[str, str]) -> str:

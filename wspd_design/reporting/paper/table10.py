@@ -179,7 +179,7 @@ def _ranking(made: Reproduction) -> Table:
         rows,
         (ColumnOf(title="Stop", read=lambda row: row[0]), *map(on, range(len(RAILS)))),
         caption="Distances, and in brackets the place among the four controllers of the paper. ±: half the spread of "
-        "a chaotic closed loop over initial speeds that differ by millionths.",
+        "a sensitive closed loop over initial speeds that differ by millionths.",
         anchor="distances",
     )
 

@@ -25,7 +25,9 @@ def track(made: Reproduction) -> tuple[Block, ...]:
     """Return the section about the track and the other disturbances."""
     ratios = [each.ratio for each in made.track]
     changes = made.disturbances
-    calm, chaotic = (numbers.decimals(largest_change(changes, chaotic=which), 1) for which in (False, True))
+    calm, sensitive = (
+        numbers.decimals(largest_change(changes, sensitive=which), 1) for which in (False, True)
+    )
     ideal = numbers.decimals(max(map(abs, made.ideal_changes)), 2)
     return (
         Heading(text="Table 9 and the track", anchor="track"),
@@ -79,7 +81,11 @@ def track(made: Reproduction) -> tuple[Block, ...]:
             f"stop changes by {ideal} m at most: what the track costs a brake that holds the best slip. "
             "A real law switches at other "
             f"moments than before, and its distance changes by up to {calm} m"
-            + (f", that of a chaotic loop by up to {chaotic} m." if any(d.spread for d in changes) else ".")
+            + (
+                f", that of a sensitive loop by up to {sensitive} m."
+                if any(d.spread for d in changes)
+                else "."
+            )
         ),
         _disturbances(made),
     )
@@ -127,7 +133,7 @@ def _disturbances(made: Reproduction) -> Table:
             ColumnOf(title="Vibrating pads", unit="m", significant=2, read=lambda each: each.by_pads),
             ColumnOf(title="Irregular track", unit="m", decimals=2, read=lambda each: each.by_track),
             ColumnOf(
-                title="Chaotic spread",
+                title="Spread",
                 unit="m",
                 decimals=1,
                 read=lambda each: each.spread or math.nan,

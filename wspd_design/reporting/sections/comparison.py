@@ -205,8 +205,8 @@ def _accuracy(trials: tuple[Trial, ...]) -> Table:
             ColumnOf(
                 title="Steps",
                 read=lambda each: (
-                    Cell(status=Status.UNDECIDED, text="chaotic")
-                    if each.check.chaotic
+                    Cell(status=Status.UNDECIDED, text="unresolved")
+                    if each.check.unresolved
                     else Cell(status=Status.GOOD, text=f"1/{each.check.refinement}")
                 ),
             ),
@@ -221,7 +221,7 @@ def _accuracy(trials: tuple[Trial, ...]) -> Table:
                 title="Spread",
                 unit="m",
                 significant=2,
-                read=lambda each: each.check.spread if each.check.chaotic else math.nan,
+                read=lambda each: each.check.spread if each.check.sensitive else math.nan,
             ),
             ColumnOf(
                 title="Momentum residual",
@@ -237,8 +237,8 @@ def _accuracy(trials: tuple[Trial, ...]) -> Table:
             ),
         ),
         caption="How far the simulation can be trusted: what half as long steps change in the distance and at "
-        "most in the slip at any sample above 0.3 m/s, after steps of the usual length divided as stated. A "
-        "chaotic closed loop amplifies the last digits, so that no step makes it accurate: its spread is the "
+        "most in the slip at any sample above 0.3 m/s, after steps of the usual length divided as stated; a "
+        "stop is unresolved if none of them is short enough. A sensitive closed loop amplifies: its spread is the "
         "range of the distance over initial speeds that differ by millionths. The residuals are what the "
         "balances of momentum and energy miss, relative to their initial values.",
         anchor="accuracy-table",

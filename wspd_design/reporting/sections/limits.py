@@ -28,7 +28,7 @@ OF_PLANT = {
 def limits(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about limits."""
     run: Run = dossier.trials[0].run
-    items: list[Text] = [OF_PLANT[run.plant], *_chaos(dossier.trials), *_of_scenario(dossier.scenario)]
+    items: list[Text] = [OF_PLANT[run.plant], *_digits(dossier.trials), *_of_scenario(dossier.scenario)]
     return (
         Heading(text="What this report does not show", anchor="limits"),
         Bullets(items=(*items, *EVERYWHERE)),
@@ -60,18 +60,26 @@ def _of_scenario(scenario: Scenario) -> list[str]:
     ]
 
 
-def _chaos(trials: tuple[Trial, ...]) -> list[Text]:
+def _digits(trials: tuple[Trial, ...]) -> list[Text]:
     """Name the stops that have fewer digits than a table could print."""
-    chaotic = [each for each in trials if each.check.chaotic]
-    if not chaotic:
-        return []
-    named = numbers.listing(
-        [f"{each.run.controller} by {numbers.significant(each.check.spread, 2)} m" for each in chaotic]
-    )
-    return [
-        "A digit that it does not have: some closed loops amplify the last digits of anything, so that "
-        f"initial speeds that differ by millionths spread the distance: {named}."
+    spreads = [
+        f"{each.run.controller} by {numbers.significant(each.check.spread, 2)} m"
+        for each in trials
+        if each.check.sensitive
     ]
+    unresolved = [each.run.controller for each in trials if each.check.unresolved]
+    said: list[Text] = []
+    if spreads:
+        said.append(
+            "A digit that it does not have: some closed loops are sensitive, so that initial speeds that differ "
+            f"by millionths spread the distance: {numbers.listing(spreads)}."
+        )
+    if unresolved:
+        said.append(
+            f"The stops of {numbers.listing(unresolved)} to their last step: half of the shortest steps still "
+            "change them."
+        )
+    return said
 
 
 def provenance(dossier: Dossier) -> tuple[Definition, ...]:

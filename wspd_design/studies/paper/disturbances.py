@@ -72,7 +72,7 @@ class Disturbance:
 
     controller: str
     rail: str
-    spread: float  # m, of the distance without any; 0 unless the closed loop is chaotic
+    spread: float  # m, of the distance without any; 0 unless the closed loop is sensitive
     by_pads: float  # m, change of the distance with T_d of Section 7
     by_track: float  # m, with irregular wheel loads
 
@@ -127,9 +127,11 @@ def ideal_change(vehicle: Vehicle, scenario: Scenario, load: LoadIrregularity) -
     return disturbed.distance - ideal_stop(vehicle, scenario).distance
 
 
-def largest_change(disturbances: Sequence[Disturbance], *, chaotic: bool) -> float:
-    """Largest change of a distance among the chaotic stops or among the others; 0 where there are none [m]."""
+def largest_change(disturbances: Sequence[Disturbance], *, sensitive: bool) -> float:
+    """Largest change of a distance among the sensitive stops or among the others; 0 where there are none [m]."""
     changes = (
-        max(abs(each.by_pads), abs(each.by_track)) for each in disturbances if (each.spread > 0.0) == chaotic
+        max(abs(each.by_pads), abs(each.by_track))
+        for each in disturbances
+        if (each.spread > 0.0) == sensitive
     )
     return max(changes, default=0.0)

@@ -16,7 +16,7 @@ class Table10Row:
 
     published: PublishedStop
     metrics: Metrics
-    spread: float  # m, of our distance; 0 unless the closed loop is chaotic
+    spread: float  # m, of our distance; 0 unless the closed loop is sensitive
     momentum: float  # N m s, what the momentum balance leaves for the torque integral of our stop
 
     @property

@@ -47,11 +47,11 @@ def test_the_track_costs_a_perfect_brake_next_to_nothing(er24pc, load, rail, mos
     assert 0.0 < abs(ideal_change(er24pc, scenario, load)) < most
 
 
-def test_chaotic_stops_are_told_apart():
+def test_sensitive_stops_are_told_apart():
     def row(spread, by_pads, by_track):
         return Disturbance(controller="c", rail="r", spread=spread, by_pads=by_pads, by_track=by_track)
 
     rows = (row(0.0, 0.1, -0.7), row(2.0, 1.0, -8.0))
-    assert largest_change(rows, chaotic=False) == 0.7
-    assert largest_change(rows, chaotic=True) == 8.0
-    assert largest_change(rows[:1], chaotic=True) == 0.0
+    assert largest_change(rows, sensitive=False) == 0.7
+    assert largest_change(rows, sensitive=True) == 8.0
+    assert largest_change(rows[:1], sensitive=True) == 0.0

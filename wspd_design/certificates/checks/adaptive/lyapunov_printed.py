@@ -11,8 +11,8 @@ from wspd_design.certificates.checks.frame import Check, Figures, series
 from wspd_design.certificates.checks.ideal_run import ProofRun, adaptive_run, cut_short, numeric_rate
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.memory import recall
 from wspd_design.certificates.records import Certificate, Problem, Role
-from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.plant import exact_plant
 from wspd_design.certificates.theorems import ideal_loop

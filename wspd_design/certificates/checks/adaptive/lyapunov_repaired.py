@@ -10,8 +10,8 @@ from wspd_design.certificates.checks.certain_rise import certain_rise
 from wspd_design.certificates.checks.frame import Check, Figures, series
 from wspd_design.certificates.checks.ideal_run import ProofRun, adaptive_run, cut_short, numeric_rate
 from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.memory import recall
 from wspd_design.certificates.records import Certificate, Problem, Role
-from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.plant import exact_plant
 from wspd_design.certificates.theorems.adaptive_error import Ideal, Signals, signals

@@ -1,12 +1,13 @@
-"""Balanced disk margin of a loop over all frequencies.
+"""Where a loop is real or of magnitude one, and its balanced disk margin, over all frequencies.
 
 For a strictly proper loop the sensitivity is S = o/c, with the characteristic polynomials o of the open and c of the
-closed loop. With z = (1 + s)/(1 - s) the same holds for a sampled loop in s, where it is excited at s = i w, w >= 0,
-too. The square of abs(S - 1/2) is then a ratio of polynomials in w^2. Its slope vanishes at the zeros of a polynomial,
-which finds peaks that are narrower than the steps of any grid: the closed loop may be hardly damped.
+closed loop, and the loop itself is L = (c - o)/o. With z = (1 + s)/(1 - s) the same holds for a sampled loop in s,
+where it is excited at s = i w, w >= 0, too. The square of abs(S - 1/2) is then a ratio of polynomials in w^2. Its slope
+vanishes at the zeros of a polynomial, which finds peaks that are narrower than the steps of any grid: the closed loop
+may be hardly damped.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     import numpy as np
@@ -40,6 +41,52 @@ def disk_margin(
     peaks = np.abs(np.polyval(numerator, at) / np.polyval(denominator, at))
     highest = abs(numerator[0] / denominator[0])  # w to infinity, half the sampling frequency if sampled
     return float(1.0 / max(highest, *peaks))
+
+
+class Crossings(NamedTuple):
+    """Of a loop at s = i w; a sampled one has w = tan(frequency sample time/2)."""
+
+    real: "Array"  # the loop where it is real
+    angles: "Array"  # its argument where its magnitude is one [rad]
+    frequencies: "Array"  # w there
+
+
+def crossings(
+    opened: "NDArray[np.complex128]", closed: "NDArray[np.complex128]", *, sampled: bool
+) -> Crossings:
+    """Find all crossings for w >= 0; parameters as in :func:`disk_margin`.
+
+    Imaginary part and squared magnitude are ratios of polynomials in w^2, but for a factor w.
+    """
+    import numpy as np
+
+    below = _in_s(opened, sampled=sampled)
+    above = _in_s(closed, sampled=sampled) - below
+
+    def loop(w: "Array") -> "NDArray[np.complex128]":
+        return np.asarray(np.polyval(above, 1j * w) / np.polyval(below, 1j * w), dtype=np.complex128)
+
+    turned = np.polymul(above, _mirrored(below))[
+        ::-1
+    ]  # real part: even powers of s; imaginary part: odd ones
+    odd = _mirrored(turned[1::2][::-1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.array([loop(np.zeros(1))[0].real, above[0] / below[0]])  # w = 0 and infinity
+    real = np.array([*loop(_positive(odd)).real, *ends])
+    frequencies = _positive(np.polysub(_squared(above), _squared(below)))
+    return Crossings(
+        real=real[np.isfinite(real)], angles=np.angle(loop(frequencies)), frequencies=frequencies
+    )
+
+
+def _positive(polynomial: "Array") -> "Array":
+    """Roots of the positive zeros of a polynomial in w^2."""
+    import numpy as np
+
+    zeros = np.roots(polynomial)
+    real = zeros.real[zeros.imag == 0.0]
+    found: Array = np.sqrt(real[real > 0.0])
+    return found
 
 
 def _in_s(poles: "NDArray[np.complex128]", *, sampled: bool) -> "Array":

@@ -1,13 +1,12 @@
 """How much the loop near its reference bears: gain, phase, delay and disk margin over speed, also as sampled."""
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.checks.frame import Check, Figures, level, series
-from wspd_design.certificates.checks.linear.disk_margin import disk_margin
+from wspd_design.certificates.checks.linear.disk_margin import crossings, disk_margin
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.kernel.obligation import Obligation
@@ -27,6 +26,15 @@ if TYPE_CHECKING:
 
 SPEEDS = 25
 MOST_GAIN, MOST_DELAY = 1e3, 10.0  # larger margins are reported as these: factor, s
+
+
+class Loop(NamedTuple):
+    """A loop with one input and one output, opened there; its D is zero, since the brake lags."""
+
+    A: "Array"
+    B: "Array"
+    C: "Array"
+    dt: float  # s, sample time; 0 if it is continuous
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,7 +119,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:  # noqa: ARG
     )
 
 
-def loop(problem: Problem, speed: float, *, sample_time: float | None = None) -> Any:
+def loop(problem: Problem, speed: float, *, sample_time: float | None = None) -> Loop:
     """Loop opened at the valve command, to be closed by negative feedback.
 
     Parameters
@@ -125,10 +133,9 @@ def loop(problem: Problem, speed: float, *, sample_time: float | None = None) ->
 
     Returns
     -------
-    control.StateSpace
-        From duty to duty.
+    Loop
+        From duty to duty: first the states of slip and brake, then what the law has summed.
     """
-    import control
     import numpy as np
 
     law, brake = law_of(problem), problem.vehicle.brake
@@ -147,47 +154,41 @@ def loop(problem: Problem, speed: float, *, sample_time: float | None = None) ->
         kept, forced, held, moved, delay = (float(low) for low, _ in ends)
         a = np.array([[kept, gain * limit * forced], [0.0, held]])
         b = np.array([[gain * limit * moved * delay], [moved]])
-    plant = control.ss(a, b, np.eye(2), np.zeros((2, 1)), sample_time or 0)
     direct = np.array([[gains.proportional / limit, gains.torque]])
     summed = np.array([[gains.integral / limit, gains.twice / limit]])
     if not np.any(summed):
-        law_block = control.ss([], [], [], direct, sample_time or 0)
-    else:
-        step = sample_time or 1.0
-        chain = np.array([[0.0, 0.0], [step, 0.0]]) + (np.eye(2) if sample_time else 0.0)
-        enters = np.array([[step, 0.0], [0.0, 0.0]])
-        size = 2 if summed[0, 1] else 1
-        law_block = control.ss(chain[:size, :size], enters[:size], summed[:, :size], direct, sample_time or 0)
-    return law_block * plant
+        return Loop(a, b, direct, sample_time or 0.0)
+    step = sample_time or 1.0
+    chain = np.array([[0.0, 0.0], [step, 0.0]]) + (np.eye(2) if sample_time else 0.0)
+    fed = np.array([[step, 0.0], [0.0, 0.0]])
+    size = 2 if summed[0, 1] else 1
+    whole = np.block([[a, np.zeros((2, size))], [fed[:size], chain[:size, :size]]])
+    enters, leaves = np.vstack([b, np.zeros((size, 1))]), np.hstack([direct, summed[:, :size]])
+    return Loop(whole, enters, leaves, sample_time or 0.0)
 
 
-def margins(opened: Any) -> Margins:
-    """Margins of a loop, from its transfer function [factors, rad, s]."""
-    import control
+def margins(opened: Loop) -> Margins:
+    """Margins of a loop, from its poles before and after feedback [factors, rad, s]."""
     import numpy as np
 
-    poles = control.feedback(opened, 1).poles()
-    sample_time = float(opened.dt)
-    inside = np.abs(poles) < 1.0 if sample_time else poles.real < 0.0
+    states = (opened.A, opened.A - opened.B @ opened.C)
+    before, after = (np.linalg.eigvals(each).astype(np.complex128) for each in states)
+    sampled = bool(opened.dt)
+    inside = np.abs(after) < 1.0 if sampled else after.real < 0.0
     if not inside.all():
         return UNSTABLE
-    with warnings.catch_warnings():
-        # It says that it interpolates where the polynomial method would lose digits.
-        warnings.filterwarnings("ignore", "stability_margins: Falling back", UserWarning)
-        gains, phases, _, _, crossings, _ = control.stability_margins(opened, returnall=True)
-    # At both ends of the frequency range the loop is real; python-control looks only between them.
-    ends = [opened(z, warn_infinite=False).real for z in ((1.0, -1.0) if sample_time else (0.0,))]
-    factors = np.array([*gains, *(-1.0 / end for end in ends if -np.inf < end < 0.0)])
+    found = crossings(before, after, sampled=sampled)
+    factors = -1.0 / found.real[found.real < 0.0]
     # A phase margin beyond half a turn is one of lead; delay only takes phase away.
-    lags = np.radians(np.mod(np.asarray(phases), 360.0))
-    delays = lags / np.asarray(crossings)
+    lags = np.mod(np.pi + found.angles, 2.0 * np.pi)
+    frequencies = 2.0 * np.arctan(found.frequencies) / opened.dt if sampled else found.frequencies
     return Margins(
         stable=True,
         gain_up=float(np.min(factors[factors > 1.0], initial=MOST_GAIN)),
         gain_down=float(np.max(factors[factors < 1.0], initial=1.0 / MOST_GAIN)),
         phase=float(np.min(np.minimum(lags, 2.0 * np.pi - lags), initial=np.pi)),
-        delay=float(np.min(delays, initial=MOST_DELAY)),
-        disk=disk_margin(opened.poles(), poles, sampled=bool(sample_time)),
+        delay=float(np.min(lags / frequencies, initial=MOST_DELAY)),
+        disk=disk_margin(before, after, sampled=sampled),
     )
 
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates.checks.frame import Check, Figures
 from wspd_design.certificates.checks.region.outlines import outlines
 from wspd_design.certificates.kernel.finding import Effort, Stated
+from wspd_design.certificates.memory import recall
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.invariant_sets import document, escape
 from wspd_design.certificates.search.invariant_sets.search import Found, holding_share, windows
 from wspd_design.certificates.search.invariant_sets.search import search as find
-from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.region import SAMPLED_INVARIANCE, SETS

@@ -13,11 +13,11 @@ from wspd_design.certificates.checks.ideal_run import (
     cut_short,
     largest_rise,
     numeric_rate,
-    sliding_run,
+    sliding_runs,
 )
 from wspd_design.certificates.kernel.finding import Stated
+from wspd_design.certificates.memory import recall
 from wspd_design.certificates.records import Certificate, Problem, Role
-from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.setting.domain import PARAMETERS
 from wspd_design.certificates.setting.fingerprint import model_hash
 from wspd_design.certificates.setting.plant import plant_with
@@ -61,10 +61,18 @@ def _runs(problem: Problem) -> list[SurfaceRun]:
     nominal = tuple(problem.nominal(name) for name in PARAMETERS)
     corners = product(*(problem.span(name) for name in PARAMETERS))
     edge = float(sliding_surface.lyapunov_surface(law.gains.boundary_layer))
+    cases = [
+        (dict(zip(PARAMETERS, chosen, strict=True)), slip)
+        for chosen, slip in product(dict.fromkeys([nominal, *corners]), problem.slips)
+    ]
+    runs = sliding_runs(
+        [plant_with(problem, parameters) for parameters, _ in cases],
+        law,
+        speeds=problem.speeds,
+        slips=[slip for _, slip in cases],
+    )
     found = []
-    for chosen, slip in product(dict.fromkeys([nominal, *corners]), problem.slips):
-        parameters = dict(zip(PARAMETERS, chosen, strict=True))
-        run = sliding_run(*plant_with(problem, parameters), law, speeds=problem.speeds, slip=slip)
+    for (parameters, slip), run in zip(cases, runs, strict=True):
         values = surface_energy(law, run.states)
         # Inside the layer V may do as it likes, below the value at its edge.
         rise, start, end = largest_rise(np.maximum(values, edge))

@@ -11,7 +11,8 @@ from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import read
 from wspd_design.certificates.theorems.shortest_stop.extremes import exactly, over_bounds
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import BOUNDS, NOMINAL, STOP_BOUND
 from wspd_design.parameters.units import KMH
-from wspd_design.simulation.ideal import ideal_stop, peak_adhesion
+from wspd_design.simulation.ideal import ideal_stop
+from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario
 from wspd_design.simulation.stop import simulate
 

@@ -10,8 +10,8 @@ from fractions import Fraction
 from wspd_design.certificates.checks.frame import Check, Figures, level, series
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Effort, Stated
+from wspd_design.certificates.memory import recall
 from wspd_design.certificates.records import Certificate, Problem
-from wspd_design.certificates.search.memory import recall
 from wspd_design.certificates.search.prover import prove
 from wspd_design.certificates.search.recovery_samples import Samples, sample
 from wspd_design.certificates.search.settle import enclose, settle, stated_of

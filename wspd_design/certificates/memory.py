@@ -24,6 +24,11 @@ def remembering() -> Iterator[None]:
         _known.reset(token)
 
 
+def is_remembering() -> bool:
+    """Whether anything is kept, so that it is worth while to write down what is asked."""
+    return _known.get() is not None
+
+
 def recall(asked: object, work_out: Callable[[], Result]) -> Result:
     """Return what was worked out before, or work it out now.
 

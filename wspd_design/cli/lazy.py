@@ -1,0 +1,122 @@
+"""The commands of ``wspd``: one table, from which each is loaded when it is called.
+
+Help that lists the commands needs their names and summaries alone, and none of what they compute with.
+"""
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+DESIGNING, JUDGING, KNOWING = "Design", "Prove and validate", "Look up"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A command: ``commands/NAME.py`` has a function of its name."""
+
+    panel: str
+    summary: str  # first line of the function's docstring
+    example: str
+
+    def load(self, name: str) -> TyperCommand:
+        """Import the module of the command and build it."""
+        built = typer.Typer(add_completion=False, rich_markup_mode="rich")
+        function = getattr(import_module(f"wspd_design.cli.commands.{name}"), name)
+        built.command(name, rich_help_panel=self.panel, epilog=self.example)(function)
+        command: Any = typer.main.get_command(built)
+        return command  # type: ignore[no-any-return]
+
+
+COMMANDS = {
+    "new": Entry(
+        DESIGNING,
+        "Answer some questions and get a design file; every default is explained.",
+        "Example: wspd new -o design.toml",
+    ),
+    "design": Entry(
+        DESIGNING,
+        "Choose the gains of a slip controller by rules, say why, and write a design file.",
+        'Example: wspd design --law smc --slip "14 %" -o design.toml',
+    ),
+    "verify": Entry(
+        JUDGING,
+        "Check the stability of a closed loop, claim by claim.",
+        "Example: wspd verify design.toml",
+    ),
+    "certify": Entry(
+        JUDGING,
+        "Prove what can be proved about a design and keep the proofs.",
+        "Example: wspd certify design.toml",
+    ),
+    "check": Entry(
+        JUDGING,
+        "Decide about certificates again, without the program that found them.",
+        "Example: wspd check design.certificates/*.json",
+    ),
+    "simulate": Entry(
+        JUDGING,
+        "Simulate one stop and show its figures, or many with --runs and show their spread.",
+        'Examples: wspd simulate afsmc --rail polach-dry --speed "100 km/h"; wspd simulate --runs 1000 '
+        '--speed-noise "0.05 m/s" -o stops.csv',
+    ),
+    "compare": Entry(
+        JUDGING,
+        "Simulate the same stop with several controllers, side by side.",
+        "Example: wspd compare design.toml afsmc none",
+    ),
+    "campaign": Entry(
+        JUDGING,
+        "Simulate many stops as FILE says; what is finished stays, and the same command goes on from there.",
+        "Example: wspd campaign campaign.toml --workers 8 -o stops.parquet",
+    ),
+    "report": Entry(
+        JUDGING,
+        "Write a report: design, poles, certificates, stops and sources.",
+        "Example: wspd report design.toml -o report.html --pdf",
+    ),
+    "reproduce": Entry(
+        JUDGING,
+        "Compute the tables and figures of the paper and say which of its conclusions hold.",
+        "Example: wspd reproduce -o reproduction",
+    ),
+    "linearize": Entry(
+        KNOWING,
+        "Show open-loop poles, input gain and equilibrium torque of the slip over speed.",
+        "Example: wspd linearize --rail polach-dry",
+    ),
+    "equations": Entry(
+        KNOWING,
+        "Show every equation of the paper with its verdict, or all about one of them.",
+        "Example: wspd equations 19",
+    ),
+    "sources": Entry(
+        KNOWING,
+        "Show every number of a parameter set with unit, bounds, status, source and place.",
+        "Example: wspd sources er24pc",
+    ),
+    "doctor": Entry(
+        KNOWING,
+        "Look whether all that is needed is there: packages, fonts, folders, compiler, terminal.",
+        "Example: wspd doctor",
+    ),
+}
+"""In the order of the help."""
+
+
+class LazyGroup(TyperGroup):
+    """A group that knows its commands from the table."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.commands = {
+            name: TyperCommand(name, help=entry.summary, rich_help_panel=entry.panel, rich_markup_mode="rich")
+            for name, entry in COMMANDS.items()
+        }
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the command of a command line, and load it."""
+        name, found, rest = super().resolve_command(ctx, args)
+        return name, found if name is None else COMMANDS[name].load(name), rest
