@@ -19,11 +19,12 @@ if TYPE_CHECKING:
     from wspd_design.design.records import Design, Specification
     from wspd_design.design.selection import design_controller
     from wspd_design.parameters.errors import UserError, WspdError
-    from wspd_design.parameters.loading import load_rail, load_vehicle
+    from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
     from wspd_design.parameters.records import Rail, Vehicle
     from wspd_design.reporting.report import write_report
     from wspd_design.simulation.campaign import simulate_many
     from wspd_design.simulation.comparison import compare, trial
+    from wspd_design.simulation.draws import Choice, Draw, Normal, Uniform, within_bounds
     from wspd_design.simulation.ideal import ideal_stop
     from wspd_design.simulation.records import Scenario, Start
     from wspd_design.simulation.stop import simulate
@@ -31,17 +32,21 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Certificate": "certificates.records",
+    "Choice": "simulation.draws",
     "Command": "controllers.protocol",
     "Controller": "controllers.protocol",
     "Design": "design.records",
+    "Draw": "simulation.draws",
     "Linearization": "analysis.linearization",
     "Measurement": "controllers.protocol",
+    "Normal": "simulation.draws",
     "Problem": "certificates.records",
     "Rail": "parameters.records",
     "Scenario": "simulation.records",
     "Specification": "design.records",
     "Start": "simulation.records",
     "Status": "certificates.records",
+    "Uniform": "simulation.draws",
     "UserError": "parameters.errors",
     "Vehicle": "parameters.records",
     "WspdError": "parameters.errors",
@@ -54,6 +59,7 @@ _HOME = {
     "ideal_stop": "simulation.ideal",
     "linearize": "analysis.linearization",
     "load_controller": "design.own_controller",
+    "load_entries": "parameters.loading",
     "load_rail": "parameters.loading",
     "load_vehicle": "parameters.loading",
     "read_design": "design.file",
@@ -62,23 +68,28 @@ _HOME = {
     "stability_problem": "design.problem",
     "trial": "simulation.comparison",
     "verify": "certificates.suite",
+    "within_bounds": "simulation.draws",
     "write_design": "design.file",
     "write_report": "reporting.report",
 }
 
 __all__ = [
     "Certificate",
+    "Choice",
     "Command",
     "Controller",
     "Design",
+    "Draw",
     "Linearization",
     "Measurement",
+    "Normal",
     "Problem",
     "Rail",
     "Scenario",
     "Specification",
     "Start",
     "Status",
+    "Uniform",
     "UserError",
     "Vehicle",
     "WspdError",
@@ -91,6 +102,7 @@ __all__ = [
     "ideal_stop",
     "linearize",
     "load_controller",
+    "load_entries",
     "load_rail",
     "load_vehicle",
     "read_design",
@@ -99,6 +111,7 @@ __all__ = [
     "stability_problem",
     "trial",
     "verify",
+    "within_bounds",
     "write_design",
     "write_report",
 ]

@@ -3,6 +3,7 @@
 import csv
 import json
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from wspd_design.design.records import Specification
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.campaign import simulate_many
+from wspd_design.simulation.draws import within_bounds
 from wspd_design.simulation.records import Scenario
 
 SLOW = ("--speed", "20 km/h")
@@ -31,8 +33,8 @@ def test_rows_are_those_of_the_package(wspd, tmp_path):
         vehicle,
         controller("trenitalia", vehicle, rail, Specification()),
         Scenario(rail=rail, initial_speed=20.0 / 3.6, seed=7),
-        runs=24,
-        bounds=(load_entries("vehicle", "er24pc"), load_entries("rail", "polach-wet")),
+        count=24,
+        draws=within_bounds(load_entries("vehicle", "er24pc"), load_entries("rail", "polach-wet")),
     ).table
     found = rows(tmp_path / "rows.csv")
     assert list(found[0]) == list(table.dtype.names)
@@ -92,29 +94,27 @@ def interrupt_after(monkeypatch):
 
 def test_an_interrupt_keeps_what_is_done(wspd, tmp_path, interrupt_after):
     interrupt_after(20)
-    outcome = wspd("simulate", "none", *SLOW, "--runs", "200", "-o", "rows.csv")
+    outcome = wspd("simulate", "none", *SLOW, "--runs", "500", "-o", "rows.csv")
     done = len(rows(tmp_path / "rows.csv"))
-    assert 20 <= done < 200
+    assert 20 <= done < 500
     assert outcome.code == 130
-    assert outcome.err == f"wspd: interrupted after {done} of 200 stops; they are in rows.csv.\n"
+    assert outcome.err == f"wspd: interrupted after {done} of 500 stops; they are in rows.csv.\n"
     assert f"{done} stops of none" in outcome.out
 
 
 def test_an_interrupt_leaves_json_clean(wspd, interrupt_after):
     interrupt_after(1)
-    outcome = wspd("simulate", "none", *SLOW, "--runs", "200", "--json")
+    outcome = wspd("simulate", "none", *SLOW, "--runs", "500", "--json")
     found = json.loads(outcome.out)
     assert outcome.code == 130
-    assert (found["complete"], found["runs_wanted"]) == (False, 200)
-    assert found["runs"] < 200
+    assert (found["complete"], found["runs_wanted"]) == (False, 500)
+    assert found["runs"] < 500
 
 
 def test_an_interrupt_before_the_first_stop_writes_nothing(wspd, tmp_path, monkeypatch):
     def early(*arguments, **options):
-        done = simulate_many(*arguments, **options | {"runs": 1})
-        return type(done)(
-            controller=done.controller, plant=done.plant, sampled=(), table=done.table[:0], complete=False
-        )
+        done = simulate_many(*arguments, **options | {"count": 1})
+        return replace(done, table=done.table[:0], complete=False)
 
     monkeypatch.setattr(command, "simulate_many", early)
     outcome = wspd("simulate", "none", *SLOW, "--runs", "9", "-o", "rows.csv")

@@ -10,9 +10,10 @@ from wspd_design.analysis.linearization import linearize
 from wspd_design.cli.commands import simulate
 from wspd_design.design.catalog import controller
 from wspd_design.design.records import Specification
+from wspd_design.exchange.campaign_forms import CAMPAIGN
 from wspd_design.exchange.check_forms import VERIFICATION
 from wspd_design.exchange.files import read_schema
-from wspd_design.exchange.stop_forms import CAMPAIGN, COMPARISON, STOP
+from wspd_design.exchange.stop_forms import COMPARISON, STOP
 from wspd_design.exchange.study_forms import LINEARIZATION
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.comparison import trial

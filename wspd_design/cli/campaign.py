@@ -1,34 +1,122 @@
 """Many stops: simulate, write the rows, show the spread."""
 
 import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from wspd_design.cli.console import console, print_json, progress_bar, spaced
 from wspd_design.cli.exit_codes import INTERRUPTED
 from wspd_design.cli.from_witness import WitnessStart
-from wspd_design.cli.json_objects import campaign_object
+from wspd_design.cli.json_objects import campaign_object, campaigns_object
 from wspd_design.cli.summary import Summary, summarize
 from wspd_design.cli.tables import write_table
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import Case
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.simulation.campaign import simulate_many
+from wspd_design.simulation.campaign import Campaign, simulate_many
 from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.draws import Draw, within_bounds
 from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.self_check import DISTANCE_TOLERANCE, SLIP_TOLERANCE
 
-_NAMES = {"distance_m": "distance [m]", "stopping_time_s": "time [s]", "lock_time_s": "wheels locked [s]"}
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_NAMES = {
+    "distance_m": "distance [m]",
+    "stopping_time_s": "time [s]",
+    "efficiency": "efficiency",
+    "slip_rms": "slip rms about the law's reference",
+    "lock_time_s": "wheels locked [s]",
+    "longest_lock_s": "longest lock above 10 km/h [s]",
+    "valve_switches_per_s": "valve switches [1/s]",
+    "vented_air": "cylinders vented",
+}
+_BLOCK = 8192  # rows that are written at a time
 
 
-def simulate_campaign(
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Series:
+    """Many stops of one law on one rail."""
+
+    case: Case
+    scenario: Scenario
+    draws: tuple[Draw, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """Which stops of every series are to be simulated, and where they are kept."""
+
+    plant: str
+    first: int
+    count: int
+    check_every: int
+    store: Path | None
+
+
+def simulate_series(
+    series: Sequence[Series], extent: Extent, opened: Callable[[], Any], *, what: str
+) -> list[Summary]:
+    """Simulate one series after the other; an interrupt ends the list with the one that it came in.
+
+    Parameters
+    ----------
+    series : sequence of Series
+        Laws and rails.
+    extent : Extent
+        Which stops.
+    opened : callable
+        Makes a context whose value is the executor, or None for the usual one.
+    what : str
+        Words beside the progress.
+    """
+    summaries: list[Summary] = []
+    with opened() as executor, progress_bar(what, len(series) * extent.count) as tell:
+        for each in series:
+            campaign = _simulate(
+                each, extent, executor, lambda done: tell(len(summaries) * extent.count + done)
+            )
+            for sentence in campaign.remade:
+                print(f"wspd: {sentence}.", file=sys.stderr)
+            summaries.append(summarize(campaign, wanted=extent.count))
+            if not campaign.complete:
+                break
+    return summaries
+
+
+def _simulate(
+    series: Series, extent: Extent, executor: Executor | None, tell: Callable[[int], object]
+) -> Campaign:
+    return simulate_many(
+        series.case.vehicle,
+        series.case.controller,
+        series.scenario,
+        count=extent.count,
+        first=extent.first,
+        draws=series.draws,
+        plant=extent.plant,
+        check_every=extent.check_every,
+        executor=executor,
+        store=extent.store,
+        progress=tell,
+    )
+
+
+def simulate_runs(
     case: Case,
     scenario: Scenario,
+    extent: Extent,
     *,
-    plant: str,
-    runs: int,
     nominal: bool,
     output: Path | None,
     force: bool,
@@ -43,10 +131,8 @@ def simulate_campaign(
         Vehicle, rail and controller.
     scenario : Scenario
         The stop; its seed starts the sequence of seeds.
-    plant : str
-        With or without load transfer.
-    runs : int
-        Number of stops.
+    extent : Extent
+        Which stops.
     nominal : bool
         Draw seeds only.
     output : Path or None
@@ -58,26 +144,79 @@ def simulate_campaign(
     start : WitnessStart or None
         The witness that the stops start at.
     """
-    bounds = () if nominal else _bounds(case, scenario)
-    with progress_bar(f"{runs} stops with {case.controller.name}", runs) as tell:
-        campaign = simulate_many(
-            case.vehicle, case.controller, scenario, runs=runs, bounds=bounds, plant=plant, progress=tell
-        )
-    done = len(campaign.table)
-    written = output if done else None
+    draws = () if nominal else within_bounds(*_bounds(case, scenario))
+    series = [Series(case=case, scenario=scenario, draws=draws)]
+    what = f"{extent.count} stops with {case.controller.name}"
+    (summary,) = simulate_series(series, extent, _usual_executor, what=what)
+    table = summary.campaign.table
+    written = output if len(table) else None
     if written is not None:
-        write_table(written, campaign.table, force=force)
-    summary = summarize(campaign, wanted=runs)
+        write_table(written, [table], force=force)
     if as_json:
         print_json(campaign_object(summary, case, scenario, start))
-    elif done:
-        _show(summary, case, scenario)
+    elif len(table):
+        show(summary, series[0])
         if written is not None:
-            console().print(f"Rows: {written}", markup=False, soft_wrap=True)
-    if not campaign.complete:
+            _say_rows(written)
+    if not summary.campaign.complete:
         kept = f"; they are in {written}" if written is not None else ""
-        print(f"wspd: interrupted after {done} of {runs} stops{kept}.", file=sys.stderr)
-        raise typer.Exit(INTERRUPTED)
+        raise interrupted(f"{len(table)} of {extent.count} stops{kept}")
+
+
+def tell_series(
+    series: Sequence[Series], summaries: Sequence[Summary], *, output: Path | None, force: bool, as_json: bool
+) -> None:
+    """Write and show the results of several series, whole ones and one that was interrupted."""
+    if output is not None:
+        write_table(output, labelled([each.campaign for each in summaries]), force=force)
+    pairs = list(zip(series, summaries, strict=False))
+    if as_json:
+        print_json(
+            campaigns_object([campaign_object(summary, each.case, each.scenario) for each, summary in pairs])
+        )
+        return
+    for each, summary in pairs:
+        if len(summary.campaign.table):
+            show(summary, each)
+    if output is not None:
+        _say_rows(output)
+
+
+def labelled(campaigns: Sequence[Campaign]) -> "Iterator[NDArray[Any]]":
+    """Rows of several campaigns below each other, with law and rail in front, a block at a time."""
+    import numpy as np
+
+    dtypes = {campaign.table.dtype for campaign in campaigns}
+    if len(dtypes) > 1:
+        raise UserError(
+            "the series of the campaign draw different numbers and do not fit into one table; give all rails bounds "
+            "for the same numbers, or write a file for each"
+        )
+    labels = [("controller", f"U{max(len(each.controller) for each in campaigns)}")]
+    labels.append(("rail", f"U{max(len(each.rail) for each in campaigns)}"))
+    for campaign in campaigns:
+        for start in range(0, max(len(campaign.table), 1), _BLOCK):
+            rows = campaign.table[start : start + _BLOCK]
+            block = np.zeros(len(rows), dtype=[*labels, *rows.dtype.descr])
+            block["controller"], block["rail"] = campaign.controller, campaign.rail
+            for name in rows.dtype.names or ():
+                block[name] = rows[name]
+            yield block
+
+
+def interrupted(what: str) -> typer.Exit:
+    """Say what an interrupt left, and return the exit that ends the command."""
+    print(f"wspd: interrupted after {what}.", file=sys.stderr)
+    return typer.Exit(INTERRUPTED)
+
+
+@contextmanager
+def _usual_executor() -> Iterator[None]:
+    yield None
+
+
+def _say_rows(path: Path) -> None:
+    console().print(f"Rows: {path}", markup=False, soft_wrap=True)
 
 
 def _bounds(case: Case, scenario: Scenario) -> tuple[ParameterSet, ...]:
@@ -88,8 +227,10 @@ def _bounds(case: Case, scenario: Scenario) -> tuple[ParameterSet, ...]:
     return vehicle, load_entries("rail", case.rail_name)
 
 
-def _show(summary: Summary, case: Case, scenario: Scenario) -> None:
+def show(summary: Summary, series: Series) -> None:
+    """Show the spread of one series."""
     out, campaign = console(), summary.campaign
+    case, scenario = series.case, series.scenario
     out.print(
         f"{len(campaign.table)} stops of {campaign.controller} on {rails_of(scenario)}, {case.vehicle.name} "
         f"({campaign.plant}), from {scenario.initial_speed * 3.6:g} km/h, "
@@ -119,9 +260,10 @@ def _show(summary: Summary, case: Case, scenario: Scenario) -> None:
         + (", which the figures leave out." if share else "."),
         style="yellow" if share else "",
     )
-    drawn = campaign.sampled
+    out.print(_checks_sentence(summary), style="yellow" if summary.checks.failed else "", markup=False)
+    drawn = series.draws
     out.print(
-        f"Drawn evenly within their bounds: {', '.join(drawn)}." if drawn else "Drawn: seeds only.",
+        f"Each stop draws: {', '.join(draw.name for draw in drawn)}." if drawn else "Drawn: seeds only.",
         style="dim",
         markup=False,
     )
@@ -132,3 +274,14 @@ def _show(summary: Summary, case: Case, scenario: Scenario) -> None:
             "changes nothing.",
             style="yellow",
         )
+
+
+def _checks_sentence(summary: Summary) -> str:
+    checks, every = summary.checks, summary.campaign.check_every
+    if checks.rows == 0:
+        return "No row was checked with half the integration steps."
+    return (
+        f"Half the integration steps, runs 0, {every}, {2 * every}, ...: {checks.rows - checks.failed} of "
+        f"{checks.rows} within {DISTANCE_TOLERANCE:g} of the distance and {SLIP_TOLERANCE:g} of slip; largest change "
+        f"{checks.distance_change:.1e} and {checks.slip_change:.1e}."
+    )

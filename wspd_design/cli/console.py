@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -15,6 +16,7 @@ from rich.text import Text
 
 from wspd_design.exchange.plain import finite
 
+_MINUTE = 60.0  # s, between two lines of progress
 WIDE = 96
 """Columns of a terminal from which on tables put everything side by side."""
 
@@ -57,10 +59,10 @@ def progress() -> Iterator[Callable[[str], None]]:
 
 @contextmanager
 def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
-    """Show how many of ``total`` are done and the remaining time; nothing where there is no terminal."""
+    """Show how many of ``total`` are done and the remaining time; a line a minute where there is no terminal."""
     stream = console(error=True)
     if not stream.is_terminal or stream.is_dumb_terminal:
-        yield lambda _done: None
+        yield ProgressLines(what, total, clock=time.monotonic)
         return
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -73,6 +75,39 @@ def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
     with Progress(*columns, console=stream, transient=True) as bar:
         task = bar.add_task(what, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+class ProgressLines:
+    """Progress in lines, for logs: one a minute, none before the first is over.
+
+    The remaining time follows from the last minute. The first call says what was done before.
+    """
+
+    def __init__(self, what: str, total: int, *, clock: Callable[[], float]) -> None:
+        self._what, self._total, self._clock = what, total, clock
+        self._told = clock()
+        self._before: int | None = None  # what was done when the last line came
+
+    def __call__(self, done: int) -> None:
+        """Tell the number of all that are done."""
+        now = self._clock()
+        if self._before is None:
+            self._told, self._before = now, done
+        if now - self._told < _MINUTE:
+            return
+        made, took = done - self._before, now - self._told
+        self._told, self._before = now, done
+        rest = f", about {_duration(took * (self._total - done) / made)} left" if made else ""
+        print(
+            f"{self._what}: {done} of {self._total} ({100.0 * done / self._total:.0f} %){rest}",
+            file=sys.stderr,
+            flush=True,
+        )
+
+
+def _duration(seconds: float) -> str:
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 120 else f"{minutes / 60.0:.1f} h"
 
 
 def is_interactive() -> bool:

@@ -8,9 +8,10 @@ from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.cli.from_witness import WitnessStart
 from wspd_design.cli.summary import Summary
 from wspd_design.design.case import Case
+from wspd_design.exchange.campaign_forms import CAMPAIGN, CAMPAIGNS
 from wspd_design.exchange.check_forms import VERIFICATION
 from wspd_design.exchange.objects import linearization_point_object, scenario_object, timed_check_object
-from wspd_design.exchange.stop_forms import CAMPAIGN, COMPARISON
+from wspd_design.exchange.stop_forms import COMPARISON
 from wspd_design.exchange.study_forms import LINEARIZATION
 from wspd_design.exchange.version import program_version
 from wspd_design.simulation.records import Scenario
@@ -54,9 +55,16 @@ def campaign_object(
         "not_stopped_share": summary.not_stopped_share,
         "sampled": campaign.sampled,
         **{name: asdict(spread) for name, spread in summary.spreads.items()},
+        "check_every": campaign.check_every,
+        "step_checks": asdict(summary.checks),
         "seed": scenario.seed,
         "version": program_version(),
     }
+
+
+def campaigns_object(campaigns: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return campaigns of several laws and rails in the order of their file."""
+    return {"schema": CAMPAIGNS.schema, "campaigns": list(campaigns), "version": program_version()}
 
 
 def comparison_object(stops: Sequence[dict[str, Any]]) -> dict[str, Any]:

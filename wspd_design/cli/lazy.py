@@ -67,6 +67,11 @@ COMMANDS = {
         "Simulate the same stop with several controllers, side by side.",
         "Example: wspd compare design.toml afsmc none",
     ),
+    "campaign": Entry(
+        JUDGING,
+        "Simulate many stops as FILE says; what is finished stays, and the same command goes on from there.",
+        "Example: wspd campaign campaign.toml --workers 8 -o stops.parquet",
+    ),
     "report": Entry(
         JUDGING,
         "Write a report: design, poles, certificates, stops and sources.",

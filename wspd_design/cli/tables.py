@@ -1,19 +1,19 @@
-"""Tables of results in files: CSV, or Parquet by the optional DuckDB."""
+"""Tables of results in files: CSV, or Parquet by the optional pyarrow."""
 
 import csv
-import errno
-from importlib.util import find_spec
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.cli.output import check_output, write_file
 from wspd_design.parameters.errors import UserError
+from wspd_design.simulation.parquet import check_parquet, write_rows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 FORMATS = (".csv", ".parquet")
-PARQUET_INSTALLATION = 'pip install "wspd-design[parquet]"'
+_BLOCK = 1000  # rows that are Python objects at a time
 
 
 def check_table(path: Path, *, force: bool) -> None:
@@ -30,32 +30,29 @@ def check_table(path: Path, *, force: bool) -> None:
     ending = path.suffix.lower()
     if ending not in FORMATS:
         raise UserError(f"{path} must end in {' or '.join(FORMATS)}, which chooses the format")
-    if ending == ".parquet" and find_spec("duckdb") is None:
-        raise UserError(f"{path}: Parquet needs DuckDB, which is not installed: {PARQUET_INSTALLATION}")
+    if ending == ".parquet":
+        check_parquet(f"{path}: Parquet")
 
 
-def write_table(path: Path, table: "NDArray[Any]", *, force: bool) -> None:
-    """Write a structured array, whole or not at all; numbers keep all their digits."""
+def write_table(path: Path, blocks: "Iterable[NDArray[Any]]", *, force: bool) -> None:
+    """Write structured arrays of the same columns below each other, whole or not at all.
+
+    Numbers keep all their digits. Blocks may be made while they are written, so that no table of all has to be there.
+    """
     write = _write_parquet if path.suffix.lower() == ".parquet" else _write_csv
-    write_file(path, lambda target: write(target, table), force=force)
+    write_file(path, lambda target: write(target, blocks), force=force)
 
 
-def _write_csv(path: Path, table: "NDArray[Any]") -> None:
+def _write_csv(path: Path, blocks: "Iterable[NDArray[Any]]") -> None:
     with path.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(table.dtype.names or ())
-        writer.writerows(table.tolist())
+        for number, block in enumerate(blocks):
+            if number == 0:
+                writer.writerow(block.dtype.names or ())
+            for start in range(0, len(block), _BLOCK):
+                writer.writerows(block[start : start + _BLOCK].tolist())
 
 
-def _write_parquet(path: Path, table: "NDArray[Any]") -> None:
-    import duckdb
-    import numpy as np
-
-    columns = {name: np.ascontiguousarray(table[name]) for name in table.dtype.names or ()}
-    try:
-        with duckdb.connect() as database:
-            database.register("result", columns)
-            target = str(path).replace("'", "''")
-            database.execute(f"COPY (SELECT * FROM result) TO '{target}' (FORMAT PARQUET)")
-    except duckdb.Error as error:
-        raise OSError(errno.EIO, str(error)) from None
+def _write_parquet(path: Path, blocks: "Iterable[NDArray[Any]]") -> None:
+    with path.open("wb") as stream:
+        write_rows(blocks, stream, {})

@@ -25,7 +25,10 @@ LANE_TOTALS = (
     "angle",
     "lock_time",
     "slip_max",
+    "judged_lock_time",
+    "longest_lock",
     "vented_pressure",
+    "valve_switches",
 )
 STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
 DISTURBANCES = (
@@ -104,7 +107,7 @@ class LoopInput:
     patch_rails: "Array | None" = None  # (patches, stops, RAIL_NUMBERS)
     load_factors: "Array | None" = None  # (lanes, points)
     load_spacings: "Array | None" = None  # (stops,) [m]
-    held_slips: "Array | None" = None  # (axles, points), what an ideal brake never exceeds
+    held_slips: "Array | None" = None  # (lanes, points), what an ideal brake never exceeds
     held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
     trace_rows: int = 0
 

@@ -5,7 +5,7 @@ from itertools import accumulate
 
 from wspd_design.codegen.kernels import Kernels
 
-INTEGRATED = 8  # totals of a lane that are integrals; lock time and largest slip follow
+INTEGRATED = 8  # totals of a lane that are integrals; those of locks and the largest slip follow
 
 
 def _places(sizes: dict[str, int]) -> dict[str, slice]:
@@ -58,6 +58,7 @@ def layout(kernels: Kernels) -> Layout:
                 "distance": 1,
                 "locked": axles,
                 "held": axles,
+                "lock_length": axles,
                 "pressure": axles,
                 "torque": axles,
                 "filled": axles,
@@ -70,7 +71,7 @@ def layout(kernels: Kernels) -> Layout:
                 "load": axles,
                 "passed": axles,
                 "contact": 2 * axles,
-                "lane": (INTEGRATED + 2) * axles,
+                "lane": (INTEGRATED + 4) * axles,
                 "stop": 5,  # distance, impulse and work of the resistance, judged time, time
             }
         ),

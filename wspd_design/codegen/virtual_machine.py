@@ -46,7 +46,7 @@ def run_virtual(
     kernels = plant_kernels(plant, disturbed=disturbed)
     driven = _VirtualPlant(kernels, _functions(kernels, given.held_slips is not None), given)
     result, samples = drive(driven, _traced(controller), sample_rows)
-    lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), driven.vented])
+    lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), driven.vented, driven.switches])
     stop = [*driven.part("stop"), driven.part("speed")[0]]
     stop_totals = {name: np.array([value]) for name, value in zip(STOP_TOTALS, stop, strict=True)}
     return LoopOutput(
@@ -83,6 +83,8 @@ class _VirtualPlant:
         self.wheels[:] = given.wheel_speeds
         self.edges: tuple[float, ...] = ()
         self.vented = np.zeros(axles)
+        self.switches = np.zeros(axles)
+        self.valves = [-1] * axles  # last states: fill, vent, hold; -1 before the first
         self.sensors = VirtualSensors(given, self.parameters[RADIUS])
         self.waiting: deque[tuple[float, list[Command]]] = deque()
         self.following = [CLOSED] * axles
@@ -166,6 +168,14 @@ class _VirtualPlant:
                 self._set_valves(due)
         return result or self._advance_to(end)
 
+    def _count_switches(self) -> None:
+        """Count the changes of the valve state that the commands make."""
+        for axle, (fill, vent) in enumerate(self.following):
+            for valve, share in enumerate((fill, vent, 1.0 - fill - vent)):
+                if share > 1e-9:
+                    self.switches[axle] += self.valves[axle] not in (-1, valve)
+                    self.valves[axle] = valve
+
     def _set_valves(self, commands: list[Command]) -> None:
         import numpy as np
 
@@ -175,6 +185,7 @@ class _VirtualPlant:
             followed(command, before, sample_time=h, shortest_pulse=shortest)
             for command, before in zip(commands, self.following, strict=True)
         ]
+        self._count_switches()
         fill, vent = np.array(self.following, dtype=np.float64).T
         fill_end = present + fill * h
         vent_end = np.where(1.0 - fill - vent < 1e-12, present + h, fill_end + vent * h)

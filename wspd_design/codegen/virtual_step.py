@@ -114,6 +114,9 @@ class _Step:
         judged = where(now["speed"] > given["judging_speed"], 1.0, 0.0)
         speed, wheel = reached[0], reached[1 : 1 + axles]
         wheel, locked, held, lost = self._settled(speed, wheel)
+        lock_time, most, judged_lock, longest = ca.vertsplit(now["lane"][integrated:], axles)
+        locked_for = judged * now["locked"] * h
+        length = where(now["locked"], now["lock_length"] + locked_for, 0.0)
         after = dict(now)
         after |= {
             "speed": speed,
@@ -122,6 +125,7 @@ class _Step:
             "distance": reached[-1],
             "locked": locked,
             "held": held,
+            "lock_length": length,
             "pressure": pressure,
             "torque": torque[1],
             "filled": filled,
@@ -129,14 +133,15 @@ class _Step:
             "time": following,
         }
         after = self._observe(after)
-        most = now["lane"][integrated + axles :]
         after["lane"] = ca.vertcat(
             now["lane"][:axles] + lane[:axles] + lost,
             now["lane"][axles : 5 * axles] + lane[axles : 5 * axles],
             now["lane"][5 * axles : 7 * axles] + judged * lane[5 * axles : 7 * axles],
             now["lane"][7 * axles : integrated] + lane[7 * axles :],
-            now["lane"][integrated : integrated + axles] + now["locked"] * h,
+            lock_time + now["locked"] * h,
             where(speed > given["judging_speed"], maximum(most, after["slip"]), most),
+            judged_lock + locked_for,
+            maximum(longest, length),
         )
         after["stop"] = ca.vertcat(reached[-1], now["stop"][1:] + ca.vertcat(stop, judged * h, h))
         made = where(given["last_cut"], 1.0, where(following > now["time"], share >= 1.0, 0.0))

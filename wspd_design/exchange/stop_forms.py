@@ -223,47 +223,6 @@ STOP = Form(
         VERSION_KEY,
     ),
 )
-SPREAD = Form(
-    name="spread",
-    keys=(
-        nullable("min", "smallest"),
-        nullable("p05", "quantile 5 %"),
-        nullable("median", "quantile 50 %"),
-        nullable("p95", "quantile 95 %"),
-        nullable("max", "largest"),
-    ),
-)
-CAMPAIGN = Form(
-    name="campaign",
-    schema="wspd-campaign/1",
-    keys=(
-        SCHEMA_KEY,
-        CONTROLLER_KEY,
-        VEHICLE_KEY,
-        RAIL_KEY,
-        PLANT_KEY,
-        SAMPLE_TIME_KEY,
-        SPEED_KEY,
-        Key(name="scenario", kind=SCENARIO, meaning="as of one stop"),
-        Key(name="witness", kind=WITNESS, nullable=True, meaning="as of one stop"),
-        Key(name="runs", kind="integer", meaning="stops that are done"),
-        Key(name="runs_wanted", kind="integer", meaning="stops that were asked for"),
-        Key(name="complete", kind="flag", meaning="false after an interrupt, exit code 130"),
-        nullable("not_stopped_share", "share of the stops that did not come to a standstill"),
-        Key(
-            name="sampled",
-            kind="text",
-            many=ANY,
-            meaning="parameters that were drawn evenly within their bounds",
-        ),
-        *(
-            Key(name=name, kind=SPREAD, meaning="over the stops that came to a standstill")
-            for name in ("distance_m", "stopping_time_s", "lock_time_s")
-        ),
-        Key(name="seed", kind="integer", meaning="of the first stop and of the drawing"),
-        VERSION_KEY,
-    ),
-)
 COMPARISON = Form(
     name="comparison",
     schema="wspd-comparison/2",

@@ -1,5 +1,6 @@
 """Files that appear when they are complete, or not at all."""
 
+import errno
 import os
 import secrets
 from collections.abc import Callable
@@ -7,6 +8,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from wspd_design.parameters.errors import UserError
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # no space, quota, limit of the size of files
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
@@ -38,6 +41,5 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
                 part.unlink()
             raise
     except OSError as error:
-        raise UserError(
-            f"{path} cannot be written ({error.strerror}); choose a folder that exists and is writable"
-        ) from None
+        remedy = "free some space" if error.errno in _FULL else "choose a folder that exists and is writable"
+        raise UserError(f"{path} cannot be written ({error.strerror}); {remedy}") from None

@@ -1,43 +1,51 @@
-"""Many stops over seeds and over parameters within their bounds, in compiled chunks on all cores."""
+"""Many stops: chunks of rows, computed by any executor and kept in a store as they come."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import dataclass, fields, replace
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.codegen.closed_loop import load_closed_loop
-from wspd_design.codegen.compiler import NoCompilerError
-from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.loop_numbers import LoopOutput
-from wspd_design.codegen.sampled import GOOD
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import ParameterSet, Vehicle
-from wspd_design.plants.names import DEFAULT_PLANT, plant_of
-from wspd_design.plants.planar import bogies
-from wspd_design.plants.protocol import Plant
-from wspd_design.simulation.loop_input import first_slip, loop_input
+from wspd_design.parameters.records import Vehicle
+from wspd_design.plants.names import DEFAULT_PLANT
+from wspd_design.simulation.campaign_rows import Plan, columns, compute_rows, make_plan, plan_key
+from wspd_design.simulation.campaign_store import Store
+from wspd_design.simulation.draws import Draw
+from wspd_design.simulation.parquet import check_parquet
 from wspd_design.simulation.records import Scenario
-from wspd_design.simulation.stop import run_loop
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
-STOPS_SIDE_BY_SIDE = 16
-FIGURES = ("distance_m", "stopping_time_s", "torque_integral_Nms", "slip_mean", "slip_max", "lock_time_s")
+CHUNK = 128  # stops that one worker computes at a time, and that one file of a store holds
+CHECK_EVERY = 100  # rows between two that are checked with half the steps
+_IN_FLIGHT = 256  # chunks that wait at an executor, so that memory does not grow with the stops
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Campaign:
-    """Results of many stops: one row a stop, with its seed, its sampled parameters and its figures."""
+    """Results of many stops: one row a stop, with its seed, its drawn numbers and its figures."""
 
     controller: str
+    rail: str
     plant: str
-    sampled: tuple[str, ...]  # parameters that were drawn, by their dotted names
+    sampled: tuple[str, ...]  # numbers that were drawn, by their dotted names
+    check_every: int  # runs whose number is a multiple of it were checked with half the steps; 0 for none
     table: "NDArray[Any]"  # record array
     complete: bool  # False after an interrupt
+    remade: tuple[str, ...] = ()  # a sentence for each file of the store that was not what it should be
 
 
 def simulate_many(
@@ -45,12 +53,19 @@ def simulate_many(
     controller: Controller,
     scenario: Scenario,
     *,
-    runs: int,
-    bounds: Sequence[ParameterSet] = (),
+    count: int,
+    first: int = 0,
+    draws: Sequence[Draw] = (),
     plant: str = DEFAULT_PLANT,
+    check_every: int = CHECK_EVERY,
+    executor: Executor | None = None,
+    store: Path | None = None,
     progress: Callable[[int], object] = abs,
 ) -> Campaign:
-    """Simulate many stops that differ in their seed and in parameters drawn from their bounds.
+    """Simulate many stops that differ in their seed and in drawn numbers of vehicle, rail and stop.
+
+    A row depends on its number alone: it is the same bit by bit with any ``first`` and ``count`` that contain it, with
+    any executor and with any number of workers.
 
     Parameters
     ----------
@@ -59,163 +74,167 @@ def simulate_many(
     controller : Controller
         Law of every wheelset, the same for all stops.
     scenario : Scenario
-        The stop; its seed starts the sequence of seeds.
-    runs : int
+        Nominal stop; its seed is that of run 0 and of the drawing.
+    count : int
         Number of stops.
-    bounds : sequence of ParameterSet
-        Parameter files of vehicle and rail whose numbers are drawn evenly within their bounds; none by default.
+    first : int
+        Number of the first one.
+    draws : sequence of Draw
+        Numbers that each stop draws anew; :func:`~wspd_design.simulation.draws.within_bounds` makes them from
+        parameter files.
     plant : {"four-axle", "quarter"}
         With or without load transfer.
+    check_every : int
+        Runs whose number is a multiple of it are simulated again with half the steps; 0 for none.
+    executor : concurrent.futures.Executor, optional
+        Computes the chunks; a pool of threads on all cores by default, which the compiled loop keeps busy. It stays
+        open. ``Client.get_executor()`` of Dask is one as well.
+    store : Path, optional
+        Folder for the finished chunks. What is in it already is read, not computed again.
     progress : callable, optional
-        Told the number of finished stops.
+        Told the number of finished stops: first of those in the store, then after each chunk.
 
     Returns
     -------
     Campaign
         Rows in the order of the runs. Ctrl-C ends it early with the rows that are done.
+
+    Raises
+    ------
+    UserError
+        If a number cannot be drawn, the controller commands what is no share of the sample time, a worker is lost or
+        the store cannot be written; finished chunks stay in the store.
     """
     import numpy as np
 
-    if runs < 1:
-        raise UserError(f"runs = {runs} must be at least 1")
-    cases, drawn, names = _cases(plant_of(plant, vehicle), scenario, runs, bounds)
-    columns = [
-        ("run", "i8"),
-        ("seed", "i8"),
-        *((name, "f8") for name in (*names, *FIGURES)),
-        ("stopped", "?"),
-    ]
-    table = np.zeros(runs, dtype=columns)
-    finished = np.zeros(runs, dtype=bool)
-    table["run"] = np.arange(runs)
-    table["seed"] = [case.seed for _, case in cases]
-    for k, name in enumerate(names):
-        table[name] = drawn[:, k]
+    if count < 1:
+        raise UserError(f"count = {count} must be at least 1")
+    if first < 0:
+        raise UserError(f"first = {first} must not be negative")
+    _check_executor(executor, controller)
+    plan = make_plan(vehicle, controller, scenario, plant=plant, draws=tuple(draws), check_every=check_every)
+    kept = None if store is None else _store(store, plan)
+    table = np.zeros(count, dtype=columns(plan))
+    finished = np.zeros(count, dtype=bool)
+
+    def take(start: int, rows: "NDArray[Any]") -> None:
+        place = slice(start - first, start - first + len(rows))
+        table[place], finished[place] = rows, True
+
     complete = True
     try:
-        for first, count, output in _outputs(cases, controller):
-            rows = slice(first, first + count)
-            for name, values in _figures(output, count, scenario).items():
-                table[name][rows] = values
-            finished[rows] = True
-            progress(int(finished.sum()))
+        missing = []
+        for start, length in chunks(first, count):
+            rows = None if kept is None else kept.read(start, length, columns(plan))
+            if rows is None:
+                missing.append((start, length))
+            else:
+                take(start, rows)
+        progress(int(finished.sum()))
+        with _opened(executor) as pool, closing(_computed(plan, missing, pool, kept)) as computed:
+            for start, rows in computed:
+                take(start, rows)
+                progress(int(finished.sum()))
     except KeyboardInterrupt:
         complete = False
+    if complete and kept is not None:
+        kept.clear()
     return Campaign(
-        controller=controller.name, plant=plant, sampled=names, table=table[finished], complete=complete
+        controller=controller.name,
+        rail=scenario.rail.name,
+        plant=plant,
+        sampled=tuple(draw.name for draw in draws),
+        check_every=check_every,
+        table=table if complete else table[finished],
+        complete=complete,
+        remade=() if kept is None else tuple(kept.remade),
     )
 
 
-def _cases(
-    plant: Plant, scenario: Scenario, runs: int, bounds: Sequence[ParameterSet]
-) -> tuple[list[tuple[Plant, Scenario]], "NDArray[np.float64]", tuple[str, ...]]:
-    """Draw the parameters of every stop; the same seed draws the same ones."""
-    import numpy as np
-
-    varied = [
-        (parameters.kind, name, limits)
-        for parameters in bounds
-        for name, entry in parameters.entries.items()
-        if (limits := entry.bounds) is not None and limits[0] < limits[1] and isinstance(entry.value, float)
-    ]
-    generator = np.random.default_rng(np.random.SeedSequence([scenario.seed, 1]))
-    low, high = (np.array([limits[end] for _, _, limits in varied]) for end in (0, 1))
-    drawn = low + (high - low) * generator.random((runs, len(varied)))
-    cases = []
-    for run, row in enumerate(drawn.tolist()):
-        values: dict[str, dict[str, float]] = {"vehicle": {}, "rail": {}}
-        for (kind, name, _), value in zip(varied, row, strict=True):
-            values[kind][name] = value
-        rails = None
-        if scenario.axle_rails is not None:
-            rails = tuple(_with(rail, values["rail"]) for rail in scenario.axle_rails)
-        case = replace(
-            scenario, rail=_with(scenario.rail, values["rail"]), axle_rails=rails, seed=scenario.seed + run
-        )
-        cases.append((plant.on(_vehicle_with(plant.vehicle, values["vehicle"])), case))
-    return cases, drawn, tuple(f"{kind}.{name}" for kind, name, _ in varied)
+def chunks(first: int, count: int) -> list[tuple[int, int]]:
+    """Return first run and number of runs of every chunk: pieces between multiples of ``CHUNK``."""
+    end = first + count
+    starts = [first, *range((first // CHUNK + 1) * CHUNK, end, CHUNK)]
+    return [(start, min(start // CHUNK * CHUNK + CHUNK, end) - start) for start in starts]
 
 
-def _with(record: Any, values: dict[str, float]) -> Any:
-    known = {field.name for field in fields(record)}
-    return replace(record, **{name: value for name, value in values.items() if name in known})
+def shard(count: int, number: int, of: int) -> tuple[int, int]:
+    """Return first run and number of runs of one of several parts, which end between chunks.
+
+    Parameters
+    ----------
+    count : int
+        Runs of all parts.
+    number : int
+        Of the part, from 1 on.
+    of : int
+        Number of parts.
+    """
+    whole = -(-count // CHUNK)
+    begin, end = (min(k * whole // of * CHUNK, count) for k in (number - 1, number))
+    return begin, end - begin
 
 
-def _vehicle_with(vehicle: Vehicle, values: dict[str, float]) -> Vehicle:
-    """Change numbers of a vehicle; the body takes up what the mass gains or loses."""
-    parts = {
-        part: _with(
-            getattr(vehicle, part),
-            {
-                name.removeprefix(f"{part}."): value
-                for name, value in values.items()
-                if name.startswith(f"{part}.")
-            },
-        )
-        for part in ("brake", "contact")
-    }
-    changed: Vehicle = replace(_with(vehicle, values), **parts)
-    if "mass" in values:
-        changed = replace(changed, body_mass=changed.mass - bogies(vehicle) * changed.bogie_mass)
-    return changed
+def _store(folder: Path, plan: Plan) -> Store:
+    check_parquet(f"the store {folder}")
+    return Store(folder, plan_key(plan))
 
 
-def _outputs(
-    cases: list[tuple[Plant, Scenario]], controller: Controller
-) -> Iterator[tuple[int, int, LoopOutput]]:
-    """Run the stops in chunks on all cores; yields (first run, number, output) as chunks finish."""
-    plant, scenario = cases[0]
-    try:
-        loop = load_closed_loop(plant, controller, stops=STOPS_SIDE_BY_SIDE, disturbed=scenario.pad_vibration)
-    except (NoCompilerError, UntraceableError):
-        for run, case in enumerate(cases):
-            each, stop = case
-            yield run, 1, run_loop(each, controller, stop, loop_input([case], controller))[0]
+def _check_executor(executor: Executor | None, controller: Controller) -> None:
+    """Refuse to send a law to another process that it could not be loaded in."""
+    module = type(controller).__module__
+    if isinstance(executor, ThreadPoolExecutor | None) or not module.startswith(
+        ("wspd_own_controller.", "__main__")
+    ):
         return
+    raise UserError(
+        f"controller {controller.name} comes from a file that other processes do not import; run it with threads, or "
+        "put it into a module that is installed where the workers run"
+    )
 
-    def work(first: int) -> tuple[int, int, LoopOutput]:
-        chunk = cases[first : first + STOPS_SIDE_BY_SIDE]
-        filled = chunk + chunk[-1:] * (STOPS_SIDE_BY_SIDE - len(chunk))
-        output = loop.run(loop_input(filled, controller))
-        if output.result != GOOD:
-            raise UserError(
-                f"controller {controller.name} commanded no share of the sample time in runs {first} to "
-                f"{first + len(chunk) - 1}; simulate one of them alone to see the value"
-            )
-        return first, len(chunk), output
 
+@contextmanager
+def _opened(executor: Executor | None) -> Iterator[Executor]:
+    """The given executor, or threads of our own, which end with the campaign."""
+    if executor is not None:
+        yield executor
+        return
     pool = ThreadPoolExecutor(max_workers=os.cpu_count())
-    starts = iter(range(0, len(cases), STOPS_SIDE_BY_SIDE))
-    pending: set[Future[tuple[int, int, LoopOutput]]] = set()
     try:
-        while True:
-            for first in starts:  # keep a few chunks in flight, so that memory does not grow with the runs
-                pending.add(pool.submit(work, first))
-                if len(pending) > 2 * (os.cpu_count() or 1):
-                    break
-            if not pending:
-                return
-            done, pending = wait(pending, return_when=FIRST_COMPLETED)
-            for future in done:
-                yield future.result()
+        yield pool
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _figures(output: LoopOutput, count: int, scenario: Scenario) -> dict[str, Any]:
-    """Columns of the table for the first ``count`` stops of a chunk."""
-    import numpy as np
-
-    stops = len(output.stopped)
-    lanes = {name: x.reshape(-1, stops)[:, :count] for name, x in output.lane_totals.items()}
-    totals = {name: x[:count] for name, x in output.stop_totals.items()}
-    judged = np.where(totals["judged_time"] > 0.0, totals["judged_time"], np.nan)
-    return {
-        "distance_m": totals["distance"],
-        "stopping_time_s": totals["time"],
-        "torque_integral_Nms": lanes["torque"].sum(axis=0),
-        "slip_mean": lanes["slip"].mean(axis=0) / judged,
-        "slip_max": np.maximum(lanes["slip_max"].max(axis=0), first_slip(scenario)),
-        "lock_time_s": lanes["lock_time"].max(axis=0),
-        "stopped": output.stopped[:count],
-    }
+def _computed(
+    plan: Plan, missing: list[tuple[int, int]], executor: Executor, store: Store | None
+) -> "Generator[tuple[int, NDArray[Any]], None, None]":
+    """Compute chunks, keep each in the store, and yield them as they come."""
+    waiting = iter(missing)
+    pending: dict[Future[NDArray[Any]], int] = {}
+    try:
+        while True:
+            for start, length in waiting:
+                pending[executor.submit(compute_rows, plan, start, length)] = start
+                if len(pending) >= _IN_FLIGHT:
+                    break
+            if not pending:
+                return
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                start = pending.pop(future)
+                rows = future.result()
+                if store is not None:
+                    store.write(start, rows)
+                yield start, rows
+    except (BrokenExecutor, CancelledError) as error:
+        kept = (
+            ""
+            if store is None
+            else f"; what is done is in {store.folder}, and the same command goes on from there"
+        )
+        raise UserError(
+            f"a worker of the campaign was lost ({error or type(error).__name__}){kept}"
+        ) from None
+    finally:
+        for future in pending:
+            future.cancel()

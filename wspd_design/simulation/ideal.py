@@ -6,16 +6,19 @@ peak. Nothing is proved here: what no controller can beat is decided by the chec
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from wspd_design.codegen.loop_numbers import LoopInput
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
+from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import loop_input
-from wspd_design.simulation.peak import log_speeds, peak_adhesion
+from wspd_design.simulation.peak import best_slips, log_speeds
 from wspd_design.simulation.records import Ending, Scenario, Start
 from wspd_design.simulation.runaway import runs_away
 from wspd_design.simulation.stop import run_loop
@@ -28,8 +31,9 @@ if TYPE_CHECKING:
 
 _AT_ONCE = 1e9  # 1/s: a supply that is there at once
 _INSTANT = 1e-6  # s: a cylinder that fills at once
-_SAMPLE_TIME = 0.1  # s: the unprotected brake fills whatever it samples
 
+FILLING = Unprotected(name="ideal", sample_time=0.1)
+"""Law of an ideal brake, which fills whatever it samples."""
 NO_IDEAL_STOP = {
     Ending.TIME_LIMIT: "even a brake that holds the best slip is still moving at the time limit",
     Ending.RUNAWAY: "the grade pulls harder than rail and resistance can hold",
@@ -100,20 +104,11 @@ def ideal_stop(
     if instantaneous:
         brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
         vehicle = replace(vehicle, brake=brake)
-    filling = Unprotected(name="ideal", sample_time=_SAMPLE_TIME)
     braked = plant_of(plant, vehicle)
-    given = loop_input([(braked, scenario)], filling)
-    rails = scenario.axle_rails or (scenario.rail,) * braked.axles
-    speeds = log_speeds(scenario.initial_speed)
-    slips = {rail: _held_slips(vehicle, rail, speeds, slip) for rail in set(rails)}
-    given = replace(
-        given,
-        held_slips=np.array([slips[rail] for rail in rails]),
-        held_speeds=(float(speeds[0]), float(speeds[1])),
-    )
+    given = ideal_input([(braked, scenario)], slip=slip)
     if instantaneous:  # full from the start, so that no step has to find the filling
         given = replace(given, pressures=np.full(len(given.pressures), vehicle.brake.max_pressure))
-    output, _ = run_loop(braked, filling, scenario, given)
+    output, _ = run_loop(braked, FILLING, scenario, given)
     stopped = bool(output.stopped[0])
     return IdealStop(
         name=name,
@@ -123,8 +118,21 @@ def ideal_stop(
     )
 
 
-def _held_slips(vehicle: Vehicle, rail: Rail, speeds: "Array", slip: float | None) -> "Array":
-    """Slip to be held over speed: constant, or where the adhesion under the static load is greatest."""
+def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None = None) -> LoopInput:
+    """Numbers of one or several ideal stops for the closed loop; those of one campaign share a table of speeds."""
     import numpy as np
 
-    return np.full(len(speeds), slip) if slip is not None else peak_adhesion(vehicle, rail, speeds)[0]
+    speeds = log_speeds(max(scenario.initial_speed for _, scenario in cases))
+    rails = [scenario.axle_rails or (scenario.rail,) * plant.axles for plant, scenario in cases]
+    lanes = [
+        (plant.vehicle, rails[k][axle]) for axle in range(len(rails[0])) for k, (plant, _) in enumerate(cases)
+    ]
+    if slip is None:
+        alike = list(dict.fromkeys(lanes))
+        found = dict(zip(alike, best_slips(alike, speeds)[0], strict=True))
+        held = np.array([found[lane] for lane in lanes])
+    else:
+        held = np.full((len(lanes), len(speeds)), slip)
+    return replace(
+        loop_input(cases, FILLING), held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1]))
+    )

@@ -3,10 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import accumulate, pairwise
 
-from wspd_design.codegen.valves import CLOSED, followed
-from wspd_design.controllers.protocol import Command
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.ideal import ideal_stop
@@ -70,9 +67,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     known = usual and not scenario.patches
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
     ideal_distance = math.nan if ideal is None else ideal.distance
-    per_axle = [[Command(sample.fill, sample.vent) for sample in samples] for samples in run.axle_samples]
-    commands = [command for axle in per_axle for command in axle]
-    opened = [_followed(axle, run.sample_time, scenario.sensing.shortest_pulse) for axle in per_axle]
+    commands = [(sample.fill, sample.vent) for samples in run.axle_samples for sample in samples]
     return Metrics(
         distance=totals.distance,
         stopping_time=time,
@@ -88,7 +83,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands)
         if commands
         else math.nan,
-        valve_switches=round(sum(map(_switches, opened)) / len(opened)),
+        valve_switches=round(totals.valve_switches),
         vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
         ideal_stop=ideal_distance,
@@ -142,21 +137,3 @@ def energy_residual(run: Run, vehicle: Vehicle) -> float:
 def _kinetic_energy(vehicle: Vehicle, speed: float, wheel_speeds: Sequence[float]) -> float:
     turning = sum(0.5 * vehicle.wheelset_inertia * wheel_speed**2 for wheel_speed in wheel_speeds)
     return 0.5 * vehicle.mass * speed**2 + turning
-
-
-def _followed(commands: list[Command], sample_time: float, shortest_pulse: float) -> list[Command]:
-    """What the valves made of the commands, beginning closed."""
-
-    def follow(before: Command, command: Command) -> Command:
-        return followed(command, before, sample_time=sample_time, shortest_pulse=shortest_pulse)
-
-    return list(accumulate(commands, follow, initial=CLOSED))[1:]
-
-
-def _switches(commands: list[Command]) -> int:
-    """Count the changes of the valve state over a run, inside the samples and between them."""
-    states: list[str] = []
-    for fill, vent in commands:
-        shares = (("fill", fill), ("vent", vent), ("hold", 1.0 - fill - vent))
-        states += [state for state, share in shares if share > 1e-9]
-    return sum(a != b for a, b in pairwise(states))

@@ -216,6 +216,7 @@ class Totals:
     slip: float  # s, integral of the slip over the judged time, mean of the wheelsets
     slip_squared: float  # s
     vented_pressure: float  # Pa, sum over all vents of all wheelsets of the pressure let out
+    valve_switches: float  # changes of the valve state that the commands ask for, mean of the wheelsets
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -158,6 +158,7 @@ def _run_record(
             slip=float(lane["slip"].mean()),
             slip_squared=float(lane["slip_squared"].mean()),
             vented_pressure=float(lane["vented_pressure"].sum()),
+            valve_switches=float(lane["valve_switches"].mean()),
         ),
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from wspd_design.cli.console import console, print_json, progress, progress_bar
+from wspd_design.cli.console import ProgressLines, console, print_json, progress, progress_bar
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
@@ -47,3 +47,34 @@ def test_progress_bar(capsys, monkeypatch):
     assert out == ""
     assert "4 stops [all]" in err
     assert "2/4" in err
+
+
+class Clock:
+    """Time that passes as it is told."""
+
+    def __init__(self):
+        self.now = 1000.0
+
+    def __call__(self):
+        return self.now
+
+
+def test_progress_in_lines_is_one_a_minute_with_the_remaining_time(capsys):
+    clock = Clock()
+    tell = ProgressLines("stops", 10_000, clock=clock)
+    clock.now += 100.0  # until the first chunk: what a store gave back says nothing about the time
+    tell(4000)
+    assert capsys.readouterr().err == ""
+    for second in range(1, 121):
+        clock.now += 1.0
+        tell(4000 + 10 * second)
+    assert capsys.readouterr().err.splitlines() == [
+        "stops: 4600 of 10000 (46 %), about 9 min left",
+        "stops: 5200 of 10000 (52 %), about 8 min left",
+    ]
+    clock.now += 60.0
+    tell(5200)  # nothing came: nothing is known about the rest
+    assert capsys.readouterr().err == "stops: 5200 of 10000 (52 %)\n"
+    clock.now += 600.0
+    tell(5210)
+    assert capsys.readouterr().err == "stops: 5210 of 10000 (52 %), about 79.8 h left\n"

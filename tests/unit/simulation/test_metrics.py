@@ -1,23 +1,29 @@
 """Figures of a stop, on runs whose answers are known by hand."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from wspd_design.controllers.protocol import Measurement
+from wspd_design.controllers.protocol import Command, Measurement
+from wspd_design.model.number import where
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.comparison import compare
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Sensing, Totals
+from wspd_design.simulation.stop import simulate
 
 SCENARIO = Scenario(rail=load_rail("polach-wet"), initial_speed=30.0)
 ZERO = dict.fromkeys(
     ("torque", "resistance_impulse", "damping_impulse", "brake_work", "sliding_work", "resistance_work"), 0.0
 ) | dict.fromkeys(
-    ("damping_work", "lock_time", "judged_time", "slip", "slip_squared", "vented_pressure"), 0.0
+    (
+        *("damping_work", "lock_time", "judged_time", "slip", "slip_squared", "vented_pressure"),
+        "valve_switches",
+    ),
+    0.0,
 )
 
 
@@ -117,22 +123,44 @@ def test_slip_statistics_match_the_traces(er24pc, stop):
 )
 def test_valve_switches_and_saturation(er24pc, commands, switches, saturated):
     judged = metrics(made_up(commands=commands), er24pc, SCENARIO, slip_reference=0.14)
-    assert judged.valve_switches == switches
     assert judged.saturated_share == saturated
+    # The loop counts the switches. It gets the same commands, then goes on in the last state of the valve, gently.
+    fill, vent = commands[-1]
+    last = (0.0, 0.0) if fill + vent < 1.0 else (1.0, 0.0) if vent == 0.0 else (0.0, 1.0)
+    stop = Scenario(rail=load_rail("polach-wet"), initial_speed=0.3)
+    run = simulate(er24pc, Listed(commands=(*commands, last)), stop, plant="quarter")
+    assert len(run.samples) > len(commands)
+    assert run.totals.valve_switches == switches
+    assert metrics(run, er24pc, stop, slip_reference=0.14).valve_switches == switches
 
 
-def test_pulses_that_do_not_open_a_valve_are_no_switches(er24pc):
-    commands = [
-        (0.4, 0.05),
-        (0.05, 0.0),
-        (0.0, 1.0),
-        (0.0, 0.05),
-    ]  # fill hold, hold, vent, vent (goes on) hold
-    scenario = replace(SCENARIO, sensing=Sensing(shortest_pulse=0.01))
-    judged = metrics(made_up(commands=commands), er24pc, scenario, slip_reference=0.14)
-    assert judged.valve_switches == 3
-    exact = metrics(made_up(commands=commands), er24pc, SCENARIO, slip_reference=0.14)
-    assert exact.valve_switches == 6
+@dataclass(frozen=True, kw_only=True)
+class Listed:
+    """Commands from a list, the last one again and again."""
+
+    commands: tuple[tuple[float, float], ...]
+    name: str = "listed"
+    sample_time: float = 0.01
+
+    def start(self, measurement):  # noqa: ARG002
+        return (0.0,)
+
+    def step(self, state, measurement):  # noqa: ARG002
+        (number,) = state
+        fill, vent = self.commands[-1]
+        for k, (a, b) in reversed(list(enumerate(self.commands[:-1]))):
+            fill, vent = where(number < k + 0.5, a, fill), where(number < k + 0.5, b, vent)
+        return (number + 1.0,), Command(fill=fill, vent=vent)
+
+
+@pytest.mark.parametrize(("shortest", "switches"), [(0.0, 6), (0.001, 3)])
+def test_pulses_that_do_not_open_a_valve_are_no_switches(er24pc, shortest, switches):
+    # fill hold, hold, vent, vent (goes on) hold
+    law = Listed(commands=((0.4, 0.05), (0.05, 0.0), (0.0, 1.0), (0.0, 0.05), (0.0, 0.0)))
+    sensing = Sensing(shortest_pulse=shortest)
+    stop = Scenario(rail=load_rail("polach-wet"), initial_speed=0.3, sensing=sensing)
+    run = simulate(er24pc, law, stop, plant="quarter")
+    assert metrics(run, er24pc, stop, slip_reference=0.14).valve_switches == switches
 
 
 def test_a_run_without_standstill_has_no_lag(er24pc):

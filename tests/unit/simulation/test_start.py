@@ -220,7 +220,7 @@ def test_a_stop_from_a_state_has_neither_lag_nor_ideal_stop(er24pc, make_control
 
 def test_a_campaign_starts_there(er24pc, make_controller):
     law, stop = make_controller("trenitalia"), scenario()
-    many = simulate_many(er24pc, law, stop, runs=3)
+    many = simulate_many(er24pc, law, stop, count=3)
     single = simulate(er24pc, law, stop)
     np.testing.assert_allclose(many.table["distance_m"], single.totals.distance, rtol=1e-12)
     np.testing.assert_array_equal(many.table["slip_max"], single.slip_max)

@@ -21,7 +21,6 @@ from rich.text import Text
 
 from wspd_design.cli.console import console, is_interactive, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED
-from wspd_design.cli.tables import PARQUET_INSTALLATION
 from wspd_design.codegen import prebuilt
 from wspd_design.codegen.closed_loop import closed_loop_source
 from wspd_design.codegen.compiler import (
@@ -36,6 +35,7 @@ from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.exchange.version import program_version
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
+from wspd_design.simulation.parquet import PARQUET_INSTALLATION
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
@@ -226,9 +226,9 @@ def _engine() -> Finding:
 
 
 def _parquet() -> Finding:
-    good = find_spec("duckdb") is not None
-    found = f"DuckDB {version('duckdb')}" if good else "none"
-    remedy = f"Results can be written as CSV only; for Parquet: {PARQUET_INSTALLATION}"
+    good = find_spec("pyarrow") is not None
+    found = f"pyarrow {version('pyarrow')}" if good else "none"
+    remedy = f"Results can be written as CSV only, campaigns have no store; for both: {PARQUET_INSTALLATION}"
     return Finding(name="Parquet", found=found, good=good, needed=False, remedy=remedy)
 
 

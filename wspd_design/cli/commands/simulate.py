@@ -8,7 +8,7 @@ import typer
 
 from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, chosen, initial_speed
-from wspd_design.cli.campaign import simulate_campaign
+from wspd_design.cli.campaign import Extent, simulate_runs
 from wspd_design.cli.console import console, print_json, progress
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
@@ -19,6 +19,7 @@ from wspd_design.cli.tables import check_table, write_table
 from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.exchange.objects import stop_object
 from wspd_design.parameters.errors import UserError
+from wspd_design.simulation.campaign import CHECK_EVERY
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.records import Run
 from wspd_design.simulation.start import leaving_time
@@ -111,11 +112,10 @@ def simulate(
         if not as_json:
             show_start(start)
     if runs is not None:
-        simulate_campaign(
+        simulate_runs(
             case,
             stop,
-            plant=plant,
-            runs=runs,
+            Extent(plant=plant, first=0, count=runs, check_every=CHECK_EVERY, store=None),
             nominal=nominal,
             output=output,
             force=force,
@@ -128,7 +128,7 @@ def simulate(
         tell(f"stop with {case.controller.name}")
         made = trial(case.vehicle, case.controller, stop, slip_reference=reference, plant=plant)
     if output is not None:
-        write_table(output, traces(made.run), force=force)
+        write_table(output, [traces(made.run)], force=force)
     if as_json:
         named = None if start is None else witness_object(start, leaving_time(made.run, LEFT))
         print_json(stop_object(made, stop, slip_reference=reference, witness=named))

@@ -109,6 +109,17 @@ static void schedule(Loop *loop, int s)
     loop->goal[s] = waiting ? acting : sampling;
 }
 
+/* Count the changes of the valve state that a command makes: first fill, then vent, then hold. */
+static void count_switches(Loop *loop, int l)
+{
+    double share[3] = {loop->fill[l], loop->vent[l], 1.0 - loop->fill[l] - loop->vent[l]};
+    for (int k = 0; k < 3; k++) {
+        if (!(share[k] > 1e-9)) continue;
+        if (loop->valve[l] != 0.0 && loop->valve[l] != k + 1) loop->lane[SWITCHES * LANES + l] += 1.0;
+        loop->valve[l] = k + 1;
+    }
+}
+
 /* Set the valves of the stops whose command takes effect now. A pulse that is too short to open its valve is left out,
    unless the valve is open already. */
 static void act(Loop *loop)
@@ -126,6 +137,7 @@ static void act(Loop *loop)
             if (a * h < least && !filling) a = 0.0;
             if (b * h < least && !(venting && a == 0.0)) b = 0.0;
             loop->fill[l] = a, loop->vent[l] = b;
+            count_switches(loop, l);
             loop->lane[VENTED * LANES + l] += loop->filled[l] - loop->pressure[l];
             loop->start[l] = present;
             loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];

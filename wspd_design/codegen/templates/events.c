@@ -23,7 +23,8 @@ static double before_event(const Loop *loop, int s, const Motion *const at[4], c
             const Stage *taken = stage[k == 0 ? 0 : k + 1];
             const Motion *moved = k == 0 ? at[0] : k == 1 ? at[2] : reached;
             double slope, limit = 0.0;
-            if (loop->hold) limit = moved->speed[s] * (1.0 - held_slip(loop, l, moved->speed[s], &slope)) / radius[l];
+            double fast = moved->speed[s];
+            if (loop->hold) limit = fast * (1.0 - held_slip(loop, l, fast, hold_place(loop, fast), &slope)) / radius[l];
             if (loop->locked[l] != 0.0) value[k] = brake[k] - 2.0 * radius[l] * taken->force[l];
             else if (loop->held[l] != 0.0) value[k] = brake[k] - taken->passed[l];
             else value[k] = moved->wheel[l] - limit;
@@ -67,9 +68,16 @@ static INLINE void settle_locks(Loop *loop, const double *lane_step, Motion *rea
 {
     const double *inertia = loop->lp + INERTIA * LANES;
     double *lane = loop->lane;
+    WIDE double speed[LANES]; /* before the step, which ends where the train comes to the judging speed */
+    spread(loop->now.speed, speed);
     EACH_LANE {
         double locked = loop->locked[l], wheel = reached->wheel[l];
         lane[LOCK_TIME * LANES + l] += locked * lane_step[l];
+        double judged = speed[l] > loop->set.judging_speed ? locked * lane_step[l] : 0.0;
+        double length = locked != 0.0 ? loop->lock_length[l] + judged : 0.0, longest = lane[LONGEST_LOCK * LANES + l];
+        lane[JUDGED_LOCK * LANES + l] += judged;
+        lane[LONGEST_LOCK * LANES + l] = length > longest ? length : longest;
+        loop->lock_length[l] = length;
         double below = wheel < 0.0 ? wheel : 0.0; /* take back the torque that the brake could not pass on since */
         lane[TORQUE * LANES + l] += inertia[l] * below;
         reached->wheel[l] = wheel - below;
@@ -81,9 +89,10 @@ static INLINE void settle_locks(Loop *loop, const double *lane_step, Motion *rea
 static void settle_holds(Loop *loop, Motion *reached)
 {
     const double *radius = loop->lp + RADIUS * LANES, *inertia = loop->lp + INERTIA * LANES;
+    WIDE double slip[LANES], slope[LANES];
+    held_slips(loop, reached->speed, slip, slope);
     for (int l = 0; l < LANES; l++) {
-        double slope, speed = reached->speed[l % STOPS], slip = held_slip(loop, l, speed, &slope);
-        double rolling = speed * (1.0 - slip) / radius[l];
+        double rolling = reached->speed[l % STOPS] * (1.0 - slip[l]) / radius[l];
         if (loop->held[l] != 0.0 || loop->locked[l] != 0.0 || reached->wheel[l] > rolling) continue;
         loop->lane[TORQUE * LANES + l] += inertia[l] * (reached->wheel[l] - rolling);
         reached->wheel[l] = rolling;

@@ -19,8 +19,8 @@
 #define EACH_STOP _Pragma("omp simd") for (int s = 0; s < STOPS; s++)
 #define EACH_LANE _Pragma("omp simd") for (int l = 0; l < LANES; l++)
 
-enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, ANGLE, LOCK_TIME, SLIP_MAX, VENTED,
-       LANE_TOTALS };
+enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, ANGLE, LOCK_TIME, SLIP_MAX, JUDGED_LOCK,
+       LONGEST_LOCK, VENTED, SWITCHES, LANE_TOTALS };
 enum { DISTANCE, RESISTANCE, RESISTANCE_WORK, JUDGED, TIME, END_SPEED, STOP_TOTALS };
 enum { GOOD, BUFFER_FULL, BAD_COMMAND };
 enum { DECIDE, ACT, DONE }; /* what a stop does when it reaches its goal */
@@ -66,7 +66,7 @@ typedef struct {
     const double *load_factor;  /* relative wheel load per lane over distance, or null */
     long load_points;
     const double *load_spacing; /* per stop */
-    const double *hold;         /* slip that an ideal brake never exceeds, per axle over log of speed, or null */
+    const double *hold;         /* slip that an ideal brake never exceeds, per lane over log of speed, or null */
     long hold_points;
     double hold_first, hold_spacing;
     double *trace;              /* of the first stop */
@@ -81,6 +81,8 @@ typedef struct {
     WIDE double contact[2 * LANES]; /* stiffness and reciprocal load there */
     WIDE double locked[LANES];
     WIDE double held[LANES];
+    WIDE double lock_length[LANES]; /* of the present lock, above the judging speed */
+    WIDE double valve[LANES];    /* last state of the valve: 0 none yet, 1 fill, 2 vent, 3 hold */
     WIDE double start[LANES];    /* of the valve pattern, as the next three */
     WIDE double start_pressure[LANES];
     WIDE double fill_end[LANES];
@@ -127,26 +129,41 @@ static inline void load_wheels(const Loop *loop, const Motion *at, double *load)
     for (int l = 0; loop->load_factor && l < LANES; l++) load[l] *= load_at(loop, l, at->distance[l % STOPS]);
 }
 
-/* The slip to be held at a speed, and its slope over speed. */
-static double held_slip(const Loop *loop, int lane, double speed, double *slope)
+/* Place of a speed in the table of the slips to be held. */
+static inline double hold_place(const Loop *loop, double speed)
 {
-    double place = (wspd_log(speed) - loop->hold_first) / loop->hold_spacing;
+    return (wspd_log(speed) - loop->hold_first) / loop->hold_spacing;
+}
+
+/* The slip to be held at a speed and its place, and its slope over speed. */
+static inline double held_slip(const Loop *loop, int lane, double speed, double place, double *slope)
+{
     long k = (long)place;
     if (k > loop->hold_points - 2) k = loop->hold_points - 2;
     if (k < 0) k = 0;
-    const double *row = loop->hold + (lane / STOPS) * loop->hold_points + k;
+    const double *row = loop->hold + lane * loop->hold_points + k;
     *slope = (row[1] - row[0]) / (loop->hold_spacing * speed);
     return row[0] + (place - (double)k) * (row[1] - row[0]);
+}
+
+/* The same for every lane at the speeds of the stops. */
+static inline void held_slips(const Loop *loop, const double *speed, double *slip, double *slope)
+{
+    WIDE double place[STOPS];
+    EACH_STOP place[s] = hold_place(loop, speed[s]);
+    for (int l = 0; l < LANES; l++) slip[l] = held_slip(loop, l, speed[l % STOPS], place[l % STOPS], &slope[l]);
 }
 
 /* Wheels under an ideal brake follow the train; they pass on what that takes. */
 static void hold_wheels(const Loop *loop, const Motion *at, Stage *out)
 {
     const double *radius = loop->lp + RADIUS * LANES, *inertia = loop->lp + INERTIA * LANES;
+    WIDE double slip[LANES], slope[LANES];
+    held_slips(loop, at->speed, slip, slope);
     for (int l = 0; l < LANES; l++) {
         if (loop->held[l] == 0.0) continue;
-        double slope, speed = at->speed[l % STOPS], slip = held_slip(loop, l, speed, &slope);
-        out->wheel[l] = out->acceleration[l % STOPS] / radius[l] * (1.0 - slip - speed * slope);
+        double speed = at->speed[l % STOPS];
+        out->wheel[l] = out->acceleration[l % STOPS] / radius[l] * (1.0 - slip[l] - speed * slope[l]);
         out->passed[l] = 2.0 * (radius[l] * out->force[l] - out->damping[l]) - inertia[l] * out->wheel[l];
     }
 }

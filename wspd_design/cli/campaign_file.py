@@ -1,0 +1,265 @@
+"""The file of a campaign: laws, vehicle, rails, stop and what each stop draws, as TOML with units."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from difflib import get_close_matches
+from pathlib import Path
+from types import UnionType
+from typing import Any, get_args, get_type_hints
+
+from wspd_design.cli.arguments import check_plant, initial_speed
+from wspd_design.cli.campaign import Series
+from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.options import CONTROLLER, PLANT
+from wspd_design.cli.stop_options import scenario
+from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, load_case
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import load_entries, read_toml
+from wspd_design.parameters.schema import schema_of
+from wspd_design.parameters.units import Dimension, parse_quantity
+from wspd_design.simulation.campaign import CHECK_EVERY
+from wspd_design.simulation.draws import (
+    FILE_KINDS,
+    Choice,
+    Distribution,
+    Draw,
+    Normal,
+    Uniform,
+    within_bounds,
+)
+
+STOP_DIMENSIONS: Mapping[str, Dimension] = {
+    "stop.initial_speed": "speed",
+    "stop.grade": "ratio",
+    "stop.pad_vibration": "ratio",
+    "stop.start.slip": "ratio",
+    "stop.start.torque": "torque",
+    "stop.start.braking_time": "time",
+    "stop.sensing.speed_noise": "speed",
+    "stop.sensing.pulses_per_turn": "ratio",
+    "stop.sensing.period_timing": "ratio",
+    "stop.sensing.reference_error": "ratio",
+    "stop.sensing.reference_drift": "acceleration",
+    "stop.sensing.reference_noise": "speed",
+    "stop.sensing.torque_error": "ratio",
+    "stop.sensing.dead_time": "time",
+    "stop.sensing.shortest_pulse": "time",
+}
+"""What the numbers of a stop are measured in; a test holds that every one of them stands here."""
+
+_FORMS = (
+    '{ uniform = ["LOW", "HIGH"] }, { normal = ["MEAN", "DEVIATION"], within = ["LOW", "HIGH"] } and '
+    '{ choice = ["ONE", "OTHER"] }'
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignFile:
+    """What a campaign is; its laws and rails draw the same numbers, so that they can be compared stop by stop."""
+
+    series: tuple[Series, ...]  # each law on each rail
+    plant: str
+    stops: int  # of each series
+    check_every: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Words:
+    """The keys of the file with what holds where they are left out."""
+
+    stops: int
+    controllers: list[str]
+    vehicle: str = VEHICLE
+    rails: list[str]
+    plant: str = PLANT
+    speed: str | None = None
+    slip: str | None = None
+    sample_time: str | None = None
+    seed: int = 0
+    check_every: int = CHECK_EVERY
+    within_bounds: list[str]
+    disturbances: dict[str, Any]
+    draw: dict[str, Any]
+
+
+_DEFAULTS: dict[str, Callable[[], Any]] = {
+    "controllers": lambda: [CONTROLLER],
+    "rails": lambda: [RAIL],
+    "within_bounds": list,
+    "disturbances": dict,
+    "draw": dict,
+}
+
+
+def read_campaign(path: Path) -> CampaignFile:
+    """Read the file of a campaign; names of files in it are looked up beside it.
+
+    Raises
+    ------
+    UserError
+        If a key is unknown, a value is impossible or a name cannot be loaded.
+    """
+    where = str(path)
+    words = _words(read_toml(path, where), where)
+    check_plant(words.plant)
+    for kind in words.within_bounds:
+        if kind not in FILE_KINDS:
+            raise UserError(
+                f'within_bounds in {where} names "{kind}"; it may name {" and ".join(FILE_KINDS)}'
+            )
+    given = _disturbances(words.disturbances, where)
+    drawn = tuple(_draw(name, spread, where) for name, spread in _flat(words.draw, ""))
+    series = []
+    for law in words.controllers:
+        for rail in words.rails:
+            options = CaseOptions(
+                vehicle=_beside(words.vehicle, path),
+                rail=_beside(rail, path),
+                slip=words.slip,
+                sample_time=words.sample_time,
+            )
+            case = load_case(_beside(law, path), options)
+            bounded = within_bounds(
+                *(
+                    load_entries(FILE_KINDS[kind], name)
+                    for kind, name in (("vehicle", case.vehicle_name), ("rail", case.rail_name))
+                    if kind in words.within_bounds
+                )
+            )
+            named = {draw.name for draw in drawn}
+            series.append(
+                Series(
+                    case=case,
+                    scenario=scenario(
+                        case.rail,
+                        given,
+                        initial_speed=initial_speed(words.speed, case.specification),
+                        seed=words.seed,
+                        vehicle=case.vehicle,
+                    ),
+                    draws=(*(draw for draw in bounded if draw.name not in named), *drawn),
+                )
+            )
+    return CampaignFile(
+        series=tuple(series), plant=words.plant, stops=words.stops, check_every=words.check_every
+    )
+
+
+def _beside(name: str, path: Path) -> str:
+    """Name of a file as seen from here; other names stay."""
+    file, colon, law = name.rpartition(":") if ".py:" in name else (name, "", "")
+    return f"{path.parent / file}{colon}{law}" if file.endswith((".toml", ".py")) else name
+
+
+def _words(document: dict[str, Any], where: str) -> _Words:
+    hints = get_type_hints(_Words)
+    for key, value in document.items():
+        _known(key, list(hints), f"key in {where}")
+        _check_type(key, value, hints[key], where)
+    if "stops" not in document:
+        raise UserError(f"{where} does not say how many stops; add a line such as stops = 1000")
+    words = _Words(**{key: make() for key, make in _DEFAULTS.items() if key not in document}, **document)
+    for key, least in (("stops", 1), ("seed", 0), ("check_every", 0)):
+        if getattr(words, key) < least:
+            raise UserError(f"{key} = {getattr(words, key)} in {where} must be at least {least}")
+    for key in ("controllers", "rails"):
+        names = getattr(words, key)
+        if not names or len(set(names)) < len(names):
+            raise UserError(f"{key} = {names} in {where} must name one or more, each once")
+    return words
+
+
+def _check_type(key: str, value: Any, hint: Any, where: str) -> None:
+    kinds = get_args(hint) if isinstance(hint, UnionType) else (hint,)
+    for kind, said in (
+        (bool, "true or false"),
+        (int, "a whole number"),
+        (str, "text with its unit, in quotes"),
+    ):
+        if kind in kinds:
+            good = isinstance(value, kind) and (kind is bool or not isinstance(value, bool))
+            if not good:
+                raise UserError(f"{key} = {value!r} in {where} must be {said}")
+            return
+    if any(getattr(kind, "__origin__", None) is list for kind in kinds):
+        if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
+            raise UserError(f'{key} = {value!r} in {where} must be a list of texts, such as ["{RAIL}"]')
+    elif not isinstance(value, dict):
+        raise UserError(f"{key} = {value!r} in {where} must be a table; write [{key}]")
+
+
+def _disturbances(table: dict[str, Any], where: str) -> StopOptions:
+    hints = get_type_hints(StopOptions)
+    for key, value in table.items():
+        _known(key, [each.name for each in fields(StopOptions)], f"key of [disturbances] in {where}")
+        _check_type(key, value, hints[key], where)
+    return StopOptions(**table)
+
+
+def _flat(table: dict[str, Any], above: str) -> list[tuple[str, dict[str, Any]]]:
+    """Names and spreads of [draw], whether their dots stand in quotes or not."""
+    found = []
+    for key, value in table.items():
+        name = f"{above}{key}"
+        if isinstance(value, dict) and not set(value) & {*_SPREADS}:
+            found += _flat(value, f"{name}.")
+        else:
+            found.append((name, value))
+    return found
+
+
+def _draw(name: str, spread: Any, where: str) -> Draw:
+    dimension = _dimension(name)
+    place = f"{name} of [draw] in {where}"
+    kinds = [kind for kind in _SPREADS if isinstance(spread, dict) and kind in spread]
+    if len(kinds) != 1:
+        raise UserError(f"{place} must be one of {_FORMS}")
+    unknown = set(spread) - {kinds[0], *(("within",) if kinds[0] == "normal" else ())}
+    if unknown:
+        raise UserError(f'{place} has an unknown key "{min(unknown)}" beside {kinds[0]}; leave it out')
+
+    def numbers(key: str, count: int | None) -> list[float]:
+        listed = spread.get(key)
+        if not isinstance(listed, list) or not listed or (count is not None and len(listed) != count):
+            wanted = "one or more" if count is None else str(count)
+            raise UserError(f"{key} of {place} must be a list of {wanted} quantities with their units")
+        return [_number(each, dimension, place) for each in listed]
+
+    return Draw(name=name, distribution=_SPREADS[kinds[0]](numbers))
+
+
+_SPREADS: dict[str, Callable[[Callable[[str, int | None], list[float]]], Distribution]] = {
+    "uniform": lambda numbers: Uniform(**dict(zip(("low", "high"), numbers("uniform", 2), strict=True))),
+    "normal": lambda numbers: Normal(
+        **dict(
+            zip(
+                ("mean", "deviation", "low", "high"), numbers("normal", 2) + numbers("within", 2), strict=True
+            )
+        )
+    ),
+    "choice": lambda numbers: Choice(values=tuple(numbers("choice", None))),
+}
+
+
+def _number(given: Any, dimension: Dimension | None, place: str) -> float:
+    if isinstance(given, int | float) and not isinstance(given, bool) and dimension in ("ratio", None):
+        return float(given)
+    if not isinstance(given, str):
+        raise UserError(f'{given!r} of {place} must be text with its unit, such as "1 m/s"')
+    return parse_quantity(given, dimension or "ratio", what=place)
+
+
+def _dimension(name: str) -> Dimension | None:
+    """What a number is measured in; None where there is no such number, which the drawing says."""
+    root, _, rest = name.partition(".")
+    if root in FILE_KINDS:
+        quantity = schema_of(FILE_KINDS[root], "").get(rest)
+        return None if quantity is None else quantity.dimension
+    return STOP_DIMENSIONS.get(name)
+
+
+def _known(key: str, names: list[str], what: str) -> None:
+    if key not in names:
+        near = get_close_matches(key, names, n=1)
+        offer = f', did you mean "{near[0]}"?' if near else ""
+        raise UserError(f'unknown {what}: "{key}"{offer}; it may have {", ".join(names)}')
