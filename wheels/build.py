@@ -26,7 +26,7 @@ from wspd_design.parameters.loading import load_vehicle  # noqa: E402
 from wspd_design.plants.names import plant_of  # noqa: E402
 from wspd_design.plants.planar import Planar  # noqa: E402
 from wspd_design.plants.quarter import Quarter  # noqa: E402
-from wspd_design.simulation.campaign import STOPS_SIDE_BY_SIDE  # noqa: E402
+from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE  # noqa: E402
 
 AXLES = {Planar.name: (4, 6, 8, 12), Quarter.name: (1, 2, 4, 6, 8, 12)}
 """Numbers of axles whose plants are built; others need a compiler on the machine that simulates them."""
