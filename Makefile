@@ -3,6 +3,7 @@
 # make check  formatting, types and layers
 # make derive writes the generated model and the equation map from derivations/
 # make reports rebuilds the committed reports
+# make wheels builds wheels for Linux, with compiled plants
 # make bench  measures our ways against others, side by side
 
 PYTHON ?= python3
@@ -13,7 +14,7 @@ BIN := $(VENV)/bin
 # Containers often set this; compiled modules make every later start several times faster.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test check derive reports bench clean
+.PHONY: demo test check derive reports wheels bench clean
 
 demo: $(VENV)/.installed
 	@mkdir -p $(OUT)
@@ -41,6 +42,9 @@ reports: $(VENV)/.installed
 	$(BIN)/wspd design --law torque-feedback --rail polach-wet --sample-time "20 ms" --output reports/torque-feedback-polach-wet/design.toml --force
 	$(BIN)/wspd report reports/torque-feedback-polach-wet/design.toml --output reports/torque-feedback-polach-wet/report.html --force
 	$(BIN)/wspd reproduce --output reports/paper --force
+
+wheels: $(VENV)/.installed-dev
+	$(BIN)/python wheels/build.py
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/run.py

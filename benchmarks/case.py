@@ -7,7 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from wspd_design.codegen.compiler import find_compiler
+from wspd_design.codegen.closed_loop import ClosedLoop, closed_loop_source
+from wspd_design.codegen.compiler import find_compiler, load_library
+from wspd_design.codegen.kernels import plant_kernels
+from wspd_design.codegen.law_library import LoadedLaw, virtual_law
+from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LoopInput, Settings
 from wspd_design.design.catalog import controller
 from wspd_design.design.records import Specification
@@ -32,6 +36,15 @@ def given(*, stops: int = 1, refinement: int = 1, **changes: float) -> LoopInput
     for name, value in changes.items():
         setattr(settings, name, value)
     return replace(loop, settings=settings)
+
+
+def without_compiler() -> ClosedLoop:
+    """Load the loop as a wheel gives it to a machine without a compiler: a compiled plant, the law as CasADi has it."""
+    plant = Planar(VEHICLE)
+    kernels, axles = law_kernels(LAW), plant.axles
+    library = load_library(closed_loop_source(plant_kernels(plant, disturbed=False), stops=1))
+    law = LoadedLaw(kernels, axles, virtual_law(kernels, axles))
+    return ClosedLoop(library, law, axles=axles, stops=1)
 
 
 class Scalar:

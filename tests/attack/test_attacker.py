@@ -145,6 +145,13 @@ def test_a_stop_bound_one_percent_too_long_is_broken():
     assert len(broken(smc(), right, BOX)) == 1  # it speaks about the nominal vehicle alone
 
 
+def test_a_train_of_light_wheelsets_alone_is_no_vehicle():
+    """The loads of the wheelsets add up to the weight: one that carries less is not all of them."""
+    stated = of("stop_bound", "No controller stops within less than 272.29 m or 15.04 s.")
+    (attack,) = attacks(smc(), stated, ("mass", "load_share"))
+    assert set(attack.box) == {"mass", "whole"}
+
+
 def test_limits_of_recovery_that_are_too_narrow_are_broken():
     case = smc()
     assert broken(case, of("hard_limits")) == []

@@ -12,6 +12,7 @@ from wspd_design.certificates import suite
 from wspd_design.certificates.kernel import checker
 from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search import prover
@@ -258,3 +259,27 @@ def test_replay_loads_neither_search_nor_checks():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_a_verification_decides_about_a_proof_once_and_about_another_proof_again(settled, monkeypatch):
+    """What is remembered is the same statement with the same proof; a changed tree is looked at, and refused."""
+    problem, _ = settled
+    (certificate,) = suite.verify(problem, only=["well_posed"], figures=False)
+    text, calls = certificate_text(certificate), []
+    honest = checker.decide
+    monkeypatch.setattr(checker, "decide", lambda *given: calls.append(given) or honest(*given))
+    changed = json.loads(text)
+    proof = changed["findings"]["deceleration, semi axis rolling"]["proof"]
+    assert proof["tree"] != "."
+    proof["tree"] = "."
+    with remembering():
+        assert replay(problem, text).accepted
+        once = len(calls)
+        assert replay(problem, text).accepted
+        signs = len(calls) - once  # are compared again, which costs nothing
+        assert signs < once / 2
+        assert not replay(problem, json.dumps(changed)).accepted
+        assert any(given["tree"] == "." for given, _ in calls[-signs - 1 :] if "tree" in given)
+    calls.clear()
+    assert replay(problem, text).accepted
+    assert len(calls) == once

@@ -1,20 +1,21 @@
-"""The compiled closed loop: assembled from kernels and templates, loaded, and run on arrays of numbers.
+"""The compiled closed loop: the plant as one library, the law as another, run on arrays of numbers.
 
-One lane is one wheelset of one stop: lane ``axle * stops + stop``. Arrays over lanes or stops have them as their
-last axis.
+One library of a plant serves all vehicles of as many axles, all rails and all laws. One lane is one wheelset of one
+stop: lane ``axle * stops + stop``. Arrays over lanes or stops have them as their last axis.
 """
 
 import ctypes
 import math
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
 from wspd_design.codegen.kernels import PARAMETERS, Kernels, kinds_of, plant_kernels
-from wspd_design.codegen.laws import LawKernels, immutable, law_kernels
+from wspd_design.codegen.law_library import LoadedLaw, load_law, pointer
 from wspd_design.codegen.loop_numbers import DOUBLES, LANE_TOTALS, STOP_TOTALS, Head, LoopInput, LoopOutput
 from wspd_design.codegen.memory import Memory
+from wspd_design.codegen.prebuilt import prebuilt_library
 from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
 from wspd_design.plants.protocol import Plant
@@ -27,26 +28,31 @@ if TYPE_CHECKING:
 
 
 class ClosedLoop:
-    """A compiled loop of a number of stops side by side; without a controller it is driven from Python."""
+    """A loop of a number of stops side by side; without a law it is driven from Python."""
 
-    def __init__(self, library: ctypes.CDLL, kernels: Kernels, law: LawKernels, stops: int) -> None:
-        import numpy as np
-
-        self.stops, self.axles, self.states = stops, kernels.axles, law.states
-        self._library, self._gains = library, np.array(law.gains)
+    def __init__(self, library: ctypes.CDLL, law: LoadedLaw | None, *, axles: int, stops: int) -> None:
+        self.stops, self.axles = stops, axles
+        self._library, self._law = library, law
         for name in ("wspd_lane_totals", "wspd_stop_totals", "wspd_wheel_speeds", "wspd_bad_command"):
             getattr(library, name).restype = DOUBLES
         for name in ("wspd_size", "wspd_steps", "wspd_samples"):
             getattr(library, name).restype = ctypes.c_long
 
+    @property
+    def engine(self) -> str:
+        """What computes a stop."""
+        law = "controller in Python" if self._law is None else self._law.engine
+        return "compiled" if law == "compiled" else f"compiled plant, {law}"
+
     def run(self, given: LoopInput, *, sample_rows: int = 0) -> LoopOutput:
-        """Run all stops with the compiled controller."""
+        """Run all stops with the law."""
         import numpy as np
 
+        law = self._law
+        assert law is not None, "a loop without a law is driven by run_with"
         buffer, trace, keep = self._begin(given)
-        samples = np.zeros((sample_rows, 1 + (self.states + 5) * self.axles * self.stops))
-        rows = ctypes.c_long(sample_rows)
-        result = self._library.wspd_run(buffer, _pointer(samples) if sample_rows else None, rows)
+        samples = np.zeros((sample_rows, 1 + (law.states + 5) * self.axles * self.stops))
+        result = law.run(self._library, buffer, pointer(samples) if sample_rows else None, sample_rows)
         del keep
         return self._output(buffer, result, trace, samples)
 
@@ -73,12 +79,11 @@ class ClosedLoop:
             "load_factor": given.load_factors,
             "load_spacing": given.load_spacings,
             "hold": given.held_slips,
-            "gains": self._gains,
             "trace": trace if given.trace_rows else None,
         }
         keep = [np.ascontiguousarray(a, dtype=np.float64) for a in arrays.values() if a is not None]
         for name, array in zip((n for n, a in arrays.items() if a is not None), keep, strict=True):
-            setattr(head, name, _pointer(array))
+            setattr(head, name, pointer(array))
         seeds = np.ascontiguousarray(given.seeds, dtype=np.uint64)
         head.seed = seeds.ctypes.data_as(ctypes.POINTER(ctypes.c_uint64))
         if given.patch_starts is not None:
@@ -92,7 +97,7 @@ class ClosedLoop:
         numbers = (given.stop_parameters, given.lane_parameters)
         initial = (given.speeds, given.wheel_speeds, given.pressures)
         blocks = [np.ascontiguousarray(block, dtype=np.float64) for block in (*numbers, *initial)]
-        self._library.wspd_begin(buffer, *(_pointer(block) for block in blocks))
+        self._library.wspd_begin(buffer, *(pointer(block) for block in blocks))
         return buffer, trace, [keep, seeds, blocks]
 
     def _output(self, buffer: Any, result: int, trace: "Array", samples: "Array") -> LoopOutput:
@@ -145,7 +150,7 @@ class _Plant:
 def load_closed_loop(
     plant: Plant, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
 ) -> ClosedLoop:
-    """Trace, emit, compile and load the loop of a controller with its present numbers.
+    """Load the loop of a controller with its present numbers; what was not compiled before is compiled.
 
     Parameters
     ----------
@@ -161,47 +166,34 @@ def load_closed_loop(
     Raises
     ------
     NoCompilerError
-        Without a working C compiler.
+        Where the plant has to be compiled, without a working C compiler.
     UntraceableError
         If ``step`` contains what CasADi cannot trace or the emitter cannot translate.
     """
-    known = immutable(controller)
-    if known is None:
-        kernels, law, library = _loaded(plant, controller, stops, disturbed)
-    else:
-        content, kinds = known
-        kernels, law, library = _loops.get(
-            (type(plant), plant.axles, content, stops, disturbed),
-            (*kinds_of(plant), *kinds),
-            lambda: _loaded(plant, controller, stops, disturbed),
-        )
-    return ClosedLoop(library, kernels, law, stops)
+    kernels = plant_kernels(plant, disturbed=disturbed)
+    library = _plants.get((kernels, stops), kinds_of(plant), lambda: _plant_library(kernels, stops))
+    law = None if controller is None else load_law(controller, axles=plant.axles, stops=stops)
+    return ClosedLoop(library, law, axles=plant.axles, stops=stops)
 
 
-_Loaded: TypeAlias = tuple[Kernels, LawKernels, ctypes.CDLL]
-_loops: "Memory[_Loaded]" = Memory(64)
-_libraries: "Memory[ctypes.CDLL]" = Memory(32)
+_plants: "Memory[ctypes.CDLL]" = Memory(32)
 
 
-def _loaded(plant: Plant, controller: Controller | None, stops: int, disturbed: bool) -> _Loaded:
-    """Trace the law as it is now; its library is the one of all laws with the same kernels."""
-    kernels, law = plant_kernels(plant, disturbed=disturbed), law_kernels(controller)
-    library = _libraries.get(
-        (kernels, law, stops),
-        kinds_of(plant),
-        lambda: load_library(closed_loop_source(kernels, law, stops=stops)),
-    )
-    return kernels, law, library
+def _plant_library(kernels: Kernels, stops: int) -> ctypes.CDLL:
+    source = closed_loop_source(kernels, stops=stops)
+    return prebuilt_library(source) or load_library(source)
 
 
-def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
-    """Return the C source of the loop."""
+_TEMPLATES = ("motion.c", "steps.c", "events.c", "sensors.c", "closed_loop.c")
+
+
+def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
+    """Return the C source of the loop of a plant with any law."""
     places = {
         "STOPS": stops,
         "AXLES": kernels.axles,
         "AXLE_STATES": kernels.axle_states,
         "TRANSFERS": kernels.transfers,
-        "STATES": law.states,
         "PARAMETERS": len(PARAMETERS),
         "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
@@ -220,8 +212,7 @@ def closed_loop_source(kernels: Kernels, law: LawKernels, *, stops: int) -> str:
         twice: (kernels.window_constants, kernels.actuator),
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
-    parts += [emit(kernel, lanes, shared=kernel.n_in() - 1) for kernel in (law.start, law.step)]
-    parts += [folder.joinpath(name).read_text() for name in ("motion.c", "sensors.c", "closed_loop.c")]
+    parts += [folder.joinpath(name).read_text() for name in _TEMPLATES]
     return "".join(parts)
 
 
@@ -229,7 +220,3 @@ def _aligned(size: int) -> Any:
     """Memory whose address is a multiple of the widest vector, as the C structure expects."""
     memory = ctypes.create_string_buffer(size + 64)
     return (ctypes.c_char * size).from_buffer(memory, -ctypes.addressof(memory) % 64)
-
-
-def _pointer(array: "Array") -> Any:
-    return array.ctypes.data_as(DOUBLES)

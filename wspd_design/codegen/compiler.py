@@ -14,6 +14,7 @@ import sys
 import tempfile
 from contextlib import suppress
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
 from wspd_design.parameters.errors import WspdError
@@ -30,6 +31,7 @@ PORTABLE_FLAGS = (
     "-shared",
     "-std=gnu11",
 )
+COMPILER_INSTALLATION = 'pip install "wspd-design[compiler]"'
 # Not every machine knows the first two.
 FLAGS = ("-march=native", "-mprefer-vector-width=512", *PORTABLE_FLAGS)
 
@@ -40,12 +42,15 @@ class NoCompilerError(WspdError, RuntimeError):
 
 @cache
 def find_compiler() -> tuple[str, ...] | None:
-    """Return the command of the C compiler: the environment's CC, then cc, gcc, clang; None without one."""
+    """Return the command of the C compiler, None without one.
+
+    The environment's CC comes first, then cc, gcc, clang, and the one that pip installs as ``ziglang``.
+    """
     for command in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
         name, *options = shlex.split(command) or ("",)
         if path := shutil.which(name):
             return (path, *options)
-    return None
+    return (sys.executable, "-m", "ziglang", "cc") if find_spec("ziglang") else None
 
 
 def cache_folder() -> Path:
@@ -67,7 +72,7 @@ def load_library(source: str) -> ctypes.CDLL:
     """
     compiler = find_compiler()
     if compiler is None:
-        raise NoCompilerError("no C compiler: neither CC nor cc, gcc or clang is installed")
+        raise NoCompilerError("no C compiler: neither CC nor cc, gcc, clang or ziglang is installed")
     try:
         return _from_cache(source, compiler) or _compile_aside(source, compiler)
     except OSError as error:

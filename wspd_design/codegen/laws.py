@@ -8,7 +8,6 @@ immutable law of this package has a key by which its trace may be remembered, wh
 import re
 from array import array
 from dataclasses import dataclass, field, fields, is_dataclass
-from functools import cache
 from typing import Any
 
 from wspd_design.codegen.emitter import UntraceableError
@@ -29,18 +28,14 @@ class LawKernels:
     content: str  # the functions written out
 
 
-def law_kernels(law: Controller | None) -> LawKernels:
+def law_kernels(law: Controller) -> LawKernels:
     """Trace a law with its floats as inputs, or as constants where it does not take them.
-
-    Without a law the kernels hold the valves.
 
     Raises
     ------
     UntraceableError
         Whatever goes wrong in ``start`` and ``step``.
     """
-    if law is None:
-        return _closed_valves()
     import casadi as ca
 
     values: list[float] = []
@@ -72,16 +67,6 @@ def law_constants(law: Controller) -> LawKernels:
     return _functions(law, ca.SX(0, 1), ())
 
 
-@cache
-def _closed_valves() -> LawKernels:
-    import casadi as ca
-
-    m, none = ca.SX.sym("m", 3), ca.SX(0, 1)
-    start = ca.Function("start_kernel", [m, none], [none])
-    step = ca.Function("step_kernel", [none, m, none], [ca.SX.zeros(2)])
-    return LawKernels(start=start, step=step, states=0, gains=(), content="")
-
-
 def _functions(law: Controller, symbols: Any, values: tuple[float, ...]) -> LawKernels:
     import casadi as ca
 
@@ -110,7 +95,7 @@ def _vector(*elements: Any) -> Any:
     return ca.vertcat(ca.SX(0, 1), *elements)
 
 
-def immutable(law: Controller | None) -> tuple[Any, tuple[type, ...]] | None:
+def immutable(law: Controller) -> tuple[Any, tuple[type, ...]] | None:
     """Key of a law of this package by all that it holds, and the classes of that.
 
     None for a law that may change without being replaced.

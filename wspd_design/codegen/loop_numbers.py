@@ -88,7 +88,6 @@ class Head(ctypes.Structure):
         ("trace", DOUBLES),
         ("trace_rows", ctypes.c_long),
         ("trace_used", ctypes.c_long),
-        ("gains", DOUBLES),
     )
 
 

@@ -8,6 +8,7 @@ from collections import deque
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
 from wspd_design.codegen.laws import law_kernels
@@ -89,18 +90,19 @@ class _VirtualPlant:
         self.following = [CLOSED] * axles
         self.recorded = -1.0
         self.sample = self.steps = 0
+        self._bends = _bends(given.load_factors)
         self._last_step = given.settings.longest_step
         self.patch = [0] * axles
         self.moving = bool(given.speeds[0] > given.settings.stop_speed)  # or at rest already
         self.rows: list[NDArray[np.float64]] = []
         self.bad_command = (0.0, 0.0, 0.0)
         self._steps = {
-            number: _Bound(function, self.state, self.inputs)
+            number: Bound(function, self.state, self.inputs)
             for number, function in ((1, functions.single), *functions.batches.items())
         }
-        self._observe = _Bound(functions.observe, self.state, self.inputs)
+        self._observe = Bound(functions.observe, self.state, self.inputs)
         self._window = np.zeros((axles, 4))
-        self._window_constants = _Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
+        self._window_constants = Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
         self._close_valves(given.pressures)
 
@@ -282,9 +284,10 @@ class _VirtualPlant:
                     place = distance - self.parameters[_OFFSET, axle]
                     soonest = min(soonest, self._wait_for(float(given.patch_starts[reached, 0] - place)))
         if given.load_factors is not None and given.load_spacings is not None:
-            point = math.floor(distance / given.load_spacings[0] + 1e-6) + 1
-            if point < given.load_factors.shape[1]:
-                soonest = min(soonest, self._wait_for(point * given.load_spacings[0] - distance))
+            place = math.floor(distance / given.load_spacings[0] + 1e-6)
+            point = next((bend for bend in self._bends if bend > place), None)
+            if point is not None:
+                soonest = min(soonest, self._wait_for(point * float(given.load_spacings[0]) - distance))
         return soonest
 
     def _wait_for(self, ahead: float) -> float:
@@ -334,21 +337,6 @@ class _VirtualPlant:
         return GOOD
 
 
-class _Bound:
-    """A CasADi function on fixed memory: a call then costs no conversion."""
-
-    def __init__(self, function: Any, *inputs: "Array") -> None:
-        import numpy as np
-
-        # The outputs have one row per column of the function's.
-        self.outputs = [np.zeros(function.size_out(k)[::-1]) for k in range(function.n_out())]
-        self.buffer, self.call = function.buffer()  # the buffer has to live as long as the call
-        for k, array in enumerate(inputs):
-            self.buffer.set_arg(k, array.data)
-        for k, array in enumerate(self.outputs):
-            self.buffer.set_res(k, array.data)
-
-
 class _Traced:
     """A controller whose step runs in the virtual machine."""
 
@@ -358,7 +346,7 @@ class _Traced:
         self.name, self.sample_time, self.start = controller.name, controller.sample_time, controller.start
         law = law_kernels(controller)
         self._state, self._seen, self._gains = np.zeros(law.states), np.zeros(3), np.array(law.gains)
-        self._bound = _Bound(law.step, self._state, self._seen, self._gains)
+        self._bound = Bound(law.step, self._state, self._seen, self._gains)
 
     def step(self, state: State, measurement: Measurement) -> tuple[State, Command]:
         self._state[:] = state
@@ -374,6 +362,16 @@ def _traced(controller: Controller) -> Controller:
         return _Traced(controller)
     except UntraceableError:
         return controller
+
+
+def _bends(factors: "Array | None") -> list[int]:
+    """Points at which a table of loads bends; after its last value it is even."""
+    import numpy as np
+
+    if factors is None:
+        return []
+    slopes = np.diff(factors, axis=1, append=factors[:, -1:])
+    return [int(k) + 1 for k in np.flatnonzero((np.diff(slopes, axis=1) != 0.0).any(axis=0))]
 
 
 def _flat(values: Any) -> "Array":

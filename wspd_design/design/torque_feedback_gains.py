@@ -22,7 +22,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.creep_slope import USED
 from wspd_design.certificates.setting.plant import dynamics_at
-from wspd_design.certificates.setting.pulsed_valve import Times, sample_of
+from wspd_design.certificates.setting.pulsed_valve import Sample, Times, sample_of
 from wspd_design.certificates.theorems.quadratic import Law, gains, one_sample, ranges_of
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
 from wspd_design.design.maximize import maximize
@@ -178,12 +178,15 @@ def _kept_per_sample(problem: Problem, poles: Poles, sample_time: float) -> floa
         sample_time=Fraction(sample_time),
     )
     fill, vent, *rest = ranges_of(problem, (Fraction(0), Fraction(0)))
-    corners = gains(law, (fill, vent, *rest))
-    matrices = []
-    for f, v, u, q in product(
-        dict.fromkeys(fill), dict.fromkeys(vent), DUTIES, np.linspace(poles.low, poles.high, POLES)
-    ):
-        at = sample_of(Times((f, f), (v, v)), (Fraction(q), Fraction(q)), law.sample_time, (u, u))
-        matrices += [one_sample(at, g, torque) for g, torque in corners]
-    found = np.array([[[float(each) for each in row] for row in matrix] for matrix in matrices])
-    return float(np.abs(np.linalg.eigvals(found)).max())
+    found = [
+        sample_of(Times((f, f), (v, v)), (Fraction(q), Fraction(q)), law.sample_time, (u, u))
+        for f, v, u, q in product(
+            dict.fromkeys(fill), dict.fromkeys(vent), DUTIES, np.linspace(poles.low, poles.high, POLES)
+        )
+    ]
+    # A column of samples beside a row of corners gives all matrices at once.
+    numbers = np.array([[[float(low), float(high)] for low, high in each] for each in found])
+    at = Sample(*((each[:, :1], each[:, 1:]) for each in np.moveaxis(numbers, 1, 0)))
+    g, torque = np.array([[float(each) for each in corner] for corner in gains(law, (fill, vent, *rest))]).T
+    matrices = np.array([np.broadcast_arrays(*row) for row in one_sample(at, g, torque)])
+    return float(np.abs(np.linalg.eigvals(np.moveaxis(matrices, (0, 1), (-2, -1)))).max())

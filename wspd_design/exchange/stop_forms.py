@@ -216,7 +216,8 @@ STOP = Form(
         Key(
             name="engine",
             kind="text",
-            meaning="what computed it: compiled, compiled plant with controller in Python, or CasADi virtual machine",
+            meaning="what computed it: compiled, compiled plant with the law in CasADi's virtual machine or in Python, "
+            "or CasADi virtual machine",
         ),
         SEED_KEY,
         VERSION_KEY,

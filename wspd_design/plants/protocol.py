@@ -12,7 +12,7 @@ from wspd_design.parameters.records import Rail, Vehicle
 
 
 class AxleCondition(NamedTuple):
-    """What an integrator may hold over one step, taken at its middle."""
+    """What follows from time and load alone."""
 
     stiffness: Number  # N, initial slope of the creep force
     damping: Number  # N m s per wheel
@@ -73,7 +73,7 @@ class Plant(Protocol):
         """Vertical load of one wheel of each axle under the load transfers and their rates [N]."""
 
     def axle_condition(self, *, time: Number, wheel_load: Number) -> AxleCondition:
-        """Return what changes slowly at one wheelset; the time counts from the application of the brake."""
+        """Return stiffness and damping of one wheelset; the time counts from the application of the brake."""
 
     def axle_motion(
         self,

@@ -1,8 +1,8 @@
 """One stop: from the records to the numbers of the closed loop and back.
 
-The closed loop is compiled once for each law, whatever its gains are, and run by the machine. A controller that
-cannot be traced runs in Python on the compiled plant; without a C compiler plant and controller run in CasADi's
-virtual machine and in Python, slower, with the same numbers.
+The plant is compiled once for all vehicles of as many axles, the law once whatever its gains are. Without a C
+compiler the law runs in CasADi's virtual machine on the plant that came with the package, and where none did, the
+plant runs there as well, slower, with the same numbers. A controller that cannot be traced runs in Python.
 """
 
 import math
@@ -11,9 +11,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from wspd_design.codegen.closed_loop import load_closed_loop
-from wspd_design.codegen.compiler import NoCompilerError
+from wspd_design.codegen.compiler import COMPILER_INSTALLATION, NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
+from wspd_design.codegen.notices import tell_once
 from wspd_design.codegen.sampled import BAD_COMMAND
 from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.model.slip import static_wheel_load
@@ -91,7 +92,7 @@ def run_loop(
     try:
         try:
             loop = load_closed_loop(plant, controller, disturbed=disturbed)
-            return loop.run(given, sample_rows=rows), "compiled"
+            return loop.run(given, sample_rows=rows), loop.engine
         except UntraceableError as error:
             warnings.warn(
                 f"controller {error} cannot be traced by CasADi and runs in Python; write its step with the "
@@ -99,11 +100,15 @@ def run_loop(
                 stacklevel=3,
             )
             loop = load_closed_loop(plant, None, disturbed=disturbed)
-            return loop.run_with(given, controller, sample_rows=rows), "compiled plant, controller in Python"
+            return loop.run_with(given, controller, sample_rows=rows), loop.engine
     except NoCompilerError as error:
         from wspd_design.codegen.virtual_machine import run_virtual
 
-        _notice(str(error))
+        tell_once(
+            str(error),
+            "simulating in CasADi's virtual machine, about thirty times slower; "
+            f"{COMPILER_INSTALLATION} brings a compiler",
+        )
         output = run_virtual(plant, controller, given, sample_rows=rows, disturbed=disturbed)
         return output, "CasADi virtual machine"
 
@@ -194,17 +199,3 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     return np.concatenate(
         [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques]
     )
-
-
-_noticed: set[str] = set()
-
-
-def _notice(reason: str) -> None:
-    """Say once that this machine is slower than it could be."""
-    if reason not in _noticed:
-        _noticed.add(reason)
-        warnings.warn(
-            f"{reason}; simulating in CasADi's virtual machine, about thirty times slower. "
-            "Install gcc or clang, or set CC",
-            stacklevel=4,
-        )

@@ -10,7 +10,7 @@ import pytest
 
 from wspd_design.cli.app import run
 from wspd_design.cli.commands import doctor
-from wspd_design.codegen import compiler
+from wspd_design.codegen import compiler, prebuilt
 from wspd_design.codegen.compiler import find_compiler
 
 
@@ -58,9 +58,25 @@ def test_typesetting_that_fails(monkeypatch, capsys):
 
 
 def test_a_compiler_is_not_needed(monkeypatch, capsys):
-    monkeypatch.setattr(doctor, "find_compiler", lambda: None)
+    for module in (doctor, compiler):
+        monkeypatch.setattr(module, "find_compiler", lambda: None)
     assert run(["doctor"]) == 0
-    assert "Install gcc or clang" in capsys.readouterr().out
+    out = " ".join(capsys.readouterr().out.split())
+    assert 'Install gcc or clang, set CC, or: pip install "wspd-design[compiler]"' in out
+    assert "- simulation CasADi virtual machine" in out
+
+
+def test_plants_of_other_code_are_told(monkeypatch, tmp_path):
+    best = prebuilt.targets()[0]
+    monkeypatch.setattr(prebuilt, "folder", lambda: tmp_path)
+    assert doctor._plants().found == "none came with the package"
+    (tmp_path / f"{'0' * 32}-{best}{prebuilt.SUFFIX}").write_bytes(b"")
+    finding = doctor._plants()
+    assert not finding.good
+    assert finding.found == f"1 for {best} came with the package, but they are not those of its code"
+    assert "install both again" in finding.remedy
+    monkeypatch.setattr(prebuilt, "prebuilt_library", lambda _source: object())
+    assert doctor._plants().good
 
 
 @pytest.mark.skipif(find_compiler() is None, reason="this machine has no C compiler")
@@ -94,7 +110,7 @@ def test_size_of_the_cache(monkeypatch, tmp_path):
     (folder / "a.so").write_bytes(bytes(3_000_000))
     found = doctor._compiled_code()
     assert found.good
-    assert f"{folder}, 1 closed loops, 3.0 MB" in found.found
+    assert f"{folder}, 1 libraries, 3.0 MB" in found.found
     monkeypatch.setenv("XDG_CACHE_HOME", "/proc/no-folder")
     found = doctor._compiled_code()
     assert not found.good

@@ -15,9 +15,11 @@ def pointer(array):
 
 
 @pytest.fixture
-def cache(tmp_path, monkeypatch):
+def cache(tmp_path, tmp_path_factory, monkeypatch):
     """An empty cache folder; what was found about the machine is forgotten before and after."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    # Where ziglang is the compiler, what it makes at its first use, some seconds long, stays.
+    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path_factory.getbasetemp() / "zig"))
     compiler.find_compiler.cache_clear()
     yield tmp_path / "cache" / "wspd_design"
     compiler.find_compiler.cache_clear()

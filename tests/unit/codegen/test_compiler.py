@@ -3,6 +3,7 @@
 import ctypes
 import errno
 import os
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -188,7 +189,7 @@ class TestCompilers:
         assert answer(load_library(SOURCE)) == 42.0
 
     def test_cc_with_options(self, monkeypatch, compilations):
-        self.choose(monkeypatch, "cc -DEXTRA=1")
+        self.choose(monkeypatch, f"{shlex.join(compiler.find_compiler())} -DEXTRA=1")
         assert answer(load_library(SOURCE.replace("42.0", "42.0 + EXTRA"))) == 43.0
         assert "-DEXTRA=1" in compilations[0]
 
@@ -215,7 +216,8 @@ class TestCompilers:
     ):
         strict = tmp_path / "strict-cc"
         strict.write_text(
-            '#!/bin/sh\ncase "$*" in *-march=native*) echo "unknown -march" >&2; exit 1;; esac\nexec cc "$@"\n'
+            '#!/bin/sh\ncase "$*" in *-march=native*) echo "unknown -march" >&2; exit 1;; esac\n'
+            f'exec {shlex.join(compiler.find_compiler())} "$@"\n'
         )
         strict.chmod(0o755)
         self.choose(monkeypatch, str(strict))
@@ -225,8 +227,9 @@ class TestCompilers:
     def test_no_compiler_at_all(self, monkeypatch):
         monkeypatch.delenv("CC", raising=False)
         monkeypatch.setattr(compiler.shutil, "which", lambda _name: None)
+        monkeypatch.setattr(compiler, "find_spec", lambda _name: None)
         compiler.find_compiler.cache_clear()
-        with pytest.raises(NoCompilerError, match="neither CC nor cc, gcc or clang is installed"):
+        with pytest.raises(NoCompilerError, match="neither CC nor cc, gcc, clang or ziglang is installed"):
             load_library(SOURCE)
 
 

@@ -10,6 +10,7 @@ from wspd_design.codegen import compiler
 from wspd_design.codegen.closed_loop import ClosedLoop, closed_loop_source, load_closed_loop
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.kernels import plant_kernels
+from wspd_design.codegen.law_library import LoadedLaw, law_source
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.planar import Planar
@@ -140,8 +141,9 @@ def test_compiler_options_do_not_change_a_bit(er24pc, make_controller, scenario,
     usual = load_closed_loop(Planar(er24pc), law).run(given)
     kept = tuple(flag for flag in compiler.PORTABLE_FLAGS if not flag.startswith("-O"))
     monkeypatch.setattr(compiler, "FLAGS", (*flags, *kept))
-    kernels, traced = plant_kernels(Planar(er24pc), disturbed=False), law_kernels(law)
-    source = closed_loop_source(kernels, traced, stops=1)
-    other = ClosedLoop(load_library(source), kernels, traced, 1).run(given)
+    plant = load_library(closed_loop_source(plant_kernels(Planar(er24pc), disturbed=False), stops=1))
+    traced = law_kernels(law)
+    loaded = LoadedLaw(traced, 4, load_library(law_source(traced, axles=4, stops=1)))
+    other = ClosedLoop(plant, loaded, axles=4, stops=1).run(given)
     assert other.steps == usual.steps
     np.testing.assert_array_equal(results(other), results(usual))

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.codegen import closed_loop, sampled
+from wspd_design.codegen import closed_loop, notices, sampled
 from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.virtual_machine import run_virtual
 from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.planar import Planar
-from wspd_design.simulation import ideal, stop
+from wspd_design.simulation import ideal
 from wspd_design.simulation.loop_input import loop_input, sample_rows
 from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing, Start
 from wspd_design.simulation.stop import simulate
@@ -149,7 +149,7 @@ def no_compiler(monkeypatch):
         raise NoCompilerError("no C compiler for this test")
 
     monkeypatch.setattr(closed_loop, "load_library", fail)
-    monkeypatch.setattr(stop, "_noticed", set())
+    monkeypatch.setattr(notices, "_told", set())
 
 
 def test_simulate_falls_back_with_one_notice(er24pc, make_controller, no_compiler):  # noqa: ARG001
@@ -172,7 +172,7 @@ def test_ideal_stops_are_the_same(er24pc, monkeypatch, options, plant):
         raise NoCompilerError("no C compiler for this test")
 
     monkeypatch.setattr(closed_loop, "load_library", fail)
-    monkeypatch.setattr(stop, "_noticed", {"no C compiler for this test"})
+    monkeypatch.setattr(notices, "_told", {"no C compiler for this test"})
     named = replace(er24pc, name="virtual")  # so that the loop is made anew
     virtual = ideal.ideal_stop(named, scenario, plant=plant, **options)
     assert virtual.distance == pytest.approx(compiled.distance, rel=1e-9)

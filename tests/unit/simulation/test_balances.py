@@ -17,8 +17,10 @@ RAILS = ("table10-dry", "table10-wet", "polach-dry")
 @pytest.mark.parametrize("rail", RAILS)
 @pytest.mark.parametrize("name", CONTROLLERS)
 def test_residuals(judged, name, rail):
-    assert abs(judged(name, rail).momentum_residual) < 1e-6
-    assert abs(judged(name, rail).energy_residual) < 1e-5
+    assert abs(judged(name, rail).momentum_residual) < 1e-12  # to rounding
+    assert (
+        abs(judged(name, rail).energy_residual) < 1e-6
+    )  # the quadrature of the works has the order of the steps
 
 
 @pytest.mark.parametrize("name", CONTROLLERS)

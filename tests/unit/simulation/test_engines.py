@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from wspd_design.codegen import closed_loop
+from wspd_design.codegen import closed_loop, law_library
 from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.records import Scenario
@@ -44,19 +44,29 @@ def assert_same(one, other):
     np.testing.assert_allclose(one.slip[-1], other.slip[-1], atol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("missing", "engine"),
+    [
+        (closed_loop, "CasADi virtual machine"),
+        (law_library, "compiled plant, law in CasADi's virtual machine"),
+    ],
+    ids=["plant", "law"],
+)
 @pytest.mark.parametrize("name", ["trenitalia", "none"])
-def test_without_a_compiler_the_numbers_are_the_same(monkeypatch, er24pc, make_controller, name):
+def test_without_a_compiler_the_numbers_are_the_same(
+    monkeypatch, er24pc, make_controller, name, missing, engine
+):
     scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=5.0)
     compiled = simulate(er24pc, make_controller(name), scenario, plant="quarter")
 
     def no_compiler(_source):
         raise NoCompilerError("no C compiler")
 
-    monkeypatch.setattr(closed_loop, "load_library", no_compiler)
+    monkeypatch.setattr(missing, "load_library", no_compiler)
     with warnings.catch_warnings(record=True):
         warnings.simplefilter("always")
         virtual = simulate(replace(er24pc, name="virtual"), make_controller(name), scenario, plant="quarter")
-    assert (compiled.engine, virtual.engine) == ("compiled", "CasADi virtual machine")
+    assert (compiled.engine, virtual.engine) == ("compiled", engine)
     assert_same(virtual, compiled)
     assert 0.0 <= virtual.slip_max <= 1.0
 

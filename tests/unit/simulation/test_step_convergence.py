@@ -112,7 +112,7 @@ FAULTS = {
         "plain",
     ),
     "steps that run across the points of the table of loads": (
-        "if (point < (double)loop->load_points && wait < step) step = wait;",
+        "if (point < loop->load_points && wait < step) step = wait;",
         "",
         "loads over distance",
     ),
@@ -122,7 +122,7 @@ FAULTS = {
         "loads over distance",
     ),
     "steps that run across the change of rail": (
-        "double wait = wait_for(loop, s, loop->patch_start[loop->patch[l]] - place);",
+        "double wait = wait_for(loop, s, loop->patch_start[loop->patch[l] * STOPS + s] - place);",
         "double wait = 1e300;",
         "change of rail",
     ),

@@ -72,6 +72,24 @@ def sample_of(times: Times, poles: Interval, span: Fraction, duties: Interval = 
     duties : tuple of Fraction
         Range of the duty u that holds the torque [-].
     """
+    kept_torque, by_duty = _valve(times, span, duties)
+    slow, fast = rates(times)
+    low, high = poles
+    h = point(span)
+    return Sample(
+        kept_slide=_hull([(point(q) * h).exp() for q in poles]),
+        by_torque=_outward(_forced(low, fast, span), _forced(high, slow, span)),
+        kept_torque=kept_torque,
+        by_duty=by_duty,
+        delay=_outward(
+            _grown(low + 1 / times.vent[1], (1 - duties[1]) * span),
+            _grown(high + 1 / times.vent[0], (1 - duties[0]) * span),
+        ),
+    )
+
+
+def _valve(times: Times, span: Fraction, duties: Interval) -> tuple[Interval, Interval]:
+    """Enclose A B and j, in which no pole stands."""
     h = point(span)
     fills, vents, shares = (
         dict.fromkeys(each) for each in (times.fill, times.vent, duties)
@@ -87,18 +105,8 @@ def sample_of(times: Times, poles: Interval, span: Fraction, duties: Interval = 
         for c, f, v in product((low_crest, high_crest), fills, vents)
     ]
     (least, most), (kept_least, kept_most) = _hull(slopes), _hull(venting)
-    slow, fast = rates(times)
-    low, high = poles
-    return Sample(
-        kept_slide=_hull([(point(q) * h).exp() for q in poles]),
-        by_torque=_outward(_forced(low, fast, span), _forced(high, slow, span)),
-        kept_torque=_hull(kept),
-        by_duty=_outward(h * point(least) * point(kept_least), h * point(most) * point(kept_most)),
-        delay=_outward(
-            _grown(low + 1 / times.vent[1], (1 - duties[1]) * span),
-            _grown(high + 1 / times.vent[0], (1 - duties[0]) * span),
-        ),
-    )
+    by_duty = _outward(h * point(least) * point(kept_least), h * point(most) * point(kept_most))
+    return _hull(kept), by_duty
 
 
 def may_hold(times: Times, span: Fraction, duties: Interval, share: Ball) -> bool:

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,12 +21,27 @@ from rich.text import Text
 
 from wspd_design.cli.console import console, is_interactive, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED
-from wspd_design.codegen.compiler import NoCompilerError, cache_folder, find_compiler, load_library
+from wspd_design.codegen import prebuilt
+from wspd_design.codegen.closed_loop import closed_loop_source
+from wspd_design.codegen.compiler import (
+    COMPILER_INSTALLATION,
+    NoCompilerError,
+    cache_folder,
+    find_compiler,
+    load_library,
+)
+from wspd_design.codegen.kernels import plant_kernels
+from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.exchange.version import program_version
+from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.simulation.parquet import PARQUET_INSTALLATION
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.stop import simulate
 
 _INSTALL_COMPILER = (
-    "Without one, stops run in CasADi's virtual machine, many times slower. Install gcc or clang, or set CC."
+    "Without one, laws run in CasADi's virtual machine, and plants as well if none came with the package. "
+    f"Install gcc or clang, set CC, or: {COMPILER_INSTALLATION}"
 )
 _TEST_SOURCE = "#include <math.h>\ndouble doctor(double x) { return sqrt(x); }\n"
 
@@ -80,6 +96,8 @@ def examine() -> list[Finding]:
         _folder("font cache", _font_cache, "Set MPLCONFIGDIR to a folder that can be written."),
         _compiler(),
         _compiled_code(),
+        _plants(),
+        _engine(),
         _parquet(),
         _terminal(),
     ]
@@ -178,8 +196,33 @@ def _compiled_code() -> Finding:
         files = [path.stat().st_size for path in folder.glob("*.so")]
     except OSError as error:
         return Finding(name="compiled code", found=str(error), good=False, needed=False, remedy=remedy)
-    found = f"{folder}, {len(files)} closed loops, {sum(files) / 1e6:.1f} MB; may be deleted at any time"
+    found = f"{folder}, {len(files)} libraries, {sum(files) / 1e6:.1f} MB; may be deleted at any time"
     return Finding(name="compiled code", found=found, good=True)
+
+
+def _plants() -> Finding:
+    """Look for the compiled plants of a wheel, and whether they are those of this code."""
+    best = next(iter(prebuilt.targets()), "this machine")
+    number = len(list(prebuilt.folder().glob(f"*-{best}{prebuilt.SUFFIX}")))
+    kernels = plant_kernels(plant_of(DEFAULT_PLANT, load_vehicle("er24pc")), disturbed=False)
+    good = prebuilt.prebuilt_library(closed_loop_source(kernels, stops=1)) is not None
+    found = f"{number} for {best} came with the package" if number else "none came with the package"
+    remedy = "With a C compiler, a plant is compiled when it is first used, about 1 s."
+    if number and not good:
+        found += ", but they are not those of its code"
+        remedy += " The package or CasADi was changed since; install both again."
+    return Finding(name="compiled plants", found=found, good=good, needed=False, remedy=remedy)
+
+
+def _engine() -> Finding:
+    """Brake a train, and say what computed it."""
+    scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        run = simulate(load_vehicle("er24pc"), Unprotected(name="none", sample_time=0.1), scenario)
+    good = run.engine == "compiled"
+    remedy = "Stops take longer than they could: see the C compiler above."
+    return Finding(name="simulation", found=run.engine, good=good, needed=False, remedy=remedy)
 
 
 def _parquet() -> Finding:

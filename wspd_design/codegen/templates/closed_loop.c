@@ -248,39 +248,57 @@ int wspd_sample(Loop *loop, const double *fill, const double *vent)
     return result == GOOD ? to_next_decision(loop) : result;
 }
 
-/* Keep what the controllers of the waiting stops saw, decided and remember. */
-static void write_samples(const Loop *loop, double *samples, const double *command, const double *in)
+/* A law: functions on all lanes, its numbers, and memory for what they take and give. */
+typedef struct {
+    void (*start)(const double *seen, const double *gains, double *state);
+    void (*step)(const double *state, const double *seen, const double *gains, double *next);
+    const double *gains;
+    long states;
+    double *seen, *state, *next; /* next: the states to be, then fill and vent */
+} Law;
+
+/* Let the law see the present; 0 when all stops have ended. */
+int wspd_ask(Loop *loop, const Law *law)
 {
-    for (int s = 0; s < STOPS; s++) {
-        if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
-        double *row = samples + loop->sample[s] * (1 + (STATES + 5) * LANES);
-        *row++ = loop->sample[s] * loop->set.sample_time;
-        for (int l = s; l < LANES; l += STOPS) {
-            for (int k = 0; k < STATES + 2; k++) row[k * LANES + l] = command[k * LANES + l];
-            for (int k = 0; k < 3; k++) row[(STATES + 2 + k) * LANES + l] = in[k * LANES + l];
-        }
+    int running = wspd_running(loop);
+    if (running) wspd_measure(loop, law->seen);
+    return running;
+}
+
+/* Keep what the controllers of a stop saw, decided and remember. */
+static void write_sample(const Loop *loop, const Law *law, int stop, double *samples)
+{
+    double *row = samples + loop->sample[stop] * (1 + (law->states + 5) * LANES);
+    *row++ = loop->sample[stop] * loop->set.sample_time;
+    for (int l = stop; l < LANES; l += STOPS) {
+        for (long k = 0; k < law->states + 2; k++) row[k * LANES + l] = law->next[k * LANES + l];
+        for (int k = 0; k < 3; k++) row[(law->states + 2 + k) * LANES + l] = law->seen[k * LANES + l];
     }
 }
 
-/* Run all stops with the compiled controller. ``samples`` may be null. */
-int wspd_run(Loop *loop, double *samples, long sample_rows)
+/* Take what the law decided for the waiting stops, and run to the next decision. ``samples`` may be null. */
+int wspd_answer(Loop *loop, const Law *law, double *samples, long sample_rows)
 {
-    WIDE double state[STATES * LANES + 1], command[(STATES + 2) * LANES], in[3 * LANES];
+    const double *command = law->next + law->states * LANES;
+    if (samples && wspd_samples(loop) == sample_rows) return BUFFER_FULL;
+    for (int s = 0; s < STOPS; s++) {
+        if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
+        if (samples) write_sample(loop, law, s, samples);
+        for (long k = 0; k < law->states; k++)
+            for (int l = s; l < LANES; l += STOPS) law->state[k * LANES + l] = law->next[k * LANES + l];
+    }
+    return wspd_sample(loop, command, command + LANES);
+}
+
+/* Run all stops with a law in C. */
+int wspd_run(Loop *loop, const Law *law, double *samples, long sample_rows)
+{
     int result = GOOD;
-    wspd_measure(loop, in);
-    start_kernel(in, loop->gains, state);
-    while (result == GOOD && wspd_running(loop)) {
-        wspd_measure(loop, in);
-        step_kernel(state, in, loop->gains, command);
-        for (int k = 0; k < STATES; k++)
-            for (int l = 0; l < LANES; l++) {
-                int s = l % STOPS;
-                if (loop->phase[s] == DECIDE && loop->time[s] >= loop->goal[s])
-                    state[k * LANES + l] = command[k * LANES + l];
-            }
-        if (samples && wspd_samples(loop) == sample_rows) return BUFFER_FULL;
-        if (samples) write_samples(loop, samples, command, in);
-        result = wspd_sample(loop, command + STATES * LANES, command + (STATES + 1) * LANES);
+    wspd_measure(loop, law->seen);
+    law->start(law->seen, law->gains, law->state);
+    while (result == GOOD && wspd_ask(loop, law)) {
+        law->step(law->state, law->seen, law->gains, law->next);
+        result = wspd_answer(loop, law, samples, sample_rows);
     }
     return result;
 }
