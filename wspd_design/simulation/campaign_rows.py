@@ -23,7 +23,7 @@ from wspd_design.simulation.draws import Deck, Draw
 from wspd_design.simulation.ideal import FILLING, ideal_input
 from wspd_design.simulation.loop_input import first_slip, loop_input
 from wspd_design.simulation.records import Scenario, Sensing, Start
-from wspd_design.simulation.self_check import slip_difference
+from wspd_design.simulation.self_check import distance_difference, slip_difference
 from wspd_design.simulation.stop import simulate_on
 
 if TYPE_CHECKING:
@@ -172,18 +172,20 @@ def _figures(plan: Plan, cases: Cases, first: int) -> dict[str, Any]:
     axles = 1 if cases[0][0].alike else cases[0][0].axles
     by_axle = (lanes[name] for name in ("longest_lock", "judged_lock_time", "sliding_work"))
     ideal = _ideal_distances(cases, runs)
+    moved = np.where(stops["distance"] > 0.0, stops["distance"], np.nan)  # not of a train that is at rest
+    lasted = np.where(stops["time"] > 0.0, stops["time"], np.nan)
     return {
         "distance_m": stops["distance"],
         "stopping_time_s": stops["time"],
         "torque_integral_Nms": lanes["torque"].sum(axis=0),
-        "efficiency": np.where(batch.stopped, ideal / stops["distance"], np.nan),
+        "efficiency": np.where(batch.stopped, ideal / moved, np.nan),
         "slip_mean": mean,
         "slip_max": np.maximum(
             lanes["slip_max"].max(axis=0), [first_slip(scenario) for _, scenario in cases]
         ),
         "slip_rms": np.sqrt(np.maximum(square - 2.0 * about * mean + about**2, 0.0)),
         "lock_time_s": lanes["lock_time"].max(axis=0),
-        "valve_switches_per_s": lanes["valve_switches"].mean(axis=0) / stops["time"],
+        "valve_switches_per_s": lanes["valve_switches"].mean(axis=0) / lasted,
         "vented_air": lanes["vented_pressure"].sum(axis=0) / full,
         **{
             f"{name}_{axle + 1}": values[axle]
@@ -219,7 +221,7 @@ def _step_check(plan: Plan, row: Any, case: tuple[Any, Scenario]) -> tuple[float
     plant, scenario = case
     run, finer = (simulate_on(plant, plan.controller, scenario, refinement=parts) for parts in (1, 2))
     changes = (
-        abs(finer.totals.distance / float(row["distance_m"]) - 1.0),
+        distance_difference(finer, float(row["distance_m"])),
         slip_difference(plant.vehicle, run, finer),
     )
     distance, slip = (math.inf if math.isnan(change) else change for change in changes)  # NaN is not checked

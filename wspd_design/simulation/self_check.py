@@ -6,6 +6,7 @@ a change that nobody can measure until it moves the result. Steps may then be sh
 neighbours end elsewhere, so that it gives the spread over them in place of a digit that it does not have.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 from wspd_design.controllers.protocol import Controller
@@ -64,7 +65,7 @@ def simulate_checked(
     for refinement in REFINEMENTS:
         finer = simulate_on(braked, controller, scenario, refinement=2 * refinement)
         check = StepCheck(
-            distance=_apart(finer, run),
+            distance=distance_difference(finer, run.totals.distance),
             slip=slip_difference(vehicle, run, finer),
             refinement=refinement,
             sensitive=spread > 0.0,
@@ -85,7 +86,7 @@ def perturbed_spread(plant: Plant, controller: Controller, scenario: Scenario, r
 
     nearest, distance = neighbour(1), run.totals.distance
     # A stop from a speed that is lower by a share is shorter by twice that share.
-    moved = _apart(nearest, run) > AMPLIFICATION * 2.0 * PERTURBATION
+    moved = distance_difference(nearest, run.totals.distance) > AMPLIFICATION * 2.0 * PERTURBATION
     slipped = slip_difference(plant.vehicle, run, nearest) > SLIP_AMPLIFICATION * PERTURBATION
     if not moved and not slipped:
         return 0.0
@@ -94,10 +95,11 @@ def perturbed_spread(plant: Plant, controller: Controller, scenario: Scenario, r
     return max(distances) - min(distances)
 
 
-def _apart(run: Run, other: Run) -> float:
-    """Relative difference of the distances; none between trains that are at rest at once."""
-    distance = other.totals.distance
-    return abs(run.totals.distance / distance - 1.0) if distance > 0.0 else 0.0
+def distance_difference(run: Run, distance: float) -> float:
+    """Relative difference of a distance from that of a run; none between trains that are at rest at once."""
+    if run.totals.distance == distance:
+        return 0.0
+    return abs(run.totals.distance / distance - 1.0) if distance != 0.0 else math.inf
 
 
 def slip_difference(vehicle: Vehicle, run: Run, other: Run) -> float:

@@ -233,7 +233,7 @@ def test_a_wheel_holds_what_stops_and_campaigns_ask_for(
         for vibrating in (False, True):
             each = replace(scenario, initial_speed=1.0, pad_vibration=vibrating)
             simulate(er24pc, law, each, plant=plant)
-            simulate_many(er24pc, law, each, runs=2, plant=plant)
+            simulate_many(er24pc, law, each, count=2, plant=plant)
     built = {source for source, _ in build.plant_sources()}
     assert len(asked) == 8
     assert asked <= built

@@ -126,7 +126,7 @@ def test_a_start_below_the_stop_speed_is_at_rest_at_once(er24pc, make_controller
     assert (judged.momentum_residual, judged.energy_residual, judged.ideal_stop) == (0.0, 0.0, 0.0)
     for figure in (judged.efficiency, judged.lag, judged.plateau, judged.adhesion_utilization):
         assert math.isnan(figure)
-    table = simulate_many(er24pc, make_controller("afsmc"), scenario, runs=3, plant=plant).table
+    table = simulate_many(er24pc, make_controller("afsmc"), scenario, count=3, plant=plant).table
     assert table["stopped"].all()
     assert (table["distance_m"] == 0.0).all()
 

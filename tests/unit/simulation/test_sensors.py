@@ -195,8 +195,7 @@ def test_a_counter_that_loses_the_rest_of_an_angle_is_seen(er24pc, make_controll
         )
 
     monkeypatch.setattr(closed_loop, "closed_loop_source", faulty)
-    for memory in ("_loops", "_libraries"):
-        monkeypatch.setattr(closed_loop, memory, Memory(4))
+    monkeypatch.setattr(closed_loop, "_plants", Memory(4))
     scenario = replace(wet, sensing=Sensing(pulses_per_turn=1000))
     run = fine(er24pc, make_controller("trenitalia"), scenario, "quarter")
     with pytest.raises(AssertionError):

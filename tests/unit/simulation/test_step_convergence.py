@@ -145,7 +145,7 @@ def test_a_fault_of_the_integration_spoils_the_order(monkeypatch, end_of, fault)
         return source.replace(old, new)
 
     monkeypatch.setattr(closed_loop, "closed_loop_source", faulty)
-    for module_, name in ((closed_loop, "_loops"), (closed_loop, "_libraries"), (kernels, "_memory")):
+    for module_, name in ((closed_loop, "_plants"), (kernels, "_memory")):
         monkeypatch.setattr(module_, name, Memory(8))
     if new == FROZEN:
         monkeypatch.setattr(adhesion, "stiffness_growth", lambda _ratio: 1.0)
