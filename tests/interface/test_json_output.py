@@ -121,7 +121,8 @@ def test_stop_from_a_witness(wspd, witness_file):
     assert_form(many, CAMPAIGN)
     assert many["witness"] == {**found["witness"], "left_after_s": None}
     assert many["scenario"] == found["scenario"]
-    assert many["distance_m"]["max"] == pytest.approx(found["distance_m"], rel=1e-9)
+    coarse = 1e-3 if found["step_check"]["refinement"] > 1 else 1e-9  # many stops take the first steps
+    assert many["distance_m"]["max"] == pytest.approx(found["distance_m"], rel=coarse)
 
 
 def test_sensitive_and_unresolved_are_two_findings(wspd, monkeypatch):

@@ -27,9 +27,12 @@ class Branching:
 """
 
 
-def run(folder, *arguments, **environment):
+WITHOUT_ZIGLANG = "import sys; sys.modules['ziglang'] = None"
+
+
+def run(folder, *arguments, before="", **environment):
     return subprocess.run(
-        [sys.executable, "-c", "from wspd_design.cli import main; main()", *arguments],
+        [sys.executable, "-c", f"{before}\nfrom wspd_design.cli import main; main()", *arguments],
         cwd=folder,
         env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])} | environment,
         capture_output=True,
@@ -41,7 +44,8 @@ def run(folder, *arguments, **environment):
 
 def test_without_a_compiler_the_numbers_are_the_same(tmp_path):
     compiled = run(tmp_path, "simulate", "trenitalia", *SLOW, "--json")
-    virtual = run(tmp_path, "simulate", "trenitalia", *SLOW, "--json", PATH="/nonexistent", CC="")
+    hidden = {"PATH": "/nonexistent", "CC": "", "before": WITHOUT_ZIGLANG}
+    virtual = run(tmp_path, "simulate", "trenitalia", *SLOW, "--json", **hidden)
     assert (compiled.stderr, virtual.returncode) == ("", 0)
     assert virtual.stderr.startswith("wspd: no C compiler")
     assert virtual.stderr.count("\n") == 1
