@@ -37,6 +37,26 @@ static double before_event(const Loop *loop, int s, const Motion *const at[4], c
     return first < 1.0 - 1e-6 ? first : 1.0;
 }
 
+/* Tell whether a wheel may come to the slip to be held, or leave it, in the middle or at the end of a step. */
+static INLINE int changes_hold(const Loop *loop, const Motion *middle, const Motion *end, const Stage *const stage[4],
+                               const double *torque)
+{
+    const double *radius = loop->lp + RADIUS * LANES;
+    const Motion *const moved[2] = {middle, end};
+    double any = 0.0;
+    WIDE double slip[LANES], slope[LANES], speed[LANES];
+    for (int k = 0; k < 2; k++) {
+        held_slips(loop, moved[k]->speed, slip, slope);
+        spread(moved[k]->speed, speed);
+        EACH_LANE {
+            double free = moved[k]->wheel[l] - speed[l] * (1.0 - slip[l]) / radius[l];
+            double held = torque[k * LANES + l] - stage[2 + k]->passed[l];
+            any = (loop->held[l] != 0.0 ? held : free) < 0.0 ? 1.0 : any;
+        }
+    }
+    return any != 0.0;
+}
+
 /* Shorten the steps to their first events; tells whether any was. */
 static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *const stage[4], const double *torque,
                           const Motion *reached, double *next)
@@ -51,7 +71,7 @@ static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *co
         any = at[2]->wheel[l] < 0.0 || reached->wheel[l] < 0.0 ? 1.0 : any;
         any = loop->locked[l] != 0.0 && (torque[l] < taken || torque[LANES + l] < later) ? 1.0 : any;
     }
-    if (any == 0.0 && !loop->hold) return 0;
+    if (any == 0.0 && !(loop->hold && changes_hold(loop, at[2], reached, stage, torque))) return 0;
     any = 0.0;
     for (int s = 0; s < STOPS; s++) {
         double share = loop->active[s] != 0.0 ? before_event(loop, s, at, stage, torque, reached) : 1.0;
