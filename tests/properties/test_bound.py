@@ -15,7 +15,7 @@ from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail
 from wspd_design.simulation.ideal import ideal_stop
-from wspd_design.simulation.records import Scenario, Sensing
+from wspd_design.simulation.records import Ending, Scenario, Sensing
 from wspd_design.simulation.stop import simulate
 
 CONTROLLERS = ("afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
@@ -90,6 +90,28 @@ def test_no_controller_beats_the_ideal_stop(make_controller, rail, share, name, 
     run = simulate(vehicle, make_controller(name), scenario, plant=plant)
     ideal = ideal_stop(vehicle, replace(scenario, sensing=Sensing()), plant=plant)
     assert run.totals.distance >= ideal.distance * (1.0 - 1e-4)
+
+
+TWO_HUMPS = Rail(
+    name="two humps",  # at high and at low speed it gives most at full slip, between them at a fifth of it
+    mu0=0.5,
+    friction_ratio=0.890625,
+    friction_decay=0.5,
+    adhesion_reduction=1.0,
+    slip_reduction=0.21875,
+)
+
+
+@pytest.mark.parametrize("plant", ["four-axle", "quarter"])
+def test_an_ideal_stop_ends_where_the_best_slip_jumps(make_controller, plant):
+    """Held wheels once drifted away from it, rolled with a fixed speed and drove the train."""
+    vehicle = load_vehicle("er24pc")
+    scenario = Scenario(rail=TWO_HUMPS, initial_speed=70.0 / 3.6)
+    ideal = ideal_stop(vehicle, scenario, plant=plant)
+    assert ideal.ending is Ending.STOPPED
+    held = ideal_stop(vehicle, scenario, plant=plant, slip=0.2)
+    assert 0.9 * held.distance < ideal.distance < held.distance
+    assert ideal.distance < simulate(vehicle, make_controller("afsmc"), scenario, plant=plant).totals.distance
 
 
 @settings(max_examples=10, deadline=None)

@@ -376,9 +376,9 @@ class _Step:
         if not self.holding:
             return wheel, locked, held, lost
         rolling = self._rolling(speed)
-        caught = where(held, 0.0, where(locked, 0.0, wheel <= rolling))
-        lost += where(caught, inertia * (wheel - rolling), 0.0)
-        return where(caught, rolling, wheel), locked, where(caught, 1.0, held), lost
+        on_it = where(held, 1.0, where(locked, 0.0, wheel <= rolling))  # a held wheel is put back on its slip
+        lost += where(on_it, inertia * (wheel - rolling), 0.0)
+        return where(on_it, rolling, wheel), where(on_it, 0.0, locked), on_it, lost
 
 
 def _crossing(begin: Any, middle: Any, end: Any) -> Any:

@@ -105,7 +105,8 @@ static INLINE void settle_locks(Loop *loop, const double *lane_step, Motion *rea
     }
 }
 
-/* The same for wheels that come to the slip that an ideal brake never exceeds. */
+/* The same for wheels that come to the slip that an ideal brake never exceeds. Wheels that are held are put back on it:
+   where the best slip changes abruptly with the speed, they would drift away from it. */
 static void settle_holds(Loop *loop, Motion *reached)
 {
     const double *radius = loop->lp + RADIUS * LANES, *inertia = loop->lp + INERTIA * LANES;
@@ -113,10 +114,11 @@ static void settle_holds(Loop *loop, Motion *reached)
     held_slips(loop, reached->speed, slip, slope);
     for (int l = 0; l < LANES; l++) {
         double rolling = reached->speed[l % STOPS] * (1.0 - slip[l]) / radius[l];
-        if (loop->held[l] != 0.0 || loop->locked[l] != 0.0 || reached->wheel[l] > rolling) continue;
+        if (loop->held[l] == 0.0 && (loop->locked[l] != 0.0 || reached->wheel[l] > rolling)) continue;
         loop->lane[TORQUE * LANES + l] += inertia[l] * (reached->wheel[l] - rolling);
         reached->wheel[l] = rolling;
         loop->held[l] = 1.0;
+        loop->locked[l] = 0.0;
     }
 }
 
