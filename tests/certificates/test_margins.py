@@ -1,5 +1,6 @@
 """Gain, phase, delay and disk margin against what happens when one uses them up."""
 
+import json
 import math
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from tests.attack.plant import holding_torque, slip_pole
 from tests.certificates.round_trip import forgeries, keep, no_word_can_be_changed, not_for, refused
 from wspd_design.certificates.checks.linear import margins
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.replay import replay
 from wspd_design.certificates.setting.linear_loop import loop_at, outermost, variables
 from wspd_design.certificates.theorems import linear
 from wspd_design.controllers.protocol import Measurement
@@ -214,6 +216,15 @@ def test_verdicts(make_problem, make_controller, good, bad):
 def test_words_of_evidence_and_of_a_refutation(good, bad):
     no_word_can_be_changed(good)
     no_word_can_be_changed(bad)
+
+
+@pytest.mark.parametrize("number", ["-0.5", "0.0"])
+def test_gains_of_which_no_sentence_can_be_made_are_refused(good, number):
+    findings = json.loads(json.dumps(good.content["findings"]))
+    findings["margins"]["numbers"]["gain up"] = number
+    said = replay(good.problem, json.dumps(good.content | {"findings": findings}))
+    assert not said.accepted
+    assert "numbers cannot be those of margins" in said.reason
 
 
 def test_a_place_that_is_not_unstable_refutes_nothing(good, bad):

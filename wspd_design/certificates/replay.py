@@ -15,7 +15,7 @@ from wspd_design.certificates.kernel.obligation import Inequality, Obligation, S
 from wspd_design.certificates.memory import is_remembering, recall
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.theorems.table import THEOREMS
-from wspd_design.certificates.theorems.theorem import asked, told
+from wspd_design.certificates.theorems.theorem import Theorem, asked, told
 
 DECIDED = (Status.PROVED, Status.LIMITATION, Status.REFUTED, Status.VACUOUS)
 """Statuses that rest on what the checkers decide."""
@@ -59,7 +59,7 @@ def replay(problem: Problem, text: str) -> Replayed:
         theorem, stated = THEOREMS[check], stated_findings(content)
         wanted = asked(theorem, problem)
         if not isinstance(wanted, Certificate):
-            made = told(theorem, problem, _findings(wanted, stated))
+            made = _told(theorem, problem, _findings(wanted, stated))
         elif stated:
             raise Refused(f"{check} is {wanted.status.name} here, but the file states findings")
         else:
@@ -73,6 +73,14 @@ def replay(problem: Problem, text: str) -> Replayed:
     except Refused as refusal:
         return Replayed(check=check, accepted=False, reason=str(refusal), certificate=None)
     return Replayed(check=check, accepted=True, reason="", certificate=made)
+
+
+def _told(theorem: Theorem, problem: Problem, findings: Mapping[str, Finding]) -> Certificate:
+    """Tell what findings show; a file may state numbers of which no sentence can be made, such as a gain below zero."""
+    try:
+        return told(theorem, problem, findings)
+    except (ArithmeticError, ValueError) as error:
+        raise Refused(f"its numbers cannot be those of {theorem.name}: {error}") from None
 
 
 def _findings(wanted: tuple[Obligation, ...], stated: Mapping[str, Stated]) -> dict[str, Finding]:
