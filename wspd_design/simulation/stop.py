@@ -106,7 +106,7 @@ def run_loop(
 
         tell_once(
             str(error),
-            "simulating in CasADi's virtual machine, about thirty times slower; "
+            "simulating in CasADi's virtual machine, about 170 times slower; "
             f"{COMPILER_INSTALLATION} brings a compiler",
         )
         output = run_virtual(plant, controller, given, sample_rows=rows, disturbed=disturbed)
