@@ -128,9 +128,16 @@ def _boundary_layer(case: Case, stated: Stated, names: tuple[str, ...]) -> list[
     width, c = layer(case), surface_rate(case)
 
     def margin(x: Points) -> Any:
+        coarse = kept(x, 0.01)
+        broken = coarse < 0.0  # or too long a step at low speed, which shorter ones tell
+        if broken.any():
+            coarse[broken] = kept({name: value[broken] for name, value in x.items()}, 0.001)
+        return coarse
+
+    def kept(x: Points, step: float) -> Any:
         plant = plant_at(case, x)
         integral = (width * x["place"] - (case.slip - x["slip"])) / c
-        path = motion.layer_run(case, plant, x["slip"], x["speed"], integral, time=6.0, step=0.01)
+        path = motion.layer_run(case, plant, x["slip"], x["speed"], integral, time=6.0, step=step)
         worst, alive = np.full(np.shape(x["slip"]), np.inf), np.ones(np.shape(x["slip"]), bool)
         for time, slip, speed, _ in path:
             alive &= (slip >= case.slips[0]) & (slip <= case.slips[1]) & (speed >= case.speeds[0])
