@@ -50,13 +50,18 @@ class Valves:
         return [*edges, t + h]
 
 
+def initial_slope(contact):
+    """Slope of the creep force at zero slip under the reference load [N]."""
+    area = contact.semi_axis_rolling * contact.semi_axis_lateral
+    return 0.25 * pi * contact.shear_modulus * contact.kalker_c11 * area
+
+
 def make_rates(valves: Valves, locked: list[bool]):
     """Right-hand side of (v, four omega, distance, three load transfers and their rates)."""
     c, rail = VEHICLE, RAIL
     static, radius = c.mass * 9.81 / 8.0, c.wheel_radius
     contact = c.contact
-    slope = 0.25 * pi * contact.shear_modulus * contact.kalker_c11
-    slope *= contact.semi_axis_rolling * contact.semi_axis_lateral
+    slope = initial_slope(contact)
     unit = c.brake.max_torque / c.brake.max_pressure
     body_omega, bogie_omega = 2.0 * pi * c.body_pitch_frequency, 2.0 * pi * c.bogie_pitch_frequency
     drag = 2.0 * c.pitch_damping_ratio
@@ -110,8 +115,7 @@ def make_rates(valves: Valves, locked: list[bool]):
 def make_numpy_rates(valves: Valves, locked: list[bool]):
     """The same with the axles as vectors."""
     c, rail, contact = VEHICLE, RAIL, VEHICLE.contact
-    slope = 0.25 * pi * contact.shear_modulus * contact.kalker_c11
-    slope *= contact.semi_axis_rolling * contact.semi_axis_lateral
+    slope = initial_slope(contact)
     unit, static = c.brake.max_torque / c.brake.max_pressure, c.mass * 9.81 / 8.0
     shares = np.array([[0.25, 0.5, 0.0], [0.25, -0.5, 0.0], [-0.25, 0.0, 0.5], [-0.25, 0.0, -0.5]])
     omega = 2.0 * pi * np.array([c.body_pitch_frequency, c.bogie_pitch_frequency, c.bogie_pitch_frequency])
@@ -213,8 +217,7 @@ def rk4_stop() -> float:
     Near standstill the creep stiffness asks for shorter ones. Returns the distance.
     """
     c, rail, contact = VEHICLE, RAIL, VEHICLE.contact
-    slope = 0.25 * pi * contact.shear_modulus * contact.kalker_c11
-    slope *= contact.semi_axis_rolling * contact.semi_axis_lateral
+    slope = initial_slope(contact)
     fastest = 2.0 / pi * (rail.adhesion_reduction + rail.slip_reduction) * slope * c.wheel_radius**2
     fastest *= 1.5 / c.wheel_inertia  # the front axle carries more than its share
     valves, locked, y = Valves(), [False] * AXLES, start()

@@ -122,17 +122,12 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
     The supply that builds up with ``supply_rate`` and the cylinder that follows with ``fill_time`` are together late
     by 1/supply_rate + fill_time, exactly.
     """
-    brake, radius = vehicle.brake, vehicle.wheel_radius
+    brake = vehicle.brake
     return mean_stop(
         speed,
-        forces=[
-            (
-                vehicle.wheelsets * brake.max_torque / radius,
-                1.0 / brake.supply_rate + brake.fill_time,
-            )
-        ],
+        forces=[(_rim_force(vehicle), 1.0 / brake.supply_rate + brake.fill_time)],
         mass=vehicle.mass,
-        rotating_mass=vehicle.wheelsets * vehicle.wheelset_inertia / radius**2,
+        rotating_mass=_rotating_mass(vehicle),
         resistance=(
             vehicle.resistance_constant,
             vehicle.resistance_linear,
@@ -147,10 +142,17 @@ def demanded_adhesion(vehicle: Vehicle) -> float:
 
     The rail slows the train; what slows the turning of the wheelsets comes from the brake alone.
     """
-    rim = vehicle.wheelsets * vehicle.brake.max_torque / vehicle.wheel_radius
-    rotating = vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2
-    at_rail = rim * vehicle.mass / (vehicle.mass + rotating)
-    return at_rail / (vehicle.mass * constants().gravity)
+    return _rim_force(vehicle) / ((vehicle.mass + _rotating_mass(vehicle)) * constants().gravity)
+
+
+def _rim_force(vehicle: Vehicle) -> float:
+    """Force of the fully applied brake at the rims of all wheels [N]."""
+    return vehicle.wheelsets * vehicle.brake.max_torque / vehicle.wheel_radius
+
+
+def _rotating_mass(vehicle: Vehicle) -> float:
+    """Mass that the turning of the wheelsets adds [kg]."""
+    return vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2
 
 
 def braked_weight_percentage(distance: float, speed: float) -> float:

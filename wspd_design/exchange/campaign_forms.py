@@ -2,13 +2,8 @@
 
 from wspd_design.exchange.common_keys import (
     ANY,
-    CONTROLLER_KEY,
-    PLANT_KEY,
-    RAIL_KEY,
-    SAMPLE_TIME_KEY,
+    CASE_KEYS,
     SCHEMA_KEY,
-    SPEED_KEY,
-    VEHICLE_KEY,
     VERSION_KEY,
     nullable,
 )
@@ -48,13 +43,7 @@ CAMPAIGN = Form(
     name="campaign",
     schema="wspd-campaign/1",
     keys=(
-        SCHEMA_KEY,
-        CONTROLLER_KEY,
-        VEHICLE_KEY,
-        RAIL_KEY,
-        PLANT_KEY,
-        SAMPLE_TIME_KEY,
-        SPEED_KEY,
+        *CASE_KEYS,
         Key(name="scenario", kind=SCENARIO, meaning="as of one stop"),
         Key(name="witness", kind=WITNESS, nullable=True, meaning="as of one stop"),
         Key(name="runs", kind="integer", meaning="stops that are done"),

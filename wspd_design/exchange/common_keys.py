@@ -17,6 +17,8 @@ RAIL_KEY = Key(name="rail", kind="text", meaning="name of the rail")
 PLANT_KEY = Key(name="plant", kind="text", meaning="model of the vehicle", words=PLANTS)
 SAMPLE_TIME_KEY = Key(name="sample_time_s", kind="number", meaning="of the controller")
 SPEED_KEY = Key(name="initial_speed_m_s", kind="number", meaning="of the train")
+CASE_KEYS = (SCHEMA_KEY, CONTROLLER_KEY, VEHICLE_KEY, RAIL_KEY, PLANT_KEY, SAMPLE_TIME_KEY, SPEED_KEY)
+"""How every object about stops of one law begins."""
 REFERENCE_KEY = Key(name="slip_reference", kind="number", meaning="slip that the controller is asked to hold")
 SEED_KEY = Key(name="seed", kind="integer", meaning="of all random numbers")
 

@@ -1,18 +1,13 @@
-"""Forms of one stop, of many and of several side by side."""
+"""Forms of one stop and of several side by side."""
 
 from wspd_design.exchange.common_keys import (
     ANY,
-    CONTROLLER_KEY,
+    CASE_KEYS,
     ENDINGS,
-    PLANT_KEY,
-    RAIL_KEY,
     REFERENCE_KEY,
-    SAMPLE_TIME_KEY,
     SCHEMA_KEY,
     SEED_KEY,
-    SPEED_KEY,
     STATUSES,
-    VEHICLE_KEY,
     VERSION_KEY,
     nullable,
 )
@@ -149,13 +144,7 @@ STOP = Form(
     name="stop",
     schema="wspd-stop/2",
     keys=(
-        SCHEMA_KEY,
-        CONTROLLER_KEY,
-        VEHICLE_KEY,
-        RAIL_KEY,
-        PLANT_KEY,
-        SAMPLE_TIME_KEY,
-        SPEED_KEY,
+        *CASE_KEYS,
         Key(name="scenario", kind=SCENARIO, meaning="where the stop starts and what disturbs it"),
         Key(name="witness", kind=WITNESS, nullable=True, meaning="the witness that the stop starts at"),
         REFERENCE_KEY,
