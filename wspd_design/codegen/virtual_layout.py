@@ -95,7 +95,7 @@ def layout(kernels: Kernels) -> Layout:
                 "load_factors": 1
                 + 2 * axles,  # a place, relative loads there, and their slopes over distance
                 # First point, spacing and place of the table; slip there and beside it.
-                "hold": 3 + 3 * axles,
+                "hold": 3 + 4 * axles,
             }
         ),
     )

@@ -315,7 +315,8 @@ class _VirtualPlant:
             k = min(max(int((math.log(speed) - first) / spacing), 0), given.held_slips.shape[1] - 2)
             here, above = given.held_slips[:, k], given.held_slips[:, k + 1]
             below = given.held_slips[:, k - 1] if k > 0 else 2.0 * here - above
-            self._give("hold", np.concatenate([[first, spacing, k], below, here, above]))
+            further = given.held_slips[:, k - 2] if k > 1 else 2.0 * below - here
+            self._give("hold", np.concatenate([[first, spacing, k], further, below, here, above]))
 
     def _follow(self, rows: "Array") -> int:
         """Tell the sensors and the traces of the steps that were made."""

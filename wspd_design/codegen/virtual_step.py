@@ -178,8 +178,6 @@ class _Step:
         speed, wheels, acceleration = now["speed"], now["axle"][:axles], now["rates"][0]
         slowest = maximum(speed, given["regularization_speed"])
         allowed = slowest * (given["slope_limit"] / given["creep_rate"])
-        if self.holding:
-            return allowed
         later = maximum(speed + given["longest_step"] * acceleration, given["regularization_speed"])
         rolling = later / given["radius"]
         steep = abs(self._slopes(speed, now["axle"]))
@@ -188,7 +186,7 @@ class _Step:
         states = now["axle"] + 0.0
         states[:axles] = where(side * (rolling - moved) > 0.0, moved, rolling)
         steepest = maximum(steep, abs(self._slopes(later, states)))
-        limits = self._limited(where(now["locked"], 0.0, steepest))
+        limits = self._limited(where(now["locked"] + now["held"], 0.0, steepest))
         most, braking = SPEED_SHARE * given["slope_limit"] * speed, abs(acceleration)
         bound = given["longest_step"] * braking > most
         least = where(bound, most / where(bound, braking, 1.0), given["longest_step"])
@@ -324,12 +322,13 @@ class _Step:
         import casadi as ca
 
         first, spacing, k = (self.given["hold"][i] for i in range(3))
-        below, here, above = (
-            self.given["hold"][3 + i * self.axles : 3 + (i + 1) * self.axles] for i in range(3)
+        further, below, here, above = (
+            self.given["hold"][3 + i * self.axles : 3 + (i + 1) * self.axles] for i in range(4)
         )
         beyond = (ca.log(speed) - first) / spacing - k
-        rise = where(beyond >= 0.0, above - here, here - below)
-        return here + beyond * rise, rise / (spacing * speed)
+        far = beyond < -1.0
+        rise = where(beyond >= 0.0, above - here, where(far, below - further, here - below))
+        return where(far, below + (beyond + 1.0) * rise, here + beyond * rise), rise / (spacing * speed)
 
     def _rolling(self, speed: Any) -> Any:
         """Wheel speeds below which wheels are caught: locked, or held at a slip."""

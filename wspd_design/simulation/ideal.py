@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+_LONGEST_STEP = 20e-3  # s; a wheel that is held at a slip has no fast motion of its own
 _AT_ONCE = 1e9  # 1/s: a supply that is there at once
 _INSTANT = 1e-6  # s: a cylinder that fills at once
 
@@ -133,6 +134,5 @@ def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None =
         held = np.array([found[lane] for lane in lanes])
     else:
         held = np.full((len(lanes), len(speeds)), slip)
-    return replace(
-        loop_input(cases, FILLING), held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1]))
-    )
+    numbers = loop_input(cases, FILLING, longest_step=_LONGEST_STEP)
+    return replace(numbers, held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1])))

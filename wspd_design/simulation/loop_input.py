@@ -32,11 +32,16 @@ JUDGING_SPEED = 10.0 / 3.6  # m/s, slip statistics count above it
 
 
 def loop_input(
-    cases: Sequence[tuple[Plant, Scenario]], controller: Controller, *, refinement: int = 1
+    cases: Sequence[tuple[Plant, Scenario]],
+    controller: Controller,
+    *,
+    refinement: int = 1,
+    longest_step: float | None = None,
 ) -> LoopInput:
     """Numbers of one or several stops for the closed loop.
 
-    Stops side by side share the kind of the plant, its number of wheelsets and the controller.
+    Stops side by side share the kind of the plant, its number of wheelsets and the controller. Steps are at most
+    ``LONGEST_STEP`` long where no other length is given, over the refinement.
     """
     import numpy as np
 
@@ -70,7 +75,7 @@ def loop_input(
         speeds=np.array([each.initial_speed for _, each in cases]),
         wheel_speeds=np.tile([_rim_speed(each) / p.vehicle.wheel_radius for p, each in cases], axles),
         pressures=np.tile([_pressure(p.vehicle.brake, each.start) for p, each in cases], axles),
-        settings=_settings(cases, controller, refinement),
+        settings=_settings(cases, controller, refinement, longest_step or LONGEST_STEP),
         disturbances=np.array([_disturbances(each.sensing) for each in scenarios]).T,
         seeds=np.array([each.seed for each in scenarios], dtype=np.uint64),
         patch_starts=starts,
@@ -132,7 +137,9 @@ def _rails(scenario: Scenario, plant: Plant) -> tuple[Rail, ...]:
     return scenario.axle_rails or (scenario.rail,) * plant.axles
 
 
-def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, refinement: int) -> Settings:
+def _settings(
+    cases: Sequence[tuple[Plant, Scenario]], controller: Controller, refinement: int, longest_step: float
+) -> Settings:
     steepest = max(
         plant.creep_rate(rail, 1.0)
         for plant, scenario in cases
@@ -142,7 +149,7 @@ def _settings(cases: Sequence[tuple[Plant, Scenario]], controller: Controller, r
     hopeless = all(runs_away(plant.vehicle, scenario) for plant, scenario in cases)
     return Settings(
         sample_time=controller.sample_time,
-        longest_step=LONGEST_STEP / refinement,
+        longest_step=longest_step / refinement,
         creep_rate=steepest * LOAD_MARGIN ** (2.0 / 3.0),
         slope_limit=SLOPE_LIMIT / refinement,
         stop_speed=fixed.stop_speed,

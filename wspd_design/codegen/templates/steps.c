@@ -86,7 +86,7 @@ static INLINE void lengthen(const Loop *loop, double *allowed)
     EACH_LANE {
         double steep = fabs(slope[l]), next = fabs(further[l]);
         steep = next > steep ? next : steep;
-        steep = loop->locked[l] != 0.0 ? 0.0 : steep;
+        steep = loop->locked[l] != 0.0 || loop->held[l] != 0.0 ? 0.0 : steep;
         slope[l] = longest * steep > set->slope_limit ? set->slope_limit / steep : longest;
     }
     EACH_STOP {
@@ -126,7 +126,7 @@ static INLINE void choose_steps(Loop *loop, double *next)
         double most = span[s] < set->longest_step ? span[s] : set->longest_step;
         bound = allowed[s] < most && loop->active[s] != 0.0 ? 1.0 : bound;
     }
-    if (bound != 0.0 && !loop->hold) lengthen(loop, allowed); /* the table of held slips is fine at low speed */
+    if (bound != 0.0) lengthen(loop, allowed);
     EACH_STOP {
         double wanted = allowed[s] < set->longest_step ? allowed[s] : set->longest_step;
         double count = ceil(span[s] / wanted * (1.0 - 1e-12));
