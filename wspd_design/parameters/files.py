@@ -124,7 +124,7 @@ def _load_own(kind: Kind, path: Path) -> ParameterSet:
 def _parameter_set(
     kind: Kind, name: str, document: dict[str, Any], schema: Schema, entries: dict[str, Entry], where: str
 ) -> ParameterSet:
-    missing = [key for key in schema if key not in entries]
+    missing = [key for key, quantity in schema.items() if key not in entries and not quantity.optional]
     if missing:
         remedy = "add it" if len(missing) == 1 else "add them"
         if kind in ("vehicle", "rail"):
@@ -133,7 +133,7 @@ def _parameter_set(
     title = document.get("title", name)
     if not isinstance(title, str):
         raise UserError(f"title = {title} in {where} must be text; put it in quotes.")
-    return ParameterSet(kind=kind, name=name, title=title, entries={key: entries[key] for key in schema})
+    return ParameterSet(kind=kind, name=name, title=title, entries={key: entries[key] for key in schema if key in entries})
 
 
 def _entries(
@@ -186,7 +186,7 @@ def _entry(
                 f"[{name}] in {where} has an unknown key {key}{_did_you_mean(key, _ENTRY_KEYS)}; "
                 f"allowed: {', '.join(_ENTRY_KEYS)}."
             )
-    table = defaults | table
+    table = ({"unit": "-"} if quantity.shape == "word" else {}) | defaults | table
     for key in ("value", "unit", "source", "at", "status"):
         if key not in table:
             example = f'"{units_of(quantity.dimension)[0]}"' if key == "unit" else "..."
@@ -243,6 +243,13 @@ def _value(raw: object, quantity: Quantity, unit: str, what: str) -> Any:
     match quantity.shape:
         case "number":
             return _number(raw, quantity, unit, what)
+        case "word":
+            if raw not in quantity.words:
+                raise UserError(
+                    f"{what} is {_text(raw)}{_did_you_mean(str(raw), quantity.words)} but must be one of "
+                    f"{', '.join(_text(word) for word in quantity.words)}; correct it."
+                )
+            return raw
         case "vector":
             return tuple(_number(item, quantity, unit, what) for item in _list(raw, what, "numbers"))
         case "matrix":

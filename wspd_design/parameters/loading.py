@@ -209,6 +209,9 @@ def _preset_values(controller: str, preset: Preset) -> dict[str, Any]:
 
 
 def _build(record: type[_Record], values: Mapping[str, Any], prefix: str = "", **known: object) -> _Record:
-    """Fill a record with the values of the same names; ``known`` are the fields that no file holds."""
+    """Fill a record with the values of the same names; ``known`` are the fields that no file holds.
+
+    What a file leaves out keeps the default of its field; the schema tells what may be left out.
+    """
     names = (field.name for field in fields(record) if field.name not in known)  # type: ignore[arg-type]
-    return record(**{name: values[prefix + name] for name in names}, **known)
+    return record(**{name: values[prefix + name] for name in names if prefix + name in values}, **known)

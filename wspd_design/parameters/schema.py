@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 
 from wspd_design.parameters.units import Dimension
 
-Shape: TypeAlias = Literal["number", "vector", "matrix", "word matrix"]
+Shape: TypeAlias = Literal["number", "word", "vector", "matrix", "word matrix"]
 Kind: TypeAlias = Literal["constants", "vehicle", "rail", "controller", "track"]
 Preset: TypeAlias = Literal["calibrated", "textbook"]
 
@@ -28,7 +28,10 @@ TRACK_ROWS = tuple(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Quantity:
-    """What is expected of one number of a file; the range is in SI units."""
+    """What is expected of one entry of a file; the range is in SI units.
+
+    What is optional may be left out, and then the record takes its own default.
+    """
 
     dimension: Dimension
     shape: Shape = "number"
@@ -36,6 +39,8 @@ class Quantity:
     high: float = math.inf
     low_is_allowed: bool = True
     plausible: tuple[float, float] | None = None  # what railways have, with room to spare
+    words: tuple[str, ...] = ()  # that a word may be
+    optional: bool = False
 
     def admits(self, value: float) -> bool:
         """Tell whether an SI value is physically possible."""
