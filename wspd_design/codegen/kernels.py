@@ -38,6 +38,7 @@ _NOT_NUMBERS = (
     "wheelsets",
     "brake",
     "contact",
+    "axle_shares",
     "bounds",
 )
 

@@ -85,6 +85,7 @@ class Brake:
     disturbance_gain: float  # -, of T_d, the vibration of the pads at the onset of braking
     disturbance_decay: float  # 1/s
     disturbance_frequency: float  # Hz
+    axle_shares: tuple[float, ...] = ()  # of max_torque, from the front, 0 without a brake; empty: all 1
     bounds: Bounds = EXACT
 
 
