@@ -3,7 +3,7 @@
 The axles are numbered from the front in the direction of travel. What the vehicle stands on, and how a pitch moment
 loads it, is told by :mod:`wspd_design.parameters.gear`. Braking loads the front axle of each bogie and the front
 supports. Bodies pull at the height of the traction rods; there the running resistance acts too, and the moment by
-which turning wheelsets are slowed down is left out. A single axle cannot pitch: its moment goes into the body. Pitch
+which turning wheelsets are slowed down is left out. A single axle cannot pitch: its moment goes into the bodies, in equal parts. Pitch
 is a second-order response about the quasi-static load transfer; with all heights at zero, equal loads and equal rails
 the plant is that of :mod:`wspd_design.plants.quarter`.
 """
@@ -107,7 +107,7 @@ class Planar(RigidWheelsets):
         if self.bogies:
             targets = [body / vehicle.bogie_spacing, *(moment / vehicle.wheelbase for moment in supports)]
         else:
-            targets = [(body + sum(supports)) / vehicle.bogie_spacing]
+            targets = [(body + sum(supports) / gear.bodies) / vehicle.bogie_spacing]
         frequencies = (vehicle.body_pitch_frequency, *(vehicle.bogie_pitch_frequency,) * self.bogies)
         values, rates = transfers[: self.transfers], transfers[self.transfers :]
         damping = vehicle.pitch_damping_ratio
