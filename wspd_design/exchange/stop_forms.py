@@ -187,9 +187,13 @@ STOP = Form(
         Key(
             name="valve_switches",
             kind="integer",
-            meaning="changes of the valve state, mean of the wheelsets",
+            meaning="changes of the valve state, mean of the wheelsets with a brake",
         ),
-        Key(name="vented_air", kind="number", meaning="full brake cylinders let out, mean of the wheelsets"),
+        Key(
+            name="vented_air",
+            kind="number",
+            meaning="full brake cylinders let out, mean of the wheelsets with a brake",
+        ),
         nullable("saturated_share", "share of the samples that fill or vent all the time"),
         Key(
             name="momentum_residual",
