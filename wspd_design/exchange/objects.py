@@ -41,6 +41,7 @@ def stop_object(
         "ideal_stop_m": figures.ideal_stop,
         "ideal_ending": None if figures.ideal_ending is None else figures.ideal_ending.name.lower(),
         "efficiency": figures.efficiency,
+        "released_below_m_s": figures.released_below,
         "adhesion_utilization": figures.adhesion_utilization,
         "lag_s": figures.lag,
         "lag_distance_m": run.initial_speed * figures.lag,

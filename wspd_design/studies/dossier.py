@@ -15,6 +15,7 @@ from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import design_text, read_design
+from wspd_design.design.industry import usual_table
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
@@ -28,7 +29,6 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
 
 POLE_SPEEDS = 60  # points of the pole map
-PRESET = "calibrated"  # of the baselines, as the catalog builds them
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
 
 
@@ -133,7 +133,7 @@ def dossier(
         design=made,
         vehicle=load_entries("vehicle", vehicle_name),
         rail=load_entries("rail", rail_name),
-        other_parameters=_other_parameters(made, rail, baselines),
+        other_parameters=_other_parameters(made, vehicle, rail, baselines),
         compared_designs=tuple(design for _, design in others if design is not None),
         linearizations=linearizations,
         certificates=certificates,
@@ -185,14 +185,17 @@ def _baseline(
     return controller_of(found, vehicle, rail), found
 
 
-def _other_parameters(made: Design, rail: Rail, baselines: Sequence[str]) -> tuple[ParameterSet, ...]:
+def _other_parameters(
+    made: Design, vehicle: Vehicle, rail: Rail, baselines: Sequence[str]
+) -> tuple[ParameterSet, ...]:
     found = [load_entries("constants", "constants")]
     if not made.made_on(rail):
         found.append(load_entries("rail", made.rail))
-    unused = tuple(f"{preset}." for preset in PRESETS if preset != PRESET)
-    for name in baselines:
+    for written in baselines:
+        name, _, preset = written.partition(":")
         if name in available("controller"):
             parameters = load_entries("controller", name)
+            unused = tuple(f"{each}." for each in PRESETS if each != (preset or usual_table(vehicle)))
             used = {key: entry for key, entry in parameters.entries.items() if not key.startswith(unused)}
             found.append(replace(parameters, entries=used))
     return tuple(found)

@@ -1,5 +1,6 @@
 """A small dossier made by hand, with invented numbers: no simulation and no check runs."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -106,6 +107,7 @@ def trial(
         ideal_stop=174.25,
         ideal_ending=Ending.STOPPED,
         efficiency=0.9286,
+        released_below=math.nan,
         momentum_residual=1.2e-9,
         energy_residual=-3.4e-8,
     )
