@@ -133,9 +133,7 @@ def _parameter_set(
     title = document.get("title", name)
     if not isinstance(title, str):
         raise UserError(f"title = {title} in {where} must be text; put it in quotes.")
-    return ParameterSet(
-        kind=kind, name=name, title=title, entries={key: entries[key] for key in schema if key in entries}
-    )
+    return ParameterSet(kind=kind, name=name, title=title, entries={key: entries[key] for key in schema if key in entries})
 
 
 def _entries(

@@ -41,6 +41,6 @@ def released_sentence(found: Iterable[tuple[str, float]]) -> str:
     if not told:
         return ""
     return (
-        f"The brake was released by {', '.join(told)}, and stayed so to the end: the wheelsets transmit less than a tenth "
-        "of what brake and rail give. Hold the brake on below a low speed, where the slip of a wheel says nothing."
+        f"The brake was released by {', '.join(told)}, and stayed so to the end: the wheelsets transmit less than a "
+        "tenth of what brake and rail give. Hold the brake on below a low speed, where the slip of a wheel says nothing."
     )

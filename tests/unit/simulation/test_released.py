@@ -25,10 +25,10 @@ class Releasing:
     sample_time: float = 0.02
     name: str = "releasing"
 
-    def start(self, measurement):
+    def start(self, measurement):  # noqa: ARG002 - remembers nothing
         return ()
 
-    def step(self, state, measurement):
+    def step(self, state, measurement):  # noqa: ARG002 - remembers nothing
         vent = where(measurement.speed < self.below, 1.0, 0.0)
         return (), Command(fill=1.0 - vent, vent=vent)
 
