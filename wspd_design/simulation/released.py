@@ -27,7 +27,8 @@ def released_below(run: Run, vehicle: Vehicle, scenario: Scenario) -> float:
     rails = (*(scenario.axle_rails or (scenario.rail,)), *(patch.rail for patch in scenario.patches))
     peaks = np.min([peak_adhesion(vehicle, rail, run.speed)[1] for rail in rails], axis=0)
     on_rail = 2.0 * vehicle.wheel_radius * float(static_wheel_load(vehicle)) * peaks
-    given = np.minimum(vehicle.brake.max_torque, on_rail)
+    torques = [share * vehicle.brake.max_torque for share in vehicle.brake_shares]
+    given = np.mean([np.minimum(torque, on_rail) for torque in torques], axis=0)
     held = np.flatnonzero(run.torque.mean(axis=1) >= SHARE * given)
     first = int(held[-1]) + 1 if held.size else 0
     if first >= len(run.time) or run.time[-1] - run.time[first] < SHORTEST:
@@ -42,5 +43,5 @@ def released_sentence(found: Iterable[tuple[str, float]]) -> str:
         return ""
     return (
         f"The brake was released by {', '.join(told)}, and stayed so to the end: the wheelsets transmit less than a "
-        "tenth of what brake and rail give. Hold the brake on below a low speed, where the slip of a wheel says nothing."
+        "tenth of what brake and rail give. Hold the brake on at low speeds, where the slip of a wheel says nothing."
     )
