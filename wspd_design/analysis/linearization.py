@@ -76,7 +76,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     Parameters
     ----------
     vehicle, rail : Vehicle, Rail
-        Quarter locomotive and friction.
+        Quarter model and friction.
     slip : float
         Slip ratio in (0, 1).
     speed : float

@@ -22,7 +22,7 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     stopped = run.ending is Ending.STOPPED
     out = console()
     out.print(
-        f"{run.controller} on {rails_of(scenario)}, {run.vehicle} ({run.plant}), "
+        f"{run.controller} on {rails_of(scenario)}, {run.train}, "
         f"from {run.initial_speed * 3.6:g} km/h, sample time {run.sample_time * 1e3:g} ms",
         style="bold",
         markup=False,

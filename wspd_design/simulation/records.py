@@ -247,6 +247,11 @@ class Run:
     engine: str  # what computed it
 
     @property
+    def train(self) -> str:
+        """Vehicle and plant, as sentences name them."""
+        return f"{self.vehicle} ({self.plant})"
+
+    @property
     def samples(self) -> tuple[Sample, ...]:
         """Samples of the first wheelset."""
         return self.axle_samples[0]

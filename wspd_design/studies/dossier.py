@@ -97,7 +97,7 @@ def dossier(
     command : str
         The command line, for the record.
     plant : {"planar", "quarter"}
-        Of the stops; the certificates speak about the quarter locomotive.
+        Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
         Folder of certificate files; what the checkers accept of it for this design is not searched again.
     progress : callable, optional

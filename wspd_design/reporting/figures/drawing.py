@@ -4,7 +4,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.reporting.figure_style import LINE_STYLES, SERIES, figure_style, figure_svg, new_figure
+from wspd_design.reporting.figure_style import figure_style, figure_svg, look, new_figure
 
 if TYPE_CHECKING:
     import numpy as np
@@ -64,9 +64,10 @@ def curve(
     import numpy as np
 
     thin_x, thin_y = thinned(np.asarray(x), np.asarray(y), most)
-    if LINE_STYLES[index] == ":" and "linewidth" in options:
+    color, style = look(index)
+    if style == ":" and "linewidth" in options:
         options["linewidth"] *= INK_OF_DOTS
-    axes.plot(thin_x, thin_y, color=SERIES[index], linestyle=LINE_STYLES[index], **options)
+    axes.plot(thin_x, thin_y, color=color, linestyle=style, **options)
 
 
 def note(axes: "Axes", text: str, x: float, y: float, **options: Any) -> None:

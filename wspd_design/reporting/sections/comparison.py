@@ -164,7 +164,7 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
             ColumnOf(title="Largest", unit="-", decimals=3, read=lambda each: each.metrics.slip_max),
             ColumnOf(title="Locked", unit="s", decimals=2, read=lambda each: each.metrics.lock_time),
         ),
-        caption=f"Stops of the {trials[0].run.plant} locomotive; this design first. The ideal stop: "
+        caption=f"Stops of {trials[0].run.train}; this design first. The ideal stop: "
         f"{ideal_distance(trials[0].metrics)}; efficiency is ideal stop over distance. Slip of all "
         "wheelsets about its reference above 10 km/h; locked: the wheelset that is locked longest. Lag "
         "2 d/v0 − t and plateau v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
