@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
+from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
 from wspd_design.analysis.linearization import Linearization, linearize
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Controller
+from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import design_text, read_design
 from wspd_design.design.industry import usual_table
@@ -61,6 +63,8 @@ class Dossier:
     rail: ParameterSet
     other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
+    brake: BrakeSheet  # on full adhesion
+    adhesion_use: str  # how much of what the rail gives the brake asks for, in the range of the design
     linearizations: tuple[Linearization, ...]  # over speed, at the slip reference
     certificates: tuple[Certificate, ...]
     trials: tuple[Trial, ...]  # the design's own stop first
@@ -135,6 +139,8 @@ def dossier(
         rail=load_entries("rail", rail_name),
         other_parameters=_other_parameters(made, vehicle, rail, baselines),
         compared_designs=tuple(design for _, design in others if design is not None),
+        brake=brake_sheet(vehicle),
+        adhesion_use=adhesion_sentence(vehicle, rail, specification.speeds),
         linearizations=linearizations,
         certificates=certificates,
         trials=trials,

@@ -273,9 +273,7 @@ def test_wheelsets_of_any_number_have_curves_of_their_own(number):
     """Up to four had colors; the seventh was drawn as the train, the eighth ended in a traceback."""
     made = _with_wheelsets(number)
     with figure_style():
-        drawn = stop_traces(
-            new_figure(height=8.6), made, SPECIFICATION, wheel_radius=0.55, max_torque=60e3
-        )
+        drawn = stop_traces(new_figure(height=8.6), made, SPECIFICATION, wheel_radius=0.55, max_torque=60e3)
         drawn.draw_without_rendering()
         compared = slip_of_all(new_figure(height=5.0), [made, made], SPECIFICATION)
         compared.draw_without_rendering()

@@ -83,8 +83,7 @@ def compare(
 def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> None:
     out, first = console(), trials[0]
     out.print(
-        f"{first.run.train} on {rails_of(scenario)}, "
-        f"from {first.run.initial_speed * 3.6:g} km/h",
+        f"{first.run.train} on {rails_of(scenario)}, from {first.run.initial_speed * 3.6:g} km/h",
         style="bold",
         markup=False,
     )

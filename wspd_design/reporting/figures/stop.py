@@ -23,7 +23,10 @@ TRAIN = -1
 MOST = 900
 """Points of the curve of one wheelset: there are up to 20 in one figure."""
 
-LOCK_BAR, ALL_BARS = 0.02, 0.16  # of the height of the slip panel: one for each wheelset, and at most together
+LOCK_BAR, ALL_BARS = (
+    0.02,
+    0.16,
+)  # of the height of the slip panel: one for each wheelset, and at most together
 ROW_OF_NAMES = 8  # wheelsets in a row of the legend
 FEW = 4  # wheelsets that are all called so in the legend
 NAMED_ROWS = 8  # of the valve panel; where there are more, some have no number
@@ -145,9 +148,7 @@ def valve_panel(axes: "Axes", run: Run) -> None:
 def wheelset_legend(axes: "Axes", run: Run) -> None:
     """Say above the axes which line is which wheelset, if there are several."""
     if run.slip.shape[1] > 1:
-        axes.legend(
-            loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, **columns_of_names(run)
-        )
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, **columns_of_names(run))
 
 
 def columns_of_names(run: Run) -> dict[str, float]:
