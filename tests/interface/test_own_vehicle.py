@@ -1,5 +1,8 @@
 """A brake engineer with a vehicle of their own: every command that is printed runs as printed, from any folder."""
 
+import base64
+import html
+import re
 import shlex
 from pathlib import Path
 
@@ -81,12 +84,27 @@ def test_what_certify_prints_runs(wspd, folder):
     assert "gain_positive: ✓ PROVED" in again.out
 
 
+def assert_check_runs(wspd, page, folder):
+    """Save what the report attaches into an empty folder, without the user's own files, and check a proof there."""
+    for each in folder.iterdir():
+        each.unlink()
+    attached = re.findall(r'download="([^"]+)"[^>]*href="data:[^,"]*;base64,([^"]+)"', page)
+    assert {"design.toml", "coach.toml"} <= {name for name, _ in attached}
+    for name, content in attached:
+        Path(name).write_bytes(base64.b64decode(content))
+    (command,) = re.findall(r"wspd (check [^<]+)", page)
+    again = wspd(*shlex.split(html.unescape(command)))
+    assert again.code == 0, again.err
+    assert "PROVED" in again.out
+
+
 @pytest.mark.slow
 def test_the_report_that_design_prints_runs(wspd, folder):
     commands = designed(wspd, folder, "coach.toml")
     outcome = wspd(*commands["report"])
     assert outcome.code == 0, outcome.err
     page = Path("my designs/d 1.html").read_text(encoding="utf-8")
+    assert_check_runs(wspd, page, folder)
     for word in ("trenitalia (textbook)", "The brake on full adhesion", "coach (planar)"):
         assert word in page
     for word in ("four-axle", "quarter locomotive", "planar locomotive", "ER24PC locomotive"):

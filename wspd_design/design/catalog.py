@@ -6,7 +6,7 @@ from pathlib import Path
 from wspd_design.controllers.family import FAMILIES, Given, preset_of
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.file import read_design
-from wspd_design.design.industry import named_with_table, usual_table
+from wspd_design.design.industry import named_with, usual_table
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
@@ -49,7 +49,7 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     if family.tables is not None:
         chosen = preset_of(family, preset) if colon else usual_table(vehicle)
         table = family.tables(chosen)
-        name = named_with_table(base, chosen) if colon or chosen != "calibrated" else base
+        name = named_with(base, chosen) if colon or chosen != "calibrated" else base
     return family.build(
         Given(
             name=name,

@@ -11,6 +11,7 @@ from wspd_design.parameters.schema import Preset
 CALIBRATED_FOR = ("er24pc", "er24pc-service")
 """Vehicles that the calibrated tables belong to: they go with the fit to Table 10 of the paper."""
 
+PRINTED = "printed"
 _NOT_A_NUMBER = ("name", "bounds")
 
 
@@ -25,20 +26,21 @@ def usual_table(vehicle: Vehicle) -> Preset:
     return "calibrated" if any(own == _numbers(load_vehicle(name)) for name in CALIBRATED_FOR) else "textbook"
 
 
-def named_with_table(law: str, preset: Preset) -> str:
-    """Return the name of a law that says which table it takes."""
-    return f"{law} ({preset})"
+def named_with(law: str, numbers: str) -> str:
+    """Return the name of a law that says which numbers it takes: a table, or the gains that the paper prints."""
+    return f"{law} ({numbers})"
 
 
 def table_note(controllers: Iterable[str]) -> str:
-    """Say what the presets in the names of controllers are; nothing where none is named."""
-    meant: dict[Preset, str] = {
+    """Say what the numbers in the names of controllers are; nothing where none is named."""
+    meant = {
         "textbook": "textbook: tables of conventional practice",
         "calibrated": "calibrated: tables that go with the fit to Table 10 of the paper",
+        PRINTED: "printed: gains that the paper prints",
     }
     told = list(controllers)
-    said = [words for preset, words in meant.items() if any(name.endswith(f"({preset})") for name in told)]
-    belong = f"the calibrated ones belong to {' and '.join(CALIBRATED_FOR)}"
+    said = [words for kind, words in meant.items() if any(name.endswith(f"({kind})") for name in told)]
+    belong = f"what is calibrated or printed belongs to {' and '.join(CALIBRATED_FOR)}"
     return f"{'; '.join(said)}; {belong}." if said else ""
 
 

@@ -74,6 +74,15 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
                 content=design_text(made),
                 description="the design, which every command takes in place of a controller's name",
             ),
+            *(
+                Attachment(
+                    name=own.name,
+                    media_type="application/toml",
+                    content=own.text,
+                    description=f"the {own.kind}, a file of its own",
+                )
+                for own in dossier.own_files
+            ),
             Attachment(
                 name="report.json",
                 media_type="application/json",

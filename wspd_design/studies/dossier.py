@@ -22,6 +22,7 @@ from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.files import available, load_entries
+from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
@@ -55,12 +56,23 @@ class PhasePlane:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OwnFile:
+    """A vehicle or rail of the user's own, which no one else has."""
+
+    kind: str  # vehicle or rail
+    name: str  # of the file, without its folder
+    variant: str  # what follows it in options, such as :laden
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Dossier:
     """A design, the numbers it rests on, its linearizations, certificates and simulated stops."""
 
     design: Design
     vehicle: ParameterSet
     rail: ParameterSet
+    own_files: tuple[OwnFile, ...]  # of those two, where they do not ship with the program
     other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
     brake: BrakeSheet  # on full adhesion
@@ -137,6 +149,7 @@ def dossier(
         design=made,
         vehicle=load_entries("vehicle", vehicle_name),
         rail=load_entries("rail", rail_name),
+        own_files=(*_own_file("vehicle", vehicle_name), *_own_file("rail", rail_name)),
         other_parameters=_other_parameters(made, vehicle, rail, baselines),
         compared_designs=tuple(design for _, design in others if design is not None),
         brake=brake_sheet(vehicle),
@@ -154,6 +167,14 @@ def dossier(
             input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
         ),
     )
+
+
+def _own_file(kind: str, written: str) -> tuple[OwnFile, ...]:
+    path = Path(written.removesuffix(LADEN))
+    if path.suffix != ".toml":
+        return ()
+    text = path.read_text(encoding="utf-8-sig")
+    return (OwnFile(kind=kind, name=path.name, variant=written.removeprefix(str(path)), text=text),)
 
 
 def versions() -> tuple[tuple[str, str], ...]:

@@ -52,10 +52,19 @@ def test_names_say_which_table_is_meant(tmp_path, law):
     assert (asked.name, asked.table) == (f"{law} (calibrated)", calibrated.table)
 
 
+def test_printed_gains_say_so_on_another_vehicle(tmp_path):
+    other = tmp_path / "heavy.toml"
+    other.write_text('base = "er24pc"\n[brake.vent_time]\nvalue = 0.3\nunit = "s"\n')
+    own, foreign = (load_case("afsmc", CaseOptions(vehicle=each)).controller for each in (None, other))
+    assert (own.name, foreign.name) == ("afsmc", "afsmc (printed)")
+    assert own.gains == foreign.gains
+    assert "printed: gains that the paper prints; " in table_note([foreign.name])
+
+
 def test_what_a_comparison_says_about_the_tables():
     assert table_note(["smc", "trenitalia"]) == ""
     said = table_note(["smc", "trenitalia (textbook)"])
     assert "conventional practice" in said
     assert "Table 10" not in said
-    assert said.endswith("the calibrated ones belong to er24pc and er24pc-service.")
+    assert said.endswith("what is calibrated or printed belongs to er24pc and er24pc-service.")
     assert "Table 10" in table_note(["trenitalia (calibrated)"])

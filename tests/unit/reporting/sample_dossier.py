@@ -163,6 +163,7 @@ def sample_dossier(
         ),
         vehicle=load_entries("vehicle", "er24pc"),
         rail=load_entries("rail", rail),
+        own_files=(),
         other_parameters=(load_entries("constants", "constants"), load_entries("controller", "trenitalia")),
         compared_designs=(),
         brake=brake_sheet(load_vehicle("er24pc")),
