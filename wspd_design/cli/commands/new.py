@@ -1,6 +1,7 @@
 """``wspd new``: the wizard."""
 
 import os
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -74,7 +75,9 @@ def _interview(questions: tuple[Step, ...], answers: dict[str, str], target: Pat
         kept = draft_path(target)
         write_draft(answers, kept)
         console().print(
-            f"The answers are kept. Go on with:\nwspd new --resume {kept}", markup=False, soft_wrap=True
+            f"The answers are kept. Go on with:\nwspd new --resume {shlex.quote(str(kept))}",
+            markup=False,
+            soft_wrap=True,
         )
         raise typer.Exit(INTERRUPTED) from None
 
