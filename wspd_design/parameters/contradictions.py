@@ -1,0 +1,72 @@
+"""Numbers of a file that do not fit together, and numbers that nobody would expect."""
+
+import warnings
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import PROFILE_RAILS, available, load_entries
+from wspd_design.parameters.records import ParameterSet
+
+
+def check_heights_and_lengths(values: Mapping[str, Any], name: str) -> None:
+    """Refuse a vehicle whose body hangs below its bogies, or whose bogies overlap.
+
+    Parameters
+    ----------
+    values : mapping
+        Numbers of the vehicle by their dotted names [SI].
+    name : str
+        Name of the vehicle in sentences.
+    """
+    for lower, upper in (("bogie_height", "body_height"), ("wheelbase", "bogie_spacing")):
+        if lower in values and upper in values and values[lower] >= values[upper]:
+            raise UserError(
+                f"{upper} = {values[upper]:g} m in vehicle {name} must be above {lower} = {values[lower]:g} m; "
+                "correct one of them."
+            )
+
+
+def notice_of_vehicle(parameters: ParameterSet, gravity: float) -> str:
+    """Say that a brake asks for more adhesion than any shipped rail gives; empty where it does not."""
+    number = parameters.number
+    load = number("mass") / number("wheelsets") * gravity
+    demand = number("brake.max_torque") / number("wheel_radius") / load
+    most, rail = _best_rail()
+    if demand <= most:
+        return ""
+    entry = parameters.entries["brake.max_torque"]
+    taken = f", taken over from {entry.inherited}," if entry.inherited else ""
+    return (
+        f"brake.max_torque = {number('brake.max_torque'):g} N m of vehicle {parameters.name}{taken} is a wheel demand "
+        f"of {demand:.2f}, more than any rail gives ({rail} at most {most:g}): every wheel slides; check the torque"
+    )
+
+
+def notice_of_rail(parameters: ParameterSet) -> str:
+    """Say that the slip reduction exceeds the adhesion reduction, against eq. (5); empty where it does not."""
+    slip, adhesion = parameters.number("slip_reduction"), parameters.number("adhesion_reduction")
+    if slip <= adhesion:
+        return ""
+    return (
+        f"slip_reduction = {slip:g} of rail {parameters.name} is above adhesion_reduction = {adhesion:g}, against "
+        "kS <= kA of eq. (5); a fit to a measured curve may say so, and it is taken as it is"
+    )
+
+
+def tell(notice: str) -> None:
+    """Warn, unless there is nothing to say."""
+    if notice:
+        warnings.warn(notice, stacklevel=4)
+
+
+@cache
+def _best_rail() -> tuple[float, str]:
+    """Return the largest friction coefficient of the shipped rails, bounds included, and the rail."""
+    found = (0.0, "")
+    for name in available("rail"):
+        parameters = load_entries("rail", name)
+        if PROFILE_RAILS not in parameters.entries:
+            found = max(found, (parameters.bounds.around("mu0", parameters.number("mu0"))[1], name))
+    return found
