@@ -91,17 +91,17 @@ def test_back(back, answer, tmp_path):
 def test_branches_are_evaluated_again(answer, tmp_path):
     """An own rail file is asked for, and no longer asked for after going back and choosing a shipped rail."""
     (tmp_path / "mine.toml").write_text('base = "polach-wet"\n[mu0]\nvalue = 0.33\nunit = "-"\n')
-    to_own = DOWN * 3
+    to_own = DOWN * 4
     own = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{ENTER * 6}", "new", "-o", "own.toml")
     assert own.code == 0
     assert read_design(tmp_path / "own.toml").rail == "mine"
-    back = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{BACK}{BACK}{UP * 3}{ENTER}{ENTER * 6}")
+    back = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{BACK}{BACK}{UP * 4}{ENTER}{ENTER * 6}")
     assert back.code == 0
     assert read_design(tmp_path / "design.toml").rail == "polach-wet"
 
 
 def test_missing_own_file_is_not_accepted(answer, tmp_path):
-    keys = f"{ENTER}{DOWN * 3}{ENTER}nowhere.toml{ENTER}{LEAVE}"
+    keys = f"{ENTER}{DOWN * 4}{ENTER}nowhere.toml{ENTER}{LEAVE}"
     assert answer(keys).code == 130
     assert "nowhere" not in (tmp_path / "design.toml.part").read_text()
 

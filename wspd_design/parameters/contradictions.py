@@ -6,7 +6,7 @@ from functools import cache
 from typing import Any
 
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.files import PROFILE_RAILS, available, load_entries
+from wspd_design.parameters.files import load_entries, uniform_rails
 from wspd_design.parameters.records import ParameterSet
 
 
@@ -65,8 +65,7 @@ def tell(notice: str) -> None:
 def _best_rail() -> tuple[float, str]:
     """Return the largest friction coefficient of the shipped rails, bounds included, and the rail."""
     found = (0.0, "")
-    for name in available("rail"):
+    for name in uniform_rails():
         parameters = load_entries("rail", name)
-        if PROFILE_RAILS not in parameters.entries:
-            found = max(found, (parameters.bounds.around("mu0", parameters.number("mu0"))[1], name))
+        found = max(found, (parameters.bounds.around("mu0", parameters.number("mu0"))[1], name))
     return found

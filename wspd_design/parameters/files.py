@@ -45,6 +45,11 @@ def available(kind: Kind) -> list[str]:
     return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 
 
+def uniform_rails() -> list[str]:
+    """Return the names of the shipped rails of one adhesion, which do not change along the track, sorted."""
+    return [name for name in available("rail") if PROFILE_RAILS not in load_entries("rail", name).entries]
+
+
 def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
     """Load all entries of a shipped parameter file or of a user's own one.
 

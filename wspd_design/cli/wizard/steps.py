@@ -9,6 +9,7 @@ from wspd_design.controllers.family import designed
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import uniform_rails
 from wspd_design.parameters.loading import available, load_entries, load_rail, load_vehicle
 from wspd_design.parameters.schema import Kind
 
@@ -168,7 +169,8 @@ def _check_tolerance(text: str, answers: Answers) -> str:
 
 
 def _parameter_set(kind: Kind, title: str, default: str, explanation: str) -> Step:
-    shipped = [Option(value=name, text=load_entries(kind, name).title) for name in available(kind)]
+    names = uniform_rails() if kind == "rail" else available(kind)  # a design is for one adhesion
+    shipped = [Option(value=name, text=load_entries(kind, name).title) for name in names]
     return Step(
         key=kind,
         title=title,
