@@ -1,31 +1,20 @@
 """Numbers of a file that do not fit together, and numbers that nobody would expect."""
 
 import warnings
-from collections.abc import Mapping
 from functools import cache
-from typing import Any
 
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries, uniform_rails
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.records import ParameterSet, Vehicle
 
 
-def check_heights_and_lengths(values: Mapping[str, Any], name: str) -> None:
-    """Refuse a vehicle whose body hangs below its bogies, or whose bogies overlap.
-
-    Parameters
-    ----------
-    values : mapping
-        Numbers of the vehicle by their dotted names [SI].
-    name : str
-        Name of the vehicle in sentences.
-    """
-    for lower, upper in (("bogie_height", "body_height"), ("wheelbase", "bogie_spacing")):
-        if lower in values and upper in values and values[lower] >= values[upper]:
-            raise UserError(
-                f"{upper} = {values[upper]:g} m in vehicle {name} must be above {lower} = {values[lower]:g} m; "
-                "correct one of them."
-            )
+def check_heights(vehicle: Vehicle) -> None:
+    """Refuse a vehicle whose body hangs below its bogies."""
+    if vehicle.body_height <= vehicle.bogie_height:
+        raise UserError(
+            f"body_height = {vehicle.body_height:g} m in vehicle {vehicle.name} must be above "
+            f"bogie_height = {vehicle.bogie_height:g} m; correct one of them."
+        )
 
 
 def notice_of_vehicle(parameters: ParameterSet, gravity: float) -> str:

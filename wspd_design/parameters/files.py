@@ -15,6 +15,7 @@ from typing import Any
 
 from wspd_design.parameters.entry import entry_of, quoted
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.laden import LADEN, laden
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.schema import Kind, Schema, schema_of
 from wspd_design.parameters.units import units_of
@@ -58,7 +59,8 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
     kind : {"constants", "vehicle", "rail", "controller", "track"}
         What the file describes.
     name_or_path : str or Path
-        Name of a shipped file, such as ``er24pc``, or for vehicles and rails the path of a ``.toml`` file.
+        Name of a shipped file, such as ``er24pc``, or for vehicles and rails the path of a ``.toml`` file; with
+        ``:laden`` after it the laden vehicle.
 
     Returns
     -------
@@ -71,6 +73,8 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
         If the name is unknown or anything in the file is wrong; the sentence names file and key.
     """
     text = str(name_or_path)
+    if kind == "vehicle" and text.endswith(LADEN):
+        return laden(load_entries(kind, text.removesuffix(LADEN)))
     if kind in ("vehicle", "rail") and text.endswith(".toml"):
         return _load_own(kind, Path(text))
     if text not in available(kind):

@@ -77,10 +77,10 @@ def test_a_decimal_comma_and_a_share_in_short(write):
         ('brake.T_max = "6 kN m"', ('"brake.max_torque"',)),
         ('deceleration = "1 m/s^2"', ("holds the torque", "brake.max_torque", "wspd new vehicle")),
         ('rotating_mass = "5 t"', ("wheelset_inertia",)),
-        ("xyzzy = 3", ("take one of mass, wheelsets, wheel_radius",)),
+        ("xyzzy = 3", ("take one of mass, wheelsets, axles_per_bogie",)),
         ('brake = "strong"', ("[brake.max_torque]",)),
         ('body_height = "0.6 m"', ("body_height = 0.6 m", "above bogie_height = 0.7 m")),
-        ('wheelbase = "11 m"', ("bogie_spacing = 10.362 m", "above wheelbase = 11 m")),
+        ('wheelbase = "11 m"', ("wheelbase = 11 m", "bogie_spacing = 10.362 m")),
     ],
 )
 def test_what_a_vehicle_file_must_not_say(write, line, fragments):
