@@ -5,7 +5,7 @@ from functools import cache
 
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries, uniform_rails
-from wspd_design.parameters.records import ParameterSet, Vehicle
+from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 
 
 def check_heights(vehicle: Vehicle) -> None:
@@ -33,14 +33,14 @@ def notice_of_vehicle(parameters: ParameterSet, gravity: float) -> str:
     )
 
 
-def notice_of_rail(parameters: ParameterSet) -> str:
+def notice_of_rail(rail: Rail) -> str:
     """Say that the slip reduction exceeds the adhesion reduction, against eq. (5); empty where it does not."""
-    slip, adhesion = parameters.number("slip_reduction"), parameters.number("adhesion_reduction")
-    if slip <= adhesion:
+    if rail.slip_reduction <= rail.adhesion_reduction:
         return ""
     return (
-        f"slip_reduction = {slip:g} of rail {parameters.name} is above adhesion_reduction = {adhesion:g}, against "
-        "kS <= kA of eq. (5); a fit to a measured curve may say so, and it is taken as it is"
+        f"slip_reduction = {rail.slip_reduction:g} of rail {rail.name} is above adhesion_reduction = "
+        f"{rail.adhesion_reduction:g}, against kS <= kA of eq. (5); a fit to a measured curve may say so, and it is "
+        "taken as it is"
     )
 
 

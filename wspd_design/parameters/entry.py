@@ -140,7 +140,7 @@ def _check_unit(name: str, unit: str, quantity: Quantity, where: str) -> None:
 def _value(raw: object, quantity: Quantity, unit: str, what: str) -> Any:
     match quantity.shape:
         case "number":
-            return _number(raw, quantity, unit, what)
+            return number_of(raw, quantity, unit, what)
         case "word":
             if raw not in quantity.words:
                 raise UserError(
@@ -154,10 +154,10 @@ def _value(raw: object, quantity: Quantity, unit: str, what: str) -> Any:
                 raise UserError(f"{what} must consist of words; put each one in quotes.")
             return tuple(words)
         case "vector":
-            return tuple(_number(item, quantity, unit, what) for item in _list(raw, what, "numbers"))
+            return tuple(number_of(item, quantity, unit, what) for item in _list(raw, what, "numbers"))
         case "matrix":
             rows = _rows(raw, what, "numbers")
-            return tuple(tuple(_number(item, quantity, unit, what) for item in row) for row in rows)
+            return tuple(tuple(number_of(item, quantity, unit, what) for item in row) for row in rows)
         case "word matrix":
             table = _rows(raw, what, "words")
             if not all(isinstance(word, str) for row in table for word in row):
@@ -178,7 +178,8 @@ def _rows(raw: object, what: str, content: str) -> list[list[Any]]:
     return rows
 
 
-def _number(raw: object, quantity: Quantity, unit: str, what: str) -> float:
+def number_of(raw: object, quantity: Quantity, unit: str, what: str) -> float:
+    """Return a number in SI units; one that is impossible or that no railway has raises :class:`UserError`."""
     if isinstance(raw, bool) or not isinstance(raw, (int, float)):
         raise UserError(
             f"{what} is {quoted(raw)} but must be a number; write it without quotes and with a point."
@@ -215,7 +216,7 @@ def _bounds(raw: object, quantity: Quantity, unit: str, what: str) -> tuple[floa
     pair = _list(raw, what, "two numbers")
     if len(pair) != 2:
         raise UserError(f"{what} has {len(pair)} numbers but must have two; write [lower, upper].")
-    low, high = (_number(item, quantity, unit, what) for item in pair)
+    low, high = (number_of(item, quantity, unit, what) for item in pair)
     if low > high:
         raise UserError(f"{what} has the lower one above the upper one; write [lower, upper].")
     return low, high

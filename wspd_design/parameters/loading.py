@@ -56,6 +56,7 @@ __all__ = [
     "load_trenitalia",
     "load_vehicle",
     "sources",
+    "vehicle_of",
 ]
 
 _Record = TypeVar("_Record")
@@ -96,6 +97,20 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         If there is no such vehicle, its file is wrong, or its running gear or masses contradict each other.
     """
     parameters = load_entries("vehicle", name_or_path)
+    vehicle = vehicle_of(parameters)
+    if _is_own(name_or_path):
+        tell(notice_of_vehicle(parameters, constants().gravity))
+    return vehicle
+
+
+def vehicle_of(parameters: ParameterSet) -> Vehicle:
+    """Return the vehicle of the entries of a file.
+
+    Raises
+    ------
+    UserError
+        If the numbers contradict each other.
+    """
     values = _values(parameters)
     counts = {
         name: _count(values[name], name, parameters.name)
@@ -118,8 +133,6 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     )
     _check_gear(vehicle)
     check_heights(vehicle)
-    if _is_own(name_or_path):
-        tell(notice_of_vehicle(parameters, constants().gravity))
     return vehicle
 
 
@@ -170,9 +183,10 @@ def load_rail(name_or_path: str | Path) -> Rail:
             f"rail {parameters.name} changes along the track, and one adhesion is asked for here; take one of "
             f"{', '.join(dict.fromkeys(map(str, rails)))}."
         )
+    rail = _build(Rail, _values(parameters), name=parameters.name, bounds=parameters.bounds)
     if _is_own(name_or_path):
-        tell(notice_of_rail(parameters))
-    return _build(Rail, _values(parameters), name=parameters.name, bounds=parameters.bounds)
+        tell(notice_of_rail(rail))
+    return rail
 
 
 def load_rail_profile(name_or_path: str | Path) -> RailProfile:

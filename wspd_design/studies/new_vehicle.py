@@ -5,12 +5,13 @@ What neither an answer nor a rule gives is taken from a shipped vehicle of the s
 
 import math
 from dataclasses import dataclass, replace
+from functools import cache, partial
 
 from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.model.hertz import contact_from_radii
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import constants, load_entries, load_vehicle
-from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.loading import constants, load_entries, load_vehicle, vehicle_of
+from wspd_design.parameters.records import Entry, ParameterSet, Vehicle
 from wspd_design.parameters.units import KMH, factor, to_si
 
 RULE, ANSWER = "wspd new vehicle", "own answer"
@@ -76,8 +77,10 @@ class Wanted:
     build_up_time: float  # s, until 95 % of the pressure
     fill_time: float  # s
     vent_time: float  # s
+    answered: frozenset[str] = frozenset()  # what the user said; the rest is as of the kind
 
 
+@cache
 def wanted_like(kind: str) -> Wanted:
     """Return the answers that a shipped vehicle stands for."""
     vehicle, entries = load_vehicle(kind), load_entries("vehicle", kind).entries
@@ -99,6 +102,18 @@ def wanted_like(kind: str) -> Wanted:
         fill_time=vehicle.brake.fill_time,
         vent_time=vehicle.brake.vent_time,
     )
+
+
+def derived_vehicle(name: str, wanted: Wanted) -> Vehicle:
+    """Return the vehicle of some answers.
+
+    Raises
+    ------
+    UserError
+        If the answers contradict each other.
+    """
+    kept = {entry.name: entry for entry in derived_entries(wanted)}
+    return vehicle_of(ParameterSet(kind="vehicle", name=name, title=name, entries=kept))
 
 
 def derived_entries(wanted: Wanted) -> tuple[Entry, ...]:
@@ -126,13 +141,14 @@ def derived_entries(wanted: Wanted) -> tuple[Entry, ...]:
 
 def _answered(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:
     radius = wanted.wheel_diameter / 2.0
+    stated = partial(_stated, wanted)
     answers = [
-        _stated("mass", wanted.mass, "kg"),
-        _stated("wheelsets", float(wanted.wheelsets), "-"),
-        _stated("wheel_radius", radius, "mm", at=f"half of the diameter {1e3 * wanted.wheel_diameter:g} mm"),
-        _stated("bogie_spacing", wanted.bogie_spacing, "m"),
-        _stated("brake.fill_time", wanted.fill_time, "s"),
-        _stated("brake.vent_time", wanted.vent_time, "s"),
+        stated("mass", "mass", wanted.mass, "kg"),
+        stated("wheelsets", "wheelsets", float(wanted.wheelsets), "-"),
+        stated("wheel_radius", "wheel_diameter", radius, "mm"),
+        stated("bogie_spacing", "bogie_spacing", wanted.bogie_spacing, "m"),
+        stated("brake.fill_time", "fill_time", wanted.fill_time, "s"),
+        stated("brake.vent_time", "vent_time", wanted.vent_time, "s"),
         _ruled(
             "wheelset_inertia",
             wanted.rotating_mass / wanted.wheelsets * radius**2,
@@ -147,9 +163,9 @@ def _answered(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:
         ),
     ]
     if "wheelbase" in base.entries:
-        answers.append(_stated("wheelbase", wanted.wheelbase, "m"))
+        answers.append(stated("wheelbase", "wheelbase", wanted.wheelbase, "m"))
     if wanted.laden_mass:
-        answers.append(_stated("laden.mass", wanted.laden_mass, "kg"))
+        answers.append(stated("laden.mass", "laden_mass", wanted.laden_mass, "kg"))
     return {entry.name: entry for entry in answers}
 
 
@@ -291,8 +307,12 @@ def _laden_height(wanted: Wanted, base: ParameterSet) -> Entry:
     return _ruled("laden.body_height", height, "m", f"as of {wanted.kind}{', laden' * known}")
 
 
-def _stated(name: str, value: float, unit: str, *, at: str = "as asked") -> Entry:
-    return _entry(name, value, unit, ANSWER, at, "assumed")
+def _stated(wanted: Wanted, name: str, question: str, value: float, unit: str) -> Entry:
+    """Return a number as the user said it, or as the kind has it."""
+    if question in wanted.answered:
+        at = "half of the diameter that was asked for" if question == "wheel_diameter" else "as asked"
+        return _entry(name, value, unit, ANSWER, at, "assumed")
+    return _entry(name, value, unit, f"vehicle {wanted.kind}", f"as of {wanted.kind}", "assumed")
 
 
 def _ruled(name: str, value: float, unit: str, rule: str) -> Entry:

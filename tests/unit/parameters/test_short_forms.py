@@ -146,5 +146,5 @@ def test_a_slip_reduction_above_the_adhesion_reduction_is_told(write):
         UserWarning, match="slip_reduction = 0.4 of rail mine is above adhesion_reduction = 0.3"
     ):
         loading.load_rail(write('base = "polach-wet"\nslip_reduction = 0.4\n'))
-    assert "kS <= kA" in notice_of_rail(loading.load_entries("rail", "eurosprinter127"))
-    assert notice_of_rail(loading.load_entries("rail", "polach-wet")) == ""
+    assert "kS <= kA" in notice_of_rail(loading.load_rail("eurosprinter127"))
+    assert notice_of_rail(loading.load_rail("polach-wet")) == ""

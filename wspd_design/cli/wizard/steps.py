@@ -33,7 +33,8 @@ class Step:
     """One question.
 
     With ``options`` it is a list to choose from, otherwise a line to write. ``check`` returns what the
-    program understands, and raises :class:`UserError` for what it does not accept.
+    program understands, and raises :class:`UserError` for what it does not accept. ``suggest`` takes the place of the
+    default where that follows from the answers before.
     """
 
     key: str
@@ -43,6 +44,13 @@ class Step:
     check: Callable[[str, Answers], str] = lambda text, _answers: text
     options: tuple[Option, ...] = ()
     applies: Callable[[Answers], bool] = lambda _answers: True
+    suggest: Callable[[Answers], str] | None = None
+
+    def suggestion(self, answers: Answers) -> str:
+        """Return the answer of the user who went through here before, or what the program suggests."""
+        if self.key in answers:
+            return answers[self.key]
+        return self.default if self.suggest is None else self.suggest(answers)
 
 
 def steps() -> tuple[Step, ...]:
