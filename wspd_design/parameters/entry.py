@@ -197,7 +197,7 @@ def number_of(raw: object, quantity: Quantity, unit: str, what: str) -> float:
     if 0.0 < abs(number) < _TINY:
         raise UserError(f"{what} is {raw}, too small to compute with; write 0 if it may vanish.")
     if quantity.plausible is not None and not quantity.plausible[0] <= number <= quantity.plausible[1]:
-        raise UserError(f"{what} is {raw} {unit}; {_implausible(float(raw), unit, quantity)}")
+        raise UserError(f"{what} is {float(raw):.12g} {unit}; {_implausible(float(raw), unit, quantity)}")
     return number
 
 

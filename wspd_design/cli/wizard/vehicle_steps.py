@@ -105,7 +105,7 @@ def vehicle_steps() -> tuple[Step, ...]:
             explanation="What all that turns adds to the mass of the train, of the whole vehicle: a mass, or % of the "
             "empty one. Trailers have 4 to 8 %, driven vehicles 8 to 15 %.",
             default="5 %",
-            suggest=_suggested(lambda like: f"{100.0 * like.rotating_mass / like.mass:.6g} %"),
+            suggest=_suggested(lambda like: f"{100.0 * like.rotating_mass / like.mass:.3g} %"),
             check=_echo(
                 "rotating_mass",
                 lambda wanted: (
