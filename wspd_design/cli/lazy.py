@@ -103,6 +103,11 @@ COMMANDS = {
         "Show every number of a parameter set with unit, bounds, status, source and place.",
         "Example: wspd sources er24pc",
     ),
+    "schema": Entry(
+        KNOWING,
+        "Print the JSON Schema of vehicle or rail files, for editors.",
+        "Example: wspd schema vehicle -o wspd-vehicle.json",
+    ),
     "doctor": Entry(
         KNOWING,
         "Look whether all that is needed is there: packages, fonts, folders, compiler, terminal.",
