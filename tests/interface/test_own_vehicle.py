@@ -52,8 +52,9 @@ def designed(wspd, vehicle, *, target="my designs/d 1.toml"):
     return commands
 
 
+@pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize("vehicle", ["coach.toml", "metro.toml", "coach.toml:laden"])
-def test_what_design_prints_runs(wspd, folder, vehicle):
+def test_what_design_prints_runs(wspd, vehicle):
     commands = designed(wspd, vehicle)
     stop = wspd(*commands["simulate"])
     assert stop.code == 0, stop.err
@@ -73,7 +74,8 @@ def test_the_folder_of_the_design_does_not_matter(wspd, folder, monkeypatch):
     assert "coach.toml, which is not there; give its file with --vehicle" in gone.err
 
 
-def test_what_certify_prints_runs(wspd, folder):
+@pytest.mark.usefixtures("folder")
+def test_what_certify_prints_runs(wspd):
     designed(wspd, "coach.toml")
     outcome = wspd("certify", "my designs/d 1.toml", "--only", "gain_positive", "--only", "surface_hurwitz")
     assert outcome.code == 0, outcome.err
