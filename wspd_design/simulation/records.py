@@ -249,6 +249,11 @@ class Run:
     engine: str  # what computed it
 
     @property
+    def train(self) -> str:
+        """Vehicle and plant, as sentences name them."""
+        return f"{self.vehicle} ({self.plant})"
+
+    @property
     def samples(self) -> tuple[Sample, ...]:
         """Samples of the first wheelset with a brake."""
         return self.axle_samples[self.first_braked]
