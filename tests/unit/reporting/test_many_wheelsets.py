@@ -10,7 +10,7 @@ from wspd_design.reporting.figure_style import SERIES
 from wspd_design.reporting.figures.drawing import look, picture
 from wspd_design.reporting.figures.phase import phase_alt
 from wspd_design.reporting.figures.stop import TRAIN, line_of, named, stop_traces
-from wspd_design.reporting.running_gear import running_gear
+from wspd_design.reporting.running_gear import alike_note, running_gear
 from wspd_design.simulation.comparison import compare
 from wspd_design.simulation.records import Scenario
 
@@ -67,7 +67,8 @@ GEARS = {
     "": "4 axles, two-axle bogies",
     '[wheelsets]\nvalue = 6\nunit = "-"\n[axles_per_bogie]\nvalue = 3\nunit = "-"': "6 axles, three-axle bogies",
     '[wheelsets]\nvalue = 2\nunit = "-"\n[axles_per_bogie]\nvalue = 1\nunit = "-"': "2 single axles",
-    '[wheelsets]\nvalue = 6\nunit = "-"\n[bodies]\nvalue = 2\nunit = "-"': "6 axles, two-axle bogies shared by 2 bodies",
+    '[wheelsets]\nvalue = 6\nunit = "-"\n[bodies]\nvalue = 2\nunit = "-"': "6 axles, two-axle "
+    "bogies shared by 2 bodies",
     '[brake.axle_shares]\nvalue = [1, 0, 1, 0.5]\nunit = "-"': "4 axles, two-axle bogies; braking torque of the axles "
     "from the front: 1, 0, 1 and 0.5 of the largest",
 }
@@ -78,3 +79,13 @@ def test_the_running_gear_in_words(tmp_path, text):
     path = tmp_path / "own.toml"
     path.write_text(f'base = "er24pc"\n{text}')
     assert running_gear(load_entries("vehicle", path)) == GEARS[text]
+
+
+def test_a_linearization_says_where_wheelsets_are_not_alike(tmp_path):
+    notes = {}
+    for text in GEARS:
+        path = tmp_path / "own.toml"
+        path.write_text(f'base = "er24pc"\n{text}')
+        notes[GEARS[text]] = alike_note(load_entries("vehicle", path))
+    assert [bool(note) for note in notes.values()] == [False, False, False, True, True]
+    assert "own are not" in notes["6 axles, two-axle bogies shared by 2 bodies"]
