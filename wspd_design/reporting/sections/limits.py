@@ -20,8 +20,8 @@ EVERYWHERE: tuple[str, ...] = (
 OF_PLANT = {
     "quarter": "One wheelset stands for all, with the same load: weight transfer, and wheelsets that "
     "slide differently, are not shown.",
-    "planar": "Bodies and bogies pitch about a quasi-static weight transfer; suspension, lateral motion and "
-    "curves are not modeled.",
+    "planar": "Bodies and bogies pitch about a quasi-static weight transfer without the moment by which turning "
+    "wheelsets are slowed down; suspension, lateral motion and curves are not modeled.",
 }
 
 
