@@ -66,7 +66,7 @@ def rail(
         "slip_reduction": slip_reduction,
         "peak": peak,
     }
-    target = target_of(output, resume, RAIL_FILE)
+    target = target_of(output, resume, RAIL_FILE, remedy="give the name of the rail file, too")
     if target.suffix != ".toml":
         raise UserError(f"rail file {target} must end in .toml")
     check_output(target, force=force)

@@ -94,7 +94,7 @@ def vehicle(
         "fill_time": fill_time,
         "vent_time": vent_time,
     }
-    target = target_of(output, resume, VEHICLE_FILE)
+    target = target_of(output, resume, VEHICLE_FILE, remedy="give the name of the vehicle file, too")
     if target.suffix != ".toml":
         raise UserError(f"vehicle file {target} must end in .toml")
     check_output(target, force=force)
