@@ -93,6 +93,11 @@ COMMANDS = {
         "Show open-loop poles, input gain and equilibrium torque of the slip over speed.",
         "Example: wspd linearize --rail polach-dry",
     ),
+    "brake": Entry(
+        KNOWING,
+        "Show what the brake does while no wheel slides: stops by mean values, braked weight, adhesion asked for.",
+        "Example: wspd brake --vehicle er24pc-service",
+    ),
     "equations": Entry(
         KNOWING,
         "Show every equation of the paper with its verdict, or all about one of them.",

@@ -67,7 +67,7 @@ def scenario(
         seed=seed,
         axle_rails=None if disturbances.axle_rails is None else _axle_rails(disturbances.axle_rails),
         patches=tuple(map(_patch, disturbances.patch or ())),
-        grade=0.0 if disturbances.grade is None else _grade(disturbances.grade),
+        grade=0.0 if disturbances.grade is None else parse_grade(disturbances.grade),
         pad_vibration=disturbances.pad_vibration,
         sensing=_sensing(disturbances),
         load_irregularity=None
@@ -137,7 +137,8 @@ def _patch(text: str) -> Patch:
     return Patch(start=start, rail=load_rail(found["rail"]))
 
 
-def _grade(text: str) -> float:
+def parse_grade(text: str) -> float:
+    """Read a grade, rise over run [-]."""
     parts = _RISE_IN_RUN.fullmatch(text.strip())
     try:
         if parts is None:

@@ -116,3 +116,15 @@ def test_a_valve_that_fills_and_vents_with_two_times(er24pc, vent):
     assert found.state_matrix[1] == pytest.approx([0.0, -rate])
     assert found.input_matrix[1] == pytest.approx((top - torque) / fill + torque / vent)
     assert min(fill, vent) < found.time_constant < max(fill, vent)
+
+
+@pytest.mark.parametrize("vent", [0.15, 0.3, 1.2])
+@pytest.mark.parametrize("speed", [30.0, 5.0, 1.5])
+def test_a_torque_that_the_brake_does_not_have_leaves_the_valve_filling(er24pc, vent, speed):
+    """A weak brake on a dry rail: no averaged valve holds more than T_max, and none has a negative time constant."""
+    weak = replace(er24pc, brake=replace(er24pc.brake, max_torque=8e3, fill_time=0.3, vent_time=vent))
+    found = linearize(weak, load_rail("polach-dry"), slip=0.14, speed=speed)
+    assert found.equilibrium_torque > 8e3
+    assert found.equilibrium_duty == found.equilibrium_torque / 8e3
+    assert found.time_constant == pytest.approx(0.3)
+    assert min(found.poles()) == pytest.approx(-1.0 / 0.3)

@@ -62,7 +62,7 @@ def report(
             vehicle_name=case.vehicle_name,
             rail_name=case.rail_name,
             scenario=stop,
-            baselines=[other for other in FAMILIES if other != made.name],
+            baselines=[other for other in FAMILIES if other not in (made.name, chosen_name)],
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
             stored=stored_beside(chosen_name),

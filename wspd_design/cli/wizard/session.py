@@ -1,6 +1,7 @@
 """One run of a wizard: its questions on a terminal, the answers that are kept, and the review."""
 
 import os
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -69,7 +70,9 @@ def answered(
         draft = draft_path(target)
         write_draft(answers, draft)
         console().print(
-            f"The answers are kept. Go on with:\n{command} --resume {draft}", markup=False, soft_wrap=True
+            f"The answers are kept. Go on with:\n{command} --resume {shlex.quote(str(draft))}",
+            markup=False,
+            soft_wrap=True,
         )
         raise typer.Exit(INTERRUPTED) from None
     return answers, frozenset(answers)

@@ -9,6 +9,7 @@ from wspd_design.reporting.figures.drawing import KMH, picture
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
+from wspd_design.reporting.running_gear import axle_shares
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
@@ -19,14 +20,15 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the simulated stop."""
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
-    radius, limit = (dossier.vehicle.number(name) for name in ("wheel_radius", "brake.max_torque"))
+    radius = dossier.vehicle.number("wheel_radius")
+    limit = dossier.vehicle.number("brake.max_torque") * max(axle_shares(dossier.vehicle))
     draw = partial(stop_traces, trial=own, specification=specification, wheel_radius=radius, max_torque=limit)
-    start = numbers.significant(run.initial_speed * KMH)
+    start, wheelset = numbers.significant(run.initial_speed * KMH), name(run, run.first_braked)
     judged = numbers.significant(JUDGING_SPEED * KMH)
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"The {run.plant} locomotive from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
+            text=f"The stop of {run.train} from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
             f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
             f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
             f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
@@ -38,7 +40,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         ),
         Figure(
             svg=picture(draw, height=8.6),
-            caption=f"The stop over time, {run.plant} locomotive. Green: tolerance about the reference "
+            caption=f"The stop over time, {run.train}. Green: tolerance about the reference "
             f"(dashed). Gray: below {judged} km/h, where the slip is not judged. Bars at the upper edge of the "
             "slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
@@ -49,11 +51,11 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
                 partial(phase_planes, run=run, plane=dossier.phase_plane, specification=specification),
                 height=3.0,
             ),
-            caption=f"Phase planes of the {name(run, 0)} above {judged} km/h. Left: what the law steers, at its "
+            caption=f"Phase planes of the {wheelset} above {judged} km/h. Left: what the law steers, at its "
             "samples; on the dashed surface the error would decay, and the band is the boundary layer. "
             "Right: slip and torque of the wheel; closed loops are a limit cycle of slip and valve."
             if dossier.phase_plane
-            else f"Slip and torque of the {name(run, 0)} above {judged} km/h; closed loops are a limit cycle of "
+            else f"Slip and torque of the {wheelset} above {judged} km/h; closed loops are a limit cycle of "
             "slip and valve. Dashed: the reference.",
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",
