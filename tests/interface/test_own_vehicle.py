@@ -12,7 +12,7 @@ VEHICLES = Path(__file__).parent / "vehicles"
 LADEN = '\n[laden.mass]\nvalue = 54\nunit = "t"\n'
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def folder(tmp_path):
     """Make a folder with a space in its name that holds the vehicles."""
     made = tmp_path / "my trains"
@@ -29,7 +29,7 @@ def printed(outcome):
     return [shlex.split(rest) for before, command, rest in lines if command and before.endswith((" ", ""))]
 
 
-def designed(wspd, folder, vehicle, *, target="my designs/d 1.toml"):
+def designed(wspd, vehicle, *, target="my designs/d 1.toml"):
     Path(target).parent.mkdir(exist_ok=True)
     outcome = wspd(
         *(
@@ -53,8 +53,8 @@ def designed(wspd, folder, vehicle, *, target="my designs/d 1.toml"):
 
 
 @pytest.mark.parametrize("vehicle", ["coach.toml", "metro.toml", "coach.toml:laden"])
-def test_what_design_prints_runs(wspd, folder, vehicle):
-    commands = designed(wspd, folder, vehicle)
+def test_what_design_prints_runs(wspd, vehicle):
+    commands = designed(wspd, vehicle)
     stop = wspd(*commands["simulate"])
     assert stop.code == 0, stop.err
     name = vehicle.replace(".toml", "")
@@ -63,7 +63,7 @@ def test_what_design_prints_runs(wspd, folder, vehicle):
 
 
 def test_the_folder_of_the_design_does_not_matter(wspd, folder, monkeypatch):
-    designed(wspd, folder, "coach.toml")
+    designed(wspd, "coach.toml")
     monkeypatch.chdir("my designs")
     stop = wspd("simulate", "d 1.toml", "--speed", "60 km/h")
     assert (stop.code, stop.err) == (0, "")
@@ -73,8 +73,8 @@ def test_the_folder_of_the_design_does_not_matter(wspd, folder, monkeypatch):
     assert "coach.toml, which is not there; give its file with --vehicle" in gone.err
 
 
-def test_what_certify_prints_runs(wspd, folder):
-    designed(wspd, folder, "coach.toml")
+def test_what_certify_prints_runs(wspd):
+    designed(wspd, "coach.toml")
     outcome = wspd("certify", "my designs/d 1.toml", "--only", "gain_positive", "--only", "surface_hurwitz")
     assert outcome.code == 0, outcome.err
     (check,) = printed(outcome)
@@ -100,7 +100,7 @@ def assert_check_runs(wspd, page, folder):
 
 @pytest.mark.slow
 def test_the_report_that_design_prints_runs(wspd, folder):
-    commands = designed(wspd, folder, "coach.toml")
+    commands = designed(wspd, "coach.toml")
     outcome = wspd(*commands["report"])
     assert outcome.code == 0, outcome.err
     page = Path("my designs/d 1.html").read_text(encoding="utf-8")
