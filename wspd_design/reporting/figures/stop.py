@@ -1,6 +1,5 @@
 """One stop over time: slip, speeds, torque, wheel load and valve command of every wheelset."""
 
-import math
 from typing import TYPE_CHECKING
 
 from wspd_design.design.records import Specification
@@ -159,7 +158,7 @@ def columns_of_names(run: Run) -> dict[str, float]:
 
 
 def _rows_of_names(run: Run) -> int:
-    return math.ceil(run.slip.shape[1] / ROW_OF_NAMES)
+    return -(-int(run.slip.shape[1]) // ROW_OF_NAMES)
 
 
 def name(run: Run, wheelset: int) -> str:
