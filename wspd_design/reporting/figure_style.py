@@ -28,17 +28,6 @@ LINE_STYLES = ("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1))
 """One for each color: a printout in black and white stays legible."""
 
 
-def look(index: int) -> tuple[str, Any]:
-    """Return color and line style of a curve by its number.
-
-    The first six have a color each; the next ones have the same colors with other styles. Number -1 is ink.
-    """
-    if index < 0:
-        return SERIES[index], LINE_STYLES[index]
-    colors = len(SERIES) - 1
-    return SERIES[index % colors], LINE_STYLES[(index + index // colors) % colors]
-
-
 def parameters() -> dict[str, Any]:
     """Return Matplotlib's settings for a figure of the report, for :func:`matplotlib.rc_context`."""
     from cycler import cycler

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
 from typing import Final
 
+from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.records import Vehicle
 
 
@@ -15,6 +16,7 @@ class Assumption(Enum):
     """A property of the vehicle; the value says it as a clause."""
 
     EQUAL_BRAKES = "every axle has a brake, and all brakes are alike"
+    EQUAL_LOADS = "all axles carry the same load at rest"
 
 
 ALL: Final = frozenset(Assumption)
@@ -50,7 +52,15 @@ def _unequal_brakes(vehicle: Vehicle) -> str:
     return f"has the brake.axle_shares {', '.join(f'{share:g}' for share in shares)}"
 
 
+def _unequal_loads(vehicle: Vehicle) -> str:
+    loads = static_shares(vehicle)
+    if min(loads) == max(loads):
+        return ""
+    return f"loads them with {min(loads):.3g} to {max(loads):.3g} of the mean, since its bodies share bogies or axles"
+
+
 _REASONS: Final[Mapping[Assumption, Callable[[Vehicle], str]]] = {
     Assumption.EQUAL_BRAKES: _unequal_brakes,
+    Assumption.EQUAL_LOADS: _unequal_loads,
 }
 """For each assumption: empty, or what a vehicle has instead, as a clause after its name."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.reporting.figure_style import figure_style, figure_svg, look, new_figure
+from wspd_design.reporting.figure_style import LINE_STYLES, SERIES, figure_style, figure_svg, new_figure
 
 if TYPE_CHECKING:
     import numpy as np
@@ -68,6 +68,14 @@ def curve(
     if style == ":" and "linewidth" in options:
         options["linewidth"] *= INK_OF_DOTS
     axes.plot(thin_x, thin_y, color=color, linestyle=style, **options)
+
+
+def look(index: int) -> tuple[str, Any]:
+    """Return color and line style of a curve; beyond the last color all but the last come again with other lines."""
+    if index < len(SERIES):
+        return SERIES[index], LINE_STYLES[index]
+    turn, place = divmod(index - len(SERIES), len(SERIES) - 1)
+    return SERIES[place], LINE_STYLES[(place + turn + 1) % len(LINE_STYLES)]
 
 
 def note(axes: "Axes", text: str, x: float, y: float, **options: Any) -> None:

@@ -3,8 +3,8 @@
 from typing import TYPE_CHECKING
 
 from wspd_design.design.records import Specification
-from wspd_design.reporting.figure_style import INK, MUTED, SERIES, look
-from wspd_design.reporting.figures.drawing import KILO, KMH, curve, note
+from wspd_design.reporting.figure_style import INK, MUTED, SERIES
+from wspd_design.reporting.figures.drawing import KILO, KMH, curve, look, note
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
@@ -17,19 +17,16 @@ if TYPE_CHECKING:
 
     from wspd_design.simulation.records import Trace
 
-TRAIN = -1
-"""Color and line style of the train speed; the wheelsets take the first ones, front to rear."""
+TRAIN = len(SERIES) - 1
+"""Color and line style of the train speed; the wheelsets take the others, front to rear."""
 
 MOST = 900
 """Points of the curve of one wheelset: there are up to 20 in one figure."""
 
-LOCK_BAR, ALL_BARS = (
-    0.02,
-    0.16,
-)  # of the height of the slip panel: one for each wheelset, and at most together
-ROW_OF_NAMES = 8  # wheelsets in a row of the legend
-FEW = 4  # wheelsets that are all called so in the legend
-NAMED_ROWS = 8  # of the valve panel; where there are more, some have no number
+LOCK_BAR = 0.02  # of the height of the slip panel, one for each wheelset, and all of them at most:
+LOCK_BARS = 0.16
+MOST_NAMED = 8  # wheelsets in a legend and at the rows of valves; of more than these every second or so
+IN_FULL = 4  # wheelsets whose names stand in the legend in full
 
 
 def stop_traces(
@@ -55,7 +52,7 @@ def stop_traces(
         5, 1, sharex=True, height_ratios=(3.2, 2.4, 2.2, 1.6, 1.6)
     )
     slip_panel(slip, run, specification, top=_slip_top(trial, specification))
-    slip.set_title("Slip", pad=4.0 + 12.0 * _rows_of_names(run))
+    slip.set_title("Slip", pad=16.0)
     wheelset_legend(slip, run)
     speed_panel(speed, run, wheel_radius)
     speed.set_title("Speed of train and wheel rims")
@@ -77,22 +74,23 @@ def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: flo
     band = (reference - tolerance, reference + tolerance)
     axes.axhspan(*band, color=SERIES[2], alpha=0.15, linewidth=0)
     axes.axhline(reference, color=INK, linestyle="--", linewidth=0.8)
-    bar = min(LOCK_BAR, ALL_BARS / run.slip.shape[1])
-    for wheelset in range(run.slip.shape[1]):
+    wheelsets = run.slip.shape[1]
+    bar = min(LOCK_BAR, LOCK_BARS / wheelsets)
+    for wheelset in range(wheelsets):
         locked = run.wheel_speed[:, wheelset] <= 0.0
         # Bars at the top edge, front wheelset first: visible when the slip itself has left the picture.
         axes.broken_barh(
             _intervals(run.time, locked),
             (1.0 - bar * (wheelset + 1), 0.8 * bar),
             transform=axes.get_xaxis_transform(),
-            color=look(wheelset)[0],
+            color=look(line_of(wheelset))[0],
             linewidth=0,
         )
         curve(
             axes,
             run.time,
             run.slip[:, wheelset],
-            wheelset,
+            line_of(wheelset),
             most=most,
             linewidth=1.0,
             label=_label(run, wheelset),
@@ -108,8 +106,8 @@ def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
     """Draw the speed of the train and of each wheel rim."""
     for wheelset in range(run.wheel_speed.shape[1]):
         rim = run.wheel_speed[:, wheelset] * wheel_radius * KMH
-        curve(axes, run.time, rim, wheelset, most=MOST, linewidth=1.0)
-    axes.plot(run.time[::20], run.speed[::20] * KMH, color=look(TRAIN)[0], linewidth=1.6, label="train")
+        curve(axes, run.time, rim, line_of(wheelset), most=MOST, linewidth=1.0)
+    axes.plot(run.time[::20], run.speed[::20] * KMH, color=SERIES[TRAIN], linewidth=1.6, label="train")
     axes.set(ylabel="speed [km/h]", ylim=(0.0, None))
     axes.legend(loc="upper right")
 
@@ -117,14 +115,14 @@ def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
 def torque_panel(axes: "Axes", run: Run) -> None:
     """Draw the braking torque of each wheelset."""
     for wheelset in range(run.torque.shape[1]):
-        curve(axes, run.time, run.torque[:, wheelset] / KILO, wheelset, most=MOST, linewidth=1.0)
+        curve(axes, run.time, run.torque[:, wheelset] / KILO, line_of(wheelset), most=MOST, linewidth=1.0)
     axes.set_ylabel("torque [kN m]")
 
 
 def load_panel(axes: "Axes", run: Run) -> None:
     """Draw the load of one wheel of each wheelset."""
     for wheelset in range(run.wheel_load.shape[1]):
-        curve(axes, run.time, run.wheel_load[:, wheelset] / KILO, wheelset, most=MOST, linewidth=1.0)
+        curve(axes, run.time, run.wheel_load[:, wheelset] / KILO, line_of(wheelset), most=MOST, linewidth=1.0)
     axes.set_ylabel("load [kN]")
 
 
@@ -133,13 +131,17 @@ def valve_panel(axes: "Axes", run: Run) -> None:
     wheelsets = len(run.axle_samples)
     for wheelset, samples in enumerate(run.axle_samples):
         floor = 1.25 * (wheelsets - 1 - wheelset)
+        if not samples:
+            continue  # without a brake
         times = [sample.time for sample in samples] + [float(run.time[-1])]
         fill = [floor + sample.fill for sample in samples]
-        axes.stairs(fill, times, baseline=floor, fill=True, color=look(wheelset)[0], alpha=0.7, linewidth=0)
-    named = range(0, wheelsets, -(-wheelsets // NAMED_ROWS))
+        axes.stairs(
+            fill, times, baseline=floor, fill=True, color=look(line_of(wheelset))[0], alpha=0.7, linewidth=0
+        )
+    numbered = named(wheelsets)
     axes.set_yticks(
-        [1.25 * (wheelsets - 1 - wheelset) + 0.5 for wheelset in named],
-        [str(wheelset + 1) for wheelset in named],
+        [1.25 * (wheelsets - 1 - wheelset) + 0.5 for wheelset in numbered],
+        [str(wheelset + 1) for wheelset in numbered],
     )
     axes.grid(visible=False, axis="y")
     axes.set(ylabel="fill [-]", ylim=(0.0, 1.25 * wheelsets))
@@ -148,17 +150,27 @@ def valve_panel(axes: "Axes", run: Run) -> None:
 def wheelset_legend(axes: "Axes", run: Run) -> None:
     """Say above the axes which line is which wheelset, if there are several."""
     if run.slip.shape[1] > 1:
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, **columns_of_names(run))
+        columns = len(named(run.slip.shape[1]))
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.1)
 
 
-def columns_of_names(run: Run) -> dict[str, float]:
-    """Return how a legend of all wheelsets sets its columns."""
-    columns = -(-run.slip.shape[1] // _rows_of_names(run))
-    return {"ncols": columns} | ({"columnspacing": 1.0} if run.slip.shape[1] > FEW else {})
+def named(wheelsets: int) -> tuple[int, ...]:
+    """Return the wheelsets that a legend names: all, or so many that they fit, with the first and the last."""
+    step = -(-(wheelsets - 1) // (MOST_NAMED - 1)) or 1
+    return tuple(sorted({*range(0, wheelsets, step)[: MOST_NAMED - 1], wheelsets - 1}))
 
 
-def _rows_of_names(run: Run) -> int:
-    return -(-int(run.slip.shape[1]) // ROW_OF_NAMES)
+def line_of(wheelset: int) -> int:
+    """Return the place of a wheelset among colors and line styles; none has that of the train."""
+    return wheelset if wheelset < TRAIN else wheelset + 1
+
+
+def _label(run: Run, wheelset: int) -> str:
+    """Name in the legend: without the word where there are many; none of a wheelset that is not named."""
+    wheelsets, full = run.slip.shape[1], name(run, wheelset)
+    if wheelset not in named(wheelsets):
+        return f"_{full}"
+    return full if wheelsets <= IN_FULL or wheelset == 0 else full.removeprefix("wheelset ")
 
 
 def name(run: Run, wheelset: int) -> str:
@@ -167,12 +179,6 @@ def name(run: Run, wheelset: int) -> str:
     if last == 0:
         return "wheelset"
     return f"wheelset {wheelset + 1}" + {0: " (front)", last: " (rear)"}.get(wheelset, "")
-
-
-def _label(run: Run, wheelset: int) -> str:
-    """Return the name of a wheelset in a legend; of many wheelsets the first one alone says what is counted."""
-    full = name(run, wheelset)
-    return full if wheelset == 0 or run.slip.shape[1] <= FEW else full.removeprefix("wheelset ")
 
 
 def _intervals(time: "Trace", flags: "NDArray[np.bool_]") -> list[tuple[float, float]]:
