@@ -9,12 +9,13 @@ import pytest
 from wspd_design.analysis.linearization import linearize
 from wspd_design.codegen.functions import slip_plant
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import available, load_rail
+from wspd_design.parameters.files import uniform_rails
+from wspd_design.parameters.loading import load_rail
 
 SPEEDS = (33.333, 20.0, 10.0, 5.0, 2.0, 1.0)
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_jacobians_against_central_differences(er24pc, name, speed):
     rail = load_rail(name)
@@ -43,7 +44,7 @@ def test_jacobians_against_central_differences(er24pc, name, speed):
     assert numerical[0, 0] == pytest.approx(point.slip_pole, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_equilibrium_and_poles(er24pc, name, speed):
     rail = load_rail(name)

@@ -6,7 +6,7 @@ from wspd_design.cli.console import console, print_json, progress, spaced
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.json_objects import comparison_object
 from wspd_design.cli.stop_figures import SENSITIVE, UNRESOLVED
-from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import CaseOptions, load_cases
@@ -58,6 +58,7 @@ def compare(
     file among them.
     """
     check_plant(plant)
+    rail, disturbances = along_the_track(rail, disturbances)
     wanted = CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     cases = load_cases(names or list(FAMILIES), wanted)
     stop = scenario(

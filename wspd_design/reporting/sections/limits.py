@@ -6,7 +6,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
 from wspd_design.reporting.text import CodeSpan, Text, escape, rich
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.description import disturbances_of
+from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Run, Scenario, Sensing
 from wspd_design.studies.dossier import Dossier
 
@@ -52,6 +52,14 @@ def _of_scenario(scenario: Scenario) -> list[str]:
         if exact
         else "Speeds and torque have the stated disturbances of their measurement and no other ones.",
         f"The valve follows its time constants; {dead}leakage, and a limit of the air supply are not modeled.",
+        *(
+            [
+                f"The rail changes along the track in the stops ({rails_of(scenario)}); the checks speak about one "
+                "rail."
+            ]
+            if scenario.patches
+            else []
+        ),
         *(
             [f"The stops are disturbed ({disturbances}); the checks know nothing of it."]
             if disturbances
