@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
+from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, plant_kernels
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
@@ -18,6 +18,7 @@ from wspd_design.codegen.valves import CLOSED, followed
 from wspd_design.codegen.virtual_sensors import VirtualSensors
 from wspd_design.codegen.virtual_step import INERTIA, RADIUS, StepFunctions, step_functions
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State
+from wspd_design.model.further_brakes import friction_share
 from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 _SHORTEST = 1e-9  # s: edges closer together than this are one
 _BATCHES = (64, 16, 8, 4, 2)
 _OFFSET = PARAMETERS.index(("surroundings", "axle_offset"))
+_MAX_TORQUE = PARAMETERS.index(("brake", "max_torque"))
+_DROP_SLIP = PARAMETERS.index(("dynamic", "drop_slip"))
 _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail")
 
 
@@ -88,6 +91,7 @@ class _VirtualPlant:
         self.sensors = VirtualSensors(given, self.parameters[RADIUS])
         self.waiting: deque[tuple[float, list[Command]]] = deque()
         self.following = [CLOSED] * axles
+        self.dropped = np.zeros(axles, dtype=bool)  # electrodynamic brakes
         self.recorded = -1.0
         self.sample = self.steps = 0
         self._bends = _bends(given.load_factors)
@@ -101,7 +105,7 @@ class _VirtualPlant:
             for number, function in ((1, functions.single), *functions.batches.items())
         }
         self._observe = Bound(functions.observe, self.state, self.inputs)
-        self._window = np.zeros((axles, 4))
+        self._window = np.zeros((axles, len(WINDOW)))
         self._window_constants = Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
         self._close_valves(given.pressures)
@@ -147,7 +151,7 @@ class _VirtualPlant:
             speed=float(self.part("speed")[0]),
             wheels=self.wheels,
             angles=self.angles,
-            torques=self.part("torque"),
+            torques=self.part("torque") + self.part("dynamic"),
         )
 
     def advance(self, commands: list[Command]) -> int:
@@ -190,21 +194,33 @@ class _VirtualPlant:
         fill_end = present + fill * h
         vent_end = np.where(1.0 - fill - vent < 1e-12, present + h, fill_end + vent * h)
         self.vented += self.part("filled") - self.part("pressure")
-        self._set_windows(present, self.part("pressure"), fill_end, vent_end)
+        self._set_windows(present, self.part("pressure"), fill_end, vent_end, *self._blended())
         self.edges = tuple(sorted({*fill_end.tolist(), *vent_end.tolist()}))
+
+    def _blended(self) -> tuple["Array", "Array", "Array"]:
+        """Share that is asked of the friction brakes, and levels of the electrodynamic ones, now and to go to.
+
+        An electrodynamic brake drops out when its wheel slides too much, for the rest of the stop.
+        """
+        import numpy as np
+
+        self.dropped |= self.part("slip") > self.parameters[_DROP_SLIP]
+        demanded = self.parameters[_MAX_TORQUE]
+        shares = map(friction_share, self.part("dynamic").tolist(), demanded.tolist())
+        return np.array(list(shares)), self.part("level").copy(), np.where(self.dropped, 0.0, 1.0)
 
     def _close_valves(self, pressures: "Array") -> None:
         """Begin with these pressures in the cylinders."""
-        self._set_windows(0.0, pressures, 0.0, 0.0)
+        self._set_windows(0.0, pressures, 0.0, 0.0, 0.0, 0.0, 0.0)
         present = [self.kernels.actuator(constants, 0.0) for constants in self._window_constants.outputs[0]]
-        names = ("pressure", "torque", "filled", "damping")
+        names = ("pressure", "torque", "filled", "damping", "level")
         for name, values in zip(names, zip(*present, strict=True), strict=True):
             self.part(name)[:] = [float(value) for value in values]
         self._look_up()
         self._work_out_stage()
 
     def _set_windows(self, *pattern: "float | Array") -> None:
-        """Work out the constants of the actuators: start, pressure there, end of filling, end of venting."""
+        """Work out the constants of the actuators for what holds up to the next command, in the order of WINDOW."""
         for column, values in enumerate(pattern):
             self._window[:, column] = values
         self._window_constants.call()

@@ -1,25 +1,29 @@
 """From parameter files to the records that the physics and the controllers take."""
 
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.brake_checks import check_dynamic, check_pads, check_track_brake
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, data_file, load_entries, read_toml
 from wspd_design.parameters.records import (
     Brake,
     Constants,
     Contact,
+    DynamicBrake,
     KnorrBremseTable,
     MitsubishiTable,
+    Pads,
     PaperGains,
     ParameterSet,
     Rail,
     Source,
     SpectrumCoefficients,
+    TrackBrake,
     TrackSpectrum,
     TrenitaliaTable,
     Vehicle,
@@ -103,8 +107,31 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         wheelsets=4,
         brake=_build(Brake, values, "brake.", bounds=_bounds(parameters, "brake.")),
         contact=_build(Contact, values, "contact.", bounds=_bounds(parameters, "contact.")),
+        pads=_part(Pads, parameters, "pads.", check_pads),
+        dynamic=_part(DynamicBrake, parameters, "dynamic.", check_dynamic),
+        track_brake=_part(TrackBrake, parameters, "track_brake.", check_track_brake),
         bounds=_bounds(parameters),
     )
+
+
+def _part(
+    record: type[_Record], parameters: ParameterSet, prefix: str, check: Callable[[_Record, str], None]
+) -> _Record | None:
+    """Build a part that a vehicle may have, None where its file has no entry of it."""
+    values = _values(parameters)
+    given = {name.removeprefix(prefix) for name in values if name.startswith(prefix)}
+    if not given:
+        return None
+    needed = (field.name for field in fields(record) if field.default is MISSING)  # type: ignore[arg-type]
+    missing = [f"[{prefix}{name}]" for name in needed if name not in given]
+    if missing:
+        raise UserError(
+            f"vehicle {parameters.name} has [{prefix}{min(given)}] but lacks {', '.join(missing)}; add "
+            f"{'it' if len(missing) == 1 else 'them'}, or leave out all of {prefix.rstrip('.')}."
+        )
+    part = _build(record, values, prefix, bounds=_bounds(parameters, prefix))
+    check(part, parameters.name)
+    return part
 
 
 def load_rail(name_or_path: str | Path) -> Rail:

@@ -4,6 +4,7 @@ The history of each number (unit, source, status) stays with the :class:`Entry` 
 stay with the record.
 """
 
+import math
 from dataclasses import dataclass
 
 from wspd_design.parameters.bounds import EXACT, Bounds
@@ -101,6 +102,48 @@ class Contact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Pads:
+    """Friction of the pads or blocks of one wheelset, relative to that behind the torque at full pressure.
+
+    Empty tables stand for friction that does not depend on speed or temperature.
+    """
+
+    kind: str = "disc"  # or "tread"
+    speeds: tuple[float, ...] = ()  # m/s, of the wheel rim, rising
+    speed_factors: tuple[float, ...] = ()  # -
+    temperatures: tuple[float, ...] = ()  # K, above that before the stop, rising
+    temperature_factors: tuple[float, ...] = ()  # -
+    heat_capacity: float = math.inf  # J/K per wheelset, of what the friction heats
+    cooling: float = 0.0  # W/K per wheelset
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DynamicBrake:
+    """Electrodynamic brake of one wheelset, for which its friction brake stands back."""
+
+    torque: float  # N m per wheelset, at most
+    power: float = math.inf  # W per wheelset, at most
+    build_up_time: float  # s, time constant with which the torque comes and goes
+    fade_speed: float  # m/s of the wheel rim, below it the torque falls in proportion
+    cut_out_speed: float  # m/s of the wheel rim, where nothing is left of it
+    drop_slip: float = 1.0  # -, beyond it the brake of the wheelset drops out for the rest of the stop
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackBrake:
+    """Magnetic track brake of the vehicle: magnets that rub on the rails, outside the adhesion of the wheels."""
+
+    force: float  # N, of all magnets
+    build_up_time: float = 0.0  # s, time constant; 0 for a force that is there at once
+    cut_out_speed: float = 0.0  # m/s, below it the magnets are lifted; 0 where they stay down
+    speeds: tuple[float, ...] = ()  # m/s, rising
+    speed_factors: tuple[float, ...] = ()  # -, of the force
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Vehicle:
     """A vehicle on two-axle bogies, eqs. (1)-(4)."""
 
@@ -126,7 +169,10 @@ class Vehicle:
     pitch_damping_ratio: float  # -
     brake: Brake
     contact: Contact
-    bounds: Bounds = EXACT  # of the numbers above; brake and contact have their own
+    pads: Pads | None = None  # None: pad friction is constant
+    dynamic: DynamicBrake | None = None
+    track_brake: TrackBrake | None = None
+    bounds: Bounds = EXACT  # of the numbers above; brake, contact and the like have their own
 
     @property
     def wheel_inertia(self) -> float:

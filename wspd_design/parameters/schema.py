@@ -5,7 +5,7 @@ the file.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 from wspd_design.parameters.units import Dimension
@@ -77,11 +77,36 @@ def _share(shape: Shape = "number", *, zero: bool = True) -> Quantity:
     return Quantity(dimension="ratio", shape=shape, low=0.0, high=1.0, low_is_allowed=zero, plausible=least)
 
 
+def _optional(quantity: Quantity) -> Quantity:
+    return replace(quantity, optional=True)
+
+
 _CONSTANTS: Schema = {
     "gravity": _positive("acceleration"),
     "slip_regularization_speed": _positive("speed"),
     "stop_speed": _positive("speed"),
     "time_limit": _positive("time"),
+}
+
+_FURTHER_BRAKES: Schema = {
+    "pads.kind": Quantity(dimension="ratio", shape="word", words=("disc", "tread")),
+    "pads.speeds": _not_negative("speed", "vector"),
+    "pads.speed_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
+    "pads.temperatures": _not_negative("temperature", "vector"),
+    "pads.temperature_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
+    "pads.heat_capacity": _positive("heat capacity", plausible=(1e3, 1e7)),
+    "pads.cooling": _not_negative("heat flow"),
+    "dynamic.torque": _positive("torque", plausible=(100.0, 1e6)),
+    "dynamic.power": _positive("power", plausible=(1e3, 1e7)),
+    "dynamic.build_up_time": _positive("time", plausible=(0.01, 10.0)),
+    "dynamic.fade_speed": _positive("speed"),
+    "dynamic.cut_out_speed": _positive("speed"),
+    "dynamic.drop_slip": _share(zero=False),
+    "track_brake.force": _positive("force", plausible=(1e3, 1e6)),
+    "track_brake.build_up_time": _not_negative("time"),
+    "track_brake.cut_out_speed": _not_negative("speed"),
+    "track_brake.speeds": _not_negative("speed", "vector"),
+    "track_brake.speed_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
 }
 
 _VEHICLE: Schema = {
@@ -117,6 +142,7 @@ _VEHICLE: Schema = {
     "contact.semi_axis_lateral": _positive("length", plausible=(5e-4, 0.05)),
     "contact.kalker_c11": _positive("ratio", plausible=(0.1, 20.0)),
     "contact.reference_load": _positive("force", plausible=(1e3, 1e6)),
+    **{name: _optional(quantity) for name, quantity in _FURTHER_BRAKES.items()},
 }
 
 _RAIL: Schema = {

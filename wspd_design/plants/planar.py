@@ -74,21 +74,29 @@ class Planar(RigidWheelsets):
         speed: Number,
         creep_forces: tuple[Number, ...],
         transfers: tuple[Number, ...],
+        time: Number = math.inf,
         grade_force: Number = 0.0,
     ) -> TrainMotion:
         """Acceleration of the train, eq. (1) with one creep force per wheel of each axle, and pitch response.
 
         What tips body and bogies is the force on them beside gravity: by mass the deceleration less g times the grade.
+        The magnets of a track brake hang in the bogies and pull at the height of the rail, as the wheels do.
         """
         vehicle = self.vehicle
         resistance = slip_model.resistance(vehicle, speed, grade_force)
+        magnets = self.track_brake_force(speed, time)
+        if vehicle.track_brake is not None:
+            resistance += magnets
         acceleration = slip_model.train_acceleration(vehicle, sum(creep_forces) / self.axles, resistance)
         held = -acceleration - grade_force / vehicle.mass
         height = vehicle.body_height - vehicle.traction_rod_height
         targets = [vehicle.body_mass * held * height / vehicle.bogie_spacing]
         for bogie in range(self.bogies):
             front, rear = creep_forces[_AXLES * bogie : _AXLES * (bogie + 1)]
-            targets.append(_bogie_target(vehicle, 2.0 * (front + rear), held))
+            at_rail = 2.0 * (front + rear)
+            if vehicle.track_brake is not None:
+                at_rail += magnets / self.bogies
+            targets.append(_bogie_target(vehicle, at_rail, held))
         frequencies = (vehicle.body_pitch_frequency, *(vehicle.bogie_pitch_frequency,) * self.bogies)
         values, rates = transfers[: self.transfers], transfers[self.transfers :]
         damping = vehicle.pitch_damping_ratio

@@ -240,6 +240,8 @@ class Run:
     slip: "Trace"  # -, per wheelset
     torque: "Trace"  # N m, per wheelset, transmitted
     wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
+    dynamic_torque: "Trace"  # N m, per wheelset, of the electrodynamic brake
+    pad_temperature: "Trace | None"  # K above that before the stop, per wheelset; None where it does not count
     axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset
     totals: Totals
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets

@@ -123,7 +123,9 @@ def _run_record(
     lane, stop = output.lane_totals, {name: float(x[0]) for name, x in output.stop_totals.items()}
     start = _first_row(plant, scenario, output)
     trace = np.vstack([start, output.trace])
-    wheel, slip, passed, load = (trace[:, 3 + k * axles : 3 + k * axles + columns] for k in range(4))
+    wheel, slip, passed, load, _, dynamic, *warmth = (
+        trace[:, begin : begin + columns] for begin in range(3, trace.shape[1], axles)
+    )
     states = (output.samples.shape[1] - 1) // axles - 5
     by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 5, axles)
     return Run(
@@ -141,6 +143,8 @@ def _run_record(
         slip=slip,
         torque=passed,
         wheel_load=load,
+        dynamic_torque=dynamic,
+        pad_temperature=warmth[0] if plant.vehicle.pads is not None and warmth else None,
         axle_samples=tuple(
             _samples(output.samples[:, 0], by_axle[:, :, axle], states) for axle in range(columns)
         ),
@@ -196,6 +200,7 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     # As the first sample saw them, without the error of their measurement.
     factor = 1.0 + scenario.sensing.torque_error
     torques = np.full(axles, scenario.start.torque) if at_rest else output.samples[0, -axles:] / factor
+    others = np.zeros(axles * plant.axle_states)  # electrodynamic brakes, which begin at zero, and further states
     return np.concatenate(
-        [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques]
+        [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques, others]
     )

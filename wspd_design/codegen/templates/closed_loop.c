@@ -1,9 +1,11 @@
 /* Closed loop of vehicles with one sampled controller per wheelset: steps, their ends, samples, results. */
 
+#define ROW (3 + (5 + AXLE_STATES) * AXLES) /* of the trace */
+
 static void write_trace(Loop *loop)
 {
     const Stage *stage = &loop->present;
-    double *row = loop->trace + loop->trace_used++ * (3 + 5 * AXLES);
+    double *row = loop->trace + loop->trace_used++ * ROW;
     loop->recorded = loop->time[0];
     *row++ = loop->stop[TIME * STOPS], *row++ = loop->now.speed[0], *row++ = loop->stop[DISTANCE * STOPS];
     for (int a = 0; a < AXLES; a++) {
@@ -11,7 +13,9 @@ static void write_trace(Loop *loop)
         row[AXLES + a] = stage->slip[a * STOPS];
         row[2 * AXLES + a] = stage->passed[a * STOPS];
         row[3 * AXLES + a] = stage->load[a * STOPS];
-        row[4 * AXLES + a] = loop->torque[a * STOPS];
+        row[4 * AXLES + a] = stage->given[a * STOPS];
+        row[5 * AXLES + a] = stage->dynamic[a * STOPS];
+        for (int k = 1; k < AXLE_STATES; k++) row[(5 + k) * AXLES + a] = loop->now.wheel[k * LANES + a * STOPS];
     }
 }
 
@@ -30,17 +34,17 @@ static int advance(Loop *loop)
     const Motion *const at[4] = {&loop->now, &moved[0], &moved[1], &moved[2]};
     const Stage *const stage[4] = {&loop->present, &further[0], &further[1], &further[2]};
     WIDE double next[STOPS], pressure[2 * LANES], torque[2 * LANES], filled[2 * LANES], damping[2 * LANES];
-    WIDE double lane_step[LANES];
+    WIDE double lane_step[LANES], time[2 * STOPS], level[2 * LANES];
     double *step = loop->step, stop_speed = loop->set.stop_speed;
     if (loop->patches > 0) lay_rails(loop);
     choose_steps(loop, next);
     for (int cuts = 0;; cuts++) { /* an event is found by interpolation, and once more */
-        follow_valves(loop, next, pressure, torque, filled, damping);
+        follow_valves(loop, next, time, pressure, torque, filled, damping, level);
         spread(step, lane_step);
         for (int k = 0; k < 3; k++) {
-            int later = k == 2 ? LANES : 0; /* the last stage stands at the end of the step */
+            int last = k == 2, later = last * LANES; /* the last stage stands at the end of the step */
             move(&loop->now, at[k], stage[k], step, lane_step, k == 2 ? 1.0 : 0.5, &moved[k]);
-            evaluate(loop, &moved[k], torque + later, damping + later, &further[k]);
+            evaluate(loop, &moved[k], time + last * STOPS, torque + later, level + later, damping + later, &further[k]);
         }
         #define ACCELERATION(k) stage[k]->acceleration[s]
         EACH_STOP reached.speed[s] = loop->now.speed[s] + step[s] * (1.0 / 6.0) * SUM(ACCELERATION);
@@ -49,7 +53,7 @@ static int advance(Loop *loop)
             EACH_LANE reached.wheel[k * LANES + l] =
                 loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
         }
-        if (cuts == 2 || !shorten(loop, at, stage, torque, &reached, next)) break;
+        if (cuts == 2 || !shorten(loop, at, stage, &reached, next)) break;
     }
     for (int k = 0; k < TRANSFER_STATES; k++) {
         #define TRANSFERRED(j) stage[j]->transfer[k * STOPS + s]
@@ -63,17 +67,18 @@ static int advance(Loop *loop)
         loop->torque[l] = torque[LANES + l];
         loop->filled[l] = filled[LANES + l];
         loop->damping[l] = damping[LANES + l];
+        loop->level[l] = level[LANES + l];
     }
     settle_locks(loop, lane_step, &reached);
     if (loop->hold) settle_holds(loop, &reached);
     if (loop->timed) follow_pulses(loop, lane_step, &reached);
     loop->now = reached;
+    for (int s = 0; s < STOPS; s++) loop->time[s] = loop->active[s] != 0.0 ? next[s] : loop->time[s];
     observe(loop);
     note_slips(loop);
     loop->steps++;
     for (int s = 0; s < STOPS; s++) {
         if (loop->active[s] == 0.0) continue;
-        loop->time[s] = next[s];
         loop->stop[TIME * STOPS + s] += step[s];
         loop->stop[END_SPEED * STOPS + s] = loop->now.speed[s];
         if (loop->now.speed[s] <= stop_speed * (1.0 + 1e-6)) finish(loop, s);
@@ -89,12 +94,13 @@ static int advance(Loop *loop)
 /* Work out the constants of the actuators for the present valve patterns. */
 static void set_windows(Loop *loop)
 {
-    WIDE double window[4 * 2 * LANES];
+    WIDE double window[WINDOW * 2 * LANES];
     for (int copy = 0; copy < 2; copy++)
         for (int l = 0; l < LANES; l++) {
             double *to = window + copy * LANES + l;
             to[0] = loop->start[l], to[2 * LANES] = loop->start_pressure[l];
             to[4 * LANES] = loop->fill_end[l], to[6 * LANES] = loop->vent_end[l];
+            to[8 * LANES] = loop->share[l], to[10 * LANES] = loop->start_level[l], to[12 * LANES] = loop->goal_level[l];
         }
     window_constants(loop->lp2, window, loop->window_fixed);
 }
@@ -120,6 +126,17 @@ static void count_switches(Loop *loop, int l)
     }
 }
 
+/* Let the electrodynamic brake of a lane drop out when its wheel slides too much, for the rest of the stop, and ask the
+   friction brake for what it lacks to the torque of the full pressure. */
+static void blend(Loop *loop, int l)
+{
+    double most = loop->lp[MAX_TORQUE * LANES + l], rest = most > 0.0 ? 1.0 - loop->present.dynamic[l] / most : 0.0;
+    if (loop->present.slip[l] > loop->lp[DROP_SLIP * LANES + l]) loop->dropped[l] = 1.0;
+    loop->share[l] = rest > 0.0 ? rest : 0.0;
+    loop->start_level[l] = loop->level[l];
+    loop->goal_level[l] = 1.0 - loop->dropped[l];
+}
+
 /* Set the valves of the stops whose command takes effect now. A pulse that is too short to open its valve is left out,
    unless the valve is open already. */
 static void act(Loop *loop)
@@ -143,6 +160,7 @@ static void act(Loop *loop)
             loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];
             loop->fill_end[l] = present + a * h;
             loop->vent_end[l] = 1.0 - a - b < 1e-12 ? present + h : loop->fill_end[l] + b * h;
+            blend(loop, l);
         }
         loop->acted[s]++;
         schedule(loop, s);
@@ -185,6 +203,7 @@ static int decide(Loop *loop, const double *fill, const double *vent)
 }
 
 long wspd_size(void) { return (long)sizeof(Loop); }
+long wspd_row(void) { return ROW; }
 const double *wspd_lane_totals(const Loop *loop) { return loop->lane; }
 const double *wspd_stop_totals(const Loop *loop) { return loop->stop; }
 const double *wspd_wheel_speeds(const Loop *loop) { return loop->now.wheel; }
@@ -204,7 +223,7 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
                 const double *pressure)
 {
     WIDE double present[2 * LANES] = {0}, pressures[2 * LANES], torques[2 * LANES];
-    WIDE double filled[2 * LANES], damping[2 * LANES];
+    WIDE double filled[2 * LANES], damping[2 * LANES], level[2 * LANES];
     memset(loop->lp, 0, (char *)(loop + 1) - (char *)loop->lp);
     memcpy(loop->lp, lp, sizeof loop->lp);
     for (int k = 0; k < PARAMETERS; k++)
@@ -217,10 +236,10 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     for (int l = 0; l < LANES; l++) loop->now.wheel[l] = wheel[l], loop->start_pressure[l] = pressure[l];
     start_pulses(loop);
     set_windows(loop);
-    actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping);
+    actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping, level);
     for (int l = 0; l < LANES; l++) {
         loop->pressure[l] = pressures[l], loop->filled[l] = filled[l];
-        loop->torque[l] = torques[l], loop->damping[l] = damping[l];
+        loop->torque[l] = torques[l], loop->damping[l] = damping[l], loop->level[l] = level[l];
     }
     observe(loop);
     for (int s = 0; s < STOPS; s++) {
