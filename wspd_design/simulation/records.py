@@ -240,13 +240,14 @@ class Run:
     slip: "Trace"  # -, per wheelset
     torque: "Trace"  # N m, per wheelset, transmitted
     wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
-    dynamic_torque: "Trace"  # N m, per wheelset, of the electrodynamic brake
-    pad_temperature: "Trace | None"  # K above that before the stop, per wheelset; None where it does not count
     axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset
     totals: Totals
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
+    dynamic_torque: "Trace | None" = None  # N m, per wheelset, of an electrodynamic brake, within ``torque``
+    pad_temperature: "Trace | None" = None  # K above that before the stop, per wheelset, where friction depends on it
+    track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
 
     @property
     def samples(self) -> tuple[Sample, ...]:

@@ -17,6 +17,7 @@ from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
 from wspd_design.codegen.notices import tell_once
 from wspd_design.codegen.sampled import BAD_COMMAND
 from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.model.further_brakes import track_brake_force
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
@@ -118,7 +119,7 @@ def _run_record(
 ) -> Run:
     import numpy as np
 
-    axles = plant.axles
+    axles, magnets = plant.axles, plant.vehicle.track_brake
     columns = 1 if plant.alike else axles
     lane, stop = output.lane_totals, {name: float(x[0]) for name, x in output.stop_totals.items()}
     start = _first_row(plant, scenario, output)
@@ -143,8 +144,6 @@ def _run_record(
         slip=slip,
         torque=passed,
         wheel_load=load,
-        dynamic_torque=dynamic,
-        pad_temperature=warmth[0] if plant.vehicle.pads is not None and warmth else None,
         axle_samples=tuple(
             _samples(output.samples[:, 0], by_axle[:, :, axle], states) for axle in range(columns)
         ),
@@ -167,6 +166,16 @@ def _run_record(
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),
         engine=engine,
+        dynamic_torque=None if plant.vehicle.dynamic is None else dynamic,
+        pad_temperature=warmth[0] if plant.vehicle.pads is not None and warmth else None,
+        track_brake_force=None
+        if magnets is None
+        else np.array(
+            [
+                track_brake_force(magnets, v, t + scenario.start.braking_time)
+                for t, v in zip(trace[:, 0].tolist(), trace[:, 1].tolist(), strict=True)
+            ]
+        ),
     )
 
 
