@@ -12,7 +12,9 @@ from numpy.polynomial import Polynomial
 
 from wspd_design.controllers.protocol import Measurement
 
-BUMP = Polynomial([15 / 16, 0.0, -15 / 8, 0.0, 15 / 16])  # second derivative of a rounded corner, over [-1, 1]
+BUMP = Polynomial(
+    [15 / 16, 0.0, -15 / 8, 0.0, 15 / 16]
+)  # second derivative of a rounded corner, over [-1, 1]
 CORNER = BUMP.integ(2, lbnd=-1.0)
 WIDTH, WARM_WIDTH, POWER_WIDTH = 0.5, 10.0, 0.05  # m/s, K, of the torque: as the documentation names them
 

@@ -39,9 +39,7 @@ def fading():
         (turning * (START + FALL * speed) - resistance(vehicle, speed)) * radius / axles for speed in speeds
     ]
     factors = tuple(torque / torques[0] for torque in torques)
-    brake = replace(
-        vehicle.brake, max_torque=torques[0], fill_time=DELAY - 1.0 / vehicle.brake.supply_rate
-    )
+    brake = replace(vehicle.brake, max_torque=torques[0], fill_time=DELAY - 1.0 / vehicle.brake.supply_rate)
     return replace(vehicle, brake=brake, pads=Pads(speeds=speeds, speed_factors=factors))
 
 

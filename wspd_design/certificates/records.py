@@ -25,7 +25,7 @@ class Status(Enum):
     UNDECIDED = "neither proved nor refuted"
     EVIDENCE = "supported by samples or a simulation, which prove nothing beyond them"
     VACUOUS = "true but says nothing about a stop"
-    NOT_APPLICABLE = "the claim does not speak about this controller"
+    NOT_APPLICABLE = "the claim does not speak about this controller or this vehicle"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -44,8 +44,11 @@ _RECORDS: tuple[tuple[str, type], ...] = (
 _NOT_NUMBERS = (
     "name",
     "wheelsets",
+    "axles_per_bogie",
+    "bodies",
     "brake",
     "contact",
+    "axle_shares",
     *PART_NAMES,
     "bounds",
 )
@@ -87,7 +90,9 @@ class Kernels(NamedTuple):
     lane_constants: Any  # (p) -> constants of contact and axle
     window_constants: Any  # (p, window) -> constants of actuator
     loads: Any  # (constants, transfers) -> wheel load of each axle
-    train: Any  # (constants, speed, force of each axle, transfers, time) -> acceleration, resistance, transfers'
+    train: (
+        Any  # (constants, speed, force of each axle, transfers, time) -> acceleration, resistance, transfers'
+    )
     contact: Any  # (constants, load) -> stiffness there, and the reciprocal of the load: where a step begins
     axle: Any  # (constants, speed, axle states, load, torque, level, locked, contact, damping)
     #           -> force, axle states', slip, damping torque, torque that is passed on, torque of all brakes,
@@ -117,7 +122,7 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     ``disturbed`` adds the vibration of the pads, T_d, to the torque.
     """
     blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
-    counts = {"wheelsets": plant.vehicle.wheelsets}
+    counts = {name: getattr(plant.vehicle, name) for name in ("wheelsets", "axles_per_bogie", "bodies")}
     shape = plant.on(Vehicle(**{**blank, **counts, **blank_parts(plant.vehicle)}))
     return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
 
@@ -203,7 +208,9 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
     dynamic = plant.vehicle.dynamic
     supply = brake if dynamic is None else replace(brake, max_pressure=share * brake.max_pressure)
     pressures = _pressure(supply, time, surroundings.braking_time, start, start_pressure, fill_end, vent_end)
-    there = ca.SX(0.0) if dynamic is None else build_up(time - start, start_level, goal, dynamic.build_up_time)
+    there = (
+        ca.SX(0.0) if dynamic is None else build_up(time - start, start_level, goal, dynamic.build_up_time)
+    )
     torque = brake_model.braking_torque(brake, pressures[0])
     if disturbed:
         torque *= 1.0 + brake_model.torque_disturbance(brake, braking_time)

@@ -50,7 +50,11 @@ def _check_cut_out(part: str, speed: float, least: float, vehicle: str) -> None:
     if speed < least:
         raise UserError(
             f"{part}.cut_out_speed = {speed:g} m/s of vehicle {vehicle} must be at least {least:g} m/s; raise it"
-            + (", or leave it out for magnets that stay down to standstill." if part == "track_brake" else ".")
+            + (
+                ", or leave it out for magnets that stay down to standstill."
+                if part == "track_brake"
+                else "."
+            )
         )
 
 
@@ -63,9 +67,7 @@ def _check_table(
             "of one as of the other."
         )
     if len(points) == 1 or len(points) > MOST_POINTS:
-        raise UserError(
-            f"[{name}] of vehicle {vehicle} has {len(points)} numbers; give 2 to {MOST_POINTS}."
-        )
+        raise UserError(f"[{name}] of vehicle {vehicle} has {len(points)} numbers; give 2 to {MOST_POINTS}.")
     if any(before >= after for before, after in pairwise(points)):
         listed = ", ".join(f"{point:g}" for point in points)
         raise UserError(f"[{name}] of vehicle {vehicle} = {listed} in SI units must rise; put them in order.")

@@ -246,7 +246,9 @@ class Run:
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
     dynamic_torque: "Trace | None" = None  # N m, per wheelset, of an electrodynamic brake, within ``torque``
-    pad_temperature: "Trace | None" = None  # K above that before the stop, per wheelset, where friction depends on it
+    pad_temperature: "Trace | None" = (
+        None  # K above that before the stop, per wheelset, where friction depends on it
+    )
     track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
 
     @property

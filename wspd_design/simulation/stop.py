@@ -51,7 +51,7 @@ def simulate(
         Law of every wheelset.
     scenario : Scenario
         Rails, initial speed and disturbances.
-    plant : {"four-axle", "quarter"}
+    plant : {"planar", "quarter"}
         With or without load transfer.
     refinement : int
         The integration steps are divided by it.
@@ -209,7 +209,9 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     # As the first sample saw them, without the error of their measurement.
     factor = 1.0 + scenario.sensing.torque_error
     torques = np.full(axles, scenario.start.torque) if at_rest else output.samples[0, -axles:] / factor
-    others = np.zeros(axles * plant.axle_states)  # electrodynamic brakes, which begin at zero, and further states
+    others = np.zeros(
+        axles * plant.axle_states
+    )  # electrodynamic brakes, which begin at zero, and further states
     return np.concatenate(
         [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques, others]
     )

@@ -14,7 +14,9 @@ def bump(u, width):
 
 @pytest.mark.parametrize("x", [-0.49, -0.2, 0.0, 0.01, 0.3, 0.5])
 def test_a_corner_is_the_sharp_one_smeared_by_a_bump(x):
-    smeared, _ = quad(lambda u: max(x - u, 0.0) * bump(u, 0.5), -0.5, 0.5, points=[x] if abs(x) < 0.5 else None)
+    smeared, _ = quad(
+        lambda u: max(x - u, 0.0) * bump(u, 0.5), -0.5, 0.5, points=[x] if abs(x) < 0.5 else None
+    )
     assert corner(x, 0.5) == pytest.approx(smeared, rel=1e-10, abs=1e-14)
 
 

@@ -102,8 +102,14 @@ WRONG = {
         DYNAMIC.partition("[dynamic.fade_speed]")[0],
         r"has \[dynamic.build_up_time\] but lacks \[dynamic.fade_speed\], \[dynamic.cut_out_speed\]",
     ),
-    "fading upwards": (DYNAMIC.replace("value = 10", "value = 3"), "fade_speed .* must be above dynamic.cut_out"),
-    "torque at standstill": (DYNAMIC.replace("value = 4", "value = 1"), "dynamic.cut_out_speed .* at least 0.5 m/s"),
+    "fading upwards": (
+        DYNAMIC.replace("value = 10", "value = 3"),
+        "fade_speed .* must be above dynamic.cut_out",
+    ),
+    "torque at standstill": (
+        DYNAMIC.replace("value = 4", "value = 1"),
+        "dynamic.cut_out_speed .* at least 0.5 m/s",
+    ),
     "magnets lifted at standstill": (
         MAGNETS + CUT_OUT.format(speed=2),
         "track_brake.cut_out_speed .* at least 1 m/s; raise it, or leave it out",

@@ -47,7 +47,11 @@ PARTS = {  # all corners but those of low speeds are passed between 33 and 25 m/
         torque=9e3, power=450e3, build_up_time=0.3, fade_speed=28.0, cut_out_speed=26.5, drop_slip=0.5
     ),
     "track_brake": TrackBrake(
-        force=5e4, build_up_time=0.5, cut_out_speed=27.0, speeds=(25.0, 29.0, 33.0), speed_factors=(1.2, 1.0, 0.9)
+        force=5e4,
+        build_up_time=0.5,
+        cut_out_speed=27.0,
+        speeds=(25.0, 29.0, 33.0),
+        speed_factors=(1.2, 1.0, 0.9),
     ),
 }
 

@@ -1,6 +1,6 @@
 """The form of a theorem: what it needs shown about a design, and how the verdict is told."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -8,7 +8,7 @@ from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.kernel.obligation import Obligation
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Hypothesis, Problem, Range, Status
-from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting import assumptions, domain
 from wspd_design.certificates.setting.fingerprint import model_hash
 
 Findings: TypeAlias = Mapping[str, Finding]
@@ -29,6 +29,7 @@ class Theorem:
     speaks_about: Callable[[Problem], str]  # empty, or why it does not
     obligations: Callable[[Problem], tuple[Obligation, ...]]
     tell: Callable[[Problem, Findings], Certificate]
+    assumes: Set[assumptions.Assumption] = assumptions.ALL  # about the vehicle
 
 
 def asked(theorem: Theorem, problem: Problem) -> tuple[Obligation, ...] | Certificate:
@@ -50,6 +51,9 @@ def asked(theorem: Theorem, problem: Problem) -> tuple[Obligation, ...] | Certif
     if reason:
         said = f"{problem.controller.name} {reason}."
         return without_findings(Status.NOT_APPLICABLE, said, "form of the law")
+    said = assumptions.not_met(problem.vehicle, theorem.assumes)
+    if said:
+        return without_findings(Status.NOT_APPLICABLE, said, "assumptions about the vehicle")
     try:
         return theorem.obligations(problem)
     except OutsideModel as outside:
