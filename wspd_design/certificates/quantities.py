@@ -98,6 +98,11 @@ PLANT = (*STATE, *VEHICLE, *CONTACT, *RAIL)
 
 _TRANSFER = "enters through the range of the axle load share"
 _PADS = "the vibration of the pads at the onset of braking is part of no claim"
+_OTHER_BRAKES: tuple[tuple[Record, type, str], ...] = (
+    ("pads", Pads, "claims about brakes speak about pads whose friction is constant"),
+    ("dynamic", DynamicBrake, "claims about brakes speak about vehicles without an electrodynamic brake"),
+    ("track_brake", TrackBrake, "claims about brakes speak about vehicles without a track brake"),
+)
 OUTSIDE_CLAIMS: dict[tuple[Record, str], str] = {
     **{
         ("vehicle", count): "a count, not a measurement"
@@ -110,15 +115,7 @@ OUTSIDE_CLAIMS: dict[tuple[Record, str], str] = {
     },
     **{
         (part, field.name): reason
-        for part, record, reason in (
-            ("pads", Pads, "claims about brakes speak about pads whose friction is constant"),
-            (
-                "dynamic",
-                DynamicBrake,
-                "claims about brakes speak about vehicles without an electrodynamic brake",
-            ),
-            ("track_brake", TrackBrake, "claims about brakes speak about vehicles without a track brake"),
-        )
+        for part, record, reason in _OTHER_BRAKES
         for field in fields(record)
         if field.name != "bounds"
     },

@@ -4,7 +4,7 @@ from itertools import pairwise
 from typing import Final
 
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake
+from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake, Vehicle
 
 MOST_POINTS: Final = 8
 """Points of a table of factors, at most: its numbers are inputs of a loop that is compiled once."""
@@ -16,7 +16,23 @@ TEMPERATURE_ROUNDING: Final = 10.0
 """The same for corners over temperature [K]."""
 
 
-def check_pads(pads: Pads, vehicle: str) -> None:
+def check_further_brakes(vehicle: Vehicle) -> None:
+    """Refuse numbers of pads, electrodynamic brake and track brake that do not go together.
+
+    Raises
+    ------
+    UserError
+        With what is wrong in one sentence.
+    """
+    if vehicle.pads is not None:
+        _check_pads(vehicle.pads, vehicle.name)
+    if vehicle.dynamic is not None:
+        _check_dynamic(vehicle.dynamic, vehicle.name)
+    if vehicle.track_brake is not None:
+        _check_track_brake(vehicle.track_brake, vehicle.name)
+
+
+def _check_pads(pads: Pads, vehicle: str) -> None:
     """Refuse tables that are none, and temperatures without what they heat."""
     _check_table("pads.speeds", pads.speeds, "pads.speed_factors", pads.speed_factors, vehicle)
     factors = ("pads.temperature_factors", pads.temperature_factors)
@@ -28,7 +44,7 @@ def check_pads(pads: Pads, vehicle: str) -> None:
         )
 
 
-def check_dynamic(brake: DynamicBrake, vehicle: str) -> None:
+def _check_dynamic(brake: DynamicBrake, vehicle: str) -> None:
     """Refuse an electrodynamic brake that does not fade from one speed to a lower one."""
     _check_cut_out("dynamic", brake.cut_out_speed, SPEED_ROUNDING, vehicle)
     if not brake.fade_speed > brake.cut_out_speed:
@@ -38,7 +54,7 @@ def check_dynamic(brake: DynamicBrake, vehicle: str) -> None:
         )
 
 
-def check_track_brake(brake: TrackBrake, vehicle: str) -> None:
+def _check_track_brake(brake: TrackBrake, vehicle: str) -> None:
     """Refuse a table that is none, and magnets that would be lifted at standstill."""
     factors = ("track_brake.speed_factors", brake.speed_factors)
     _check_table("track_brake.speeds", brake.speeds, *factors, vehicle)

@@ -1,13 +1,13 @@
 """From parameter files to the records that the physics and the controllers take."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 from wspd_design.parameters.bounds import Bounds
-from wspd_design.parameters.brake_checks import check_dynamic, check_pads, check_track_brake
+from wspd_design.parameters.brake_checks import check_further_brakes
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, data_file, load_entries, read_toml
 from wspd_design.parameters.gear import contradiction, gear_of
@@ -101,12 +101,13 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         name=parameters.name,
         brake=_build(Brake, values, "brake.", bounds=_bounds(parameters, "brake.")),
         contact=_build(Contact, values, "contact.", bounds=_bounds(parameters, "contact.")),
-        pads=_part(Pads, parameters, "pads.", check_pads),
-        dynamic=_part(DynamicBrake, parameters, "dynamic.", check_dynamic),
-        track_brake=_part(TrackBrake, parameters, "track_brake.", check_track_brake),
+        pads=_part(Pads, parameters, "pads."),
+        dynamic=_part(DynamicBrake, parameters, "dynamic."),
+        track_brake=_part(TrackBrake, parameters, "track_brake."),
         bounds=_bounds(parameters),
     )
     _check_gear(vehicle)
+    check_further_brakes(vehicle)
     return vehicle
 
 
@@ -131,9 +132,7 @@ def _check_gear(vehicle: Vehicle) -> None:
         )
 
 
-def _part(
-    record: type[_Record], parameters: ParameterSet, prefix: str, check: Callable[[_Record, str], None]
-) -> _Record | None:
+def _part(record: type[_Record], parameters: ParameterSet, prefix: str) -> _Record | None:
     """Build a part that a vehicle may have, None where its file has no entry of it."""
     values = _values(parameters)
     given = {name.removeprefix(prefix) for name in values if name.startswith(prefix)}
@@ -146,9 +145,7 @@ def _part(
             f"vehicle {parameters.name} has [{prefix}{min(given)}] but lacks {', '.join(missing)}; add "
             f"{'it' if len(missing) == 1 else 'them'}, or leave out all of {prefix.rstrip('.')}."
         )
-    part = _build(record, values, prefix, bounds=_bounds(parameters, prefix))
-    check(part, parameters.name)
-    return part
+    return _build(record, values, prefix, bounds=_bounds(parameters, prefix))
 
 
 def load_rail(name_or_path: str | Path) -> Rail:

@@ -30,7 +30,7 @@ class RigidWheelsets:
         return self.vehicle.wheelsets
 
     @property
-    def axle_states(self) -> int:
+    def axle_states(self: _OnWheelsets) -> int:
         """Number of states of one wheelset: its wheel speed, and the temperature of its pads where that counts."""
         pads = self.vehicle.pads
         return 1 + (pads is not None and bool(pads.temperatures))

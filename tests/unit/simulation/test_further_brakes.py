@@ -129,7 +129,7 @@ def test_compiled_and_virtual_machine_agree(with_parts, make_controller, case, n
 
 
 def test_the_friction_brake_supplies_the_rest(with_parts, make_controller):
-    # Nothing slides: the torque is the demanded one, but for what the cylinder lags behind the change of the other brake.
+    # Nothing slides: the torque is the demanded one, but for the lag of the cylinder behind the other brake.
     vehicle = with_parts("blended")
     run = simulate(vehicle, make_controller("none"), Scenario(rail=DRY, initial_speed=30.0), plant="quarter")
     built_up = (run.time > 8.0) & (run.speed > 5.0)
