@@ -92,7 +92,8 @@ def test_a_force_that_acts_and_is_not_counted_is_seen(monkeypatch, with_parts, m
     )
     vehicle, scenario = with_parts(parts), Scenario(rail=DRY, initial_speed=10.0)
     run = simulate(vehicle, make_controller("none", "polach-dry"), scenario, plant="quarter")
-    assert abs(momentum_residual(run, vehicle)) > 1e-3
+    # An exponential step gives the train what the brakes are said to take, so that the momentum tells less.
+    assert abs(momentum_residual(run, vehicle)) > 1e-5
     assert abs(energy_residual(run, vehicle)) > 1e-3
 
 

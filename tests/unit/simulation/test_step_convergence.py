@@ -144,8 +144,8 @@ FROZEN = """choose_steps(loop, next);
 FAULTS = {
     "stiffness of the contact frozen at the middle of a step": ("choose_steps(loop, next);", FROZEN, "plain"),
     "damping frozen at the end of a step": (
-        "evaluate(loop, &moved[k], torque + later, damping + later, &further[k]);",
-        "evaluate(loop, &moved[k], torque + later, damping + LANES, &further[k]);",
+        "level + later, damping + later, &further[k]);",
+        "level + later, damping + LANES, &further[k]);",
         "plain",
     ),
     "steps that run across the points of the table of loads": (
