@@ -8,6 +8,7 @@ that the brake asks for.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wspd_design.analysis.stepwise import rolling_stop
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
@@ -120,8 +121,11 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
     """Stop of a vehicle whose wheels do not slide, by mean values of the brake of eqs. (8)-(14).
 
     The supply that builds up with ``supply_rate`` and the cylinder that follows with ``fill_time`` are together late
-    by 1/supply_rate + fill_time, exactly.
+    by 1/supply_rate + fill_time, exactly. Where pads fade, an electrodynamic brake is blended in or magnets pull, the
+    stop is worked out by steps, and the mean values are those which give its distance.
     """
+    if vehicle.pads or vehicle.dynamic or vehicle.track_brake:
+        return _stop_by_steps(vehicle, speed, grade)
     brake = vehicle.brake
     return mean_stop(
         speed,
@@ -134,6 +138,18 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
             vehicle.resistance_quadratic,
         ),
         grade=grade,
+    )
+
+
+def _stop_by_steps(vehicle: Vehicle, speed: float, grade: float) -> MeanStop:
+    """The deceleration is that of a stop with all brakes built up; what the whole one takes more is rolling freely."""
+    distance, time = rolling_stop(vehicle, speed, grade=grade)
+    developed, _ = rolling_stop(vehicle, speed, grade=grade, built_up=True)
+    return MeanStop(
+        equivalent_time=(distance - developed) / speed,
+        deceleration=speed**2 / (2.0 * developed),
+        distance=distance,
+        time=time,
     )
 
 
