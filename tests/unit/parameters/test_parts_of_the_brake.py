@@ -1,9 +1,14 @@
 """Pads, electrodynamic brake and track brake of a vehicle file: what is read, and what is refused in one sentence."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from wspd_design.parameters import loading
+from wspd_design.parameters.brake_checks import SPEED_ROUNDING, TEMPERATURE_ROUNDING
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.schema import schema_of
 
 BASE = 'base = "er24pc-service"\n'
 PADS = """
@@ -125,3 +130,25 @@ def test_wrong_ones_are_refused(load, case):
         load(text)
     assert "mine" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+PAGE = (Path(__file__).parents[3] / "docs" / "further-brakes.md").read_text()
+
+
+def test_the_files_of_the_page_are_read(load):
+    blocks = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    assert len(blocks) == 3
+    vehicle = load("".join(blocks))
+    assert vehicle.pads.cooling == 60.0
+    assert vehicle.dynamic.drop_slip == 0.2
+    assert vehicle.track_brake.speed_factors == (1.2, 1.0, 0.8)
+    named = {
+        f"[{name}]"
+        for name in schema_of("vehicle", "")
+        if name.startswith(("pads.", "dynamic.", "track_brake."))
+    }
+    assert named == {name for name in named if name in PAGE}  # every entry stands on the page
+
+
+def test_the_page_names_the_widths_of_the_rounding():
+    assert f"within {SPEED_ROUNDING:g} m/s ({TEMPERATURE_ROUNDING:g} K for temperatures" in PAGE
