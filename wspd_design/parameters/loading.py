@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.brakes import check_brake
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, data_file, load_entries, read_toml
 from wspd_design.parameters.records import (
@@ -42,7 +43,6 @@ __all__ = [
 
 _Record = TypeVar("_Record")
 
-_SINGULAR = 1e-6  # distance of supply_rate * fill_time from 1, where the filling law is 0/0
 _MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms or to 0.1 t
 
 
@@ -90,12 +90,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
             f"mass = {values['mass']:g} kg in vehicle {parameters.name} must equal body_mass + 2 bogie_mass "
             f"= {parts:g} kg; change the three together."
         )
-    together = values["brake.supply_rate"] * values["brake.fill_time"]
-    if abs(together - 1.0) < _SINGULAR:
-        raise UserError(
-            f"supply_rate times fill_time = {together:g} of the brake in vehicle {parameters.name} must differ from 1 "
-            "by more than 1e-6: the closed form of the filling is singular there; change one of them a little."
-        )
+    check_brake(values, parameters.name)
     return _build(
         Vehicle,
         values,

@@ -7,6 +7,7 @@ stay with the record.
 from dataclasses import dataclass
 
 from wspd_design.parameters.bounds import EXACT, Bounds
+from wspd_design.parameters.schema import BuildUp, ValveKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,14 +80,31 @@ class Brake:
 
     max_torque: float  # N m per wheelset
     max_pressure: float  # Pa
-    supply_rate: float  # 1/s, build-up of the supply pressure, eq. (8)
-    fill_time: float  # s, T_F
-    vent_time: float  # s, T_V
+    supply_rate: float = 0.0  # 1/s, build-up of the supply pressure, eq. (8); of the main pipe
+    fill_time: float  # s, T_F, or the time of the orifice
+    vent_time: float  # s, T_V, likewise
     disturbance_gain: float  # -, of T_d, the vibration of the pads at the onset of braking
     disturbance_decay: float  # 1/s
     disturbance_frequency: float  # Hz
+    build_up: BuildUp = "main-pipe"  # or "electro-pneumatic"
+    build_up_delay: float = 0.0  # s, until an electro-pneumatic demand rises
+    build_up_ramp: float = 0.0  # s, in which it rises evenly to the full pressure
+    valve: ValveKind = "lag"  # or "orifice"
+    critical_pressure_ratio: float = 0.528  # -, of the orifices, ISO 6358; that of an ideal nozzle
+    hold_leak: float = 0.0  # 1/s, rate at which a held cylinder loses its pressure
+    dead_time: float = 0.0  # s, from a command to the valve
+    shortest_pulse: float = 0.0  # s, that opens a valve
+    longest_release: float = 0.0  # s without filling, after which the watchdog fills; 0: there is none
+    cylinder_volume: float = 0.0  # m3, of all brake cylinders of one wheelset, with their pipes
+    reservoir_volume: float = 0.0  # m3, of the one reservoir of the vehicle; 0: it does not run low
+    reservoir_pressure: float = 0.0  # Pa above the atmosphere at the start; 0: max_pressure
     axle_shares: tuple[float, ...] = ()  # of max_torque, from the front, 0 without a brake; empty: all 1
     bounds: Bounds = EXACT
+
+    @property
+    def supply_pressure(self) -> float:
+        """Pressure of the reservoir at the start, above the atmosphere [Pa]."""
+        return self.reservoir_pressure or self.max_pressure
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
