@@ -428,7 +428,7 @@ def test_no_four_axle_stop_of_the_box_is_shorter(make_problem, make_controller, 
     for vehicle, track in drawn:
         vehicle = replace(vehicle, body_mass=vehicle.mass - 2.0 * vehicle.bogie_mass)
         scenario = Scenario(rail=track, initial_speed=START)
-        for plant in ("quarter", "four-axle"):
+        for plant in ("quarter", "planar"):
             assert bound < ideal_stop(vehicle, scenario, plant=plant).distance
     nearest = ideal_stop(*drawn[0][:1], Scenario(rail=drawn[0][1], initial_speed=START), plant="quarter")
     assert bound > 0.93 * nearest.distance

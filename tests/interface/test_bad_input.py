@@ -40,11 +40,11 @@ COMMAND_LINES = {
     "equation unknown": (("equations", "50"), ("50", "wspd equations")),
     "verdict unknown": (("equations", "--verdict", "misprnt"), ('did you mean "misprint"?',)),
     "parameter set unknown": (("sources", "er24cp"), ('did you mean "er24pc"?',)),
-    "plant of a linearization": (("linearize", "--plant", "four-axle"), ("four-axle", "--plant quarter")),
-    "plant of certificates": (("verify", "--plant", "four-axle"), ("four-axle", "--plant quarter")),
+    "plant of a linearization": (("linearize", "--plant", "planar"), ("planar", "--plant quarter")),
+    "plant of certificates": (("verify", "--plant", "planar"), ("planar", "--plant quarter")),
     "axle rails of the quarter locomotive": (
         ("simulate", "--plant", "quarter", "--axle-rails", WET_AND_DRY),
-        ("single axles", "four-axle"),
+        ("single axles", "planar"),
     ),
     "too few axle rails": (("compare", "--axle-rails", "polach-wet"), ("names 1 rail;", "name 4")),
     "axle rail unknown": (("simulate", "--axle-rails", WET_AND_DRY[:-1]), ('did you mean "polach-dry"?',)),
@@ -81,7 +81,7 @@ COMMAND_LINES = {
     "load spread below zero": (("simulate", "--load-spread", "-1 %"), ("-1 %", "between 0 and 20 %")),
     "load spread of the quarter locomotive": (
         ("simulate", "--load-spread", "4 %", "--plant", "quarter"),
-        ("four-axle",),
+        ("planar",),
     ),
     "seed too large": (("simulate", "--seed", str(2**63)), ("seed", "2^63")),
     "no runs": (("simulate", "--runs", "0"), ("--runs", "--help")),

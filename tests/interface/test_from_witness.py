@@ -77,7 +77,7 @@ def test_the_slip_rests_at_first_on_either_plant(wspd, witness_file):
     options = ("--from-witness", witness_file, "-o", "t.csv", "--force")
     vehicle, rail = load_vehicle("er24pc"), load_rail("polach-wet")
     gain = slip_dynamics(vehicle, rail, 0.2, 10.0).gain
-    for plant in ("quarter", "four-axle"):
+    for plant in ("quarter", "planar"):
         shown = words_of(wspd("simulate", "none", "--plant", plant, *options))
         assert f"er24pc ({plant})" in shown
         with open("t.csv", newline="") as stream:

@@ -70,7 +70,7 @@ def test_stop(wspd):
     assert found["vented_air"] == figures.vented_air
     assert found["step_check"]["distance_change"] == made.check.distance
     assert found["witness"] is None
-    assert found["plant"] == "four-axle"
+    assert found["plant"] == "planar"
     assert found["torque_integral_Nms"] == figures.torque_integral
     assert found["ending"] == "stopped"
 

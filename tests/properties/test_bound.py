@@ -80,7 +80,7 @@ DAMPED = _scaled(dict.fromkeys(SHARES, 1.0), 600.0)
     name=st.sampled_from(CONTROLLERS),
     seed=st.integers(0, 1000),
     noise=st.floats(0.0, 0.5),
-    plant=st.sampled_from(("four-axle", "quarter")),
+    plant=st.sampled_from(("planar", "quarter")),
 )
 def test_no_controller_beats_the_ideal_stop(make_controller, rail, share, name, seed, noise, plant):
     vehicle = load_vehicle("er24pc")
@@ -102,7 +102,7 @@ TWO_HUMPS = Rail(
 )
 
 
-@pytest.mark.parametrize("plant", ["four-axle", "quarter"])
+@pytest.mark.parametrize("plant", ["planar", "quarter"])
 def test_an_ideal_stop_ends_where_the_best_slip_jumps(make_controller, plant):
     """Held wheels once drifted away from it, rolled with a fixed speed and drove the train."""
     vehicle = load_vehicle("er24pc")
@@ -152,7 +152,7 @@ def test_a_brake_of_more_torque_would_beat_it(er24pc, make_controller):
     assert run.totals.distance < ideal_stop(er24pc, scenario).distance
 
 
-@pytest.mark.parametrize("plant", ["four-axle", "quarter"])
+@pytest.mark.parametrize("plant", ["planar", "quarter"])
 def test_full_torque_at_once_and_the_peak_are_shortest(er24pc, plant):
     scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=120.0 / 3.6)
     at_once, peak, held = (

@@ -17,7 +17,7 @@ CASES = (("none", "polach-wet"), ("trenitalia", "table10-dry"), ("afsmc", "polac
 @pytest.mark.parametrize(("controller", "rail"), CASES)
 def test_stop_with_load_transfer(er24pc, make_controller, controller, rail):
     law, scenario = make_controller(controller, rail), Scenario(rail=load_rail(rail), initial_speed=SPEED)
-    run = simulate(er24pc, law, scenario, plant="four-axle")
+    run = simulate(er24pc, law, scenario, plant="planar")
     time, y = IndependentFourAxles(er24pc, scenario.rail).run(law, SPEED)
     assert run.totals.distance == pytest.approx(y[5], rel=1e-5)
     assert run.time[-1] == pytest.approx(time, rel=1e-5)
@@ -31,7 +31,7 @@ def test_a_load_transfer_that_is_too_great_is_seen(er24pc, make_controller):
         Scenario(rail=load_rail("table10-dry"), initial_speed=SPEED),
     )
     high = replace(er24pc, body_height=1.2 * er24pc.body_height)
-    run = simulate(high, law, scenario, plant="four-axle")
+    run = simulate(high, law, scenario, plant="planar")
     _, y = IndependentFourAxles(er24pc, scenario.rail).run(law, SPEED)
     assert abs(run.totals.distance / y[5] - 1.0) > 1e-5
 
@@ -42,7 +42,7 @@ def test_the_quarter_locomotive_is_the_symmetric_case(er24pc, make_controller, c
     flat = replace(er24pc, body_height=0.0, bogie_height=0.0, traction_rod_height=0.0)
     four, quarter = (
         simulate(vehicle, law, scenario, plant=plant)
-        for vehicle, plant in ((flat, "four-axle"), (er24pc, "quarter"))
+        for vehicle, plant in ((flat, "planar"), (er24pc, "quarter"))
     )
     assert (four.wheel_speed == four.wheel_speed[:, :1]).all()  # the axles cannot be told apart
     np.testing.assert_array_equal(four.wheel_speed[:, :1], quarter.wheel_speed)

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 
 from wspd_design.parameters.schema import Schema, schema_of
 
-Record: TypeAlias = Literal["state", "axle", "vehicle", "brake", "contact", "rail"]
+Record: TypeAlias = Literal["state", "axle", "vehicle", "brake", "contact", "rail", "laden"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +96,15 @@ PLANT = (*STATE, *VEHICLE, *CONTACT, *RAIL)
 _TRANSFER = "enters through the range of the axle load share"
 _PADS = "the vibration of the pads at the onset of braking is part of no claim"
 OUTSIDE_CLAIMS: dict[tuple[Record, str], str] = {
-    ("vehicle", "wheelsets"): "a count, not a measurement",
+    **{
+        ("vehicle", count): "a count, not a measurement"
+        for count in ("wheelsets", "axles_per_bogie", "bodies")
+    },
+    ("brake", "axle_shares"): "claims about brakes speak about vehicles whose brakes are alike",
+    **{
+        ("laden", field): "the laden vehicle is a vehicle of its own"
+        for field in ("mass", "body_height", "max_torque")
+    },
     ("vehicle", "wheel_damping_decay"): "claims take the damping of the wheels as it is at the start",
     **{
         ("vehicle", field): _TRANSFER

@@ -36,6 +36,8 @@ _RECORDS: tuple[tuple[str, type], ...] = (
 _NOT_NUMBERS = (
     "name",
     "wheelsets",
+    "axles_per_bogie",
+    "bodies",
     "brake",
     "contact",
     "axle_shares",
@@ -99,7 +101,8 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     ``disturbed`` adds the vibration of the pads, T_d, to the torque.
     """
     blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
-    shape = plant.on(Vehicle(**{**blank, "wheelsets": plant.vehicle.wheelsets}))
+    counts = {name: getattr(plant.vehicle, name) for name in ("wheelsets", "axles_per_bogie", "bodies")}
+    shape = plant.on(Vehicle(**{**blank, **counts}))
     return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
 
 

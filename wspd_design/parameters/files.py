@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.laden import LADEN, laden
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.schema import Kind, Quantity, Schema, schema_of
 from wspd_design.parameters.units import dimension_of, nearest_unit, to_si, units_of
@@ -55,7 +56,8 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
     kind : {"constants", "vehicle", "rail", "controller", "track"}
         What the file describes.
     name_or_path : str or Path
-        Name of a shipped file, such as ``er24pc``, or for vehicles and rails the path of a ``.toml`` file.
+        Name of a shipped file, such as ``er24pc``, or for vehicles and rails the path of a ``.toml`` file; with
+        ``:laden`` after it the laden vehicle.
 
     Returns
     -------
@@ -68,6 +70,8 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
         If the name is unknown or anything in the file is wrong; the sentence names file and key.
     """
     text = str(name_or_path)
+    if kind == "vehicle" and text.endswith(LADEN):
+        return laden(load_entries(kind, text.removesuffix(LADEN)))
     if kind in ("vehicle", "rail") and text.endswith(".toml"):
         return _load_own(kind, Path(text))
     if text not in available(kind):
@@ -133,7 +137,9 @@ def _parameter_set(
     title = document.get("title", name)
     if not isinstance(title, str):
         raise UserError(f"title = {title} in {where} must be text; put it in quotes.")
-    return ParameterSet(kind=kind, name=name, title=title, entries={key: entries[key] for key in schema if key in entries})
+    return ParameterSet(
+        kind=kind, name=name, title=title, entries={key: entries[key] for key in schema if key in entries}
+    )
 
 
 def _entries(

@@ -18,6 +18,7 @@ from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, Modul
 from typing import Any
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
 
 _PACKAGE = __name__.partition(".")[0]
 _PLAIN = (bool, int, str, bytes, complex, Fraction, type(None), type(Ellipsis))
@@ -100,7 +101,7 @@ def _object(value: Any, inside: Any) -> str:
         for name in _as_tuple(base.__dict__.get("__slots__", ()))
         if hasattr(value, name) and name not in _NO_CONTENT
     ]
-    found = sorted({*names, *slots, *getattr(value, "__dict__", {})})
+    found = sorted({*names, *slots, *getattr(value, "__dict__", {})} - _absent(value))
     if not found and not _is_written_in_python(kind):
         raise UserError(
             f"an object of the class {_name(kind)} has no content that can be told apart from another one; "
@@ -108,6 +109,21 @@ def _object(value: Any, inside: Any) -> str:
         )
     content = ",".join(f"{name}={inside(getattr(value, name))}" for name in found)
     return f"{inside(kind)}({content})"
+
+
+def _absent(value: Any) -> set[str]:
+    """Names of what a vehicle or rail does not have.
+
+    What a file may leave out has a default that says there is no such thing: a vehicle without it keeps the
+    fingerprint that it had before such things were known.
+    """
+    if not isinstance(value, Vehicle | Brake | Contact | Rail):
+        return set()
+    return {
+        field.name
+        for field in fields(value)
+        if field.name != "bounds" and field.default == getattr(value, field.name)
+    }
 
 
 def _as_tuple(slots: Any) -> tuple[str, ...]:

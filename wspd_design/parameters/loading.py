@@ -10,6 +10,7 @@ from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.brakes import check_brake
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, data_file, load_entries, read_toml
+from wspd_design.parameters.gear import contradiction, gear_of
 from wspd_design.parameters.records import (
     Brake,
     Constants,
@@ -65,7 +66,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     Parameters
     ----------
     name_or_path : str or Path
-        Name of a shipped vehicle or path of a user's own file.
+        Name of a shipped vehicle or path of a user's own file; with ``:laden`` after it the laden vehicle.
 
     Returns
     -------
@@ -75,31 +76,47 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     Raises
     ------
     UserError
-        If there is no such vehicle, its file is wrong, or its masses contradict each other.
+        If there is no such vehicle, its file is wrong, or its running gear or masses contradict each other.
     """
     parameters = load_entries("vehicle", name_or_path)
     values = _values(parameters)
-    if values["wheelsets"] != 4.0:
-        raise UserError(
-            f"wheelsets = {values['wheelsets']:g} in vehicle {parameters.name} must be 4; "
-            "other arrangements are not modeled."
-        )
-    parts = values["body_mass"] + 2.0 * values["bogie_mass"]
-    if abs(parts - values["mass"]) > _MASS_TOLERANCE * values["mass"]:
-        raise UserError(
-            f"mass = {values['mass']:g} kg in vehicle {parameters.name} must equal body_mass + 2 bogie_mass "
-            f"= {parts:g} kg; change the three together."
-        )
+    counts = {
+        name: _count(values[name], name, parameters.name)
+        for name in ("wheelsets", "axles_per_bogie", "bodies")
+        if name in values
+    }
     check_brake(values, parameters.name)
-    return _build(
+    vehicle = _build(
         Vehicle,
-        values,
+        values | counts,
         name=parameters.name,
-        wheelsets=4,
         brake=_build(Brake, values, "brake.", bounds=_bounds(parameters, "brake.")),
         contact=_build(Contact, values, "contact.", bounds=_bounds(parameters, "contact.")),
         bounds=_bounds(parameters),
     )
+    _check_gear(vehicle)
+    return vehicle
+
+
+def _count(value: float, name: str, vehicle: str) -> int:
+    if value != int(value):
+        raise UserError(f"{name} = {value:g} in vehicle {vehicle} must be a whole number; correct it.")
+    return int(value)
+
+
+def _check_gear(vehicle: Vehicle) -> None:
+    """Refuse a running gear that contradicts itself, and masses that do not add up."""
+    wrong = contradiction(vehicle)
+    if wrong:
+        raise UserError(f"vehicle {vehicle.name}: {wrong}.")
+    gear = gear_of(vehicle)
+    parts = gear.bodies * vehicle.body_mass + gear.supports * vehicle.bogie_mass
+    if abs(parts - vehicle.mass) > _MASS_TOLERANCE * vehicle.mass:
+        bodies = "body_mass" if gear.bodies == 1 else f"{gear.bodies} body_mass"
+        raise UserError(
+            f"mass = {vehicle.mass:g} kg in vehicle {vehicle.name} must equal {bodies} + {gear.supports} bogie_mass "
+            f"= {parts:g} kg; change the three together."
+        )
 
 
 def load_rail(name_or_path: str | Path) -> Rail:

@@ -4,7 +4,7 @@ The history of each number (unit, source, status) stays with the :class:`Entry` 
 stay with the record.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from wspd_design.parameters.bounds import EXACT, Bounds
 from wspd_design.parameters.schema import BuildUp, ValveKind
@@ -78,7 +78,7 @@ class Constants:
 class Brake:
     """Electro-pneumatic brake of one wheelset, eqs. (8)-(14)."""
 
-    max_torque: float  # N m per wheelset
+    max_torque: float  # N m per wheelset, of an axle with share 1
     max_pressure: float  # Pa
     supply_rate: float = 0.0  # 1/s, build-up of the supply pressure, eq. (8); of the main pipe
     fill_time: float  # s, T_F, or the time of the orifice
@@ -121,7 +121,7 @@ class Contact:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Vehicle:
-    """A vehicle on two-axle bogies, eqs. (1)-(4)."""
+    """A vehicle on bogies or single axles, eqs. (1)-(4); what it stands on is told by ``parameters.gear``."""
 
     name: str
     mass: float  # kg
@@ -133,24 +133,37 @@ class Vehicle:
     resistance_constant: float  # N, a0
     resistance_linear: float  # N s/m, a1
     resistance_quadratic: float  # N s2/m2, a2
-    body_mass: float  # kg
-    bogie_mass: float  # kg, each, complete with its wheelsets
+    body_mass: float  # kg, of one body
+    bogie_mass: (
+        float  # kg, each, complete with its wheelsets; of a single axle, the wheelset with what it carries
+    )
     body_height: float  # m, centre of gravity above the rail
     bogie_height: float  # m
     traction_rod_height: float  # m
-    bogie_spacing: float  # m, distance of the bogie centres
-    wheelbase: float  # m, of one bogie
+    bogie_spacing: float  # m, distance of the bogie centres, or of single axles
+    wheelbase: float = 0.0  # m, of one bogie, first to last axle
     body_pitch_frequency: float  # Hz
-    bogie_pitch_frequency: float  # Hz
+    bogie_pitch_frequency: float = 0.0  # Hz
     pitch_damping_ratio: float  # -
     brake: Brake
     contact: Contact
+    axles_per_bogie: int = 2  # 1 where single axles carry the body
+    bodies: int = 1  # more than one: an articulated train on as many bogies and one
     bounds: Bounds = EXACT  # of the numbers above; brake and contact have their own
 
     @property
     def wheel_inertia(self) -> float:
         """Moment of inertia per wheel, I_W of eq. (2) [kg m2]."""
         return self.wheelset_inertia / 2.0
+
+    @property
+    def brake_shares(self) -> tuple[float, ...]:
+        """Torque of the brake of each axle over ``brake.max_torque``, from the front; 0 without a brake."""
+        return self.brake.axle_shares or (1.0,) * self.wheelsets
+
+    def brake_of(self, axle: int) -> Brake:
+        """Return the brake of one axle, counted from 0 at the front; one without a brake has no torque."""
+        return replace(self.brake, max_torque=self.brake_shares[axle] * self.brake.max_torque)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -100,7 +100,9 @@ _CONSTANTS: Schema = {
 
 _VEHICLE: Schema = {
     "mass": _positive("mass", plausible=(2e3, 1e6)),
-    "wheelsets": _positive("ratio"),
+    "wheelsets": Quantity(dimension="ratio", low=1.0, high=32.0),
+    "axles_per_bogie": Quantity(dimension="ratio", low=1.0, high=3.0, optional=True),
+    "bodies": Quantity(dimension="ratio", low=1.0, high=31.0, optional=True),
     "wheel_radius": _positive("length", plausible=(0.1, 1.5)),
     "wheelset_inertia": _positive("inertia", plausible=(5.0, 1e4)),
     "wheel_damping": _not_negative("rotational damping"),
@@ -114,11 +116,12 @@ _VEHICLE: Schema = {
     "bogie_height": _positive("length", plausible=(0.05, 3.0)),
     "traction_rod_height": _not_negative("length"),
     "bogie_spacing": _positive("length", plausible=(1.0, 50.0)),
-    "wheelbase": _positive("length", plausible=(0.5, 15.0)),
+    "wheelbase": replace(_positive("length", plausible=(0.5, 15.0)), optional=True),
     "body_pitch_frequency": _positive("frequency", plausible=(0.05, 100.0)),
-    "bogie_pitch_frequency": _positive("frequency", plausible=(0.05, 100.0)),
+    "bogie_pitch_frequency": replace(_positive("frequency", plausible=(0.05, 100.0)), optional=True),
     "pitch_damping_ratio": _not_negative("ratio"),
     "brake.max_torque": _positive("torque", plausible=(100.0, 1e6)),
+    "brake.axle_shares": replace(_not_negative("ratio", "vector"), optional=True),
     "brake.max_pressure": _positive("pressure", plausible=(1e4, 1e7)),
     "brake.build_up": _word(*get_args(BuildUp)),
     "brake.supply_rate": _optional(_positive("rate", plausible=(0.01, 1e3))),
@@ -143,6 +146,9 @@ _VEHICLE: Schema = {
     "contact.semi_axis_lateral": _positive("length", plausible=(5e-4, 0.05)),
     "contact.kalker_c11": _positive("ratio", plausible=(0.1, 20.0)),
     "contact.reference_load": _positive("force", plausible=(1e3, 1e6)),
+    "laden.mass": replace(_positive("mass", plausible=(2e3, 1e6)), optional=True),
+    "laden.body_height": replace(_positive("length", plausible=(0.1, 6.0)), optional=True),
+    "laden.max_torque": replace(_positive("torque", plausible=(100.0, 1e6)), optional=True),
 }
 
 _RAIL: Schema = {

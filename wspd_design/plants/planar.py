@@ -1,9 +1,11 @@
-"""A vehicle on two-axle bogies in the plane of the track, with the load transfer of body and bogie pitch.
+"""A vehicle in the plane of the track, with the load transfer of body and bogie pitch.
 
-The axles are numbered from the front in the direction of travel. Braking loads the front axle of each bogie and
-the front bogies. Bogies of equal suspension stand at equal distances, so that the body loads them in proportion to
-their distance from its middle. Pitch is a second-order response about the quasi-static load transfer; with all
-heights at zero and equal rails the plant is that of :mod:`wspd_design.plants.quarter`.
+The axles are numbered from the front in the direction of travel. What the vehicle stands on, and how a pitch moment
+loads it, is told by :mod:`wspd_design.parameters.gear`. Braking loads the front axle of each bogie and the front
+supports. Bodies pull at the height of the traction rods; there the running resistance acts too, and the moment by
+which turning wheelsets are slowed down is left out. A single axle cannot pitch: its moment goes into the body. Pitch
+is a second-order response about the quasi-static load transfer; with all heights at zero, equal loads and equal rails
+the plant is that of :mod:`wspd_design.plants.quarter`.
 """
 
 import math
@@ -13,46 +15,55 @@ from typing import ClassVar
 from wspd_design.model import slip as slip_model
 from wspd_design.model.number import Number
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.gear import Gear, gear_of, wrong_counts
+from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.axle import RigidWheelsets
 from wspd_design.plants.protocol import TrainMotion
 
-_AXLES = 2  # of one bogie
-_WHEELS = 2 * _AXLES
+_WHEELS = 2  # of one axle
 
 
 @dataclass(frozen=True, slots=True)
 class Planar(RigidWheelsets):
-    """The plant with load transfer: of the body, then within each bogie, front bogie first [N]."""
+    """The plant with load transfer: of the bodies, then within each bogie, front bogie first [N]."""
 
     vehicle: Vehicle
-    name: ClassVar[str] = "four-axle"
+    name: ClassVar[str] = "planar"
     alike: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        """Refuse a vehicle that does not stand on two or more bogies of two axles."""
-        axles = self.vehicle.wheelsets
-        if axles % _AXLES or axles < 2 * _AXLES:
-            raise UserError(
-                f"wheelsets = {axles} of vehicle {self.vehicle.name} do not stand on two or more bogies of "
-                f'{_AXLES} axles, and load transfer is known for those alone; take the plant "quarter"'
-            )
+        """Refuse a vehicle whose loads are not known."""
+        vehicle = self.vehicle
+        wrong = wrong_counts(vehicle)
+        if not wrong and self.gear.supports < 2:
+            wrong = f"wheelsets = {vehicle.wheelsets} make one support, and load moves between two or more"
+        if wrong:
+            raise UserError(f'vehicle {vehicle.name}: {wrong}; or take the plant "quarter"')
+
+    @property
+    def gear(self) -> Gear:
+        """What the vehicle stands on."""
+        return gear_of(self.vehicle)
 
     @property
     def bogies(self) -> int:
-        """Number of bogies."""
-        return bogies(self.vehicle)
+        """Number of bogies; none where single axles carry the body."""
+        return 0 if self.gear.axles == 1 else self.gear.supports
 
     @property
     def transfers(self) -> int:
-        """One of the body and one of each bogie."""
+        """One of the bodies, which pitch alike, and one of each bogie."""
         return 1 + self.bogies
 
     @property
     def offsets(self) -> tuple[Number, ...]:
         """Distance of each axle behind the first one [m]."""
-        base, spacing = self.vehicle.wheelbase, self.vehicle.bogie_spacing
-        return tuple(bogie * spacing + axle * base for bogie in range(self.bogies) for axle in range(_AXLES))
+        gear, spacing = self.gear, self.vehicle.bogie_spacing
+        apart = self.vehicle.wheelbase / (gear.axles - 1) if gear.axles > 1 else 0.0
+        return tuple(
+            support * spacing + axle * apart for support in range(gear.supports) for axle in range(gear.axles)
+        )
 
     def on(self, vehicle: Vehicle) -> "Planar":
         """Return the same plant with the numbers of another vehicle."""
@@ -60,13 +71,27 @@ class Planar(RigidWheelsets):
 
     def wheel_loads(self, transfers: tuple[Number, ...]) -> tuple[Number, ...]:
         """Vertical load of one wheel of each axle [N]."""
-        static = slip_model.static_wheel_load(self.vehicle)
+        gear = self.gear
         body, *within_bogies = transfers[: self.transfers]
+        within = within_bogies or [0.0] * gear.supports
         loads: list[Number] = []
-        for share, bogie in zip(_body_shares(self.bogies), within_bogies, strict=True):
-            mean, within = static + share * body / _WHEELS, bogie / _AXLES
-            loads += [mean + within, mean - within]
+        for static, share, bogie in zip(self._static_loads, gear.body_shares, within, strict=True):
+            mean = static + share * body / (_WHEELS * gear.axles)
+            part = bogie / _WHEELS
+            pitched = {-1.0: mean - part, 0.0: mean, 1.0: mean + part}  # a third axle stands in the middle
+            loads += [pitched[each] for each in gear.axle_shares]
         return tuple(loads)
+
+    @property
+    def _static_loads(self) -> tuple[Number, ...]:
+        """Load of a wheel of each support at rest on level track [N]; shared supports carry more of the bodies."""
+        vehicle, gear = self.vehicle, self.gear
+        mean = slip_model.static_wheel_load(vehicle)
+        if gear.bodies == 1:
+            return (mean,) * gear.supports
+        body = vehicle.body_mass * constants().gravity / (_WHEELS * gear.axles)
+        usual = gear.bodies / gear.supports
+        return tuple(mean + (resting - usual) * body for resting in gear.resting)
 
     def train_motion(
         self,
@@ -80,15 +105,20 @@ class Planar(RigidWheelsets):
 
         What tips body and bogies is the force on them beside gravity: by mass the deceleration less g times the grade.
         """
-        vehicle = self.vehicle
+        vehicle, gear = self.vehicle, self.gear
         resistance = slip_model.resistance(vehicle, speed, grade_force)
         acceleration = slip_model.train_acceleration(vehicle, sum(creep_forces) / self.axles, resistance)
         held = -acceleration - grade_force / vehicle.mass
         height = vehicle.body_height - vehicle.traction_rod_height
-        targets = [vehicle.body_mass * held * height / vehicle.bogie_spacing]
-        for bogie in range(self.bogies):
-            front, rear = creep_forces[_AXLES * bogie : _AXLES * (bogie + 1)]
-            targets.append(_bogie_target(vehicle, 2.0 * (front + rear), held))
+        body = vehicle.body_mass * held * height
+        supports = [
+            _support_moment(vehicle, 2.0 * _total(creep_forces[gear.axles * k : gear.axles * (k + 1)]), held)
+            for k in range(gear.supports)
+        ]
+        if self.bogies:
+            targets = [body / vehicle.bogie_spacing, *(moment / vehicle.wheelbase for moment in supports)]
+        else:
+            targets = [(body + sum(supports)) / vehicle.bogie_spacing]
         frequencies = (vehicle.body_pitch_frequency, *(vehicle.bogie_pitch_frequency,) * self.bogies)
         values, rates = transfers[: self.transfers], transfers[self.transfers :]
         damping = vehicle.pitch_damping_ratio
@@ -100,23 +130,17 @@ class Planar(RigidWheelsets):
         )
 
 
-def bogies(vehicle: Vehicle) -> int:
-    """Number of bogies of a vehicle that stands on nothing else."""
-    return vehicle.wheelsets // _AXLES
+def _total(forces: tuple[Number, ...]) -> Number:
+    first, *others = forces
+    for force in others:
+        first = first + force
+    return first
 
 
-def _body_shares(number: int) -> tuple[float, ...]:
-    """Load of each bogie from a pitch moment of the body, over moment by spacing; 1 and -1 for two bogies."""
-    places = [0.5 * (number - 1) - bogie for bogie in range(number)]
-    squares = sum(place * place for place in places)
-    return tuple(place / squares for place in places)
-
-
-def _bogie_target(vehicle: Vehicle, force: Number, held: Number) -> Number:
-    """Quasi-static load transfer within a bogie: what holds its own mass, and the body's pull on the rod [N]."""
+def _support_moment(vehicle: Vehicle, force: Number, held: Number) -> Number:
+    """Quasi-static pitch moment of a support about the rail: of its own mass, and of the body's pull on it [N m]."""
     own = vehicle.bogie_mass * held
-    moment = own * vehicle.bogie_height + (force - own) * vehicle.traction_rod_height
-    return moment / vehicle.wheelbase
+    return own * vehicle.bogie_height + (force - own) * vehicle.traction_rod_height
 
 
 def _response(target: Number, value: Number, rate: Number, frequency: Number, damping: Number) -> Number:

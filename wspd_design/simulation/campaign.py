@@ -82,7 +82,7 @@ def simulate_many(
     draws : sequence of Draw
         Numbers that each stop draws anew; :func:`~wspd_design.simulation.draws.within_bounds` makes them from
         parameter files.
-    plant : {"four-axle", "quarter"}
+    plant : {"planar", "quarter"}
         With or without load transfer.
     check_every : int
         Runs whose number is a multiple of it are simulated again with half the steps; 0 for none.

@@ -55,7 +55,7 @@ def compare(
         Rail and initial speed.
     slip_reference : float
         Reference of ``slip_rms`` for the laws that hold none of their own [-].
-    plant : {"four-axle", "quarter"}
+    plant : {"planar", "quarter"}
         With or without load transfer.
     progress : callable, optional
         Told the name of each controller before its stop.

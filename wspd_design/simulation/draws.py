@@ -12,9 +12,9 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Protocol
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.gear import gear_of
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.parameters.schema import Kind, schema_of
-from wspd_design.plants.planar import bogies
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import Scenario
 
@@ -202,7 +202,7 @@ class Deck:
         return plant, self._stop(row, rail=rail, seed=seed)
 
     def _carried(self, row: list[float]) -> dict[str, float]:
-        """Mass of the body that takes up what a drawn mass gains or loses, unless it is drawn itself."""
+        """Mass of each body, which takes up what a drawn mass gains or loses, unless it is drawn itself."""
         vehicle = self._plant.vehicle
         mass, body, bogie = (
             self._columns.get(f"vehicle.{name}") for name in ("mass", "body_mass", "bogie_mass")
@@ -210,7 +210,8 @@ class Deck:
         if mass is None or body is not None:
             return {}
         each = vehicle.bogie_mass if bogie is None else row[bogie]
-        return {"body_mass": row[mass] - bogies(vehicle) * each}
+        gear = gear_of(vehicle)
+        return {"body_mass": (row[mass] - gear.supports * each) / gear.bodies}
 
 
 def _shares(seed: int, name: str, first: int, count: int) -> "Array":

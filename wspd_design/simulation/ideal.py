@@ -73,7 +73,7 @@ def ideal_stop(
         Slip that is not exceeded; that of the adhesion peak at each speed by default.
     instantaneous : bool
         Full torque from the start, in place of the build-up of eqs. (8), (9).
-    plant : {"four-axle", "quarter"}
+    plant : {"planar", "quarter"}
         With or without load transfer.
 
     Returns

@@ -54,7 +54,7 @@ def loop_input(
     columns = [
         [
             parameter_values(
-                each_plant.vehicle if each.pad_vibration or not shaken else _calm(each_plant.vehicle),
+                _lane_vehicle(each_plant.vehicle, axle, calm=shaken and not each.pad_vibration),
                 _rails(each, each_plant)[axle],
                 Surroundings(
                     grade_force=each_plant.vehicle.mass * (gravity * each.grade),
@@ -98,6 +98,10 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
         raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
+    if plant.alike and len(set(plant.vehicle.brake_shares)) > 1:
+        raise UserError(
+            f'axles with other brakes than the rest, as vehicle {plant.vehicle.name} has, need the plant "{Planar.name}"'
+        )
     tables = None if irregularity is None else irregularity.factors
     for what, one, several in (
         ("axle rails", "rail", scenario.axle_rails),
@@ -160,9 +164,10 @@ def _settings(
     )
 
 
-def _calm(vehicle: Vehicle) -> Vehicle:
-    """The same vehicle with pads that do not vibrate, for a stop beside others where they do."""
-    return replace(vehicle, brake=replace(vehicle.brake, disturbance_gain=0.0))
+def _lane_vehicle(vehicle: Vehicle, axle: int, *, calm: bool) -> Vehicle:
+    """The vehicle with the brake of an axle; ``calm`` are pads that do not vibrate beside stops where they do."""
+    brake = vehicle.brake_of(axle)
+    return replace(vehicle, brake=replace(brake, disturbance_gain=0.0) if calm else brake)
 
 
 def _disturbances(sensing: Sensing) -> list[float]:

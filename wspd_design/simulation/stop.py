@@ -50,7 +50,7 @@ def simulate(
         Law of every wheelset.
     scenario : Scenario
         Rails, initial speed and disturbances.
-    plant : {"four-axle", "quarter"}
+    plant : {"planar", "quarter"}
         With or without load transfer.
     refinement : int
         The integration steps are divided by it.

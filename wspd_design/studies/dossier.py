@@ -96,7 +96,7 @@ def dossier(
         Controllers to compare with.
     command : str
         The command line, for the record.
-    plant : {"four-axle", "quarter"}
+    plant : {"planar", "quarter"}
         Of the stops; the certificates speak about the quarter locomotive.
     stored : Path, optional
         Folder of certificate files; what the checkers accept of it for this design is not searched again.

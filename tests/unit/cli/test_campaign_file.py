@@ -25,7 +25,7 @@ def read(tmp_path):
 def test_defaults_are_those_of_a_stop(read):
     found = read("stops = 5")
     (series,) = found.series
-    assert (found.stops, found.plant, found.check_every) == (5, "four-axle", 100)
+    assert (found.stops, found.plant, found.check_every) == (5, "planar", 100)
     assert (series.case.controller.name, series.case.rail.name, series.draws) == ("afsmc", "polach-wet", ())
     assert series.scenario == Scenario(rail=load_rail("polach-wet"), initial_speed=120.0 / 3.6)
 

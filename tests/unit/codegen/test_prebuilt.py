@@ -229,7 +229,7 @@ def test_a_wheel_holds_what_stops_and_campaigns_ask_for(
     asked = set()
     monkeypatch.setattr(closed_loop, "prebuilt_library", lambda source: asked.add(source))
     law = make_controller("none")
-    for plant in ("four-axle", "quarter"):
+    for plant in ("planar", "quarter"):
         for vibrating in (False, True):
             each = replace(scenario, initial_speed=1.0, pad_vibration=vibrating)
             simulate(er24pc, law, each, plant=plant)

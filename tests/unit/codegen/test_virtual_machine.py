@@ -105,7 +105,7 @@ def test_all_features_of_a_scenario(er24pc, make_controller, feature):
     law = make_controller("trenitalia")
     compiled, virtual = both(er24pc, law, replace(plain, **FEATURES[feature]))
     assert_same(virtual, compiled)
-    without = simulate(er24pc, law, plain, plant="four-axle").totals.distance
+    without = simulate(er24pc, law, plain, plant="planar").totals.distance
     assert abs(compiled.stop_totals["distance"][0] - without) > 1e-5  # the feature does something
 
 
@@ -157,13 +157,13 @@ def test_simulate_falls_back_with_one_notice(er24pc, make_controller, no_compile
     scenario = Scenario(rail=load_rail("table10-dry"), initial_speed=5.0)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        runs = [simulate(er24pc, law, scenario, plant="four-axle") for _ in range(3)]
+        runs = [simulate(er24pc, law, scenario, plant="planar") for _ in range(3)]
     assert [run.engine for run in runs] == ["CasADi virtual machine"] * 3
     assert [str(notice.message).partition(";")[0] for notice in caught] == ["no C compiler for this test"]
 
 
 @pytest.mark.parametrize("options", [{}, {"slip": 0.14}, {"instantaneous": True}], ids=str)
-@pytest.mark.parametrize("plant", ["quarter", "four-axle"])
+@pytest.mark.parametrize("plant", ["quarter", "planar"])
 def test_ideal_stops_are_the_same(er24pc, monkeypatch, options, plant):
     scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=6.0)
     compiled = ideal.ideal_stop(er24pc, scenario, plant=plant, **options)

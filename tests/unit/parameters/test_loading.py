@@ -123,7 +123,31 @@ def test_wrong_rail_file(write, text, fragments):
         ('[brake.max_torque]\nvalue = 60\nunit = "kN"\n', ("unit of force, not of torque", "kN m")),
         ('[mass]\nvalue = 0\nunit = "t"\n', ("[mass]", "above 0")),
         (MASS, ("mass = 80000 kg", "76841 kg", "change the three together")),
-        ('[wheelsets]\nvalue = 6\nunit = "-"\n', ("wheelsets = 6", "must be 4")),
+        ('[wheelsets]\nvalue = 6\nunit = "-"\n', ("body_mass + 3 bogie_mass", "change the three together")),
+        ('[wheelsets]\nvalue = 2\nunit = "-"\n', ("make one bogie", "axles_per_bogie = 1")),
+        ('[wheelsets]\nvalue = 4.5\nunit = "-"\n', ("wheelsets = 4.5", "whole number")),
+        ('[wheelsets]\nvalue = 33\nunit = "-"\n', ("[wheelsets]", "[1, 32]")),
+        (
+            '[axles_per_bogie]\nvalue = 3\nunit = "-"\n',
+            ("wheelsets = 4", "multiple of axles_per_bogie = 3"),
+        ),
+        (
+            '[bodies]\nvalue = 2\nunit = "-"\n',
+            ("bodies = 2", "on 3 bogies", "make 2"),
+        ),
+        ('[wheelbase]\nvalue = 12\nunit = "m"\n', ("wheelbase = 12 m", "below bogie_spacing")),
+        (
+            '[brake.axle_shares]\nvalue = [1, 0, 1]\nunit = "-"\n',
+            ("brake.axle_shares has 3 numbers", "4 wheelsets"),
+        ),
+        (
+            '[brake.axle_shares]\nvalue = [0, 0, 0, 0]\nunit = "-"\n',
+            ("leaves no axle with a brake",),
+        ),
+        (
+            '[brake.axle_shares]\nvalue = [1, 1, -1, 1]\nunit = "-"\n',
+            ("brake.axle_shares", "at least 0"),
+        ),
         ('[wheel_radius]\nvalue = 550\nunit = "m"\n', ("550 m", "0.1 to 1.5 m", "did you mean 550 mm?")),
         ('[mass]\nvalue = 76.8\nunit = "kg"\n', ("76.8 kg", "did you mean 76.8 t?")),
         ('[wheel_radius]\nvalue = 40\nunit = "m"\n', ("40 m", "0.1 to 1.5 m", "correct it")),

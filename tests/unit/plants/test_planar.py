@@ -123,22 +123,29 @@ def test_a_grade_moves_no_load_by_itself(er24pc):
     assert min(held) > 0.0
 
 
-@pytest.mark.parametrize("axles", [1, 2, 3, 5, 7])
-def test_what_stands_on_no_two_bogies_is_refused(er24pc, axles):
-    vehicle = with_axles(er24pc, axles)
-    with pytest.raises(
-        UserError, match=rf"wheelsets = {axles} of vehicle er24pc .* take the plant \"quarter\""
-    ):
-        plant_of("four-axle", vehicle)
-    assert plant_of("quarter", vehicle).axles == axles
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"wheelsets": 1, "axles_per_bogie": 1}, "wheelsets = 1 make one support"),
+        ({"wheelsets": 2}, "make one bogie"),
+        ({"wheelsets": 5}, "wheelsets = 5 must be a multiple of axles_per_bogie = 2"),
+        ({"wheelsets": 4, "axles_per_bogie": 4}, "axles_per_bogie = 4 must be 1"),
+        ({"wheelsets": 8, "bodies": 2}, "bodies = 2 .* on 3 bogies"),
+    ],
+)
+def test_what_stands_on_nothing_known_is_refused(er24pc, changes, why):
+    vehicle = replace(er24pc, **changes)
+    with pytest.raises(UserError, match=rf'vehicle er24pc: .*{why}.* take the plant "quarter"'):
+        plant_of("planar", vehicle)
+    assert plant_of("quarter", vehicle).axles == vehicle.wheelsets
 
 
 def test_plants_by_name(er24pc):
-    assert PLANTS == ("four-axle", "quarter")
+    assert PLANTS == ("planar", "quarter")
     for name in PLANTS:
         plant = plant_of(name, er24pc)
         assert (plant.name, plant.vehicle, plant.on(er24pc)) == (name, er24pc, plant)
-    with pytest.raises(UserError, match='unknown plant "half"; available: four-axle, quarter'):
+    with pytest.raises(UserError, match='unknown plant "half"; available: planar, quarter'):
         plant_of("half", er24pc)
 
 

@@ -72,7 +72,7 @@ def trial(
         controller=controller,
         vehicle="er24pc",
         rail=rail,
-        plant="four-axle",
+        plant="planar",
         sample_time=0.1,
         initial_speed=INITIAL_SPEED,
         ending=ending,

@@ -189,11 +189,11 @@ def test_ideal_stop_and_plant_stand_beside_the_stops(document):
     rows = _table(document.blocks, "stops-table").rows
     assert [plain(row[2]) for row in rows] == ["92.9"] * 3
     assert "ideal stop: 174.2 m" in plain(_table(document.blocks, "stops-table").caption)
-    assert "four-axle" in plain(_table(document.blocks, "stops-table").caption)
+    assert "planar" in plain(_table(document.blocks, "stops-table").caption)
     (traces,) = (
         each for each in document.blocks if isinstance(each, Figure) and each.anchor == "stop-traces"
     )
-    assert "four-axle" in plain(traces.caption)
+    assert "planar" in plain(traces.caption)
 
 
 def test_programs_read_the_same_numbers(document):

@@ -104,7 +104,7 @@ def test_key_numbers_are_those_of_the_records():
     for value, record, places in zip(shown, wanted, (1, 1, 3, 2), strict=True):
         assert abs(value - record) <= 0.5 * 10.0**-places * 1.0000001
     assert [each.unit for each in tiles.numbers] == ["m", "%", "", "1/s"]
-    assert "(four-axle), in 10.00 s" in plain(tiles.numbers[0].note)
+    assert "(planar), in 10.00 s" in plain(tiles.numbers[0].note)
     assert "174.2 m" in plain(tiles.numbers[1].note)
     assert plain(tiles.numbers[3].note).endswith("1/τ = 1.67 1/s")
 

@@ -63,7 +63,7 @@ def test_the_mass_of_a_wheelset_counts(er24pc, make_controller):
     assert two.totals.distance > 1.5 * four.totals.distance
 
 
-@pytest.mark.parametrize(("plant", "axles"), [("quarter", 2), ("quarter", 6), ("four-axle", 6)])
+@pytest.mark.parametrize(("plant", "axles"), [("quarter", 2), ("quarter", 6), ("planar", 6)])
 def test_momentum_and_energy_are_conserved(er24pc, make_controller, scenario, plant, axles):
     vehicle, law = with_axles(er24pc, axles), make_controller("trenitalia")
     run = simulate(vehicle, law, scenario, plant=plant)
@@ -136,7 +136,7 @@ def test_without_a_compiler_the_numbers_are_the_same(er24pc, make_controller, ki
     assert_same(virtual, compiled)
 
 
-@pytest.mark.parametrize(("plant", "axles"), [("quarter", 2), ("four-axle", 6)])
+@pytest.mark.parametrize(("plant", "axles"), [("quarter", 2), ("planar", 6)])
 def test_ideal_stops_of_other_vehicles(er24pc, scenario, plant, axles):
     ideal = ideal_stop(with_axles(er24pc, axles), scenario, plant=plant).distance
     four = ideal_stop(er24pc, scenario, plant="quarter").distance

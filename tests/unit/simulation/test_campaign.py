@@ -36,14 +36,14 @@ def bounds():
 
 def drawn_case(er24pc, scenario, bounds, run):
     """Vehicle and stop of one row, from the records alone."""
-    plant, stop = campaign_rows.Deck(campaign_rows.plant_of("four-axle", er24pc), scenario, bounds).cases(
+    plant, stop = campaign_rows.Deck(campaign_rows.plant_of("planar", er24pc), scenario, bounds).cases(
         run, 1
     )[0]
     return plant.vehicle, stop
 
 
 def plan_of(er24pc, law, scenario):
-    return campaign_rows.make_plan(er24pc, law, scenario, plant="four-axle", draws=(), check_every=0)
+    return campaign_rows.make_plan(er24pc, law, scenario, plant="planar", draws=(), check_every=0)
 
 
 def test_nominal_runs_are_the_single_stop(er24pc, make_controller, scenario):
@@ -57,7 +57,7 @@ def test_nominal_runs_are_the_single_stop(er24pc, make_controller, scenario):
 
 
 @pytest.mark.parametrize(
-    ("name", "plant"), [("afsmc", "four-axle"), ("trenitalia", "four-axle"), ("none", "quarter")]
+    ("name", "plant"), [("afsmc", "planar"), ("trenitalia", "planar"), ("none", "quarter")]
 )
 def test_figures_are_those_of_single_stops(er24pc, make_controller, scenario, bounds, name, plant):
     """A row against the metrics of the same stop alone, which count from its samples, traces and ideal stop."""

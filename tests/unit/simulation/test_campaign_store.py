@@ -151,7 +151,7 @@ def test_a_file_of_another_campaign_is_seen(made, plain, tmp_path):
 def test_a_key_is_that_of_all_a_row_depends_on(er24pc, make_controller, monkeypatch):
     stop = Scenario(rail=load_rail("polach-wet"), initial_speed=3.0, seed=2)
     bounds = within_bounds(load_entries("vehicle", "er24pc"))
-    base = {"plant": "four-axle", "draws": bounds, "check_every": 5}
+    base = {"plant": "planar", "draws": bounds, "check_every": 5}
 
     def key(law="trenitalia", scenario=stop, sample_time=0.1, **changes):
         controller = make_controller(law, sample_time=sample_time)

@@ -31,7 +31,7 @@ def scenario():
 
 @pytest.fixture(scope="module")
 def deal(er24pc, scenario):
-    def deck(*draws, stop=scenario, plant="four-axle"):
+    def deck(*draws, stop=scenario, plant="planar"):
         return Deck(plant_of(plant, er24pc), stop, draws)
 
     return deck

@@ -115,7 +115,7 @@ def test_sampling_instants(er24pc, make_controller, period):
 
 
 @pytest.mark.parametrize("speed", [0.005, 0.01 / 3.6, 1e-9])
-@pytest.mark.parametrize("plant", ["quarter", "four-axle"])
+@pytest.mark.parametrize("plant", ["quarter", "planar"])
 def test_a_start_below_the_stop_speed_is_at_rest_at_once(er24pc, make_controller, plant, speed):
     scenario = Scenario(rail=load_rail("polach-wet"), initial_speed=speed)
     run, check = simulate_checked(er24pc, make_controller("afsmc"), scenario, plant=plant)

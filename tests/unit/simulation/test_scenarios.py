@@ -20,7 +20,7 @@ def dry():
 
 @pytest.fixture
 def run(er24pc, make_controller):
-    return lambda scenario, name="trenitalia", plant="four-axle": simulate(
+    return lambda scenario, name="trenitalia", plant="planar": simulate(
         er24pc, make_controller(name), scenario, plant=plant
     )
 
@@ -172,7 +172,7 @@ def test_impossible_wheel_loads_are_refused(change, words):
 @pytest.mark.parametrize(
     ("change", "plant", "words"),
     [
-        ({"sensing": Sensing(shortest_pulse=0.2)}, "four-axle", "shortest pulse = 0.2 s must not exceed"),
+        ({"sensing": Sensing(shortest_pulse=0.2)}, "planar", "shortest pulse = 0.2 s must not exceed"),
         ({"axle_rails": (load_rail(WET),) * 4}, "quarter", "need the plant"),
         ({}, "six-axle", "unknown plant"),
     ],

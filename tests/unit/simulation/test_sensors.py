@@ -77,7 +77,7 @@ def assert_counted(run, pulses, seed):
 KINDS = [(1, 0.1), (80, 0.1), (100, 0.1), (200, 0.02), (1000, 0.1), (1000, 0.02)]
 
 
-@pytest.mark.parametrize("plant", ["quarter", "four-axle"])
+@pytest.mark.parametrize("plant", ["quarter", "planar"])
 @pytest.mark.parametrize(("pulses", "sample_time"), KINDS)
 @pytest.mark.usefixtures("every_step")
 def test_a_counter_tells_the_angle_turned(er24pc, make_controller, wet, pulses, sample_time, plant):
@@ -101,7 +101,7 @@ def periods(run, axle, pulses, seed):
     return q / np.maximum(came - before, times - came)
 
 
-@pytest.mark.parametrize("plant", ["quarter", "four-axle"])
+@pytest.mark.parametrize("plant", ["quarter", "planar"])
 @pytest.mark.parametrize(("pulses", "sample_time"), KINDS)
 @pytest.mark.usefixtures("every_step")
 def test_a_timer_tells_the_last_period(er24pc, make_controller, wet, pulses, sample_time, plant):

@@ -18,9 +18,9 @@ EVERYWHERE: tuple[str, ...] = (
 )
 
 OF_PLANT = {
-    "quarter": "One wheelset stands for all four, with the same load: weight transfer, and wheelsets that "
+    "quarter": "One wheelset stands for all, with the same load: weight transfer, and wheelsets that "
     "slide differently, are not shown.",
-    "four-axle": "Body and bogies pitch about a quasi-static weight transfer; suspension, lateral motion and "
+    "planar": "Bodies and bogies pitch about a quasi-static weight transfer; suspension, lateral motion and "
     "curves are not modeled.",
 }
 
