@@ -198,6 +198,7 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
         "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
         "OFFSET": PARAMETERS.index(("surroundings", "axle_offset")),
+        "DRAIN": PARAMETERS.index(("surroundings", "reservoir_drain")),
         "FIRST_RAIL": next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail"),
     }
     for name in ("stop_constants", "lane_constants", "window_constants"):

@@ -11,8 +11,7 @@ from wspd_design.codegen.hoisting import hoist
 from wspd_design.codegen.memory import Memory
 from wspd_design.model import adhesion
 from wspd_design.model import brake as brake_model
-from wspd_design.model.generated import brake as generated
-from wspd_design.model.number import maximum, minimum, where
+from wspd_design.model.number import where
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
 from wspd_design.plants.protocol import AxleCondition, Plant
 
@@ -24,6 +23,7 @@ class Surroundings:
     grade_force: float = 0.0  # N, positive uphill
     axle_offset: float = 0.0  # m, behind the first axle
     braking_time: float = 0.0  # s, from the application of the brake to the start of the stop
+    reservoir_drain: float = 0.0  # -, by which a pressure filled into the cylinders lowers the reservoir
 
 
 _RECORDS: tuple[tuple[str, type], ...] = (
@@ -33,6 +33,8 @@ _RECORDS: tuple[tuple[str, type], ...] = (
     ("rail", Rail),
     ("surroundings", Surroundings),
 )
+KINDS = ("build_up", "valve")
+"""Words of a brake: another word is another kernel, and so is a reservoir that can run low."""
 _NOT_NUMBERS = (
     "name",
     "wheelsets",
@@ -42,6 +44,13 @@ _NOT_NUMBERS = (
     "contact",
     "axle_shares",
     "bounds",
+    *KINDS,
+    "dead_time",  # the numbers of a stop hold these, as its disturbances
+    "shortest_pulse",
+    "longest_release",
+    "cylinder_volume",
+    "reservoir_volume",
+    "reservoir_pressure",
 )
 
 PARAMETERS: tuple[tuple[str, str], ...] = tuple(
@@ -70,7 +79,7 @@ class Kernels(NamedTuple):
 
     stop_constants: Any  # (p) -> constants of loads and train
     lane_constants: Any  # (p) -> constants of contact and axle
-    window_constants: Any  # (p, [start, start pressure, fill end, vent end]) -> constants of actuator
+    window_constants: Any  # (p, [start, start pressure, fill end, vent end, reservoir]) -> constants of actuator
     loads: Any  # (constants, transfers) -> wheel load of each axle
     train: Any  # (constants, speed, force of each axle, transfers) -> acceleration, resistance, transfers'
     contact: Any  # (constants, load) -> stiffness there, and the reciprocal of the load: where a step begins
@@ -102,7 +111,10 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     """
     blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
     counts = {name: getattr(plant.vehicle, name) for name in ("wheelsets", "axles_per_bogie", "bodies")}
-    shape = plant.on(Vehicle(**{**blank, **counts}))
+    brake: dict[str, Any] = {field.name: None for field in fields(Brake)}
+    present = plant.vehicle.brake
+    kinds = {name: getattr(present, name) for name in KINDS} | {"reservoir_volume": float(present.reservoir_volume > 0.0)}
+    shape = plant.on(Vehicle(**{**blank, **counts, "brake": Brake(**brake | kinds)}))
     return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
 
 
@@ -124,7 +136,7 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
     vehicle = replace(
         blank.vehicle,
         **symbols["vehicle"],
-        brake=Brake(**symbols["brake"]),
+        brake=replace(blank.vehicle.brake, **symbols["brake"]),
         contact=Contact(**symbols["contact"]),
     )
     rail: dict[str, Any] = {field.name: None for field in fields(Rail)}
@@ -179,8 +191,8 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
     wheel, *others = axle.rates
     rates = ca.vertcat(where(locked != 0.0, 0.0, wheel), *others)
     passed = where(locked != 0.0, 2.0 * plant.vehicle.wheel_radius * axle.creep_force, demand)
-    valves = ca.SX.sym("valves", 4)
-    pressures = _pressure(brake, time, surroundings.braking_time, *_elements(valves))
+    valves = ca.SX.sym("valves", 5)
+    pressures = brake_model.pattern_pressure(brake, time, _elements(valves), surroundings.braking_time)
     torque = brake_model.braking_torque(brake, pressures[0])
     if disturbed:
         torque *= 1.0 + brake_model.torque_disturbance(brake, braking_time)
@@ -208,22 +220,3 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
 
 def _elements(vector: Any) -> tuple[Any, ...]:
     return tuple(vector[k] for k in range(vector.size1()))
-
-
-def _pressure(
-    brake: Brake, time: Any, before: Any, start: Any, start_pressure: Any, fill_end: Any, vent_end: Any
-) -> tuple[Any, Any]:
-    """Cylinder pressure under fill, then vent, then hold; and what it would be without the venting.
-
-    The brake was applied ``before`` the time zero [s].
-    """
-    filled = generated.filled_pressure(
-        minimum(time, fill_end) + before,
-        start + before,
-        start_pressure,
-        brake.max_pressure,
-        brake.supply_rate,
-        brake.fill_time,
-    )
-    vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
-    return generated.vented_pressure(vented_for, filled, brake.vent_time), filled

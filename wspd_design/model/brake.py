@@ -63,7 +63,7 @@ def pressure_after(
 
 
 def pattern_pressure(
-    brake: Brake, time: Number, pattern: tuple[Number, Number, Number, Number, Number]
+    brake: Brake, time: Number, pattern: tuple[Number, ...], before: Number = 0.0
 ) -> tuple[Number, Number]:
     """Cylinder pressure under fill, then vent, then hold.
 
@@ -72,10 +72,12 @@ def pattern_pressure(
     brake : Brake
         Build-up and valves.
     time : number
-        Time since the start of braking [s].
-    pattern : tuple of numbers
+        On the clock of the pattern [s].
+    pattern : tuple of five numbers
         Start of the pattern [s], cylinder pressure there [Pa], end of filling, end of venting [s], and the pressure of
         the reservoir all along [Pa].
+    before : number
+        Time from the start of braking to the zero of that clock [s].
 
     Returns
     -------
@@ -83,13 +85,19 @@ def pattern_pressure(
         Pressure, and what it would be without what was vented and what leaked [Pa].
     """
     start, start_pressure, fill_end, vent_end, reservoir = pattern
-    filled = filled_pressure(brake, minimum(time, fill_end), start, start_pressure, reservoir)
+    if brake.valve == "lag" and not brake.reservoir_volume:
+        reservoir = None  # it never gets below the demanded pressure
+
+    def filled_until(end: Number) -> Number:
+        return filled_pressure(brake, end + before, start + before, start_pressure, reservoir)
+
+    filled = filled_until(minimum(time, fill_end))
     vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
     held_for = maximum(time - vent_end, 0.0)
     if brake.valve == "lag":
         return _vented(brake, vented_for, held_for, filled), filled
-    highest = filled_pressure(brake, fill_end, start, start_pressure, reservoir)
-    return where(time > fill_end, _vented(brake, vented_for, held_for, highest), filled), filled
+    after = _vented(brake, vented_for, held_for, filled_until(fill_end))
+    return where(time > fill_end, after, filled), filled
 
 
 def demanded_pressure(brake: Brake, time: Number) -> Number:
