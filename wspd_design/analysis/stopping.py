@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 
@@ -140,14 +141,24 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
 def demanded_adhesion(vehicle: Vehicle) -> float:
     """Adhesion that the fully applied brake asks for while no wheel slides, over the static wheel load [-].
 
-    The rail slows the train; what slows the turning of the wheelsets comes from the brake alone.
+    The rail slows the train; what slows the turning of the wheelsets comes from the brake alone. Where brakes or
+    loads differ, it is that of the axle which asks for most.
     """
-    return _rim_force(vehicle) / ((vehicle.mass + _rotating_mass(vehicle)) * constants().gravity)
+    mean = _rim_force(vehicle) / ((vehicle.mass + _rotating_mass(vehicle)) * constants().gravity)
+    shares, loads = vehicle.brake_shares, static_shares(vehicle)
+    if len(set(shares)) == 1 and len(set(loads)) == 1:
+        return mean
+    # Of the force at its rims an axle takes what slows its own turning; that part is the same for all.
+    turning = mean * _rotating_mass(vehicle) / vehicle.mass
+    usual = sum(shares) / len(shares)
+    return max(
+        (share / usual * (mean + turning) - turning) / load for share, load in zip(shares, loads, strict=True)
+    )
 
 
 def _rim_force(vehicle: Vehicle) -> float:
     """Force of the fully applied brake at the rims of all wheels [N]."""
-    return vehicle.wheelsets * vehicle.brake.max_torque / vehicle.wheel_radius
+    return sum(vehicle.brake_shares) * vehicle.brake.max_torque / vehicle.wheel_radius
 
 
 def _rotating_mass(vehicle: Vehicle) -> float:

@@ -50,6 +50,19 @@ def gear_of(vehicle: Vehicle) -> Gear:
     return Gear(axles=axles, supports=vehicle.wheelsets // axles, bodies=vehicle.bodies)
 
 
+def static_shares(vehicle: Vehicle) -> tuple[float, ...]:
+    """Static load of each axle over the mean of all: shared supports carry more of the bodies."""
+    gear = gear_of(vehicle)
+    usual = gear.bodies / gear.supports
+    by_support = [
+        1.0
+        if gear.bodies == 1
+        else 1.0 + (resting - usual) * vehicle.body_mass * gear.supports / vehicle.mass
+        for resting in gear.resting
+    ]
+    return tuple(share for share in by_support for _ in range(gear.axles))
+
+
 def contradiction(vehicle: Vehicle) -> str:
     """Say what contradicts itself in the running gear of a vehicle and what to change, or nothing."""
     return wrong_counts(vehicle) or _wrong_numbers(vehicle)

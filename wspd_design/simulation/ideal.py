@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from wspd_design.codegen.loop_numbers import LoopInput
 from wspd_design.controllers.baselines.unprotected import Unprotected
+from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
@@ -125,8 +126,11 @@ def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None =
 
     speeds = log_speeds(max(scenario.initial_speed for _, scenario in cases))
     rails = [scenario.axle_rails or (scenario.rail,) * plant.axles for plant, scenario in cases]
+    loads = [_load_shares(plant) for plant, _ in cases]
     lanes = [
-        (plant.vehicle, rails[k][axle]) for axle in range(len(rails[0])) for k, (plant, _) in enumerate(cases)
+        (plant.vehicle, rails[k][axle], loads[k][axle])
+        for axle in range(len(rails[0]))
+        for k, (plant, _) in enumerate(cases)
     ]
     if slip is None:
         alike = list(dict.fromkeys(lanes))
@@ -136,3 +140,9 @@ def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None =
         held = np.full((len(lanes), len(speeds)), slip)
     numbers = loop_input(cases, FILLING, longest_step=_LONGEST_STEP)
     return replace(numbers, held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1])))
+
+
+def _load_shares(plant: Plant) -> list[float]:
+    """Load of each axle before any load moves, over the mean static load."""
+    mean = static_wheel_load(plant.vehicle)
+    return [load / mean for load in plant.wheel_loads((0.0,) * (2 * plant.transfers))]

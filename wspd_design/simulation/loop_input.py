@@ -102,7 +102,8 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
         raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
     if plant.alike and len(set(plant.vehicle.brake_shares)) > 1:
         raise UserError(
-            f'axles with other brakes than the rest, as vehicle {plant.vehicle.name} has, need the plant "{Planar.name}"'
+            f"vehicle {plant.vehicle.name} has axles with other brakes than the rest, which need the plant "
+            f'"{Planar.name}"'
         )
     tables = None if irregularity is None else irregularity.factors
     for what, one, several in (

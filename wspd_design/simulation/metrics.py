@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.ideal import ideal_stop
@@ -13,7 +14,7 @@ from wspd_design.simulation.records import Ending, Run, Scenario, Start
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Metrics:
-    """Figures of one stop. Slip figures count above 10 km/h."""
+    """Figures of one stop. Slip figures count above 10 km/h, means are those of the wheelsets with a brake."""
 
     distance: float  # m
     stopping_time: float  # s
@@ -25,7 +26,7 @@ class Metrics:
     slip_rms: float  # -, about the reference
     lock_time: float  # s
     saturated_share: float  # -, samples that fill or vent for the whole sample time
-    valve_switches: int  # changes of the valve state, mean of the wheelsets
+    valve_switches: int  # changes of the valve state
     vented_air: float  # -, full brake cylinders let out, mean of the wheelsets
     adhesion_utilization: float  # -, creep force over the force at the adhesion peak, mean over time
     ideal_stop: float  # m, distance of the brake that holds the best slip; NaN where there is none
@@ -84,7 +85,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         if commands
         else math.nan,
         valve_switches=round(totals.valve_switches),
-        vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
+        vented_air=totals.vented_pressure / vehicle.brake.max_pressure / braked_axles(vehicle),
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
         ideal_stop=ideal_distance,
         ideal_ending=None if ideal is None else ideal.ending,
@@ -94,8 +95,15 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     )
 
 
+def braked_axles(vehicle: Vehicle) -> int:
+    """Return the number of wheelsets with a brake."""
+    return sum(share > 0.0 for share in vehicle.brake_shares)
+
+
 def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> float:
     """Impulse of the creep forces over that of the adhesion peak at each speed, under the static load [-].
+
+    The adhesion of wheelsets without a brake cannot be used and does not count.
 
     NaN for a change of rail along the track, and for a train that is at rest at once.
     """
@@ -103,9 +111,18 @@ def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> floa
 
     if scenario.patches or len(run.time) == 1:
         return math.nan
-    rails = scenario.axle_rails or (scenario.rail,)
-    peak = np.mean([peak_adhesion(vehicle, rail, run.speed)[1] for rail in rails], axis=0)
-    available = vehicle.mass * constants().gravity * float(np.trapezoid(peak, run.time))
+    loads, rails = static_shares(vehicle), scenario.axle_rails or (scenario.rail,) * vehicle.wheelsets
+    axles = [
+        pair
+        for pair, brake in zip(zip(rails, loads, strict=True), vehicle.brake_shares, strict=True)
+        if brake
+    ]
+    alike = axles[:1] if len(set(axles)) == 1 else axles
+    peak = np.mean(
+        [load * peak_adhesion(vehicle, rail, run.speed, load_share=load)[1] for rail, load in alike], axis=0
+    )
+    weight = vehicle.mass * constants().gravity * (len(axles) / vehicle.wheelsets)
+    available = weight * float(np.trapezoid(peak, run.time))
     used = vehicle.mass * (run.initial_speed - float(run.speed[-1])) - run.totals.resistance_impulse
     return used / available
 

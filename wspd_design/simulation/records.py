@@ -221,10 +221,12 @@ class Totals:
     damping_work: float  # J
     lock_time: float  # s, longest of the wheelsets
     judged_time: float  # s, above the judging speed
-    slip: float  # s, integral of the slip over the judged time, mean of the wheelsets
+    slip: float  # s, integral of the slip over the judged time, mean of the wheelsets with a brake
     slip_squared: float  # s
-    vented_pressure: float  # Pa, sum over all vents of all wheelsets of the pressure let out
-    valve_switches: float  # changes of the valve state that the commands ask for, mean of the wheelsets
+    vented_pressure: float  # Pa, sum over all vents of all wheelsets with a brake of the pressure let out
+    valve_switches: (
+        float  # changes of the valve state that the commands ask for, mean of the wheelsets with a brake
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -246,9 +248,9 @@ class Run:
     distance: "Trace"  # m
     wheel_speed: "Trace"  # rad/s, per wheelset
     slip: "Trace"  # -, per wheelset
-    torque: "Trace"  # N m, per wheelset, transmitted
+    torque: "Trace"  # N m, per wheelset, transmitted; 0 without a brake
     wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
-    axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset
+    axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset; none of one without a brake
     totals: Totals
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
@@ -256,5 +258,5 @@ class Run:
 
     @property
     def samples(self) -> tuple[Sample, ...]:
-        """Samples of the first wheelset."""
-        return self.axle_samples[0]
+        """Samples of the first wheelset with a brake."""
+        return max(self.axle_samples, key=len)
