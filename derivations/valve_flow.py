@@ -2,8 +2,8 @@
 
 An orifice passes what ISO 6358 says: with r the absolute pressure behind it over that before it, the flow is choked up
 to r = b and falls as an ellipse from there to r = 1, phi = sqrt(1 - ((r - b)/(1 - b))^2). Air and cylinder keep their
-temperature, the volume of the cylinder does not change. With r = b + (1 - b) cos(2 chi) the flow is phi = sin(2 chi), and
-both directions have closed forms: filling, the angle falls evenly in time; venting, y = tan(chi) obeys a Riccati
+temperature, the volume of the cylinder does not change. With r = b + (1 - b) cos(2 chi) the flow is phi = sin(2 chi),
+and both directions have closed forms: filling, the angle falls evenly in time; venting, y = tan(chi) obeys a Riccati
 equation with constant coefficients, whose solution is a tangent for b > 1/2, a hyperbolic tangent for b < 1/2 and a
 straight line for b = 1/2.
 
@@ -50,7 +50,9 @@ flow_residual = sp.simplify(flow.subs(r, ratio_of_tangent) ** 2 - flow_of_tangen
 
 # --- filling: r' = phi(r)/tau; chi' = -1/(2 (1 - b) tau) -------------------------------------------------------
 _angle_rate = -1 / (2 * (1 - b) * tau)
-filling_residual = sp.simplify(sp.expand_trig(sp.diff(filled_ratio, chi) * _angle_rate - sp.sin(2 * chi) / tau))
+filling_residual = sp.simplify(
+    sp.expand_trig(sp.diff(filled_ratio, chi) * _angle_rate - sp.sin(2 * chi) / tau)
+)
 
 # --- venting: p' = -p phi(p_a/p)/tau, r = p_a/p, so that r' = r phi(r)/tau ---------------------------------------
 _time = sp.Symbol("s", real=True)

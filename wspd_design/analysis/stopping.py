@@ -8,6 +8,7 @@ that the brake asks for.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wspd_design.model.brake import build_up_delay
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
@@ -118,15 +119,14 @@ def mean_stop(
 
 
 def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) -> MeanStop:
-    """Stop of a vehicle whose wheels do not slide, by mean values of the brake of eqs. (8)-(14).
+    """Stop of a vehicle whose wheels do not slide, by mean values of its brake.
 
-    The supply that builds up with ``supply_rate`` and the cylinder that follows with ``fill_time`` are together late
-    by 1/supply_rate + fill_time, exactly.
+    The equivalent time is that of build-up and filling together: a demand with ``supply_rate`` and a lag with
+    ``fill_time`` are late by 1/supply_rate + fill_time, exactly.
     """
-    brake = vehicle.brake
     return mean_stop(
         speed,
-        forces=[(_rim_force(vehicle), 1.0 / brake.supply_rate + brake.fill_time)],
+        forces=[(_rim_force(vehicle), build_up_delay(vehicle.brake))],
         mass=vehicle.mass,
         rotating_mass=_rotating_mass(vehicle),
         resistance=(

@@ -79,7 +79,9 @@ class Kernels(NamedTuple):
 
     stop_constants: Any  # (p) -> constants of loads and train
     lane_constants: Any  # (p) -> constants of contact and axle
-    window_constants: Any  # (p, [start, start pressure, fill end, vent end, reservoir]) -> constants of actuator
+    window_constants: (
+        Any  # (p, [start, start pressure, fill end, vent end, reservoir]) -> constants of actuator
+    )
     loads: Any  # (constants, transfers) -> wheel load of each axle
     train: Any  # (constants, speed, force of each axle, transfers) -> acceleration, resistance, transfers'
     contact: Any  # (constants, load) -> stiffness there, and the reciprocal of the load: where a step begins
@@ -113,7 +115,9 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     counts = {name: getattr(plant.vehicle, name) for name in ("wheelsets", "axles_per_bogie", "bodies")}
     brake: dict[str, Any] = {field.name: None for field in fields(Brake)}
     present = plant.vehicle.brake
-    kinds = {name: getattr(present, name) for name in KINDS} | {"reservoir_volume": float(present.reservoir_volume > 0.0)}
+    kinds = {name: getattr(present, name) for name in KINDS} | {
+        "reservoir_volume": float(present.reservoir_volume > 0.0)
+    }
     shape = plant.on(Vehicle(**{**blank, **counts, "brake": Brake(**brake | kinds)}))
     return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
 

@@ -56,7 +56,7 @@ class VirtualValves:
         return float(self._last_filled[axle]) + self._longest if waits else math.inf
 
     def follow(self, commands: list[Command], present: float, pressures: "Array", filled: "Array") -> None:
-        """Let every wheelset follow its command from now on; ``filled`` is the pressure without venting since the last."""
+        """Let every wheelset follow its command; ``filled`` is the pressure without venting since the last one."""
         h = self._sample_time
         for axle, command in enumerate(commands):
             before = self._following[axle]
@@ -85,9 +85,7 @@ class VirtualValves:
         """Count what was filled last."""
         self.filled += filled - self.patterns[:, START_PRESSURE]
 
-    def _begin_pattern(
-        self, axle: int, pattern: tuple[float, float, float, float], filled: "Array"
-    ) -> None:
+    def _begin_pattern(self, axle: int, pattern: tuple[float, float, float, float], filled: "Array") -> None:
         """Close the accounts of a pattern; ``filled`` begins anew."""
         self.filled[axle] += filled[axle] - self.patterns[axle, START_PRESSURE]
         self.vented[axle] += filled[axle] - pattern[START_PRESSURE]

@@ -15,6 +15,8 @@ from wspd_design.model.valve_flow import ATMOSPHERE, orifice_filled, orifice_ven
 from wspd_design.parameters.records import Brake
 
 _NEVER = 1e300  # s
+_HALF_PI = math.pi / 2.0
+_PARTS = 4000  # of the filling through an orifice, whose lateness is a sum
 
 
 class Valve(Enum):
@@ -59,7 +61,9 @@ def pressure_after(
         case Valve.VENT:
             return _vented(brake, time - start_time, 0.0, start_pressure)
         case Valve.HOLD:
-            return _vented(brake, 0.0, time - start_time, start_pressure) if brake.hold_leak else start_pressure
+            return (
+                _vented(brake, 0.0, time - start_time, start_pressure) if brake.hold_leak else start_pressure
+            )
 
 
 def pattern_pressure(
@@ -116,6 +120,26 @@ def demand_time(brake: Brake, pressure: Number) -> Number:
     return brake.build_up_delay + share * brake.build_up_ramp
 
 
+def build_up_delay(brake: Brake) -> float:
+    """Time by which a sudden full pressure could come later for the same impulse of the filling cylinder [s]."""
+    if brake.build_up == "main-pipe":
+        demand = 1.0 / brake.supply_rate
+    else:
+        demand = brake.build_up_delay + brake.build_up_ramp / 2.0
+    if brake.valve == "lag":
+        return demand + brake.fill_time
+    # An orifice has filled after b + (1 - b) pi/2 of its time at most; from then on the demand alone counts.
+    last = (
+        0.0 if brake.build_up == "main-pipe" else demand_time(brake, brake.max_pressure)
+    ) + _HALF_PI * brake.fill_time
+    step = last / _PARTS
+    lacks = [
+        demanded_pressure(brake, k * step) - filled_pressure(brake, k * step, 0.0, 0.0)
+        for k in range(_PARTS + 1)
+    ]
+    return float(demand + step * (math.fsum(lacks) - lacks[-1] / 2.0) / brake.max_pressure)
+
+
 def filled_pressure(
     brake: Brake, time: Number, start_time: Number, start_pressure: Number, reservoir: Number | None = None
 ) -> Number:
@@ -143,7 +167,9 @@ def filled_pressure(
     return where(time > reached, maximum(late, start_pressure), rising)
 
 
-def _approached(brake: Brake, time: Number, start_time: Number, start_pressure: Number, supply: Number) -> Number:
+def _approached(
+    brake: Brake, time: Number, start_time: Number, start_pressure: Number, supply: Number
+) -> Number:
     elapsed = maximum(time - start_time, 0.0)
     return valve_flow.approached_pressure(elapsed, start_pressure, supply, brake.fill_time)
 
@@ -177,7 +203,8 @@ def _filled_by_orifice(
     def passed(since: Number, pressure: Number) -> Number:
         elapsed = maximum(time - since, 0.0)
         return (
-            orifice_filled(elapsed, pressure + ATMOSPHERE, supply + ATMOSPHERE, brake.fill_time, ratio) - ATMOSPHERE
+            orifice_filled(elapsed, pressure + ATMOSPHERE, supply + ATMOSPHERE, brake.fill_time, ratio)
+            - ATMOSPHERE
         )
 
     falls_at = _falling_behind(brake, supply)
@@ -191,8 +218,8 @@ def _filled_by_orifice(
 def _falling_behind(brake: Brake, supply: Number) -> Number:
     """Pressure above which the orifice passes less than the demand rises; 0 where it always does [Pa].
 
-    On the ellipse the flow is ``flow`` cos(theta), at the pressure (b + (1 - b) sin(theta)) times the supply; the demand
-    rises with ``least`` - ``bend`` sin(theta) there.
+    On the ellipse the flow is ``flow`` cos(theta), at the pressure (b + (1 - b) sin(theta)) times the supply; there the
+    demand rises with ``least`` - ``bend`` sin(theta).
     """
     ratio, full = brake.critical_pressure_ratio, supply + ATMOSPHERE
     flow = full / brake.fill_time
@@ -205,7 +232,9 @@ def _falling_behind(brake: Brake, supply: Number) -> Number:
     sine = (bend * least + flow * sqrt(maximum(square, 0.0))) / (flow * flow + bend * bend)
     pressure = full * (ratio + (1.0 - ratio) * sine) - ATMOSPHERE
     found = where(square > 0.0, clip(pressure, 0.0, brake.max_pressure), 0.0)
-    if brake.build_up == "main-pipe":  # its demand ends its rise at the full pressure, and so does its need of flow
+    if (
+        brake.build_up == "main-pipe"
+    ):  # its demand ends its rise at the full pressure, and so does its need of flow
         return where(supply < brake.max_pressure, found, brake.max_pressure)
     return found
 

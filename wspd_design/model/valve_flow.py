@@ -79,5 +79,3 @@ def _advance(progress: Number, critical_ratio: Number) -> Number:
     above = generated.advance_above_half(minimum(progress, 1.0 / root), root)
     below = generated.advance_below_half(progress, root)
     return where(abs(bend) < _NEAR_HALF, near, where(bend > 0.0, above, below))
-
-

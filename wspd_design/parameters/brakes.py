@@ -33,7 +33,9 @@ def check_brake(values: Mapping[str, Any], vehicle: str) -> None:
         If an entry is missing or has nothing to do with the kind of the brake, if the filling law is singular, or if
         the reservoir cannot be that of this brake.
     """
-    brake = {name.removeprefix("brake."): value for name, value in values.items() if name.startswith("brake.")}
+    brake = {
+        name.removeprefix("brake."): value for name, value in values.items() if name.startswith("brake.")
+    }
     kinds = {what: brake.get(what, usual) for what, usual in _USUAL.items()}
     for name in _NEEDED:
         what, word = _BELONGS[name]

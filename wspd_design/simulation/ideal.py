@@ -104,7 +104,14 @@ def ideal_stop(
     if runs_away(vehicle, scenario):
         return IdealStop(name=name, ending=Ending.RUNAWAY, distance=math.nan, stopping_time=math.nan)
     if instantaneous:
-        brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
+        brake = replace(
+            vehicle.brake,
+            build_up="main-pipe",
+            valve="lag",
+            supply_rate=_AT_ONCE,
+            fill_time=_INSTANT,
+            reservoir_volume=0.0,
+        )
         vehicle = replace(vehicle, brake=brake)
     braked = plant_of(plant, vehicle)
     given = ideal_input([(braked, scenario)], slip=slip)

@@ -227,6 +227,8 @@ class Totals:
     valve_switches: (
         float  # changes of the valve state that the commands ask for, mean of the wheelsets with a brake
     )
+    filled_pressure: float  # Pa, sum over all fillings of all wheelsets with a brake of the pressure let in
+    watchdog_fills: int  # times that the watchdog of a wheelset with a brake filled
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -241,6 +243,8 @@ class Run:
     rail: str
     plant: str
     sample_time: float  # s
+    dead_time: float  # s, that the valves had
+    shortest_pulse: float  # s, likewise
     initial_speed: float  # m/s
     ending: Ending
     time: "Trace"  # s

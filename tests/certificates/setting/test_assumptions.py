@@ -10,7 +10,16 @@ from wspd_design.certificates.setting.assumptions import Assumption, not_met
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.certificates.theorems.theorem import asked
 
-OTHER = {Assumption.EQUAL_BRAKES: {"axle_shares": (1.0, 0.0, 1.0, 1.0)}}
+OTHER = {
+    Assumption.EQUAL_BRAKES: {"axle_shares": (1.0, 0.0, 1.0, 1.0)},
+    Assumption.MAIN_PIPE: {"build_up": "electro-pneumatic", "build_up_delay": 0.2, "build_up_ramp": 1.0},
+    Assumption.LAG: {"valve": "orifice"},
+    Assumption.NO_LEAK: {"hold_leak": 0.01},
+    Assumption.NO_DEAD_TIME: {"dead_time": 0.03},
+    Assumption.ANY_PULSE: {"shortest_pulse": 0.01},
+    Assumption.NO_WATCHDOG: {"longest_release": 10.0},
+    Assumption.SUPPLY: {"cylinder_volume": 0.01, "reservoir_volume": 0.15},
+}
 """Changes of the brake that break one assumption each."""
 
 

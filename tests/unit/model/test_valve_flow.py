@@ -12,7 +12,6 @@ from wspd_design.model.brake import (
     Valve,
     demand_time,
     demanded_pressure,
-    pattern_pressure,
     pressure_after,
 )
 from wspd_design.model.valve_flow import ATMOSPHERE, orifice_filled, orifice_vented
@@ -148,6 +147,13 @@ def filled_by_orifice(brake, reservoir, begin, end, pressure):
     return pressure
 
 
+def filled_by_lag(brake, reservoir, begin, end, pressure):
+    def rate(time, now):
+        return max(min(demanded_pressure(brake, time), reservoir) - now, 0.0) / brake.fill_time
+
+    return solved(rate, (begin, end), pressure).y[0, -1]
+
+
 def integrated(brake, reservoir, begin, end, valve, pressure):
     """Pressure at the end by an integration that knows nothing of the closed forms."""
     if valve is Valve.HOLD:
@@ -165,9 +171,7 @@ def integrated(brake, reservoir, begin, end, valve, pressure):
         if brake.valve == "orifice":
             pressure = filled_by_orifice(brake, reservoir, start, stop, pressure)
         else:
-            supply = lambda t: min(demanded_pressure(brake, t), reservoir)  # noqa: E731
-            run = solved(lambda t, p: max(supply(t) - p, 0.0) / brake.fill_time, (start, stop), pressure)
-            pressure = run.y[0, -1]
+            pressure = filled_by_lag(brake, reservoir, start, stop, pressure)
     return pressure
 
 
