@@ -150,21 +150,18 @@ def filled_pressure(
     if brake.build_up == "electro-pneumatic":
         top = brake.max_pressure if reservoir is None else minimum(reservoir, brake.max_pressure)
         return _filled_from_ramp(brake, time, start_time, start_pressure, top)
-    rising = generated.filled_pressure(
-        time, start_time, start_pressure, brake.max_pressure, brake.supply_rate, brake.fill_time
-    )
+
+    def rising(until: Number) -> Number:
+        return generated.filled_pressure(
+            until, start_time, start_pressure, brake.max_pressure, brake.supply_rate, brake.fill_time
+        )
+
     if reservoir is None:
-        return rising
+        return rising(time)
     reached = demand_time(brake, reservoir)
-    there = where(
-        reached > start_time,
-        generated.filled_pressure(
-            reached, start_time, start_pressure, brake.max_pressure, brake.supply_rate, brake.fill_time
-        ),
-        start_pressure,
-    )
-    late = _approached(brake, time, maximum(start_time, reached), there, reservoir)
-    return where(time > reached, maximum(late, start_pressure), rising)
+    begin = maximum(start_time, reached)
+    late = _approached(brake, time, begin, rising(begin), reservoir)
+    return where(time > reached, maximum(late, start_pressure), rising(time))
 
 
 def _approached(
