@@ -184,7 +184,7 @@ def _plant_library(kernels: Kernels, stops: int) -> ctypes.CDLL:
     return prebuilt_library(source) or load_library(source)
 
 
-_TEMPLATES = ("motion.c", "steps.c", "events.c", "sensors.c", "closed_loop.c")
+_TEMPLATES = ("motion.c", "adhering.c", "steps.c", "events.c", "sensors.c", "closed_loop.c")
 
 
 def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
@@ -197,6 +197,7 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
         "PARAMETERS": len(PARAMETERS),
         "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
+        "MASS": PARAMETERS.index(("vehicle", "mass")),
         "OFFSET": PARAMETERS.index(("surroundings", "axle_offset")),
         "DRAIN": PARAMETERS.index(("surroundings", "reservoir_drain")),
         "FIRST_RAIL": next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail"),

@@ -82,6 +82,7 @@ def layout(kernels: Kernels) -> Layout:
                 "window_constants": constants["window_constants"] * axles,
                 "radius": axles,
                 "inertia": axles,
+                "mass": 1,
                 "until": 1,
                 "scale": 1,  # share of a step up to its first event
                 "last_cut": 1,

@@ -15,7 +15,7 @@ from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
 from wspd_design.codegen.virtual_sensors import VirtualSensors
-from wspd_design.codegen.virtual_step import INERTIA, RADIUS, StepFunctions, step_functions
+from wspd_design.codegen.virtual_step import INERTIA, MASS, RADIUS, StepFunctions, step_functions
 from wspd_design.codegen.virtual_valves import VirtualValves
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State
 from wspd_design.plants.protocol import Plant
@@ -128,6 +128,7 @@ class _VirtualPlant:
         self._give("load_factors", [0.0, *[1.0] * self.layout.axles, *[0.0] * self.layout.axles])
         self._give("radius", self.parameters[RADIUS])
         self._give("inertia", self.parameters[INERTIA])
+        self._give("mass", self.parameters[MASS, 0])
         constants = self.kernels.stop_constants(self.given.stop_parameters[:, 0])
         self._give("stop_constants", _flat(constants))
         self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))

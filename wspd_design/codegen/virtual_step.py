@@ -1,18 +1,21 @@
 """One integration step of the closed loop as a CasADi function, and several of them in one call.
 
-The formulas are those of ``motion.c``, ``steps.c`` and ``events.c`` in ``templates/``. Steps beyond the goal, and one
-that would go across an event, leave the state as it is, so that a call may hold more steps than are needed.
+The formulas are those of ``motion.c``, ``adhering.c``, ``steps.c`` and ``events.c`` in ``templates/``. Steps beyond
+the goal, and one that would go across an event, leave the state as it is, so that a call may hold more steps than are
+needed.
 """
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from wspd_design.codegen.kernels import PARAMETERS, Kernels
+from wspd_design.codegen.virtual_adhering import SETTLED, STEADY, Adhering, Stage, weighted_sum
 from wspd_design.codegen.virtual_layout import INTEGRATED, Layout, layout
 from wspd_design.model.number import maximum, minimum, where
 
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
 INERTIA = PARAMETERS.index(("vehicle", "wheelset_inertia"))
+MASS = PARAMETERS.index(("vehicle", "mass"))
 BALANCED = 1e-10  # relative: torques that differ by less are equal
 SPEED_SHARE = 0.1  # of the speed, that a step may take from it where the slope limit is one
 EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event of a wheel
@@ -47,19 +50,6 @@ def step_functions(kernels: Kernels, *, holding: bool, batches: Iterable[int]) -
     return StepFunctions(layout=places, observe=observe, single=single, batches=repeated)
 
 
-class _Stage(NamedTuple):
-    """Everything at one moment of a step."""
-
-    motion: Any
-    torque: Any
-    rates: Any  # of the motion
-    integrands: Any  # of the totals of lanes and stop
-    force: Any
-    slip: Any
-    load: Any
-    passed: Any
-
-
 class _Step:
     """The expressions of one step."""
 
@@ -92,23 +82,25 @@ class _Step:
 
         now, given, axles = self.state, self.given, self.axles
         integrated = INTEGRATED * axles
-        h, following = self._length()
+        h, following, settling = self._length()
         pressure, torque, filled, damping = self._actuators(now["time"] + 0.5 * h, following)
         motion = self.motion(now)
-        present = _Stage(
+        present = Stage(
             motion,
             now["torque"],
             *(now[name] for name in ("rates", "integrands", "force", "slip", "load", "passed")),
         )
         stages = [present]
+        wheels = Adhering(motion, h, settling, given["radius"])
         for share, column in ((0.5, 0), (0.5, 0), (1.0, 1)):
-            at = motion + share * h * stages[-1].rates
+            at = wheels.placed(motion + share * h * stages[-1].rates, wheels.moved(stages))
             stages.append(self._stage(at, torque[column], damping[column], now))
         reached, totals = (
             h / 6.0 * sum((2.0 * part for part in parts[1:3]), parts[0] + parts[3])
             for parts in ([stage.rates for stage in stages], [stage.integrands for stage in stages])
         )
         reached += motion
+        reached = self._end_exponential(wheels, stages, h, reached)
         share = self._before_event(stages, reached)
         lane, stop = totals[:integrated], totals[integrated:]
         judged = where(now["speed"] > given["judging_speed"], 1.0, 0.0)
@@ -160,40 +152,76 @@ class _Step:
         )
         return [where(made, ca.vertcat(*after.values()), self.whole), row]
 
-    def _length(self) -> tuple[Any, Any]:
-        """Length of the step, and the time after it."""
+    def _length(self) -> tuple[Any, Any, Any]:
+        """Length of the step, the time after it, and the rates of wheels that may take it exponentially."""
         import casadi as ca
 
         given, time = self.given, self.state["time"]
         span = given["until"] - time
-        count = ca.ceil(span / minimum(self._allowed(), given["longest_step"]) * (1.0 - 1e-12))
+        allowed, settling = self._allowed(span)
+        count = ca.ceil(span / minimum(allowed, given["longest_step"]) * (1.0 - 1e-12))
         h = minimum(where(count > 1.0, span / maximum(count, 1.0), span), given["soonest"])
         last = time + h > given["until"] - 1e-12
         h = where(last, span, h) * given["scale"]
-        return h, where(last, where(given["scale"] < 1.0, time + h, given["until"]), time + h)
+        return h, where(last, where(given["scale"] < 1.0, time + h, given["until"]), time + h), settling
 
-    def _allowed(self) -> Any:
-        """Step that the slopes of the creep curves allow, now and where the wheels would be after a step."""
+    def _allowed(self, span: Any) -> tuple[Any, Any]:
+        """Step that the slopes of the creep curves allow, now and where the wheels would be after a step.
+
+        And the rates of settling of the wheels that adhere, zero for the others.
+        """
         now, given, axles = self.state, self.given, self.axles
         speed, wheels, acceleration = now["speed"], now["axle"][:axles], now["rates"][0]
         slowest = maximum(speed, given["regularization_speed"])
         allowed = slowest * (given["slope_limit"] / given["creep_rate"])
         later = maximum(speed + given["longest_step"] * acceleration, given["regularization_speed"])
         rolling = later / given["radius"]
-        steep = abs(self._slopes(speed, now["axle"]))
+        slope = self._slopes(speed, now["axle"])
+        bound = allowed < minimum(span, given["longest_step"])
+        settling = where(bound, self._settling(slope), 0.0)
+        steep = abs(slope)
         moved = wheels + self._limited(steep) * now["rates"][1 : 1 + axles]
         side = where(speed > given["radius"] * wheels, 1.0, -1.0)
         states = now["axle"] + 0.0
-        states[:axles] = where(side * (rolling - moved) > 0.0, moved, rolling)
-        steepest = maximum(steep, abs(self._slopes(later, states)))
-        limits = self._limited(where(now["locked"] + now["held"], 0.0, steepest))
+        moved = where(side * (rolling - moved) > 0.0, moved, rolling)
+        states[:axles] = where(settling < 0.0, wheels * (later / speed), moved)
+        ahead = abs(self._slopes(later, states))
+        settling = where(abs(ahead - steep) < STEADY * steep, settling, 0.0)
+        free = where(now["locked"] + now["held"] + (settling < 0.0), 0.0, 1.0)
+        limits = self._limited(free * maximum(steep, ahead))
         most, braking = SPEED_SHARE * given["slope_limit"] * speed, abs(acceleration)
-        bound = given["longest_step"] * braking > most
-        least = where(bound, most / where(bound, braking, 1.0), given["longest_step"])
+        braked = given["longest_step"] * braking > most
+        least = where(braked, most / where(braked, braking, 1.0), given["longest_step"])
         for axle in range(axles):
             least = minimum(least, limits[axle])
-        bound = allowed < given["longest_step"]
-        return where(bound, maximum(least, allowed), allowed)
+        return where(bound, maximum(least, allowed), allowed), settling
+
+    def _settling(self, slope: Any) -> Any:
+        """Rates at which the sliding speeds of wheels settle that adhere and have settled."""
+        now, given, axles = self.state, self.given, self.axles
+        radius, wheels = given["radius"], now["axle"][:axles]
+        rate = slope * (1.0 + axles * given["inertia"] / (given["mass"] * radius * radius))
+        change = now["rates"][0] - radius * now["rates"][1 : 1 + axles]
+        calm = abs(change) < SETTLED * abs(rate * (now["speed"] - radius * wheels))
+        calm = where(now["locked"] + now["held"], 0.0, calm)
+        return where(calm, where(rate < 0.0, rate, 0.0), 0.0)
+
+    def _end_exponential(self, wheels: Adhering, stages: list[Stage], h: Any, reached: Any) -> Any:
+        """Put right the train by the impulse of such wheels, and the wheels where they have moved to."""
+        given, axles = self.given, self.axles
+        radius, turning = given["radius"], given["inertia"] / (given["radius"] * given["radius"])
+        moved, part = wheels.moved(stages), h / 6.0
+        forced = part * weighted_sum([stage.force for stage in stages])
+        taken = part * weighted_sum(
+            [stage.integrands[:axles] + stage.integrands[axles : 2 * axles] for stage in stages]
+        )
+        impulse = taken / radius + turning * (reached[0] - stages[0].motion[0] - moved)
+        more, whole = 0.0, given["mass"]
+        for axle in range(axles):
+            more += where(wheels.fast[axle], 2.0 * forced[axle] - impulse[axle], 0.0)
+            whole += where(wheels.fast[axle], turning[axle], 0.0)
+        reached[0] += more / whole
+        return wheels.placed(reached, moved)
 
     def _limited(self, steep: Any) -> Any:
         limit, longest = self.given["slope_limit"], self.given["longest_step"]
@@ -263,11 +291,11 @@ class _Step:
             state["held"] = where(brake < stage.passed, 0.0, state["held"])
         return {
             **state,
-            **{name: getattr(stage, name) for name in _Stage._fields if name in state},
+            **{name: getattr(stage, name) for name in Stage._fields if name in state},
             "torque": torque,
         }
 
-    def _stage(self, motion: Any, torque: Any, damping: Any, state: dict[str, Any]) -> _Stage:
+    def _stage(self, motion: Any, torque: Any, damping: Any, state: dict[str, Any]) -> Stage:
         """Everything at one moment; locks, holds and contact are those of the state."""
         import casadi as ca
 
@@ -315,7 +343,7 @@ class _Step:
             resistance * speed,
         )
         rates = ca.vertcat(acceleration, rolling, others, transferring, speed)
-        return _Stage(motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed)
+        return Stage(motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed)
 
     def _held_slip(self, speed: Any) -> tuple[Any, Any]:
         """The slip to be held at a speed, and its slope over speed."""
@@ -336,7 +364,7 @@ class _Step:
             return 0.0 * self.given["radius"]
         return speed * (1.0 - self._held_slip(speed)[0]) / self.given["radius"]
 
-    def _before_event(self, stages: list[_Stage], reached: Any) -> Any:
+    def _before_event(self, stages: list[Stage], reached: Any) -> Any:
         """Share of the step up to its first event."""
         import casadi as ca
 

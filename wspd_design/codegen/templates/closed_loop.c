@@ -37,16 +37,19 @@ static int advance(Loop *loop)
     const Motion *const at[4] = {&loop->now, &moved[0], &moved[1], &moved[2]};
     const Stage *const stage[4] = {&loop->present, &further[0], &further[1], &further[2]};
     WIDE double next[STOPS], pressure[2 * LANES], torque[2 * LANES], filled[2 * LANES], damping[2 * LANES];
-    WIDE double lane_step[LANES];
+    WIDE double lane_step[LANES], slid[LANES];
+    Exponential wheels;
     double *step = loop->step, stop_speed = loop->set.stop_speed;
     if (loop->patches > 0) lay_rails(loop);
     choose_steps(loop, next);
     for (int cuts = 0;; cuts++) { /* an event is found by interpolation, and once more */
         follow_valves(loop, next, pressure, torque, filled, damping);
         spread(step, lane_step);
+        int adhering = begin_exponential(loop, lane_step, &wheels);
         for (int k = 0; k < 3; k++) {
             int later = k == 2 ? LANES : 0; /* the last stage stands at the end of the step */
             move(&loop->now, at[k], stage[k], step, lane_step, k == 2 ? 1.0 : 0.5, &moved[k]);
+            if (adhering) slide_exponential(loop, at, stage, k, &wheels, slid), place_exponential(loop, &wheels, slid, &moved[k]);
             evaluate(loop, &moved[k], torque + later, damping + later, &further[k]);
         }
         #define ACCELERATION(k) stage[k]->acceleration[s]
@@ -56,6 +59,7 @@ static int advance(Loop *loop)
             EACH_LANE reached.wheel[k * LANES + l] =
                 loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
         }
+        if (adhering) end_exponential(loop, at, stage, lane_step, &wheels, &reached);
         if (cuts == 2 || !shorten(loop, at, stage, torque, &reached, next)) break;
     }
     for (int k = 0; k < TRANSFER_STATES; k++) {

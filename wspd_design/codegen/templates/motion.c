@@ -81,6 +81,7 @@ typedef struct {
     WIDE double contact[2 * LANES]; /* stiffness and reciprocal load there */
     WIDE double locked[LANES];
     WIDE double held[LANES];
+    WIDE double settling[LANES]; /* 1/s: rates of sliding speeds that take an exponential step, 0 of the others */
     WIDE double lock_length[LANES]; /* of the present lock, above the judging speed */
     WIDE double valve[LANES];    /* last state of the valve: 0 none yet, 1 fill, 2 vent, 3 hold */
     WIDE double start[LANES];    /* of the valve pattern, as the next three */

@@ -61,8 +61,9 @@ static double before_change(const Loop *loop, int s, double step)
 
 /* Lengthen the steps where the creep curves are flat, as they are at a sliding wheel: a step is limited by the steeper
    of the slopes now and where the wheel would be after the step. A wheel on its way to rolling is taken as rolling.
-   The train may lose a share of its speed in a step. */
-static INLINE void lengthen(const Loop *loop, double *allowed)
+   A wheel that adheres and has settled limits nothing: it takes an exponential step. The train may lose a share of its
+   speed in a step. */
+static INLINE void lengthen(Loop *loop, const double *limited, double *allowed)
 {
     const Settings *set = &loop->set;
     const double *radius = loop->lp + RADIUS * LANES, *load = loop->present.load, *damping = loop->damping;
@@ -75,18 +76,21 @@ static INLINE void lengthen(const Loop *loop, double *allowed)
     spread(loop->now.speed, speed);
     spread(ahead, later);
     slope_kernel(loop->lane_fixed, speed, loop->now.wheel, load, loop->contact, damping, slope);
+    settle(loop, limited, speed, slope, loop->settling);
     memcpy(wheel, loop->now.wheel, sizeof wheel);
     EACH_LANE {
         double rolling = later[l] / radius[l], side = speed[l] > radius[l] * wheel[l] ? 1.0 : -1.0;
         double steep = fabs(slope[l]), step = longest * steep > set->slope_limit ? set->slope_limit / steep : longest;
         double moved = FMA(step, loop->present.wheel[l], wheel[l]);
-        wheel[l] = side * (rolling - moved) > 0.0 ? moved : rolling;
+        moved = side * (rolling - moved) > 0.0 ? moved : rolling;
+        wheel[l] = loop->settling[l] != 0.0 ? wheel[l] * (later[l] / speed[l]) : moved; /* at the same slip */
     }
     slope_kernel(loop->lane_fixed, later, wheel, load, loop->contact, damping, further);
     EACH_LANE {
         double steep = fabs(slope[l]), next = fabs(further[l]);
+        loop->settling[l] = fabs(next - steep) < STEADY * steep ? loop->settling[l] : 0.0;
         steep = next > steep ? next : steep;
-        steep = loop->locked[l] != 0.0 || loop->held[l] != 0.0 ? 0.0 : steep;
+        steep = loop->locked[l] != 0.0 || loop->held[l] != 0.0 || loop->settling[l] != 0.0 ? 0.0 : steep;
         slope[l] = longest * steep > set->slope_limit ? set->slope_limit / steep : longest;
     }
     EACH_STOP {
@@ -104,7 +108,7 @@ static INLINE void choose_steps(Loop *loop, double *next)
 {
     const Settings *set = &loop->set;
     double per_speed = set->slope_limit / set->creep_rate, bound = 0.0;
-    WIDE double until[STOPS], allowed[STOPS], span[STOPS];
+    WIDE double until[STOPS], allowed[STOPS], span[STOPS], limited[STOPS];
     EACH_STOP {
         double after = loop->time[s] + SHORTEST, before = loop->goal[s] - SHORTEST, nearest = loop->goal[s];
         for (int a = 0; a < AXLES; a++) {
@@ -124,9 +128,11 @@ static INLINE void choose_steps(Loop *loop, double *next)
     }
     for (int s = 0; s < STOPS; s++) {
         double most = span[s] < set->longest_step ? span[s] : set->longest_step;
-        bound = allowed[s] < most && loop->active[s] != 0.0 ? 1.0 : bound;
+        limited[s] = allowed[s] < most && loop->active[s] != 0.0 ? 1.0 : 0.0;
+        bound = limited[s] > bound ? limited[s] : bound;
     }
-    if (bound != 0.0) lengthen(loop, allowed);
+    EACH_LANE loop->settling[l] = 0.0;
+    if (bound != 0.0) lengthen(loop, limited, allowed);
     EACH_STOP {
         double wanted = allowed[s] < set->longest_step ? allowed[s] : set->longest_step;
         double count = ceil(span[s] / wanted * (1.0 - 1e-12));
