@@ -3,9 +3,9 @@
 The axles are numbered from the front in the direction of travel. What the vehicle stands on, and how a pitch moment
 loads it, is told by :mod:`wspd_design.parameters.gear`. Braking loads the front axle of each bogie and the front
 supports. Bodies pull at the height of the traction rods; there the running resistance acts too, and the moment by
-which turning wheelsets are slowed down is left out. A single axle cannot pitch: its moment goes into the bodies, in equal parts. Pitch
-is a second-order response about the quasi-static load transfer; with all heights at zero, equal loads and equal rails
-the plant is that of :mod:`wspd_design.plants.quarter`.
+which turning wheelsets are slowed down is left out. A single axle cannot pitch: its moment goes into the bodies, in
+equal parts. Pitch is a second-order response about the quasi-static load transfer; with all heights at zero, equal
+loads and equal rails the plant is that of :mod:`wspd_design.plants.quarter`.
 """
 
 import math
@@ -76,9 +76,9 @@ class Planar(RigidWheelsets):
         loads: list[Number] = []
         mean_load, shares = slip_model.static_wheel_load(self.vehicle), static_shares(self.vehicle)
         for static, share, bogie in zip(shares[:: gear.axles], gear.body_shares, within, strict=True):
-            mean = static * mean_load + share * body / (_WHEELS * gear.axles)
+            mean = static * mean_load + float(share) * body / (_WHEELS * gear.axles)
             part = bogie / _WHEELS
-            pitched = {-1.0: mean - part, 0.0: mean, 1.0: mean + part}  # a third axle stands in the middle
+            pitched = {-1: mean - part, 0: mean, 1: mean + part}  # a third axle stands in the middle
             loads += [pitched[each] for each in gear.axle_shares]
         return tuple(loads)
 

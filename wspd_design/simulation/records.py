@@ -263,4 +263,9 @@ class Run:
     @property
     def samples(self) -> tuple[Sample, ...]:
         """Samples of the first wheelset with a brake."""
-        return max(self.axle_samples, key=len)
+        return self.axle_samples[self.first_braked]
+
+    @property
+    def first_braked(self) -> int:
+        """Place of the first wheelset with a brake, from 0 at the front; 0 if the train was at rest at once."""
+        return next((axle for axle, samples in enumerate(self.axle_samples) if samples), 0)

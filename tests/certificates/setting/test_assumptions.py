@@ -10,8 +10,18 @@ from wspd_design.certificates.setting.assumptions import Assumption, not_met
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.certificates.theorems.theorem import asked
 
-OTHER = {
-    Assumption.EQUAL_BRAKES: {"axle_shares": (1.0, 0.0, 1.0, 1.0)},
+
+def unlike_brakes(vehicle):
+    return replace(vehicle, brake=replace(vehicle.brake, axle_shares=(1.0, 0.0, 1.0, 1.0)))
+
+
+def shared_bogies(vehicle):
+    return replace(
+        vehicle, wheelsets=6, bodies=2, body_mass=0.5 * vehicle.body_mass - 0.5 * vehicle.bogie_mass
+    )
+
+
+BRAKES = {
     Assumption.MAIN_PIPE: {"build_up": "electro-pneumatic", "build_up_delay": 0.2, "build_up_ramp": 1.0},
     Assumption.LAG: {"valve": "orifice"},
     Assumption.NO_LEAK: {"hold_leak": 0.01},
@@ -20,12 +30,23 @@ OTHER = {
     Assumption.NO_WATCHDOG: {"longest_release": 10.0},
     Assumption.SUPPLY: {"cylinder_volume": 0.01, "reservoir_volume": 0.15},
 }
-"""Changes of the brake that break one assumption each."""
+
+
+def with_brake(**changes):
+    return lambda vehicle: replace(vehicle, brake=replace(vehicle.brake, **changes))
+
+
+OTHER = {
+    Assumption.EQUAL_BRAKES: unlike_brakes,
+    Assumption.EQUAL_LOADS: shared_bogies,
+    **{assumption: with_brake(**changes) for assumption, changes in BRAKES.items()},
+}
+"""Vehicles that break one assumption each."""
 
 
 @pytest.mark.parametrize("assumption", Assumption)
 def test_the_locomotive_meets_every_assumption_and_each_can_be_broken(er24pc, assumption):
-    other = replace(er24pc, brake=replace(er24pc.brake, **OTHER[assumption]))
+    other = OTHER[assumption](er24pc)
     assert not_met(er24pc, assumptions.ALL) == ""
     said = not_met(other, {assumption})
     assert said.startswith(f"The theorem takes for granted that {assumption.value}; {er24pc.name} ")
@@ -42,7 +63,7 @@ def test_shares_that_are_all_one_are_equal_brakes(er24pc):
 def test_a_theorem_is_silent_exactly_about_vehicles_that_break_what_it_assumes(
     er24pc, make_problem, make_controller, assumption
 ):
-    other = replace(er24pc, brake=replace(er24pc.brake, **OTHER[assumption]))
+    other = OTHER[assumption](er24pc)
     problem = make_problem(make_controller("smc"), vehicle=other)
     for name, theorem in THEOREMS.items():
         answer = asked(theorem, problem)

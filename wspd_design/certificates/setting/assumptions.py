@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from enum import Enum
 from typing import Final
 
+from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.records import Vehicle
 
 
@@ -15,6 +16,7 @@ class Assumption(Enum):
     """A property of the vehicle; the value says it as a clause."""
 
     EQUAL_BRAKES = "every axle has a brake, and all brakes are alike"
+    EQUAL_LOADS = "all axles carry the same load at rest"
     MAIN_PIPE = "the demanded pressure builds up as that of the main pipe, eq. (8)"
     LAG = "the valves fill and vent as first-order lags, eq. (9)"
     NO_LEAK = "a held cylinder keeps its pressure"
@@ -25,6 +27,17 @@ class Assumption(Enum):
 
 
 ALL: Final = frozenset(Assumption)
+OF_VALVES: Final = frozenset(
+    {
+        Assumption.MAIN_PIPE,
+        Assumption.LAG,
+        Assumption.NO_LEAK,
+        Assumption.NO_DEAD_TIME,
+        Assumption.ANY_PULSE,
+        Assumption.NO_WATCHDOG,
+    }
+)
+"""What is between the command and the torque: nothing to a theorem that takes the torque as commanded."""
 
 
 def not_met(vehicle: Vehicle, assumes: Iterable[Assumption]) -> str:
@@ -57,6 +70,13 @@ def _unequal_brakes(vehicle: Vehicle) -> str:
     return f"has the brake.axle_shares {', '.join(f'{share:g}' for share in shares)}"
 
 
+def _unequal_loads(vehicle: Vehicle) -> str:
+    loads = static_shares(vehicle)
+    if min(loads) == max(loads):
+        return ""
+    return f"loads them with {min(loads):.3g} to {max(loads):.3g} of the mean, since its bodies share bogies or axles"
+
+
 def _having(field: str, unit: str, factor: float = 1.0) -> Callable[[Vehicle], str]:
     """Say that a brake has a number that is not 0."""
 
@@ -79,6 +99,7 @@ def _other_valve(vehicle: Vehicle) -> str:
 
 _REASONS: Final[Mapping[Assumption, Callable[[Vehicle], str]]] = {
     Assumption.EQUAL_BRAKES: _unequal_brakes,
+    Assumption.EQUAL_LOADS: _unequal_loads,
     Assumption.MAIN_PIPE: _other_build_up,
     Assumption.LAG: _other_valve,
     Assumption.NO_LEAK: _having("hold_leak", "1/s"),
