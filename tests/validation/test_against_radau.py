@@ -1,13 +1,13 @@
 """Ten stops of four axles with locks, changes of rail and grades against SciPy's Radau method at rtol 1e-12.
 
-The other simulation is :mod:`independent_four_axles`. It takes a minute for each stop, so that its distances and times
+The other simulation is :mod:`independent_axles`. It takes a minute for each stop, so that its distances and times
 stand here; ``pytest -m reference`` works them out again, and one of them is done with a wider tolerance in every run.
 """
 
 from dataclasses import dataclass, replace
 
 import pytest
-from independent_four_axles import IndependentFourAxles
+from independent_axles import IndependentAxles
 
 from wspd_design.controllers.protocol import Command
 from wspd_design.model.number import where
@@ -108,7 +108,7 @@ def radau(vehicle, case, law, rtol):
     """Time and distance of the other simulation."""
     scenario = scenario_of(case)
     patches = tuple((patch.start, patch.rail) for patch in scenario.patches)
-    independent = IndependentFourAxles(vehicle, scenario.rail, patches=patches, grade=case.grade, rtol=rtol)
+    independent = IndependentAxles(vehicle, scenario.rail, patches=patches, grade=case.grade, rtol=rtol)
     time, y = independent.run(law, scenario.initial_speed)
     return time, y[5]
 

@@ -5,11 +5,11 @@ that is blended in, magnets. Nothing slides here.
 """
 
 import math
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 
 from wspd_design.model import further_brakes
-from wspd_design.model.brake import Valve, braking_torque, pressure_after
+from wspd_design.model.brake import braking_torque, pattern_pressure
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
@@ -60,50 +60,40 @@ def march(
     )
 
 
-class _Brakes:
-    """The brakes of a vehicle whose wheels roll, from one step to the next."""
+class _Axle:
+    """The brakes of a wheelset that rolls, from one step to the next."""
 
-    def __init__(self, vehicle: Vehicle, *, built_up: bool) -> None:
-        self.vehicle, self.built_up = vehicle, built_up
-        self.time = self.pressure = self.warmth = 0.0
-        self.level = 0.0
+    def __init__(self, vehicle: Vehicle, axle: int, *, built_up: bool) -> None:
+        self.brake, self.dynamic, self.pads = vehicle.brake_of(axle), vehicle.dynamic_of(axle), vehicle.pads
+        self.radius, self.built_up = vehicle.wheel_radius, built_up
+        self.time = self.pressure = self.warmth = self.level = 0.0
 
     def force(self, time: float, speed: float) -> float:
-        """Force at the rims and of the magnets at a time, up to which the last step goes [N]."""
-        vehicle = self.vehicle
-        wheel_speed, elapsed = speed / vehicle.wheel_radius, time - self.time
-        dynamic = 0.0
-        if vehicle.dynamic is not None:
-            tau = vehicle.dynamic.build_up_time
-            self.level = 1.0 if self.built_up else further_brakes.build_up(elapsed, self.level, 1.0, tau)
-            dynamic = self.level * further_brakes.dynamic_torque(
-                vehicle.dynamic, wheel_speed, vehicle.wheel_radius
-            )
+        """Force at the rim at a time, up to which the last step goes [N]."""
+        turning, dynamic = speed / self.radius, 0.0
+        if self.dynamic is not None:
+            since, tau = time - self.time, self.dynamic.build_up_time
+            self.level = 1.0 if self.built_up else further_brakes.build_up(since, self.level, 1.0, tau)
+            dynamic = self.level * further_brakes.dynamic_torque(self.dynamic, turning, self.radius)
         friction = self._friction(time, dynamic, speed)
         self.time = time
-        pull = 0.0
-        if vehicle.track_brake is not None:
-            since = math.inf if self.built_up else time
-            pull = further_brakes.track_brake_force(vehicle.track_brake, speed, since)
-        braked = sum(vehicle.brake_shares)
-        return braked * (friction + dynamic) / vehicle.wheel_radius + pull
+        return (friction + dynamic) / self.radius
 
     def _friction(self, time: float, dynamic: float, speed: float) -> float:
-        """Torque of the friction brake of one wheelset [N m]."""
-        vehicle, brake = self.vehicle, self.vehicle.brake
-        share = further_brakes.friction_share(dynamic, brake.max_torque)
-        asked = replace(brake, max_pressure=share * brake.max_pressure)
+        """Torque of the friction brake [N m]."""
+        brake = self.brake
+        share = 1.0
+        if self.dynamic is not None:
+            share = further_brakes.friction_share(dynamic, brake.max_torque)
         if self.built_up:
-            self.pressure = asked.max_pressure
+            self.pressure = share * brake.max_pressure
         else:
-            self.pressure = pressure_after(asked, Valve.FILL, time, self.time, self.pressure)
+            filling = (self.time, self.pressure, time, time, brake.supply_pressure)
+            self.pressure, _ = pattern_pressure(brake, time, filling, share=share)
         torque: float = braking_torque(brake, self.pressure)
-        if vehicle.pads is None:
-            return torque
-        torque *= further_brakes.pad_factor(vehicle.pads, speed, self.warmth)
-        if vehicle.pads.temperatures:
-            turning = speed / vehicle.wheel_radius
-            rate = further_brakes.pad_warming(vehicle.pads, torque, turning, self.warmth)
+        if self.pads is not None:
+            torque *= further_brakes.pad_factor(self.pads, speed, self.warmth)
+            rate = further_brakes.pad_warming(self.pads, torque, speed / self.radius, self.warmth)
             self.warmth += rate * (time - self.time)
         return torque
 
@@ -136,11 +126,18 @@ def rolling_stop(
     UserError
         If the brakes do not hold the vehicle on the grade.
     """
-    brakes = _Brakes(vehicle, built_up=built_up)
+    shares = Counter(zip(vehicle.brake_shares, vehicle.dynamic_shares, strict=True))
+    first = list(zip(vehicle.brake_shares, vehicle.dynamic_shares, strict=True)).index
+    axles = [(number, _Axle(vehicle, first(each), built_up=built_up)) for each, number in shares.items()]
     climbing = vehicle.mass * constants().gravity * grade
     whole = vehicle.mass + vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2
 
     def deceleration(time: float, speed: float) -> float:
-        return (brakes.force(time, speed) + resistance(vehicle, speed, climbing)) / whole
+        force = math.fsum(number * axle.force(time, speed) for number, axle in axles)
+        if vehicle.track_brake is not None:
+            since = math.inf if built_up else time
+            force += further_brakes.track_brake_force(vehicle.track_brake, speed, since)
+        slowed: float = (force + resistance(vehicle, speed, climbing)) / whole
+        return slowed
 
     return march(speed, deceleration, step=step)

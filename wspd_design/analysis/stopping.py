@@ -9,7 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from wspd_design.analysis.stepwise import rolling_stop
+from wspd_design.model.brake import build_up_delay
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 
@@ -118,18 +120,17 @@ def mean_stop(
 
 
 def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) -> MeanStop:
-    """Stop of a vehicle whose wheels do not slide, by mean values of the brake of eqs. (8)-(14).
+    """Stop of a vehicle whose wheels do not slide, by mean values of its brake.
 
-    The supply that builds up with ``supply_rate`` and the cylinder that follows with ``fill_time`` are together late
-    by 1/supply_rate + fill_time, exactly. Where pads fade, an electrodynamic brake is blended in or magnets pull, the
-    stop is worked out by steps, and the mean values are those which give its distance.
+    The equivalent time is that of build-up and filling together: a demand with ``supply_rate`` and a lag with
+    ``fill_time`` are late by 1/supply_rate + fill_time, exactly. Where pads fade, an electrodynamic brake is blended
+    in or magnets pull, the stop is worked out by steps, and the mean values are those which give its distance.
     """
     if vehicle.pads or vehicle.dynamic or vehicle.track_brake:
         return _stop_by_steps(vehicle, speed, grade)
-    brake = vehicle.brake
     return mean_stop(
         speed,
-        forces=[(_rim_force(vehicle), 1.0 / brake.supply_rate + brake.fill_time)],
+        forces=[(_rim_force(vehicle), build_up_delay(vehicle.brake))],
         mass=vehicle.mass,
         rotating_mass=_rotating_mass(vehicle),
         resistance=(
@@ -156,14 +157,24 @@ def _stop_by_steps(vehicle: Vehicle, speed: float, grade: float) -> MeanStop:
 def demanded_adhesion(vehicle: Vehicle) -> float:
     """Adhesion that the fully applied brake asks for while no wheel slides, over the static wheel load [-].
 
-    The rail slows the train; what slows the turning of the wheelsets comes from the brake alone.
+    The rail slows the train; what slows the turning of the wheelsets comes from the brake alone. Where brakes or
+    loads differ, it is that of the axle which asks for most.
     """
-    return _rim_force(vehicle) / ((vehicle.mass + _rotating_mass(vehicle)) * constants().gravity)
+    mean = _rim_force(vehicle) / ((vehicle.mass + _rotating_mass(vehicle)) * constants().gravity)
+    shares, loads = vehicle.brake_shares, static_shares(vehicle)
+    if len(set(shares)) == 1 and len(set(loads)) == 1:
+        return mean
+    # Of the force at its rims an axle takes what slows its own turning; that part is the same for all.
+    turning = mean * _rotating_mass(vehicle) / vehicle.mass
+    usual = sum(shares) / len(shares)
+    return max(
+        (share / usual * (mean + turning) - turning) / load for share, load in zip(shares, loads, strict=True)
+    )
 
 
 def _rim_force(vehicle: Vehicle) -> float:
     """Force of the fully applied brake at the rims of all wheels [N]."""
-    return vehicle.wheelsets * vehicle.brake.max_torque / vehicle.wheel_radius
+    return sum(vehicle.brake_shares) * vehicle.brake.max_torque / vehicle.wheel_radius
 
 
 def _rotating_mass(vehicle: Vehicle) -> float:

@@ -18,6 +18,7 @@ from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.prebuilt import prebuilt_library
 from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
+from wspd_design.model.further_brakes import LEAST_SHARE
 from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
@@ -199,9 +200,11 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
         "MAX_TORQUE": PARAMETERS.index(("brake", "max_torque")),
         "DROP_SLIP": PARAMETERS.index(("dynamic", "drop_slip")),
         "WINDOW": len(WINDOW),
+        "LEAST_SHARE": LEAST_SHARE,
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
         "MASS": PARAMETERS.index(("vehicle", "mass")),
         "OFFSET": PARAMETERS.index(("surroundings", "axle_offset")),
+        "DRAIN": PARAMETERS.index(("surroundings", "reservoir_drain")),
         "FIRST_RAIL": next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail"),
     }
     for name in ("stop_constants", "lane_constants", "window_constants"):

@@ -14,7 +14,7 @@ from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake, Vehic
 _PARTS: Final[Mapping[str, type]] = {"pads": Pads, "dynamic": DynamicBrake, "track_brake": TrackBrake}
 _POINTS: Final = ("speeds", "temperatures")
 _FACTORS: Final = ("speed_factors", "temperature_factors")
-_NOT_NUMBERS: Final = ("kind", "bounds")
+_NOT_NUMBERS: Final = ("kind", "axle_shares", "bounds")
 _ABSENT: Final[Mapping[str, float]] = {"drop_slip": 1.0}  # what the loop asks whether there is a brake or not
 
 PART_NAMES: Final = tuple(_PARTS)

@@ -19,8 +19,7 @@ from wspd_design.codegen.memory import Memory
 from wspd_design.model import adhesion
 from wspd_design.model import brake as brake_model
 from wspd_design.model.further_brakes import build_up
-from wspd_design.model.generated import brake as generated
-from wspd_design.model.number import maximum, minimum, where
+from wspd_design.model.number import where
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
 from wspd_design.plants.protocol import AxleCondition, Plant
 
@@ -32,6 +31,7 @@ class Surroundings:
     grade_force: float = 0.0  # N, positive uphill
     axle_offset: float = 0.0  # m, behind the first axle
     braking_time: float = 0.0  # s, from the application of the brake to the start of the stop
+    reservoir_drain: float = 0.0  # -, by which a pressure filled into the cylinders lowers the reservoir
 
 
 _RECORDS: tuple[tuple[str, type], ...] = (
@@ -41,6 +41,8 @@ _RECORDS: tuple[tuple[str, type], ...] = (
     ("rail", Rail),
     ("surroundings", Surroundings),
 )
+KINDS = ("build_up", "valve")
+"""Words of a brake: another word is another kernel, and so is a reservoir that can run low."""
 _NOT_NUMBERS = (
     "name",
     "wheelsets",
@@ -51,6 +53,13 @@ _NOT_NUMBERS = (
     "axle_shares",
     *PART_NAMES,
     "bounds",
+    *KINDS,
+    "dead_time",  # the numbers of a stop hold these, as its disturbances
+    "shortest_pulse",
+    "longest_release",
+    "cylinder_volume",
+    "reservoir_volume",
+    "reservoir_pressure",
 )
 
 PARAMETERS: tuple[tuple[str, str], ...] = (
@@ -78,9 +87,9 @@ def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -
     return [*(getattr(records[record], field) for record, field in known), *further_values(vehicle)]
 
 
-WINDOW = ("start", "start_pressure", "fill_end", "vent_end", "share", "start_level", "goal")
-"""What holds from one command of the valves to the next: times [s], pressure there [Pa], share of the pressure that is
-asked of the friction brake, and the level of the electrodynamic brake, there and where it goes to."""
+WINDOW = ("start", "start_pressure", "fill_end", "vent_end", "reservoir", "share", "start_level", "goal")
+"""What holds from one command of the valves to the next: times [s], pressures [Pa], share of the pressure that is asked
+of the friction brake, and the level of the electrodynamic brake, there and where it goes to."""
 
 
 class Kernels(NamedTuple):
@@ -123,7 +132,14 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     """
     blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
     counts = {name: getattr(plant.vehicle, name) for name in ("wheelsets", "axles_per_bogie", "bodies")}
-    shape = plant.on(Vehicle(**{**blank, **counts, **blank_parts(plant.vehicle)}))
+    brake: dict[str, Any] = {field.name: None for field in fields(Brake)}
+    present = plant.vehicle.brake
+    kinds = {name: getattr(present, name) for name in KINDS} | {
+        "reservoir_volume": float(present.reservoir_volume > 0.0)
+    }
+    shape = plant.on(
+        Vehicle(**{**blank, **counts, **blank_parts(plant.vehicle), "brake": Brake(**brake | kinds)})
+    )
     return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
 
 
@@ -145,7 +161,7 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
     vehicle = replace(
         blank.vehicle,
         **symbols["vehicle"],
-        brake=Brake(**symbols["brake"]),
+        brake=replace(blank.vehicle.brake, **symbols["brake"]),
         contact=Contact(**symbols["contact"]),
         **symbolic_parts(blank.vehicle, dict(zip(PARAMETERS, p.elements(), strict=True))),
     )
@@ -203,13 +219,19 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
     wheel, *others = axle.rates
     rates = ca.vertcat(where(locked != 0.0, 0.0, wheel), *others)
     passed = where(locked != 0.0, 2.0 * plant.vehicle.wheel_radius * axle.creep_force, axle.brake_torque)
-    window = ca.SX.sym("window", len(WINDOW))
-    start, start_pressure, fill_end, vent_end, share, start_level, goal = _elements(window)
-    dynamic = plant.vehicle.dynamic
-    supply = brake if dynamic is None else replace(brake, max_pressure=share * brake.max_pressure)
-    pressures = _pressure(supply, time, surroundings.braking_time, start, start_pressure, fill_end, vent_end)
+    window, dynamic = ca.SX.sym("window", len(WINDOW)), plant.vehicle.dynamic
+    *pattern, share, start_level, goal = _elements(window)
+    pressures = brake_model.pattern_pressure(
+        brake,
+        time,
+        tuple(pattern),
+        surroundings.braking_time,
+        share=None if dynamic is None else share,
+    )
     there = (
-        ca.SX(0.0) if dynamic is None else build_up(time - start, start_level, goal, dynamic.build_up_time)
+        ca.SX(0.0)
+        if dynamic is None
+        else build_up(time - pattern[0], start_level, goal, dynamic.build_up_time)
     )
     torque = brake_model.braking_torque(brake, pressures[0])
     if disturbed:
@@ -243,22 +265,3 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
 
 def _elements(vector: Any) -> tuple[Any, ...]:
     return tuple(vector[k] for k in range(vector.size1()))
-
-
-def _pressure(
-    brake: Brake, time: Any, before: Any, start: Any, start_pressure: Any, fill_end: Any, vent_end: Any
-) -> tuple[Any, Any]:
-    """Cylinder pressure under fill, then vent, then hold; and what it would be without the venting.
-
-    The brake was applied ``before`` the time zero [s].
-    """
-    filled = generated.filled_pressure(
-        minimum(time, fill_end) + before,
-        start + before,
-        start_pressure,
-        brake.max_pressure,
-        brake.supply_rate,
-        brake.fill_time,
-    )
-    vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
-    return generated.vented_pressure(vented_for, filled, brake.vent_time), filled

@@ -29,6 +29,8 @@ LANE_TOTALS = (
     "longest_lock",
     "vented_pressure",
     "valve_switches",
+    "filled_pressure",
+    "watchdog",
 )
 STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
 DISTURBANCES = (
@@ -41,6 +43,8 @@ DISTURBANCES = (
     "torque_factor",  # of the torque that a law is told
     "dead_time",  # s
     "shortest_pulse",  # s
+    "longest_release",  # s, 0 without a watchdog
+    "reservoir_pressure",  # Pa, at the start
 )
 """What disturbs measurement and valves of a stop; in C in the same order."""
 RAIL_NUMBERS = 5

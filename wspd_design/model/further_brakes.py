@@ -9,7 +9,10 @@ from wspd_design.parameters.brake_checks import SPEED_ROUNDING, TEMPERATURE_ROUN
 from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake
 
 _POWER_ROUNDING = 0.05  # of the torque: about the speed where torque and power are both at their limit
+_NO_TORQUE = 1e-9  # N m, that keeps the rounding of an axle without a motor above zero
 _STANDING = 1e-3  # rad/s, by which the power is divided at least; the brake has cut out long before
+LEAST_SHARE = 1e-6
+"""Of its pressure, that is asked of a friction brake in any case: it is applied."""
 _AT_ONCE = 1e-6  # s, in place of a time constant of zero
 
 
@@ -31,7 +34,7 @@ def pad_warming(pads: Pads, friction_torque: Number, wheel_speed: Number, temper
 def dynamic_torque(brake: DynamicBrake, wheel_speed: Number, wheel_radius: Number) -> Number:
     """Torque of the built-up electrodynamic brake at a speed of the wheel [N m per wheelset]."""
     by_power = brake.power / maximum(wheel_speed, _STANDING)
-    full = lower(brake.torque, by_power, _POWER_ROUNDING * brake.torque)
+    full = lower(brake.torque, by_power, _POWER_ROUNDING * brake.torque + _NO_TORQUE)
     rim, fade, out = wheel_radius * wheel_speed, brake.fade_speed, brake.cut_out_speed
     share = (corner(rim - out, SPEED_ROUNDING) - corner(rim - fade, SPEED_ROUNDING)) / (fade - out)
     return full * share
@@ -43,12 +46,9 @@ def build_up(since: Number, before: Number, goal: Number, time_constant: Number)
 
 
 def friction_share(dynamic: Number, demanded: Number) -> Number:
-    """Share of its pressure that is asked of the friction brake beside a torque of the electrodynamic one [-].
-
-    A brake that is asked for nothing gives nothing.
-    """
+    """Share of its pressure that is asked of the friction brake beside a torque of the electrodynamic one [-]."""
     idle = demanded <= 0.0
-    return where(idle, 0.0, maximum(1.0 - dynamic / where(idle, 1.0, demanded), 0.0))
+    return maximum(where(idle, 0.0, 1.0 - dynamic / where(idle, 1.0, demanded)), LEAST_SHARE)
 
 
 def track_brake_force(brake: TrackBrake, speed: Number, time: Number) -> Number:

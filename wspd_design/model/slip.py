@@ -75,7 +75,7 @@ def train_acceleration(vehicle: Vehicle, creep_force: Number, resistance: Number
 
 def _counted(vehicle: Vehicle, whole: Number) -> Number:
     """Return the part of a mass or force of the train that stands on as many wheels as eqs. (1), (19) count."""
-    return whole if wheels(vehicle) == COUNTED else whole * (COUNTED / wheels(vehicle))
+    return whole if wheels(vehicle) == COUNTED else whole * COUNTED / float(wheels(vehicle))
 
 
 class SlipDynamics(NamedTuple):

@@ -27,7 +27,7 @@ def check_further_brakes(vehicle: Vehicle) -> None:
     if vehicle.pads is not None:
         _check_pads(vehicle.pads, vehicle.name)
     if vehicle.dynamic is not None:
-        _check_dynamic(vehicle.dynamic, vehicle.name)
+        _check_dynamic(vehicle.dynamic, vehicle.wheelsets, vehicle.name)
     if vehicle.track_brake is not None:
         _check_track_brake(vehicle.track_brake, vehicle.name)
 
@@ -44,8 +44,14 @@ def _check_pads(pads: Pads, vehicle: str) -> None:
         )
 
 
-def _check_dynamic(brake: DynamicBrake, vehicle: str) -> None:
-    """Refuse an electrodynamic brake that does not fade from one speed to a lower one."""
+def _check_dynamic(brake: DynamicBrake, wheelsets: int, vehicle: str) -> None:
+    """Refuse an electrodynamic brake that does not fade from one speed to a lower one, and shares of other axles."""
+    shares = brake.axle_shares
+    if shares and (len(shares) != wheelsets or max(shares) == 0.0):
+        raise UserError(
+            f"dynamic.axle_shares of vehicle {vehicle} must have {wheelsets} numbers, one for each wheelset, and one "
+            f"above 0 at least, but has {len(shares)}; 0 is an axle without a motor."
+        )
     _check_cut_out("dynamic", brake.cut_out_speed, SPEED_ROUNDING, vehicle)
     if not brake.fade_speed > brake.cut_out_speed:
         raise UserError(

@@ -7,6 +7,7 @@ middle; on two the moments alone decide.
 """
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from wspd_design.parameters.records import Vehicle
 
@@ -22,32 +23,40 @@ class Gear:
     bodies: int
 
     @property
-    def resting(self) -> tuple[float, ...]:
+    def resting(self) -> tuple[Fraction, ...]:
         """Bodies that rest on each support; their sum is the number of bodies."""
         if self.bodies == 1:
-            return (1.0 / self.supports,) * self.supports
-        return (0.5, *(1.0,) * (self.supports - 2), 0.5)
+            return (Fraction(1, self.supports),) * self.supports
+        return (Fraction(1, 2), *(Fraction(1),) * (self.supports - 2), Fraction(1, 2))
 
     @property
-    def body_shares(self) -> tuple[float, ...]:
+    def body_shares(self) -> tuple[Fraction, ...]:
         """Load of each support from the pitch moment of a body, over moment by spacing.
 
         Bodies that are slowed down alike pitch alike: what one takes from a shared support, the next one gives it.
         """
         if self.bodies == 1:
             return _linear(self.supports)
-        return (1.0, *(0.0,) * (self.supports - 2), -1.0)
+        return (Fraction(1), *(Fraction(0),) * (self.supports - 2), Fraction(-1))
 
     @property
-    def axle_shares(self) -> tuple[float, ...]:
+    def axle_shares(self) -> tuple[int, ...]:
         """Load of each axle of a bogie from its pitch moment, over moment by wheelbase, first to last axle."""
-        return tuple((self.axles - 1) * share for share in _linear(self.axles))
+        return tuple(int((self.axles - 1) * share) for share in _linear(self.axles))
 
 
 def gear_of(vehicle: Vehicle) -> Gear:
     """Return the running gear of a vehicle without contradictions."""
     axles = vehicle.axles_per_bogie
     return Gear(axles=axles, supports=vehicle.wheelsets // axles, bodies=vehicle.bodies)
+
+
+def static_shares(vehicle: Vehicle) -> tuple[float, ...]:
+    """Static load of each axle over the mean of all: shared supports carry more of the bodies."""
+    gear = gear_of(vehicle)
+    beyond = [float(resting * gear.supports - gear.bodies) for resting in gear.resting]
+    by_support = [1.0 + more * (vehicle.body_mass / vehicle.mass) if more else 1.0 for more in beyond]
+    return tuple(share for share in by_support for _ in range(gear.axles))
 
 
 def contradiction(vehicle: Vehicle) -> str:
@@ -94,8 +103,8 @@ def _wrong_numbers(vehicle: Vehicle) -> str:
     return ""
 
 
-def _linear(number: int) -> tuple[float, ...]:
+def _linear(number: int) -> tuple[Fraction, ...]:
     """Loads of supports at equal distances from a moment, over moment by distance; none on a single one."""
-    places = [0.5 * (number - 1) - each for each in range(number)]
+    places = [Fraction(number - 1, 2) - each for each in range(number)]
     squares = sum(place * place for place in places)
-    return tuple(place / squares if squares else 0.0 for place in places)
+    return tuple(place / squares if squares else Fraction(0) for place in places)

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.brake_checks import check_further_brakes
+from wspd_design.parameters.brakes import check_brake
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, data_file, load_entries, read_toml
 from wspd_design.parameters.gear import contradiction, gear_of
@@ -47,7 +48,6 @@ __all__ = [
 
 _Record = TypeVar("_Record")
 
-_SINGULAR = 1e-6  # distance of supply_rate * fill_time from 1, where the filling law is 0/0
 _MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms or to 0.1 t
 
 
@@ -89,12 +89,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         for name in ("wheelsets", "axles_per_bogie", "bodies")
         if name in values
     }
-    together = values["brake.supply_rate"] * values["brake.fill_time"]
-    if abs(together - 1.0) < _SINGULAR:
-        raise UserError(
-            f"supply_rate times fill_time = {together:g} of the brake in vehicle {parameters.name} must differ from 1 "
-            "by more than 1e-6: the closed form of the filling is singular there; change one of them a little."
-        )
+    check_brake(values, parameters.name)
     vehicle = _build(
         Vehicle,
         values | counts,

@@ -3,9 +3,9 @@
 The axles are numbered from the front in the direction of travel. What the vehicle stands on, and how a pitch moment
 loads it, is told by :mod:`wspd_design.parameters.gear`. Braking loads the front axle of each bogie and the front
 supports. Bodies pull at the height of the traction rods; there the running resistance acts too, and the moment by
-which turning wheelsets are slowed down is left out. A single axle cannot pitch: its moment goes into the body. Pitch
-is a second-order response about the quasi-static load transfer; with all heights at zero, equal loads and equal rails
-the plant is that of :mod:`wspd_design.plants.quarter`.
+which turning wheelsets are slowed down is left out. A single axle cannot pitch: its moment goes into the bodies, in
+equal parts. Pitch is a second-order response about the quasi-static load transfer; with all heights at zero, equal
+loads and equal rails the plant is that of :mod:`wspd_design.plants.quarter`.
 """
 
 import math
@@ -15,8 +15,7 @@ from typing import ClassVar
 from wspd_design.model import slip as slip_model
 from wspd_design.model.number import Number
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.gear import Gear, gear_of, wrong_counts
-from wspd_design.parameters.loading import constants
+from wspd_design.parameters.gear import Gear, gear_of, static_shares, wrong_counts
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.axle import RigidWheelsets
 from wspd_design.plants.protocol import TrainMotion
@@ -75,23 +74,13 @@ class Planar(RigidWheelsets):
         body, *within_bogies = transfers[: self.transfers]
         within = within_bogies or [0.0] * gear.supports
         loads: list[Number] = []
-        for static, share, bogie in zip(self._static_loads, gear.body_shares, within, strict=True):
-            mean = static + share * body / (_WHEELS * gear.axles)
+        mean_load, shares = slip_model.static_wheel_load(self.vehicle), static_shares(self.vehicle)
+        for static, share, bogie in zip(shares[:: gear.axles], gear.body_shares, within, strict=True):
+            mean = static * mean_load + float(share) * body / (_WHEELS * gear.axles)
             part = bogie / _WHEELS
-            pitched = {-1.0: mean - part, 0.0: mean, 1.0: mean + part}  # a third axle stands in the middle
+            pitched = {-1: mean - part, 0: mean, 1: mean + part}  # a third axle stands in the middle
             loads += [pitched[each] for each in gear.axle_shares]
         return tuple(loads)
-
-    @property
-    def _static_loads(self) -> tuple[Number, ...]:
-        """Load of a wheel of each support at rest on level track [N]; shared supports carry more of the bodies."""
-        vehicle, gear = self.vehicle, self.gear
-        mean = slip_model.static_wheel_load(vehicle)
-        if gear.bodies == 1:
-            return (mean,) * gear.supports
-        body = vehicle.body_mass * constants().gravity / (_WHEELS * gear.axles)
-        usual = gear.bodies / gear.supports
-        return tuple(mean + (resting - usual) * body for resting in gear.resting)
 
     def train_motion(
         self,
@@ -125,7 +114,7 @@ class Planar(RigidWheelsets):
         if self.bogies:
             targets = [body / vehicle.bogie_spacing, *(moment / vehicle.wheelbase for moment in supports)]
         else:
-            targets = [(body + sum(supports)) / vehicle.bogie_spacing]
+            targets = [(body + sum(supports) / gear.bodies) / vehicle.bogie_spacing]
         frequencies = (vehicle.body_pitch_frequency, *(vehicle.bogie_pitch_frequency,) * self.bogies)
         values, rates = transfers[: self.transfers], transfers[self.transfers :]
         damping = vehicle.pitch_damping_ratio

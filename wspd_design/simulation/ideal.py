@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from wspd_design.codegen.loop_numbers import LoopInput
 from wspd_design.controllers.baselines.unprotected import Unprotected
+from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
@@ -104,7 +105,14 @@ def ideal_stop(
     if runs_away(vehicle, scenario):
         return IdealStop(name=name, ending=Ending.RUNAWAY, distance=math.nan, stopping_time=math.nan)
     if instantaneous:
-        brake = replace(vehicle.brake, supply_rate=_AT_ONCE, fill_time=_INSTANT)
+        brake = replace(
+            vehicle.brake,
+            build_up="main-pipe",
+            valve="lag",
+            supply_rate=_AT_ONCE,
+            fill_time=_INSTANT,
+            reservoir_volume=0.0,
+        )
         vehicle = replace(vehicle, brake=brake)
     braked = plant_of(plant, vehicle)
     given = ideal_input([(braked, scenario)], slip=slip)
@@ -126,8 +134,11 @@ def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None =
 
     speeds = log_speeds(max(scenario.initial_speed for _, scenario in cases))
     rails = [scenario.axle_rails or (scenario.rail,) * plant.axles for plant, scenario in cases]
+    loads = [_load_shares(plant) for plant, _ in cases]
     lanes = [
-        (plant.vehicle, rails[k][axle]) for axle in range(len(rails[0])) for k, (plant, _) in enumerate(cases)
+        (plant.vehicle, rails[k][axle], loads[k][axle])
+        for axle in range(len(rails[0]))
+        for k, (plant, _) in enumerate(cases)
     ]
     if slip is None:
         alike = list(dict.fromkeys(lanes))
@@ -144,3 +155,9 @@ def _without_drop_out(vehicle: Vehicle) -> Vehicle:
     """The same vehicle with an electrodynamic brake that stays whatever the slip, which is never above 1."""
     dynamic = vehicle.dynamic
     return vehicle if dynamic is None else replace(vehicle, dynamic=replace(dynamic, drop_slip=1.0))
+
+
+def _load_shares(plant: Plant) -> list[float]:
+    """Load of each axle before any load moves, over the mean static load."""
+    mean = static_wheel_load(plant.vehicle)
+    return [load / mean for load in plant.wheel_loads((0.0,) * (2 * plant.transfers))]

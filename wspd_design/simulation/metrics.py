@@ -4,8 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wspd_design.model.number import Number
+from wspd_design.model.valve_flow import ATMOSPHERE
+from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
-from wspd_design.parameters.records import Vehicle
+from wspd_design.parameters.records import Brake, Vehicle
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario, Start
@@ -13,7 +16,7 @@ from wspd_design.simulation.records import Ending, Run, Scenario, Start
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Metrics:
-    """Figures of one stop. Slip figures count above 10 km/h."""
+    """Figures of one stop. Slip figures count above 10 km/h, means are those of the wheelsets with a brake."""
 
     distance: float  # m
     stopping_time: float  # s
@@ -25,8 +28,13 @@ class Metrics:
     slip_rms: float  # -, about the reference
     lock_time: float  # s
     saturated_share: float  # -, samples that fill or vent for the whole sample time
-    valve_switches: int  # changes of the valve state, mean of the wheelsets
+    valve_switches: int  # changes of the valve state
     vented_air: float  # -, full brake cylinders let out, mean of the wheelsets
+    air_used: (
+        float  # normal litres that all cylinders took from the reservoir; NaN where their volume is not known
+    )
+    lowest_reservoir: float  # Pa above the atmosphere, in a stop without refilling; NaN without a reservoir
+    watchdog_fills: int | None  # times that a watchdog filled, all wheelsets; None without watchdogs
     adhesion_utilization: float  # -, creep force over the force at the adhesion peak, mean over time
     ideal_stop: float  # m, distance of the brake that holds the best slip; NaN where there is none
     ideal_ending: Ending | None  # of the ideal stop; None where it is not known
@@ -84,7 +92,10 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         if commands
         else math.nan,
         valve_switches=round(totals.valve_switches),
-        vented_air=totals.vented_pressure / vehicle.brake.max_pressure / vehicle.wheelsets,
+        vented_air=totals.vented_pressure / vehicle.brake.max_pressure / braked_axles(vehicle),
+        air_used=air_used(vehicle.brake, totals.filled_pressure),
+        lowest_reservoir=lowest_reservoir(vehicle.brake, totals.filled_pressure),
+        watchdog_fills=totals.watchdog_fills if vehicle.brake.longest_release else None,
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
         ideal_stop=ideal_distance,
         ideal_ending=None if ideal is None else ideal.ending,
@@ -94,8 +105,30 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     )
 
 
+def air_used(brake: Brake, filled: Number) -> Number:
+    """Air that cylinders take from the reservoir for pressures that add up to ``filled`` [Pa], in normal litres.
+
+    A normal litre is one at the pressure of the standard atmosphere and the temperature of the cylinder.
+    """
+    return 1e3 * brake.cylinder_volume * filled / ATMOSPHERE if brake.cylinder_volume else math.nan
+
+
+def lowest_reservoir(brake: Brake, filled: Number) -> Number:
+    """Pressure of a reservoir that nothing refills after pressures that add up to ``filled`` were let in [Pa]."""
+    if not brake.reservoir_volume:
+        return math.nan
+    return brake.supply_pressure - brake.cylinder_volume / brake.reservoir_volume * filled
+
+
+def braked_axles(vehicle: Vehicle) -> int:
+    """Return the number of wheelsets with a brake."""
+    return sum(share > 0.0 for share in vehicle.brake_shares)
+
+
 def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> float:
     """Impulse of the creep forces over that of the adhesion peak at each speed, under the static load [-].
+
+    The adhesion of wheelsets without a brake cannot be used and does not count.
 
     NaN for a change of rail along the track, and for a train that is at rest at once.
     """
@@ -103,9 +136,18 @@ def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> floa
 
     if scenario.patches or len(run.time) == 1:
         return math.nan
-    rails = scenario.axle_rails or (scenario.rail,)
-    peak = np.mean([peak_adhesion(vehicle, rail, run.speed)[1] for rail in rails], axis=0)
-    available = vehicle.mass * constants().gravity * float(np.trapezoid(peak, run.time))
+    loads, rails = static_shares(vehicle), scenario.axle_rails or (scenario.rail,) * vehicle.wheelsets
+    axles = [
+        pair
+        for pair, brake in zip(zip(rails, loads, strict=True), vehicle.brake_shares, strict=True)
+        if brake
+    ]
+    alike = axles[:1] if len(set(axles)) == 1 else axles
+    peak = np.mean(
+        [load * peak_adhesion(vehicle, rail, run.speed, load_share=load)[1] for rail, load in alike], axis=0
+    )
+    weight = vehicle.mass * constants().gravity * (len(axles) / vehicle.wheelsets)
+    available = weight * float(np.trapezoid(peak, run.time))
     used = vehicle.mass * (run.initial_speed - float(run.speed[-1])) - run.totals.resistance_impulse
     return used / available
 

@@ -53,14 +53,12 @@ def _peak_table(
 ) -> "tuple[Array, Array, Array]":
     """Train speeds, the slips of their adhesion peaks and the peaks."""
     speeds = log_speeds(top_speed)
-    slips, peaks = best_slips([(vehicle, rail)], speeds, load_share=load_share)
+    slips, peaks = best_slips([(vehicle, rail, load_share)], speeds)
     return speeds, slips[0], peaks[0]
 
 
-def best_slips(
-    lanes: Sequence[tuple[Vehicle, Rail]], speeds: "Array", *, load_share: float = 1.0
-) -> "tuple[Array, Array]":
-    """Slips at which rails give most under a share of the static load, and the adhesion there, one row a lane.
+def best_slips(lanes: Sequence[tuple[Vehicle, Rail, float]], speeds: "Array") -> "tuple[Array, Array]":
+    """Slips at which rails give most under shares of the mean static load, and the adhesion there, one row a lane.
 
     The creep force may have two humps over slip: a coarse grid finds the higher one, golden sections its top.
     """
@@ -69,16 +67,16 @@ def best_slips(
     def column(values: list[float]) -> "Array":
         return np.array(values)[:, np.newaxis, np.newaxis]
 
-    loads = [load_share * float(static_wheel_load(vehicle)) for vehicle, _ in lanes]
+    loads = [share * float(static_wheel_load(vehicle)) for vehicle, _, share in lanes]
     load = column(loads)
     stiffness = column(
         [
             float(adhesion.contact_stiffness(vehicle.contact, each))
-            for (vehicle, _), each in zip(lanes, loads, strict=True)
+            for (vehicle, *_), each in zip(lanes, loads, strict=True)
         ]
     )
     names = [field.name for field in fields(Rail) if field.name not in ("name", "bounds")]
-    numbers = {name: column([getattr(rail, name) for _, rail in lanes]) for name in names}
+    numbers = {name: column([getattr(rail, name) for _, rail, _ in lanes]) for name in names}
     rail = replace(lanes[0][1], **numbers)  # type: ignore[arg-type]  # arrays are numbers as well
     v = speeds[np.newaxis, :, np.newaxis]
     referred = np.minimum(v / constants().slip_regularization_speed, 1.0)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Rail
+from wspd_design.parameters.records import Brake, Rail
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,16 +55,16 @@ class Sensing:
     torque_error: float = (
         0.0  # -, relative error of the torque that the controller computes from the pressure
     )
-    dead_time: float = 0.0  # s, from the command to the valve
-    shortest_pulse: float = 0.0  # s, that opens a valve; at most one sample time
+    dead_time: float | None = None  # s, from the command to the valve; None: that of the vehicle
+    shortest_pulse: float | None = None  # s, that opens a valve; at most one sample time; None: the vehicle's
 
     def __post_init__(self) -> None:
         """Refuse what is no disturbance."""
         for name, value, unit in (
             ("speed noise", self.speed_noise, "m/s"),
             ("reference noise", self.reference_noise, "m/s"),
-            ("dead time", self.dead_time, "s"),
-            ("shortest pulse", self.shortest_pulse, "s"),
+            ("dead time", self.dead_time or 0.0, "s"),
+            ("shortest pulse", self.shortest_pulse or 0.0, "s"),
         ):
             if not 0.0 <= value < math.inf:
                 raise UserError(f"{name} = {value:g} {unit} must be finite and not negative; 0 is none")
@@ -85,6 +85,14 @@ class Sensing:
             )
         if self.period_timing and not self.pulses_per_turn:
             raise UserError("period timing needs a pulse wheel; give the pulses per turn, such as 100")
+
+    def dead_time_of(self, brake: Brake) -> float:
+        """Dead time of a stop [s]: that of the vehicle's brake unless another one is given."""
+        return brake.dead_time if self.dead_time is None else self.dead_time
+
+    def shortest_pulse_of(self, brake: Brake) -> float:
+        """Shortest pulse that opens a valve in a stop [s], likewise."""
+        return brake.shortest_pulse if self.shortest_pulse is None else self.shortest_pulse
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,10 +221,14 @@ class Totals:
     damping_work: float  # J
     lock_time: float  # s, longest of the wheelsets
     judged_time: float  # s, above the judging speed
-    slip: float  # s, integral of the slip over the judged time, mean of the wheelsets
+    slip: float  # s, integral of the slip over the judged time, mean of the wheelsets with a brake
     slip_squared: float  # s
-    vented_pressure: float  # Pa, sum over all vents of all wheelsets of the pressure let out
-    valve_switches: float  # changes of the valve state that the commands ask for, mean of the wheelsets
+    vented_pressure: float  # Pa, sum over all vents of all wheelsets with a brake of the pressure let out
+    valve_switches: (
+        float  # changes of the valve state that the commands ask for, mean of the wheelsets with a brake
+    )
+    filled_pressure: float  # Pa, sum over all fillings of all wheelsets with a brake of the pressure let in
+    watchdog_fills: int  # times that the watchdog of a wheelset with a brake filled
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -231,6 +243,8 @@ class Run:
     rail: str
     plant: str
     sample_time: float  # s
+    dead_time: float  # s, that the valves had
+    shortest_pulse: float  # s, likewise
     initial_speed: float  # m/s
     ending: Ending
     time: "Trace"  # s
@@ -238,9 +252,9 @@ class Run:
     distance: "Trace"  # m
     wheel_speed: "Trace"  # rad/s, per wheelset
     slip: "Trace"  # -, per wheelset
-    torque: "Trace"  # N m, per wheelset, transmitted
+    torque: "Trace"  # N m, per wheelset, transmitted; 0 without a brake
     wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
-    axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset
+    axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset; none of one without a brake
     totals: Totals
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
@@ -253,5 +267,10 @@ class Run:
 
     @property
     def samples(self) -> tuple[Sample, ...]:
-        """Samples of the first wheelset."""
-        return self.axle_samples[0]
+        """Samples of the first wheelset with a brake."""
+        return self.axle_samples[self.first_braked]
+
+    @property
+    def first_braked(self) -> int:
+        """Place of the first wheelset with a brake, from 0 at the front; 0 if the train was at rest at once."""
+        return next((axle for axle, samples in enumerate(self.axle_samples) if samples), 0)

@@ -18,7 +18,6 @@ from wspd_design.codegen.notices import tell_once
 from wspd_design.codegen.sampled import BAD_COMMAND
 from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.model.further_brakes import track_brake_force
-from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
@@ -122,6 +121,7 @@ def _run_record(
     axles, magnets = plant.axles, plant.vehicle.track_brake
     columns = 1 if plant.alike else axles
     lane, stop = output.lane_totals, {name: float(x[0]) for name, x in output.stop_totals.items()}
+    braked = np.array(plant.vehicle.brake_shares) > 0.0
     start = _first_row(plant, scenario, output)
     trace = np.vstack([start, output.trace])
     wheel, slip, passed, load, _, dynamic, *warmth = (
@@ -135,6 +135,8 @@ def _run_record(
         rail=scenario.rail.name,
         plant=plant.name,
         sample_time=controller.sample_time,
+        dead_time=scenario.sensing.dead_time_of(plant.vehicle.brake),
+        shortest_pulse=scenario.sensing.shortest_pulse_of(plant.vehicle.brake),
         initial_speed=scenario.initial_speed,
         ending=_ending(plant, scenario, output),
         time=trace[:, 0],
@@ -145,7 +147,8 @@ def _run_record(
         torque=passed,
         wheel_load=load,
         axle_samples=tuple(
-            _samples(output.samples[:, 0], by_axle[:, :, axle], states) for axle in range(columns)
+            _samples(output.samples[:, 0], by_axle[:, :, axle], states) if braked[axle] else ()
+            for axle in range(columns)
         ),
         totals=Totals(
             distance=stop["distance"],
@@ -158,10 +161,12 @@ def _run_record(
             damping_work=float(lane["damping_work"].sum()),
             lock_time=float(lane["lock_time"].max()),
             judged_time=stop["judged_time"],
-            slip=float(lane["slip"].mean()),
-            slip_squared=float(lane["slip_squared"].mean()),
-            vented_pressure=float(lane["vented_pressure"].sum()),
-            valve_switches=float(lane["valve_switches"].mean()),
+            slip=float(lane["slip"][braked].mean()),
+            slip_squared=float(lane["slip_squared"][braked].mean()),
+            vented_pressure=float(lane["vented_pressure"][braked].sum()),
+            valve_switches=float(lane["valve_switches"][braked].mean()),
+            filled_pressure=float(lane["filled_pressure"][braked].sum()),
+            watchdog_fills=round(float(lane["watchdog"][braked].sum())),
         ),
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),
@@ -198,20 +203,22 @@ def _samples(times: "NDArray[np.float64]", rows: "NDArray[np.float64]", states: 
 
 
 def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray[np.float64]":
-    """Row of the traces at t = 0, where the load is static."""
+    """Row of the traces at t = 0, where no load has moved."""
     import numpy as np
 
     speed, slip, axles = scenario.initial_speed, scenario.start.slip, plant.axles
-    static = static_wheel_load(plant.vehicle)
+    loads = plant.wheel_loads((0.0,) * (2 * plant.transfers))
     referred = slip * min(speed / constants().slip_regularization_speed, 1.0)
     alike = (speed * (1.0 - slip) / plant.vehicle.wheel_radius, referred)
     at_rest = len(output.samples) == 0  # a start below the stop speed
     # As the first sample saw them, without the error of their measurement.
     factor = 1.0 + scenario.sensing.torque_error
-    torques = np.full(axles, scenario.start.torque) if at_rest else output.samples[0, -axles:] / factor
     others = np.zeros(
         axles * plant.axle_states
     )  # electrodynamic brakes, which begin at zero, and further states
-    return np.concatenate(
-        [(0.0, speed, 0.0), np.repeat(alike, axles), torques, np.full(axles, static), torques, others]
+    torques = (
+        scenario.start.torque * np.array(plant.vehicle.brake_shares)
+        if at_rest
+        else output.samples[0, -axles:] / factor
     )
+    return np.concatenate([(0.0, speed, 0.0), np.repeat(alike, axles), torques, loads, torques, others])

@@ -161,7 +161,7 @@ def phase_plane(run: Run, law: Surface) -> PhasePlane:
 
     times = [sample.time for sample in run.samples]
     judged = np.interp(times, run.time, run.speed) > JUDGING_SPEED
-    errors = law.slip_reference - np.interp(times, run.time, run.slip[:, 0])
+    errors = law.slip_reference - np.interp(times, run.time, run.slip[:, run.first_braked])
     # A sample remembers the state after its step; the law decided by the integral before it.
     integrals = np.array([0.0, *(sample.state[0] for sample in run.samples[:-1])])
     return PhasePlane(

@@ -13,6 +13,7 @@ from wspd_design.certificates.setting import axle
 from wspd_design.certificates.setting.axle import Pitching
 from wspd_design.model.slip import resistance, static_wheel_load
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.gear import static_shares as static_axle_shares
 from wspd_design.parameters.loading import constants
 from wspd_design.plants.planar import Planar
 
@@ -83,8 +84,9 @@ def static_shares(vehicle, adhesions, speed, grade=0.0):
     """Loads over the static load, and deceleration, with the pitch at rest where each axle uses some adhesion."""
     weight = vehicle.mass * constants().gravity
     static, plant = static_wheel_load(vehicle), Planar(vehicle)
-    loads, rest = np.full(4, static), (0.0,) * 6
-    frequencies = np.array([vehicle.body_pitch_frequency, *[vehicle.bogie_pitch_frequency] * 2])
+    rest = (0.0,) * (2 * plant.transfers)
+    loads = np.array(plant.wheel_loads(rest))
+    frequencies = np.array([vehicle.body_pitch_frequency, *[vehicle.bogie_pitch_frequency] * plant.bogies])
     for _ in range(100):
         # With no pitch yet the second derivative over the squared frequency is the static transfer.
         motion = plant.train_motion(
@@ -93,8 +95,8 @@ def static_shares(vehicle, adhesions, speed, grade=0.0):
             transfers=rest,
             grade_force=weight * grade,
         )
-        transfers = np.array(motion.transfer_rates[3:]) / (2.0 * math.pi * frequencies) ** 2
-        loads = np.array(plant.wheel_loads((*transfers, *rest[3:])))
+        transfers = np.array(motion.transfer_rates[plant.transfers :]) / (2.0 * math.pi * frequencies) ** 2
+        loads = np.array(plant.wheel_loads((*transfers, *rest[plant.transfers :])))
     return loads / static, -motion.acceleration
 
 
@@ -139,6 +141,40 @@ def test_static_range_contains_and_nearly_reaches_the_loads_of_the_plant(problem
     assert np.max(shares) <= high
     assert high - np.max(shares) < 0.1 * (high - 1.0)
     assert np.min(shares) - low < 0.1 * (1.0 - low)
+
+
+GEARS = {
+    "two single axles": {"axles_per_bogie": 1, "wheelsets": 2, "bogie_mass": 1.6e3, "body_mass": 22e3},
+    "three single axles": {"axles_per_bogie": 1, "wheelsets": 3, "bogie_mass": 1.6e3, "body_mass": 30e3},
+    "four two-axle bogies": {"wheelsets": 8, "body_mass": 60e3},
+    "two three-axle bogies": {"axles_per_bogie": 3, "wheelsets": 6, "body_mass": 80e3, "wheelbase": 4.0},
+    "two bodies on three bogies": {"wheelsets": 6, "bodies": 2, "body_mass": 20e3, "bogie_mass": 9e3},
+    "two bodies on three axles": {"axles_per_bogie": 1, "wheelsets": 3, "bodies": 2, "body_mass": 12e3},
+}
+
+
+@pytest.mark.parametrize("name", GEARS)
+def test_the_range_of_any_gear_contains_and_nearly_reaches_the_loads_of_the_plant(problem, name):
+    nominal = replace(problem.vehicle, **{"bogie_mass": 5e3, **GEARS[name]})
+    supports = nominal.wheelsets // nominal.axles_per_bogie
+    mass = nominal.bodies * nominal.body_mass + supports * nominal.bogie_mass
+    bounds = Bounds.of({"mass": (0.9 * mass, 1.1 * mass), "traction_rod_height": (0.4, 0.6)})
+    nominal = replace(nominal, mass=mass, bounds=bounds)
+    stated = replace(problem, vehicle=nominal, bounds=problem.bounds | {"mass": bounds["mass"]})
+    low, high = axle.load_share(stated)
+    shares, generator = [], np.random.default_rng(11)
+    for trial in range(120):
+        heavy, rod = (generator.choice(bounds[each]) for each in ("mass", "traction_rod_height"))
+        body = nominal.body_mass + (heavy - mass) / nominal.bodies
+        vehicle = replace(nominal, mass=heavy, traction_rod_height=rod, body_mass=body)
+        everywhere = np.full(nominal.wheelsets, 0.36)
+        some = generator.choice([0.0, 0.36], nominal.wheelsets)
+        shares.append(static_shares(vehicle, everywhere if trial % 2 else some, problem.speeds[1])[0])
+    middle = np.array(static_axle_shares(nominal))
+    assert low <= np.min(shares)
+    assert np.max(shares) <= high
+    assert high - np.max(shares) < 0.12 * (high - middle.max())
+    assert np.min(shares) - low < 0.12 * (middle.min() - low)
 
 
 def test_ranges_widen_with_the_motions_they_cover(problem):

@@ -68,7 +68,7 @@ def test_a_constant_deceleration_is_exact(deceleration):
 
 
 def test_one_that_is_proportional_to_the_speed_never_stops():
-    with pytest.raises(UserError, match="still runs at .* km/h after 600 s"):
+    with pytest.raises(UserError, match=r"still runs at .* km/h after 600 s"):
         march(30.0, lambda _time, speed: 1e-3 * speed)
 
 

@@ -119,6 +119,10 @@ WRONG = {
         MAGNETS + CUT_OUT.format(speed=2),
         "track_brake.cut_out_speed .* at least 1 m/s; raise it, or leave it out",
     ),
+    "shares of other axles": (
+        DYNAMIC + '[dynamic.axle_shares]\nvalue = [1, 1]\nunit = "-"\n',
+        "dynamic.axle_shares .* must have 4 numbers, one for each wheelset, .* but has 2",
+    ),
     "unit slip": (MAGNETS.replace('"kN"', '"N"'), "did you mean 40 kN?"),
 }
 

@@ -1,14 +1,24 @@
 """The range of the load on one axle and of the common deceleration, from the load transfer of the vehicle.
 
-Body and bogies pitch as in :mod:`wspd_design.plants.planar`. With B and G the transfer by body and bogie over the
-static wheel load, the loads of the four axles are 1 + B + G, 1 + B - G, 1 - B + G, 1 - B - G. Without inertia of the
+Bodies and supports (bogies or single axles) pitch as in :mod:`wspd_design.plants.planar`. On n axles, a at each of
+N = n/a supports, support k rests r_k of its load over the mean (1 where one body rests on all), and has the share b_k
+of a body's moment, 1 at the front to -1 at the rear for two. With B and G_k the transfer by body and bogie over the
+mean static wheel load, axle j of bogie k carries r_k + b_k B + g_j G_k, g_j being 1 at the first, -1 at the last and 0
+at a middle axle; for two two-axle bogies these are 1 + B + G, 1 + B - G, 1 - B + G, 1 - B - G. Without inertia of the
 pitch, at a deceleration d on level track,
 
-    B = 2 (body mass / mass) (d / g) (body height - rod height) / spacing,
-    G = 4 (bogie mass / mass) (d / g) (bogie height - rod height) / wheelbase + 2 mu (1 +- B) (rod height) / wheelbase,
+    B = N (body mass / mass) (d / g) (body height - rod height) / spacing,
+    G_k = n (bogie mass / mass) (d / g) (bogie height - rod height) / wheelbase
+          + a mu (r_k + b_k B) (rod height) / wheelbase,
 
-mu being what the wheels of the bogie make use of. The body takes up what the mass gains or loses. On a grade i,
-positive uphill, the vehicle slows down by d + g i, of which d, with the same range as on level track, moves the load.
+mu being what the wheels of the bogie make use of: its creep force is mu times its load, which its own pitch does not
+change. Single axles do not pitch; the bodies take up their moments, those of all N = n of them in equal parts:
+
+    B = N [(body mass) (d / g) (body height - rod height) + (N/bodies) (axle mass) (d / g) (axle height - rod height)
+        + mu mass (rod height) / bodies] / (mass spacing).
+
+The bodies take up what the mass gains or loses. On a grade i, positive uphill, the vehicle slows down by d + g i, of
+which d, with the same range as on level track, moves the load.
 
 Each transfer follows its static value u as y'' = w^2 (u - y) - 2 zeta w y'. With the impulse response h,
 the integral of h is 1 and that of abs(h) is N = coth(pi zeta / (2 sqrt(1 - zeta^2))), the bang-bang input being the
@@ -26,6 +36,7 @@ from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Problem
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.gear import gear_of
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 
@@ -81,24 +92,31 @@ def load_share(problem: Problem, pitching: Pitching = Pitching.STATIC) -> Ends:
     slowest, fastest = _deceleration(problem)
     pull = (fastest / point(constants().gravity)).union(slowest / point(constants().gravity))
     used = ball(0.0, problem.span("mu0")[1]) * grip(problem)
-    spacing, wheelbase = _range(vehicle, "bogie_spacing"), _range(vehicle, "wheelbase")
-    spare = (
-        point(vehicle.body_mass) + 2 * point(vehicle.bogie_mass) - point(vehicle.mass)
-    )  # what the file rounds
+    gear, axles = gear_of(vehicle), vehicle.wheelsets
+    spacing = _range(vehicle, "bogie_spacing")
+    parts = gear.bodies * point(vehicle.body_mass) + gear.supports * point(vehicle.bogie_mass)
+    spare = parts - point(vehicle.mass)  # what the file rounds
     shares: list[Ball] = []
     # The height of the rod and the mass act in opposite ways on parts of the transfer: they are taken in pieces.
     for rod, mass in product(_pieces(_ends(vehicle, "traction_rod_height")), _pieces(problem.span("mass"))):
         bogie_share = _range(vehicle, "bogie_mass") / mass
-        body_share = 1 - 2 * bogie_share + spare / mass
-        body_static = 2 * body_share * pull * (_range(vehicle, "body_height") - rod) / spacing
-        own = 4 * bogie_share * pull * (_range(vehicle, "bogie_height") - rod) / wheelbase
-        by_rod = 2 * used * rod / wheelbase
+        body_share = (1 - gear.supports * bogie_share + spare / mass) / gear.bodies
+        body_static = gear.supports * body_share * pull * (_range(vehicle, "body_height") - rod) / spacing
+        own = axles * bogie_share * pull * (_range(vehicle, "bogie_height") - rod)
+        if gear.axles == 1:
+            body_static += gear.supports * (own + used * rod) / gear.bodies / spacing
         # Every share bends outwards in the transfer by the body, so that its extremes lie at the ends.
         for body in response(point(below(body_static)), point(above(body_static))):
-            for load in (1 + body, 1 - body):
-                static = own + by_rod * load
+            for support in range(gear.supports):
+                resting = gear.resting[support] * gear.supports - gear.bodies
+                load = 1 + point(resting) * body_share + point(gear.body_shares[support]) * body
+                if gear.axles == 1:
+                    shares.append(load)
+                    continue
+                wheelbase = _range(vehicle, "wheelbase")
+                static = own / wheelbase + gear.axles * used * rod / wheelbase * load
                 low, high = response(point(below(static)), point(above(static)))
-                shares += [load + low, load + high, load - low, load - high]
+                shares += [load + part * moved for part in gear.axle_shares for moved in (low, high)]
     least, most = min(map(below, shares)), max(map(above, shares))
     if not (least > 0.0 and math.isfinite(most)):
         raise OutsideModel(

@@ -22,7 +22,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.plant import EXPONENT, Values, forces
 from wspd_design.model.number import Number
-from wspd_design.model.slip import slip_dynamics, static_wheel_load
+from wspd_design.model.slip import slip_dynamics, static_wheel_load, wheels
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
@@ -80,7 +80,7 @@ def poles(problem: Problem, slips: Ends, least: float, most: float) -> Ends:
     inertia = mul(_span(problem, "wheelset inertia"), _one(0.5))
     radius, share = _span(problem, "wheel radius"), _gravity(problem)
     rim = mul(mul(mul(_span(problem, "mass"), share), inverse(inertia)), mul(radius, radius))
-    rolling = mul(_wide((1.0 - slips[1], 1.0 - slips[0])), mul(share, _one(8.0)))
+    rolling = mul(_wide((1.0 - slips[1], 1.0 - slips[0])), mul(share, _one(wheels(problem.vehicle))))
     low, high = mul(mul(_wide((least, most)), _span(problem, "mu0")), add(rim, rolling))
     least_damping, most_damping = mul(_span(problem, "wheel damping"), inverse(inertia))
     return _doubles((low - most_damping, high - least_damping))
@@ -137,7 +137,7 @@ def _quotient(problem: Problem, above: str, below: str) -> Balls:
 
 def _gravity(problem: Problem) -> Balls:
     """Static wheel load per mass [m/s2]."""
-    return mul(_one(constants().gravity), inverse(_one(2 * problem.vehicle.wheelsets)))
+    return mul(_one(constants().gravity), inverse(_one(wheels(problem.vehicle))))
 
 
 def _span(problem: Problem, name: str) -> Balls:

@@ -6,7 +6,7 @@ the functions describe one axle of the vehicle, whatever the others do: its whee
 
     F = -(1/v) [R^2 f(k) / I + (1 - slip) a] + B_W (1 - slip) / I.
 
-Without them they describe the axle at static load, and a = (f_d + 8 f) / m.
+Without them they describe the axle at static load, and a = (f_d + n f) / m with the n wheels of the vehicle.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -246,7 +246,7 @@ def forces(
     The kernels multiply a stiffness that grows with the power 2/3 of the load by the slip, divide by friction and
     load, and multiply by the load in the end. ``per_load`` is the stiffness over its value at the reference load
     and over the load [1/N]; ``share`` the load over the static load, and ``deceleration`` that of the train if it is
-    not the one of eight wheels like this one [m/s2].
+    not the one of wheels that are all like this one [m/s2].
     """
     contact = vehicle.contact
     load = static_wheel_load(vehicle) if share is None else static_wheel_load(vehicle) * share
@@ -273,7 +273,7 @@ def forces(
     inertia = vehicle.wheel_inertia
     per_slope = load * vehicle.wheel_radius**2 / inertia
     if deceleration is None:
-        gravity = 8.0 * constants().gravity / (2 * vehicle.wheelsets)
+        gravity = constants().gravity  # per adhesion, where every wheel brakes alike
         deceleration = used * gravity + resistance(vehicle, speed) / vehicle.mass
         per_slope = per_slope + (1.0 - slip) * gravity
     pole = deceleration / speed - slope * per_slope - vehicle.wheel_damping / inertia

@@ -157,4 +157,5 @@ DERIVATION = Theorem(
     speaks_about=every_law,
     obligations=identities,
     tell=_tell,
+    assumes=frozenset(),
 )

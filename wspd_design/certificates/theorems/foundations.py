@@ -75,4 +75,5 @@ GAIN_POSITIVE = Theorem(
     speaks_about=_always,
     obligations=_factors,
     tell=_tell_gain_positive,
+    assumes=frozenset(),
 )

@@ -198,7 +198,7 @@ def _slopes(problem: Problem, x: Values) -> _Slopes:
     steep = stiffness * per_load / rail.mu0
     carried = load * vehicle.wheel_radius**2
     ratio = vehicle.wheel_inertia / carried
-    gravity = 8.0 * constants().gravity / (2 * vehicle.wheelsets)
+    gravity = constants().gravity
     drag = resistance(vehicle, speed) / (vehicle.mass * rail.mu0)
     damping = speed * vehicle.wheel_damping / (carried * rail.mu0)
 

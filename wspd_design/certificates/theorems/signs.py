@@ -11,6 +11,7 @@ from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.quantities import CONTACT, PLANT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting.adhesion_edges import RESISTANCE, Ranges
+from wspd_design.certificates.setting.assumptions import Assumption
 from wspd_design.certificates.setting.plant import (
     AXLE_PLANT,
     Forces,
@@ -26,7 +27,7 @@ from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of,
 from wspd_design.certificates.theorems.whom import every_law
 from wspd_design.model.generated import slip as generated
 from wspd_design.model.number import Number
-from wspd_design.model.slip import SlipDynamics
+from wspd_design.model.slip import SlipDynamics, wheels
 
 FIXED = (*CONTACT, *RAIL, "mass", *RESISTANCE)
 MEGA = 1e6  # N m in a MN m, so that the gain is a number of common size
@@ -142,7 +143,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         return place(finding.values, tuple(name for name in said.names if name in finding.values))
 
     return Certificate(
-        claim=f"a = (f_d + 8 f)/m >= 0 and G' = G a/v >= 0 for wheels at static load, f >= 0 and G > 0 {said.text}.",
+        claim=f"a = (f_d + {wheels(problem.vehicle)} f)/m >= 0 and G' = G a/v >= 0 for wheels at static load, f >= 0 "
+        f"and G > 0 {said.text}.",
         status=status,
         explanation=f"{meaning}. Found: {values or 'no bound'}.",
         margin=slowing.margin,
@@ -169,4 +171,5 @@ WELL_POSED = Theorem(
     speaks_about=every_law,
     obligations=sign_obligations,
     tell=_tell,
+    assumes={Assumption.EQUAL_BRAKES, Assumption.EQUAL_LOADS, Assumption.ADHESION_ALONE},
 )

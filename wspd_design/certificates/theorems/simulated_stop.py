@@ -17,8 +17,11 @@ from wspd_design.certificates.theorems.evidence import supported
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothesis
 from wspd_design.certificates.theorems.whom import every_law, surface_of
 from wspd_design.controllers.offers import Surface
+from wspd_design.parameters.gear import gear_of
+from wspd_design.parameters.records import Vehicle
 from wspd_design.parameters.units import KMH
-from wspd_design.plants.names import PLANTS
+from wspd_design.plants.planar import Planar
+from wspd_design.plants.quarter import Quarter
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import energy_residual, metrics, momentum_residual
 from wspd_design.simulation.records import Ending, Run, Scenario
@@ -26,7 +29,6 @@ from wspd_design.simulation.stop import simulate
 
 STOP_WORK = 2_000_000  # of a budget of operations: what a stop takes
 MOMENTUM_LIMIT, ENERGY_LIMIT = 1e-6, 1e-5  # of the initial momentum and energy
-RESIDUALS = tuple(f"{quantity} residual, {plant}" for plant in PLANTS for quantity in ("momentum", "energy"))
 NOT_FINITE = 1e300  # stands for a residual that is not a number: such a stop has no balance
 SETTLED_SHARE = 0.5  # of the initial speed: build-up of the brake and the transient lie above it
 TRACKED = ("time", "speed", "slip", "torque", "slip rms", "share outside", "lock time", "instants", "stopped")
@@ -43,10 +45,25 @@ def start_of_stop(problem: Problem) -> Place:
     return {"speed": problem.speeds[1]}
 
 
+def plants(vehicle: Vehicle) -> tuple[str, ...]:
+    """Return the plants that know a vehicle: axles that are not alike have no quarter, one axle moves no load."""
+    alike = len(set(vehicle.brake_shares)) == 1
+    return tuple(
+        name for name, known in ((Planar.name, gear_of(vehicle).supports > 1), (Quarter.name, alike)) if known
+    )
+
+
+def residual_names(vehicle: Vehicle) -> tuple[str, ...]:
+    """Return the names of the numbers that a stop on each plant gives."""
+    return tuple(
+        f"{quantity} residual, {plant}" for plant in plants(vehicle) for quantity in ("momentum", "energy")
+    )
+
+
 def residuals(problem: Problem) -> dict[str, float]:
     """Simulate a stop on each plant and compare what it lost with what forces and torques took."""
     found: dict[str, float] = {}
-    for plant in PLANTS:
+    for plant in plants(problem.vehicle):
         run = simulate(problem.vehicle, problem.controller, _scenario(problem), plant=plant)
         pair = momentum_residual(run, problem.vehicle), energy_residual(run, problem.vehicle)
         for quantity, value in zip(("momentum", "energy"), pair, strict=True):
@@ -65,7 +82,7 @@ def _used(numbers: Mapping[str, float]) -> float:
 
 
 def _denies_balance(problem: Problem, _place: Place, work: Work) -> Mapping[str, float]:
-    work.spend(len(PLANTS) * STOP_WORK)
+    work.spend(len(plants(problem.vehicle)) * STOP_WORK)
     numbers = residuals(problem)
     if balances(numbers):
         raise Refused("the stop denies nothing: its balances close")
@@ -83,18 +100,19 @@ def _balance_obligations(problem: Problem) -> tuple[Special | Sampled, ...]:
             evaluate=partial(_denies_balance, problem),
             within={"speed": (start, start)},
         ),
-        Sampled(key="stops", text=text, names=RESIDUALS, holds=balances),
+        Sampled(key="stops", text=text, names=residual_names(problem.vehicle), holds=balances),
     )
 
 
 def _tell_balance(problem: Problem, findings: Findings) -> Certificate:
     status = supported(findings["loss"], findings["stops"])
     numbers = findings["loss" if status is Status.REFUTED else "stops"].numbers
-    where = tuple(Point(name=name, value=numbers[name], unit="-") for name in RESIDUALS if name in numbers)
+    names, simulated = residual_names(problem.vehicle), plants(problem.vehicle)
+    where = tuple(Point(name=name, value=numbers[name], unit="-") for name in names if name in numbers)
     pairs = (
         f"{plant}: momentum {numbers[f'momentum residual, {plant}']:.2g}, "
         f"energy {numbers[f'energy residual, {plant}']:.2g}"
-        for plant in PLANTS
+        for plant in simulated
         if numbers
     )
     return Certificate(
@@ -114,7 +132,7 @@ def _tell_balance(problem: Problem, findings: Findings) -> Certificate:
         witness=where if status is Status.REFUTED else (),
         assumptions=("nominal parameters", "exact measurement"),
         method="integrals of torque, resistance, damping and sliding along the simulated stop against the change of "
-        f"momentum and kinetic energy; one stop on each plant: {', '.join(PLANTS)}",
+        f"momentum and kinetic energy; one stop on each plant: {', '.join(simulated)}",
         reference="eqs. (1), (2); Table 10; docs/theory.md#bound",
     )
 
@@ -126,6 +144,7 @@ CONSERVATION = Theorem(
     speaks_about=every_law,
     obligations=_balance_obligations,
     tell=_tell_balance,
+    assumes=frozenset(),
 )
 
 

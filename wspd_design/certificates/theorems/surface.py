@@ -61,4 +61,5 @@ SURFACE_HURWITZ = Theorem(
     speaks_about=with_surface,
     obligations=surface_obligations,
     tell=_tell,
+    assumes=frozenset(),
 )

@@ -19,8 +19,16 @@ static void write_trace(Loop *loop)
     }
 }
 
+/* What was filled into the cylinder since its pattern began, for good; nothing where it was let down. */
+static void count_filled(Loop *loop, int l)
+{
+    double gained = loop->filled[l] - loop->start_pressure[l];
+    loop->lane[FILLED * LANES + l] += gained > 0.0 ? gained : 0.0;
+}
+
 static void finish(Loop *loop, int stop)
 {
+    for (int l = stop; l < LANES; l += STOPS) count_filled(loop, l);
     loop->active[stop] = 0.0;
     loop->phase[stop] = DONE;
     loop->running--;
@@ -104,12 +112,29 @@ static void set_windows(Loop *loop)
             double *to = window + copy * LANES + l;
             to[0] = loop->start[l], to[2 * LANES] = loop->start_pressure[l];
             to[4 * LANES] = loop->fill_end[l], to[6 * LANES] = loop->vent_end[l];
-            to[8 * LANES] = loop->share[l], to[10 * LANES] = loop->start_level[l], to[12 * LANES] = loop->goal_level[l];
+            to[8 * LANES] = loop->reservoir[l];
+            to[10 * LANES] = loop->share[l], to[12 * LANES] = loop->start_level[l], to[14 * LANES] = loop->goal_level[l];
         }
     window_constants(loop->lp2, window, loop->window_fixed);
 }
 
-/* What a stop does next, and when: take the next sample, or follow the command that has waited longest. */
+/* Pressure of the reservoir after all that was counted: air keeps its temperature, and none comes in. */
+static double reservoir_of(const Loop *loop, int s)
+{
+    double pressure = DISTURBANCE(RESERVOIR_PRESSURE, s);
+    for (int l = s; l < LANES; l += STOPS) pressure -= loop->lp[DRAIN * LANES + l] * loop->lane[FILLED * LANES + l];
+    return pressure;
+}
+
+/* When the watchdog of a wheelset fills. */
+static double watch_time(const Loop *loop, int l)
+{
+    double longest = DISTURBANCE(LONGEST_RELEASE, l % STOPS);
+    return longest > 0.0 && loop->watched[l] == 0.0 ? loop->last_filled[l] + longest : 1e300;
+}
+
+/* What a stop does next, and when: take the next sample, follow the command that has waited longest, or see a watchdog
+   fill before that. */
 static void schedule(Loop *loop, int s)
 {
     double h = loop->set.sample_time, sampling = loop->sample[s] * h;
@@ -117,6 +142,10 @@ static void schedule(Loop *loop, int s)
     int waiting = loop->acted[s] < loop->sample[s] && acting <= sampling;
     loop->phase[s] = waiting ? ACT : DECIDE;
     loop->goal[s] = waiting ? acting : sampling;
+    for (int l = s; l < LANES; l += STOPS) {
+        double watched = watch_time(loop, l);
+        if (watched < loop->goal[s] - SHORTEST) loop->phase[s] = WATCH, loop->goal[s] = watched;
+    }
 }
 
 /* Count the changes of the valve state that a command makes: first fill, then vent, then hold. */
@@ -136,39 +165,72 @@ static void blend(Loop *loop, int l)
 {
     double most = loop->lp[MAX_TORQUE * LANES + l], rest = most > 0.0 ? 1.0 - loop->present.dynamic[l] / most : 0.0;
     if (loop->present.slip[l] > loop->lp[DROP_SLIP * LANES + l]) loop->dropped[l] = 1.0;
-    loop->share[l] = rest > 0.0 ? rest : 0.0;
+    loop->share[l] = rest > LEAST_SHARE ? rest : LEAST_SHARE;
     loop->start_level[l] = loop->level[l];
     loop->goal_level[l] = 1.0 - loop->dropped[l];
 }
 
-/* Set the valves of the stops whose command takes effect now. A pulse that is too short to open its valve is left out,
-   unless the valve is open already. */
+/* Close the accounts of a pattern of a wheelset and begin the next one, without its reservoir. */
+static void begin_pattern(Loop *loop, int l, double present, double fill_end, double vent_end)
+{
+    count_filled(loop, l);
+    count_switches(loop, l);
+    loop->lane[VENTED * LANES + l] += loop->filled[l] - loop->pressure[l];
+    loop->start[l] = present;
+    loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];
+    loop->fill_end[l] = fill_end, loop->vent_end[l] = vent_end;
+    blend(loop, l);
+}
+
+/* Let a wheelset follow its command. A pulse that is too short to open its valve is left out, unless the valve is open
+   already. A wheelset whose watchdog has filled does so until its command fills. */
+static void follow_command(Loop *loop, int l, double a, double b)
+{
+    double h = loop->set.sample_time, present = loop->time[l % STOPS];
+    double least = DISTURBANCE(SHORTEST_PULSE, l % STOPS) - SHORTEST;
+    int filling = 1.0 - loop->fill[l] < 1e-12;
+    int venting = !filling && 1.0 - loop->fill[l] - loop->vent[l] < 1e-12;
+    if (a * h < least && !filling) a = 0.0;
+    if (b * h < least && !(venting && a == 0.0)) b = 0.0;
+    if (a > 0.0) loop->last_filled[l] = present + a * h, loop->watched[l] = 0.0;
+    else if (loop->watched[l] != 0.0) a = 1.0, b = 0.0;
+    loop->fill[l] = a, loop->vent[l] = b;
+    double fill_end = present + a * h;
+    begin_pattern(loop, l, present, fill_end, 1.0 - a - b < 1e-12 ? present + h : fill_end + b * h);
+}
+
+/* Let the watchdogs fill that have waited long enough, until the next command acts. */
+static void watch(Loop *loop, int s)
+{
+    for (int l = s; l < LANES; l += STOPS) {
+        if (watch_time(loop, l) > loop->time[s] + SHORTEST) continue;
+        loop->watched[l] = 1.0;
+        loop->lane[WATCHED * LANES + l] += 1.0;
+        loop->fill[l] = 1.0, loop->vent[l] = 0.0;
+        begin_pattern(loop, l, loop->time[s], 1e300, 1e300);
+        loop->reservoir[l] = reservoir_of(loop, s);
+    }
+}
+
+/* Set the valves of the stops whose command takes effect now, or whose watchdog fills. */
 static void act(Loop *loop)
 {
-    double h = loop->set.sample_time;
     int any = 0;
     for (int s = 0; s < STOPS; s++) {
-        if (loop->phase[s] != ACT || loop->time[s] < loop->goal[s]) continue;
-        double present = loop->time[s], least = DISTURBANCE(SHORTEST_PULSE, s) - SHORTEST;
-        const double *command = loop->queue + loop->acted[s] % loop->queue_rows * 2 * LANES;
-        for (int l = s; l < LANES; l += STOPS) {
-            double a = command[l], b = command[LANES + l];
-            int filling = 1.0 - loop->fill[l] < 1e-12;
-            int venting = !filling && 1.0 - loop->fill[l] - loop->vent[l] < 1e-12;
-            if (a * h < least && !filling) a = 0.0;
-            if (b * h < least && !(venting && a == 0.0)) b = 0.0;
-            loop->fill[l] = a, loop->vent[l] = b;
-            count_switches(loop, l);
-            loop->lane[VENTED * LANES + l] += loop->filled[l] - loop->pressure[l];
-            loop->start[l] = present;
-            loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];
-            loop->fill_end[l] = present + a * h;
-            loop->vent_end[l] = 1.0 - a - b < 1e-12 ? present + h : loop->fill_end[l] + b * h;
-            blend(loop, l);
+        if (loop->phase[s] == ACT && loop->time[s] >= loop->goal[s]) {
+            const double *command = loop->queue + loop->acted[s] % loop->queue_rows * 2 * LANES;
+            for (int l = s; l < LANES; l += STOPS) follow_command(loop, l, command[l], command[LANES + l]);
+            double reservoir = reservoir_of(loop, s);
+            for (int l = s; l < LANES; l += STOPS) loop->reservoir[l] = reservoir;
+            loop->acted[s]++;
+            schedule(loop, s);
+            any = 1;
         }
-        loop->acted[s]++;
-        schedule(loop, s);
-        any = 1;
+        if (loop->phase[s] == WATCH && loop->time[s] >= loop->goal[s]) {
+            watch(loop, s);
+            schedule(loop, s);
+            any = 1;
+        }
     }
     if (any) set_windows(loop);
 }
@@ -238,6 +300,7 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     loop->running = STOPS;
     for (int s = 0; s < STOPS; s++) loop->active[s] = 1.0, loop->now.speed[s] = speed[s];
     for (int l = 0; l < LANES; l++) loop->now.wheel[l] = wheel[l], loop->start_pressure[l] = pressure[l];
+    for (int l = 0; l < LANES; l++) loop->reservoir[l] = DISTURBANCE(RESERVOIR_PRESSURE, l % STOPS);
     start_pulses(loop);
     set_windows(loop);
     actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping, level);

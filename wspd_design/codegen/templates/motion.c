@@ -20,10 +20,10 @@
 #define EACH_LANE _Pragma("omp simd") for (int l = 0; l < LANES; l++)
 
 enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, ANGLE, LOCK_TIME, SLIP_MAX, JUDGED_LOCK,
-       LONGEST_LOCK, VENTED, SWITCHES, LANE_TOTALS };
+       LONGEST_LOCK, VENTED, SWITCHES, FILLED, WATCHED, LANE_TOTALS };
 enum { DISTANCE, RESISTANCE, RESISTANCE_WORK, JUDGED, TIME, END_SPEED, STOP_TOTALS };
 enum { GOOD, BUFFER_FULL, BAD_COMMAND };
-enum { DECIDE, ACT, DONE }; /* what a stop does when it reaches its goal */
+enum { DECIDE, ACT, WATCH, DONE }; /* what a stop does when it reaches its goal */
 
 typedef struct {
     double sample_time, longest_step, creep_rate, slope_limit, stop_speed, regularization_speed, time_limit;
@@ -91,9 +91,12 @@ typedef struct {
     WIDE double start_pressure[LANES];
     WIDE double fill_end[LANES];
     WIDE double vent_end[LANES];
+    WIDE double reservoir[LANES]; /* its pressure at the start of the pattern */
     WIDE double share[LANES];        /* of its pressure that is asked of the friction brake */
     WIDE double start_level[LANES];  /* of the electrodynamic brake, and where it goes to */
     WIDE double goal_level[LANES];
+    WIDE double last_filled[LANES]; /* when the present or last filling ends; 0 before the first */
+    WIDE double watched[LANES];  /* the watchdog fills until the command does */
     WIDE double pressure[LANES]; /* at the present time, as the next four */
     WIDE double torque[LANES];
     WIDE double damping[LANES];

@@ -6,7 +6,7 @@
    a wheel that turned faster would have given another pulse. Before the stop the wheel turned at its first speed, and
    the angle at which it starts is drawn. */
 enum { REFERENCE_FACTOR, REFERENCE_DRIFT, REFERENCE_NOISE, SPEED_NOISE, PULSE_ANGLE, TIMED, TORQUE_FACTOR, DEAD_TIME,
-       SHORTEST_PULSE, DISTURBANCES };
+       SHORTEST_PULSE, LONGEST_RELEASE, RESERVOIR_PRESSURE, DISTURBANCES };
 enum { NOISE, PHASE }; /* what is drawn */
 #define TRAIN 0 /* whose; wheelset a is 1 + a */
 #define DISTURBANCE(name, s) loop->disturbance[(name) * STOPS + (s)]

@@ -9,7 +9,7 @@ from wspd_design.design.records import Specification
 from wspd_design.reporting import numbers
 from wspd_design.reporting.figure_style import INK, MUTED, SERIES
 from wspd_design.reporting.figures.drawing import note
-from wspd_design.reporting.figures.stop import slip_panel
+from wspd_design.reporting.figures.stop import IN_A_ROW, slip_panel
 from wspd_design.reporting.yardsticks import ideal_distance
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
@@ -107,7 +107,8 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
         axes.tick_params(labelbottom=index + columns >= len(trials))
     figure.supxlabel("time [s]", fontsize="medium")
     if trials[0].run.slip.shape[1] > 1:
-        figure.legend(*grid.flat[0].get_legend_handles_labels(), loc="outside upper right", ncols=4)
+        lines = grid.flat[0].get_legend_handles_labels()
+        figure.legend(*lines, loc="outside upper right", ncols=min(IN_A_ROW, trials[0].run.slip.shape[1]))
     return figure
 
 

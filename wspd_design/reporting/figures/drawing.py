@@ -64,9 +64,18 @@ def curve(
     import numpy as np
 
     thin_x, thin_y = thinned(np.asarray(x), np.asarray(y), most)
-    if LINE_STYLES[index] == ":" and "linewidth" in options:
+    color, style = look(index)
+    if style == ":" and "linewidth" in options:
         options["linewidth"] *= INK_OF_DOTS
-    axes.plot(thin_x, thin_y, color=SERIES[index], linestyle=LINE_STYLES[index], **options)
+    axes.plot(thin_x, thin_y, color=color, linestyle=style, **options)
+
+
+def look(index: int) -> tuple[str, Any]:
+    """Return color and line style of a curve; beyond the last color all but the last come again with other lines."""
+    if index < len(SERIES):
+        return SERIES[index], LINE_STYLES[index]
+    turn, place = divmod(index - len(SERIES), len(SERIES) - 1)
+    return SERIES[place], LINE_STYLES[(place + turn + 1) % len(LINE_STYLES)]
 
 
 def note(axes: "Axes", text: str, x: float, y: float, **options: Any) -> None:

@@ -84,9 +84,9 @@ def _wheel(axes: "Axes", run: Run, specification: Specification) -> None:
 
 
 def _judged(run: Run) -> tuple["Trace", "Trace"]:
-    """Slip [-] and torque [kN m] of the first wheelset above the judging speed."""
-    judged = run.speed > JUDGING_SPEED
-    return run.slip[judged, 0], run.torque[judged, 0] / KILO
+    """Slip [-] and torque [kN m] of the first wheelset with a brake above the judging speed."""
+    judged, wheelset = run.speed > JUDGING_SPEED, run.first_braked
+    return run.slip[judged, wheelset], run.torque[judged, wheelset] / KILO
 
 
 def _start_and_end(axes: "Axes", x: "Trace", y: "Trace") -> None:

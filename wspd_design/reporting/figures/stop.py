@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from wspd_design.design.records import Specification
 from wspd_design.reporting.figure_style import INK, MUTED, SERIES
-from wspd_design.reporting.figures.drawing import KILO, KMH, curve, note
+from wspd_design.reporting.figures.drawing import KILO, KMH, curve, look, note
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
@@ -18,12 +18,16 @@ if TYPE_CHECKING:
     from wspd_design.simulation.records import Trace
 
 TRAIN = len(SERIES) - 1
-"""Color and line style of the train speed; the wheelsets take the first ones, front to rear."""
+"""Color and line style of the train speed; the wheelsets take the others, front to rear."""
 
 MOST = 900
 """Points of the curve of one wheelset: there are up to 20 in one figure."""
 
-LOCK_BAR = 0.02  # of the height of the slip panel, one for each wheelset
+LOCK_BAR = 0.02  # of the height of the slip panel, one for each wheelset, and all of them at most:
+LOCK_BARS = 0.16
+MOST_ROWS = 8  # of valves that are numbered
+IN_FULL = 4  # wheelsets whose names stand in the legend in full, and names in one of its rows beyond
+IN_A_ROW = 8
 
 
 def stop_traces(
@@ -71,24 +75,26 @@ def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: flo
     band = (reference - tolerance, reference + tolerance)
     axes.axhspan(*band, color=SERIES[2], alpha=0.15, linewidth=0)
     axes.axhline(reference, color=INK, linestyle="--", linewidth=0.8)
-    for wheelset in range(run.slip.shape[1]):
+    wheelsets = run.slip.shape[1]
+    bar = min(LOCK_BAR, LOCK_BARS / wheelsets)
+    for wheelset in range(wheelsets):
         locked = run.wheel_speed[:, wheelset] <= 0.0
         # Bars at the top edge, front wheelset first: visible when the slip itself has left the picture.
         axes.broken_barh(
             _intervals(run.time, locked),
-            (1.0 - LOCK_BAR * (wheelset + 1), 0.8 * LOCK_BAR),
+            (1.0 - bar * (wheelset + 1), 0.8 * bar),
             transform=axes.get_xaxis_transform(),
-            color=SERIES[wheelset],
+            color=look(line_of(wheelset))[0],
             linewidth=0,
         )
         curve(
             axes,
             run.time,
             run.slip[:, wheelset],
-            wheelset,
+            line_of(wheelset),
             most=most,
             linewidth=1.0,
-            label=name(run, wheelset),
+            label=_label(run, wheelset),
         )
     below = run.time[run.speed < JUDGING_SPEED]
     if below.size:
@@ -101,7 +107,7 @@ def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
     """Draw the speed of the train and of each wheel rim."""
     for wheelset in range(run.wheel_speed.shape[1]):
         rim = run.wheel_speed[:, wheelset] * wheel_radius * KMH
-        curve(axes, run.time, rim, wheelset, most=MOST, linewidth=1.0)
+        curve(axes, run.time, rim, line_of(wheelset), most=MOST, linewidth=1.0)
     axes.plot(run.time[::20], run.speed[::20] * KMH, color=SERIES[TRAIN], linewidth=1.6, label="train")
     axes.set(ylabel="speed [km/h]", ylim=(0.0, None))
     axes.legend(loc="upper right")
@@ -110,14 +116,14 @@ def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
 def torque_panel(axes: "Axes", run: Run) -> None:
     """Draw the braking torque of each wheelset."""
     for wheelset in range(run.torque.shape[1]):
-        curve(axes, run.time, run.torque[:, wheelset] / KILO, wheelset, most=MOST, linewidth=1.0)
+        curve(axes, run.time, run.torque[:, wheelset] / KILO, line_of(wheelset), most=MOST, linewidth=1.0)
     axes.set_ylabel("torque [kN m]")
 
 
 def load_panel(axes: "Axes", run: Run) -> None:
     """Draw the load of one wheel of each wheelset."""
     for wheelset in range(run.wheel_load.shape[1]):
-        curve(axes, run.time, run.wheel_load[:, wheelset] / KILO, wheelset, most=MOST, linewidth=1.0)
+        curve(axes, run.time, run.wheel_load[:, wheelset] / KILO, line_of(wheelset), most=MOST, linewidth=1.0)
     axes.set_ylabel("load [kN]")
 
 
@@ -126,12 +132,17 @@ def valve_panel(axes: "Axes", run: Run) -> None:
     wheelsets = len(run.axle_samples)
     for wheelset, samples in enumerate(run.axle_samples):
         floor = 1.25 * (wheelsets - 1 - wheelset)
+        if not samples:
+            continue  # without a brake
         times = [sample.time for sample in samples] + [float(run.time[-1])]
         fill = [floor + sample.fill for sample in samples]
-        axes.stairs(fill, times, baseline=floor, fill=True, color=SERIES[wheelset], alpha=0.7, linewidth=0)
+        axes.stairs(
+            fill, times, baseline=floor, fill=True, color=look(line_of(wheelset))[0], alpha=0.7, linewidth=0
+        )
+    numbered = range(0, wheelsets, -(-wheelsets // MOST_ROWS))
     axes.set_yticks(
-        [1.25 * (wheelsets - 1 - wheelset) + 0.5 for wheelset in range(wheelsets)],
-        [str(wheelset + 1) for wheelset in range(wheelsets)],
+        [1.25 * (wheelsets - 1 - wheelset) + 0.5 for wheelset in numbered],
+        [str(wheelset + 1) for wheelset in numbered],
     )
     axes.grid(visible=False, axis="y")
     axes.set(ylabel="fill [-]", ylim=(0.0, 1.25 * wheelsets))
@@ -140,7 +151,19 @@ def valve_panel(axes: "Axes", run: Run) -> None:
 def wheelset_legend(axes: "Axes", run: Run) -> None:
     """Say above the axes which line is which wheelset, if there are several."""
     if run.slip.shape[1] > 1:
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=run.slip.shape[1], borderaxespad=0.1)
+        columns = min(run.slip.shape[1], IN_A_ROW)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.1)
+
+
+def line_of(wheelset: int) -> int:
+    """Return the place of a wheelset among colors and line styles; none has that of the train."""
+    return wheelset if wheelset < TRAIN else wheelset + 1
+
+
+def _label(run: Run, wheelset: int) -> str:
+    """Name in the legend: without the word where there are many."""
+    full = name(run, wheelset)
+    return full if run.slip.shape[1] <= IN_FULL or wheelset == 0 else full.removeprefix("wheelset ")
 
 
 def name(run: Run, wheelset: int) -> str:

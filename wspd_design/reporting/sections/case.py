@@ -6,6 +6,7 @@ from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.studies.dossier import Dossier
@@ -28,6 +29,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
     )
     rows: tuple[tuple[Text, Text], ...] = (
         ("Vehicle", f"{vehicle.title} ({vehicle.name})"),
+        ("Running gear", running_gear(vehicle)),
         ("Mass", _value(vehicle, "mass")),
         ("Rotating inertia", f"{_value(vehicle, 'wheelset_inertia')} per wheelset"),
         ("Wheel radius", _value(vehicle, "wheel_radius")),

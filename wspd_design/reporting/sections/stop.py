@@ -10,6 +10,7 @@ from wspd_design.reporting.figures.further_brakes import further_brakes, height,
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
+from wspd_design.reporting.running_gear import axle_shares
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
@@ -21,9 +22,10 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the simulated stop."""
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
-    radius, limit = (dossier.vehicle.number(name) for name in ("wheel_radius", "brake.max_torque"))
+    radius = dossier.vehicle.number("wheel_radius")
+    limit = dossier.vehicle.number("brake.max_torque") * max(axle_shares(dossier.vehicle))
     draw = partial(stop_traces, trial=own, specification=specification, wheel_radius=radius, max_torque=limit)
-    start = numbers.significant(run.initial_speed * KMH)
+    start, wheelset = numbers.significant(run.initial_speed * KMH), name(run, run.first_braked)
     judged = numbers.significant(JUDGING_SPEED * KMH)
     return (
         Heading(text="The stop", anchor="stop"),
@@ -52,11 +54,11 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
                 partial(phase_planes, run=run, plane=dossier.phase_plane, specification=specification),
                 height=3.0,
             ),
-            caption=f"Phase planes of the {name(run, 0)} above {judged} km/h. Left: what the law steers, at its "
+            caption=f"Phase planes of the {wheelset} above {judged} km/h. Left: what the law steers, at its "
             "samples; on the dashed surface the error would decay, and the band is the boundary layer. "
             "Right: slip and torque of the wheel; closed loops are a limit cycle of slip and valve."
             if dossier.phase_plane
-            else f"Slip and torque of the {name(run, 0)} above {judged} km/h; closed loops are a limit cycle of "
+            else f"Slip and torque of the {wheelset} above {judged} km/h; closed loops are a limit cycle of "
             "slip and valve. Dashed: the reference.",
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",

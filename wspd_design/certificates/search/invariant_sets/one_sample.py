@@ -183,10 +183,11 @@ def largest_deceleration(problem: Problem, window: Window) -> Interval:
 
 
 def _braking_gravity(problem: Problem) -> Interval:
-    """Deceleration per adhesion, g for a vehicle of which every wheel brakes: eq. (1) has eight of them [m/s2]."""
+    """Deceleration per adhesion, g for a vehicle of which every wheel brakes [m/s2]."""
     import ival
 
-    return constants().gravity * ival.Interval(8.0, 8.0) / float(2 * problem.vehicle.wheelsets)
+    count = float(slip_model.wheels(problem.vehicle))
+    return constants().gravity * ival.Interval(count, count) / count
 
 
 class _Bound(NamedTuple):

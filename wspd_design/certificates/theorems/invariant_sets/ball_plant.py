@@ -20,7 +20,7 @@ class BallPlant:
         self.mass = hull(*map(arb, problem.span("mass")))
         self.damping = hull(arb(0), arb(vehicle.wheel_damping))
         self.gravity = arb(constants().gravity)
-        self.pull = self.gravity * 8 / (2 * vehicle.wheelsets)  # deceleration per adhesion
+        self.pull = self.gravity  # deceleration per adhesion, where every wheel brakes alike
         product = arb.pi() / 4 * arb(contact.shear_modulus) * arb(contact.semi_axis_rolling)
         slope = product * arb(contact.semi_axis_lateral) * arb(contact.kalker_c11)
         power = fmpq(2, 3)
