@@ -75,7 +75,7 @@ class IndependentFurtherBrakes(IndependentStop):
         deceleration, turning, distance, pressing = super().rates(t, y[:4], 0.0, 0.0, locked)
         if not locked:  # the other simulation knows the nominal torque alone
             turning += 0.5 * (self.brake.max_torque * p - given - electric) / self.I
-        supply = self.share * (1.0 - math.exp(-self.brake.supply_rate * t))
+        supply = self.share * (1.0 - math.exp(-self.brake.supply_rate * t)) if self.left is None else self.left
         pressing = fill * (supply - p) / self.brake.fill_time - vent * p / self.brake.vent_time
         warming = 0.0
         if self.pads is not None and self.pads.temperatures:
@@ -95,6 +95,8 @@ class IndependentFurtherBrakes(IndependentStop):
             if self.dynamic is not None and slip > self.dynamic.drop_slip and self.goal:
                 self.goal, dropped = 0.0, t
             self.share = max(1.0 - self.electric(y[1], y[5]) / self.brake.max_torque, 0.0)
+            left = self.share * (1.0 - math.exp(-self.brake.supply_rate * t))
+            self.left = left if y[3] > left else None  # what a cylinder that has more is let down to
             edges = (0.0, command.fill, command.fill + command.vent, 1.0)
             for (fill, vent), begin, end in zip(((1, 0), (0, 1), (0, 0)), edges, edges[1:], strict=False):
                 end_time = (sample + end) * h

@@ -7,6 +7,7 @@ import pytest
 
 from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.virtual_machine import run_virtual
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake
 from wspd_design.plants.planar import Planar
@@ -127,6 +128,56 @@ def test_compiled_and_virtual_machine_agree(with_parts, make_controller, case, n
     dynamic = compiled.trace[:, 3 + 5 * plant.axles : 3 + 6 * plant.axles]
     assert dynamic.max() > 1e3  # it blended in
     assert compiled.trace[:, -plant.axles :].max() > 5.0  # and the pads got warm
+
+
+OTHER_BRAKES = {
+    "ramp and lag": {"build_up": "electro-pneumatic", "build_up_delay": 0.2, "build_up_ramp": 1.0},
+    "ramp and orifice": {
+        "build_up": "electro-pneumatic",
+        "build_up_delay": 0.2,
+        "build_up_ramp": 1.0,
+        "valve": "orifice",
+        "reservoir_pressure": 8e5,
+    },
+    "low reservoir": {"cylinder_volume": 0.01, "reservoir_volume": 0.08, "reservoir_pressure": 8e5},
+}
+
+
+@pytest.mark.parametrize("kind", OTHER_BRAKES)
+def test_every_valve_lets_the_cylinder_down_to_what_is_asked(with_parts, make_controller, kind):
+    vehicle = with_parts("blended")
+    vehicle = replace(vehicle, brake=replace(vehicle.brake, **OTHER_BRAKES[kind]))
+    law, scenario = make_controller("none"), Scenario(rail=DRY, initial_speed=30.0)
+    run = simulate(vehicle, law, scenario, plant="quarter")
+    steady = run.dynamic_torque[:, 0] > 0.9999 * DYNAMIC.torque
+    late = steady & (
+        run.time > float(run.time[np.argmax(steady)]) + 3.0
+    )  # five time constants of the cylinder
+    assert late.any()
+    assert run.torque[late, 0] == pytest.approx(vehicle.brake.max_torque, rel=0.02)
+    assert abs(momentum_residual(run, vehicle)) < 1e-12
+    assert abs(energy_residual(run, vehicle)) < 1e-6
+    plant = Planar(vehicle)
+    given = replace(loop_input([(plant, replace(scenario, rail=LOW))], law), trace_rows=20_000)
+    compiled = load_closed_loop(plant, law).run(given, sample_rows=sample_rows(law))
+    virtual = run_virtual(plant, law, given, sample_rows=sample_rows(law), disturbed=False)
+    np.testing.assert_allclose(virtual.trace, compiled.trace, rtol=1e-8, atol=1e-8)
+    for name in compiled.lane_totals:
+        np.testing.assert_allclose(
+            virtual.lane_totals[name], compiled.lane_totals[name], rtol=1e-8, atol=1e-8
+        )
+
+
+def test_axles_without_a_motor_brake_by_friction_alone(with_parts, make_controller):
+    vehicle = with_parts("blended")
+    vehicle = replace(vehicle, dynamic=replace(DYNAMIC, axle_shares=(1.0, 0.5, 0.0, 0.0)))
+    scenario = Scenario(rail=DRY, initial_speed=30.0)
+    run = simulate(vehicle, make_controller("none"), scenario)
+    late = np.argmax(run.speed < 10.0)
+    assert run.dynamic_torque[late] == pytest.approx((9e3, 4.5e3, 0.0, 0.0), rel=1e-6, abs=1e-6)
+    assert run.torque[late] == pytest.approx(vehicle.brake.max_torque, rel=0.02)
+    with pytest.raises(UserError, match='other brakes than the rest, which need the plant "planar"'):
+        simulate(vehicle, make_controller("none"), scenario, plant="quarter")
 
 
 def test_the_friction_brake_supplies_the_rest(with_parts, make_controller):
