@@ -75,7 +75,9 @@ class IndependentFurtherBrakes(IndependentStop):
         deceleration, turning, distance, pressing = super().rates(t, y[:4], 0.0, 0.0, locked)
         if not locked:  # the other simulation knows the nominal torque alone
             turning += 0.5 * (self.brake.max_torque * p - given - electric) / self.I
-        supply = self.share * (1.0 - math.exp(-self.brake.supply_rate * t)) if self.left is None else self.left
+        supply = (
+            self.share * (1.0 - math.exp(-self.brake.supply_rate * t)) if self.left is None else self.left
+        )
         pressing = fill * (supply - p) / self.brake.fill_time - vent * p / self.brake.vent_time
         warming = 0.0
         if self.pads is not None and self.pads.temperatures:

@@ -27,7 +27,7 @@ class Linearization:
     slip: float  # -
     speed: float  # m/s
     equilibrium_torque: float  # N m per wheelset
-    equilibrium_duty: float  # -, above 1 the brake cannot hold this slip
+    equilibrium_duty: float  # -; where the brake cannot hold this slip its torque over T_max, above 1
     slip_pole: float  # 1/s, without the valve lag
     gain: float  # 1/(N m s), G
     time_constant: float  # s, of the averaged valve at this duty; between T_F and T_V
@@ -76,7 +76,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     Parameters
     ----------
     vehicle, rail : Vehicle, Rail
-        Quarter locomotive and friction.
+        Quarter model and friction.
     slip : float
         Slip ratio in (0, 1).
     speed : float
@@ -103,7 +103,9 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     drift, gain = (float(x) for x in plant.drift_and_gain(slip, speed))
     torque = -drift / gain
     share = torque / brake.max_torque
-    duty = share * brake.fill_time / ((1.0 - share) * brake.vent_time + share * brake.fill_time)
+    # A torque that the brake does not have is asked of a valve at its limit, which fills or vents all the time.
+    held = min(max(share, 0.0), 1.0)
+    duty = held * brake.fill_time / ((1.0 - held) * brake.vent_time + held * brake.fill_time)
     a, b = plant.jacobians(slip, torque, speed, duty)
     a, b = np.array(a, dtype=np.float64), np.array(b, dtype=np.float64)
     return Linearization(
@@ -112,7 +114,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
         slip=slip,
         speed=speed,
         equilibrium_torque=torque,
-        equilibrium_duty=duty,
+        equilibrium_duty=duty if held == share else share,
         slip_pole=float(a[0, 0]),
         gain=gain,
         time_constant=float(-1.0 / a[1, 1]),

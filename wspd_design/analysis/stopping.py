@@ -130,9 +130,9 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
         return _stop_by_steps(vehicle, speed, grade)
     return mean_stop(
         speed,
-        forces=[(_rim_force(vehicle), build_up_delay(vehicle.brake))],
+        forces=[(rim_force(vehicle), build_up_delay(vehicle.brake))],
         mass=vehicle.mass,
-        rotating_mass=_rotating_mass(vehicle),
+        rotating_mass=rotating_mass(vehicle),
         resistance=(
             vehicle.resistance_constant,
             vehicle.resistance_linear,
@@ -160,24 +160,24 @@ def demanded_adhesion(vehicle: Vehicle) -> float:
     The rail slows the train; what slows the turning of the wheelsets comes from the brake alone. Where brakes or
     loads differ, it is that of the axle which asks for most.
     """
-    mean = _rim_force(vehicle) / ((vehicle.mass + _rotating_mass(vehicle)) * constants().gravity)
+    mean = rim_force(vehicle) / ((vehicle.mass + rotating_mass(vehicle)) * constants().gravity)
     shares, loads = vehicle.brake_shares, static_shares(vehicle)
     if len(set(shares)) == 1 and len(set(loads)) == 1:
         return mean
     # Of the force at its rims an axle takes what slows its own turning; that part is the same for all.
-    turning = mean * _rotating_mass(vehicle) / vehicle.mass
+    turning = mean * rotating_mass(vehicle) / vehicle.mass
     usual = sum(shares) / len(shares)
     return max(
         (share / usual * (mean + turning) - turning) / load for share, load in zip(shares, loads, strict=True)
     )
 
 
-def _rim_force(vehicle: Vehicle) -> float:
+def rim_force(vehicle: Vehicle) -> float:
     """Force of the fully applied brake at the rims of all wheels [N]."""
     return sum(vehicle.brake_shares) * vehicle.brake.max_torque / vehicle.wheel_radius
 
 
-def _rotating_mass(vehicle: Vehicle) -> float:
+def rotating_mass(vehicle: Vehicle) -> float:
     """Mass that the turning of the wheelsets adds [kg]."""
     return vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2
 

@@ -51,7 +51,7 @@ def _start(
     if context.invoked_subcommand is None:
         from wspd_design.cli.commands import new
 
-        new.new()
+        new.design()
 
 
 def run(arguments: Sequence[str]) -> int:

@@ -180,6 +180,11 @@ STOP = Form(
             "it is not known: changes of rail along the track, starts from a witness",
         ),
         nullable("efficiency", "ideal stop over distance"),
+        nullable(
+            "released_below_m_s",
+            "speed from which on the wheelsets transmit less than a tenth of what brake and rail give until the end, "
+            "for a second or more; null where the brake was not released",
+        ),
         nullable("adhesion_utilization", "impulse of the creep forces over that of the adhesion peak"),
         nullable("lag_s", "2 d/v0 - t: what the build-up of the brake costs"),
         nullable("lag_distance_m", "initial speed times lag"),

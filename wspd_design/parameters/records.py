@@ -20,13 +20,21 @@ class Entry:
     """
 
     name: str
-    value: float | tuple[float, ...] | tuple[tuple[float, ...], ...] | tuple[tuple[str, ...], ...] | str
+    value: (
+        float
+        | tuple[float, ...]
+        | tuple[tuple[float, ...], ...]
+        | tuple[str, ...]
+        | tuple[tuple[str, ...], ...]
+        | str
+    )
     unit: str
     bounds: tuple[float, float] | None
     source: str
     at: str
     status: str
     note: str
+    inherited: str = ""  # name of the file that it was taken from, where its own file does not state it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -241,6 +249,15 @@ class Rail:
     adhesion_reduction: float  # -, kA
     slip_reduction: float  # -, kS
     bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RailProfile:
+    """Rails one after the other along the track, each from its start on."""
+
+    name: str
+    starts: tuple[float, ...]  # m, rising from 0
+    rails: tuple[str, ...]  # names or paths
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias, get_args
 
 from wspd_design.parameters.units import Dimension
 
-Shape: TypeAlias = Literal["number", "word", "vector", "matrix", "word matrix"]
+Shape: TypeAlias = Literal["number", "word", "words", "vector", "matrix", "word matrix"]
 Kind: TypeAlias = Literal["constants", "vehicle", "rail", "controller", "track"]
 Preset: TypeAlias = Literal["calibrated", "textbook"]
 BuildUp: TypeAlias = Literal["main-pipe", "electro-pneumatic"]
@@ -180,6 +180,8 @@ _RAIL: Schema = {
     "friction_decay": Quantity(dimension="1/speed", low=0.0, plausible=(0.0, 10.0)),
     "adhesion_reduction": _share(zero=False),
     "slip_reduction": _share(zero=False),
+    "profile.starts": Quantity(dimension="length", shape="vector", low=0.0, optional=True),
+    "profile.rails": Quantity(dimension="ratio", shape="words", optional=True),
 }
 
 _AFSMC: Schema = {

@@ -1,4 +1,4 @@
-"""The quarter locomotive: equal wheels under one train mass, eqs. (1)-(7).
+"""The quarter model: equal wheels under one train mass, eqs. (1)-(7).
 
 All wheels carry the static load, so one wheelset stands for all of them. It is the planar vehicle without heights
 and with equal rails, for any number of wheelsets.
@@ -63,7 +63,7 @@ class Quarter(RigidWheelsets):
 
 
 class Motion(NamedTuple):
-    """Accelerations and forces of the quarter locomotive at one instant."""
+    """Accelerations and forces of the quarter model at one instant."""
 
     acceleration: Number  # m/s2, train
     wheel_acceleration: Number  # rad/s2
@@ -75,7 +75,7 @@ class Motion(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QuarterOnRail:
-    """The quarter locomotive on one rail, with what does not change during a stop worked out once."""
+    """The quarter model on one rail, with what does not change during a stop worked out once."""
 
     plant: Quarter
     rail: Rail

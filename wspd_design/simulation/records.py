@@ -266,6 +266,11 @@ class Run:
     track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
 
     @property
+    def train(self) -> str:
+        """Vehicle and plant, as sentences name them."""
+        return f"{self.vehicle} ({self.plant})"
+
+    @property
     def samples(self) -> tuple[Sample, ...]:
         """Samples of the first wheelset with a brake."""
         return self.axle_samples[self.first_braked]

@@ -92,7 +92,7 @@ def test_own_vehicle_states_only_what_differs(write):
         (RAIL.replace('"Leaves"', '"Leaves'), ("not valid TOML", "line 2")),
         (RAIL.replace("[slip_reduction]", "[mu0]"), ("not valid TOML", "line ")),
         (RAIL[: RAIL.index("[slip_reduction]")], ("lacks [slip_reduction]", "add it", "base")),
-        ("mu0 = 0.3\n", ("mu0", "must be a table", "[mu0]")),
+        ("mu0 = 0.3\n", ("lacks [friction_ratio]", "add them", "polach-wet")),
         ('base = "polach-wett"\n', ('base = "polach-wett"', 'did you mean "polach-wet"', "table10-dry")),
         ("base = 3\n", ("base = 3", "available: eurosprinter127")),
         ('base = ["polach-wet"]\n', ("base = ['polach-wet']", "available: eurosprinter127")),

@@ -278,3 +278,37 @@ def test_a_stop_has_a_panel_for_each_brake_that_the_vehicle_has():
     assert [len(each) for each in lines] == [4, 1, 4]
     assert max(lines[0][0].get_ydata()) == pytest.approx(run.dynamic_torque[:, 0].max() / 1e3)
     assert max(lines[2][3].get_ydata()) == pytest.approx(run.pad_temperature[:, 3].max())
+
+
+def _with_wheelsets(number):
+    """The sample trial with so many wheelsets, which are its own ones again and again."""
+    made = DOSSIER.trials[0]
+    own = made.run
+    again = [k % own.slip.shape[1] for k in range(number)]
+    arrays = {each: getattr(own, each)[:, again] for each in ("wheel_speed", "slip", "torque", "wheel_load")}
+    run = replace(own, **arrays, axle_samples=tuple(own.axle_samples[0] for _ in again))
+    return replace(made, run=run)
+
+
+@pytest.mark.parametrize("number", [2, 6, 7, 8, 32])
+def test_wheelsets_of_any_number_have_curves_of_their_own(number):
+    """Up to four had colors; the seventh was drawn as the train, the eighth ended in a traceback."""
+    made = _with_wheelsets(number)
+    with figure_style():
+        drawn = stop_traces(new_figure(height=8.6), made, SPECIFICATION, wheel_radius=0.55, max_torque=60e3)
+        drawn.draw_without_rendering()
+        compared = slip_of_all(new_figure(height=5.0), [made, made], SPECIFICATION)
+        compared.draw_without_rendering()
+    slip, speed, *_ = drawn.axes
+    looks = {(line.get_color(), str(line._dash_pattern)) for line in speed.lines}
+    assert len(looks) == number + 1  # and the train
+    names = [text.get_text() for text in slip.get_legend().get_texts()]
+    assert len(set(names)) == len(names) == number
+    assert (names[0], names[-1]) == (
+        "wheelset 1 (front)",
+        f"wheelset {number} (rear)" if number <= 4 else f"{number} (rear)",
+    )
+    for each, legend in ((drawn, slip.get_legend()), (compared, compared.legends[0])):
+        box = legend.get_window_extent()
+        assert 0.0 <= box.x0 < box.x1 <= each.bbox.width
+        assert 0.0 <= box.y0 < box.y1 <= each.bbox.height

@@ -30,7 +30,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"The {run.plant} locomotive from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
+            text=f"The stop of {run.train} from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
             f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
             f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
             f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
@@ -42,7 +42,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         ),
         Figure(
             svg=picture(draw, height=8.6),
-            caption=f"The stop over time, {run.plant} locomotive. Green: tolerance about the reference "
+            caption=f"The stop over time, {run.train}. Green: tolerance about the reference "
             f"(dashed). Gray: below {judged} km/h, where the slip is not judged. Bars at the upper edge of the "
             "slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
