@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.functions import slip_plant
+from wspd_design.model.brake import flow_rates
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.records import Brake, Rail, Vehicle
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,7 +31,7 @@ class Linearization:
     equilibrium_duty: float  # -, above 1 the brake cannot hold this slip
     slip_pole: float  # 1/s, without the valve lag
     gain: float  # 1/(N m s), G
-    time_constant: float  # s, of the averaged valve at this duty; between T_F and T_V
+    time_constant: float  # s, of the averaged valve at this duty and torque; of lags between T_F and T_V
     state_matrix: "NDArray[np.float64]"
     input_matrix: "NDArray[np.float64]"
 
@@ -70,6 +71,17 @@ class Linearization:
         )
 
 
+def _holding_duty(brake: Brake, torque: float) -> float:
+    """Duty at which the averaged valve holds a torque; above 1 for one that the brake does not give."""
+    share = torque / brake.max_torque
+    if brake.valve == "lag":
+        return share * brake.fill_time / ((1.0 - share) * brake.vent_time + share * brake.fill_time)
+    if not 0.0 <= share <= 1.0:
+        return share  # beyond the flow of an orifice
+    filling, venting = flow_rates(brake, share * brake.max_pressure)
+    return float(venting / (filling + venting))
+
+
 def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Linearization:
     """Linearize eqs. (19) and (14) at a slip ratio and a train speed.
 
@@ -102,8 +114,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     plant = slip_plant(vehicle, rail)
     drift, gain = (float(x) for x in plant.drift_and_gain(slip, speed))
     torque = -drift / gain
-    share = torque / brake.max_torque
-    duty = share * brake.fill_time / ((1.0 - share) * brake.vent_time + share * brake.fill_time)
+    duty = _holding_duty(brake, torque)
     a, b = plant.jacobians(slip, torque, speed, duty)
     a, b = np.array(a, dtype=np.float64), np.array(b, dtype=np.float64)
     return Linearization(

@@ -18,6 +18,7 @@ from wspd_design.certificates.quantities import AXLE
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.adhesion_edges import Ranges
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
 from wspd_design.certificates.setting.model_error import (
     inertia_ratio,
     residual,
@@ -254,6 +255,7 @@ REACHING = Theorem(
     speaks_about=sliding_mode,
     obligations=_reaching_obligations,
     tell=_tell_reaching,
+    assumes=ALL - OF_VALVES,
 )
 
 BOUNDARY_LAYER = Theorem(
@@ -263,4 +265,5 @@ BOUNDARY_LAYER = Theorem(
     speaks_about=sliding_mode,
     obligations=lambda problem: (*_reaching_obligations(problem), *layer_conditions(problem)),
     tell=_tell_layer,
+    assumes=ALL - OF_VALVES,
 )
