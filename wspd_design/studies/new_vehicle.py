@@ -6,17 +6,20 @@ What neither an answer nor a rule gives is taken from a shipped vehicle of the s
 import math
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from typing import get_args
 
 from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.model.hertz import contact_from_radii
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants, load_entries, load_vehicle, vehicle_of
 from wspd_design.parameters.records import Entry, ParameterSet, Vehicle
+from wspd_design.parameters.schema import BuildUp
 from wspd_design.parameters.units import KMH, factor, to_si
 
 RULE, ANSWER = "wspd new vehicle", "own answer"
 """Sources of the numbers: a rule of this module, or what the user wrote."""
 
+PIPE, ELECTRIC = get_args(BuildUp)
 FULL = 0.95
 """Share of the full pressure at which a brake counts as built up."""
 
@@ -28,6 +31,9 @@ RATED_SPEEDS = {
     "co-co": 140.0 / KMH,
 }
 """From which the deceleration of a shipped vehicle is stated [m/s]; of the others it is 120 km/h."""
+
+_ANSWERS = ("laden.", "brake.build_up", "brake.supply_rate")
+"""Beginnings of the numbers that are there only if the answers ask for them."""
 
 _YOUNG, _POISSON, _RAIL_CROWN = 210e9, 0.25, 0.3  # Pa, -, m: as for the contact of the ER24PC
 _DIGITS = 4
@@ -74,7 +80,9 @@ class Wanted:
     rotating_mass: float  # kg, of the whole vehicle
     speed: float  # m/s, from which the deceleration holds
     deceleration: float  # m/s2, mean of the fully developed brake
-    build_up_time: float  # s, until 95 % of the pressure
+    build_up: str  # main-pipe or electro-pneumatic
+    build_up_delay: float  # s, of an electro-pneumatic brake
+    build_up_time: float  # s, until 95 % of the pressure, or of the ramp of an electro-pneumatic brake
     fill_time: float  # s
     vent_time: float  # s
     answered: frozenset[str] = frozenset()  # what the user said; the rest is as of the kind
@@ -98,7 +106,11 @@ def wanted_like(kind: str) -> Wanted:
         rotating_mass=vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2,
         speed=speed,
         deceleration=full_adhesion_stop(vehicle, speed).deceleration,
-        build_up_time=-math.log(1.0 - FULL) / vehicle.brake.supply_rate,
+        build_up=vehicle.brake.build_up,
+        build_up_delay=vehicle.brake.build_up_delay,
+        build_up_time=vehicle.brake.build_up_ramp
+        if vehicle.brake.build_up == ELECTRIC
+        else -math.log(1.0 - FULL) / vehicle.brake.supply_rate,
         fill_time=vehicle.brake.fill_time,
         vent_time=vehicle.brake.vent_time,
     )
@@ -135,7 +147,7 @@ def derived_entries(wanted: Wanted) -> tuple[Entry, ...]:
     return tuple(
         found[name] if name in found else _taken(entry, wanted.kind)
         for name, entry in base.entries.items()
-        if name in found or not name.startswith("laden.")
+        if name in found or not name.startswith(_ANSWERS)
     ) + tuple(entry for name, entry in found.items() if name not in base.entries)
 
 
@@ -155,18 +167,24 @@ def _answered(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:
             "kg m^2",
             f"rotating mass {wanted.rotating_mass:.4g} kg over {wanted.wheelsets} wheelsets, times radius^2",
         ),
-        _ruled(
-            "brake.supply_rate",
-            -math.log(1.0 - FULL) / wanted.build_up_time,
-            "1/s",
-            f"ln(20) over {wanted.build_up_time:g} s, in which the supply reaches 95 %",
-        ),
+        *_build_up(wanted),
     ]
     if "wheelbase" in base.entries:
         answers.append(stated("wheelbase", "wheelbase", wanted.wheelbase, "m"))
     if wanted.laden_mass:
         answers.append(stated("laden.mass", "laden_mass", wanted.laden_mass, "kg"))
     return {entry.name: entry for entry in answers}
+
+
+def _build_up(wanted: Wanted) -> list[Entry]:
+    if wanted.build_up == ELECTRIC:
+        return [
+            replace(_stated(wanted, "brake.build_up", "build_up", 0.0, "-"), value=ELECTRIC),
+            _stated(wanted, "brake.build_up_delay", "build_up_delay", wanted.build_up_delay, "s"),
+            _stated(wanted, "brake.build_up_ramp", "build_up_time", wanted.build_up_time, "s"),
+        ]
+    rule = f"ln(20) over {wanted.build_up_time:g} s, in which the supply reaches 95 %"
+    return [_ruled("brake.supply_rate", -math.log(1.0 - FULL) / wanted.build_up_time, "1/s", rule)]
 
 
 def _running_gear(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:

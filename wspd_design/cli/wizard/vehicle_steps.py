@@ -11,7 +11,7 @@ from wspd_design.parameters.gear import gear_of
 from wspd_design.parameters.loading import available, load_entries, load_vehicle
 from wspd_design.parameters.schema import Quantity, schema_of
 from wspd_design.parameters.units import Dimension, format_quantity, split_quantity
-from wspd_design.studies.new_vehicle import Wanted, derived_vehicle, wanted_like
+from wspd_design.studies.new_vehicle import ELECTRIC, PIPE, Wanted, derived_vehicle, wanted_like
 
 KIND = "coach"
 NONE = "none"
@@ -22,7 +22,7 @@ _SPEED = Quantity(dimension="speed", low=0.0, low_is_allowed=False, plausible=(1
 _DECELERATION = Quantity(dimension="acceleration", low=0.0, low_is_allowed=False, plausible=(0.1, 5.0))
 _ROTATING = Quantity(dimension="mass", low=0.0, low_is_allowed=False, plausible=(10.0, 1e5))
 
-Reader = Callable[[str, Answers], float | int | bool]
+Reader = Callable[[str, Answers], float | int | bool | str]
 
 
 def vehicle_steps() -> tuple[Step, ...]:
@@ -128,11 +128,34 @@ def vehicle_steps() -> tuple[Step, ...]:
             suggest=_suggested(lambda like: f"{like.deceleration:.3g} m/s^2"),
             check=_echo("deceleration", _torque),
         ),
-        _line(
-            "build_up_time",
-            "Build-up of the brake",
-            "Until the demand reaches 95 % of its pressure. Position P has 3 to 5 s, an electro-pneumatic brake 1 s.",
-            lambda like: f"{like.build_up_time:.4g} s",
+        Step(
+            key="build_up",
+            title="Build-up of the brake",
+            explanation="How the demand for pressure comes to the vehicle.",
+            default=PIPE,
+            options=(
+                Option(value=PIPE, text="by the main pipe, as an exponential"),
+                Option(value=ELECTRIC, text="by wire: a dead time, then an even ramp"),
+            ),
+            suggest=_suggested(lambda like: like.build_up),
+        ),
+        Step(
+            key="build_up_delay",
+            title="Dead time of the demand",
+            explanation="Until the demand begins to rise.",
+            default="0.2 s",
+            suggest=_suggested(lambda like: f"{like.build_up_delay or 0.2:.4g} s"),
+            check=_echo("build_up_delay", lambda wanted: f"{wanted.build_up_delay:.4g} s"),
+            applies=lambda answers: answers.get("build_up") == ELECTRIC,
+        ),
+        Step(
+            key="build_up_time",
+            title="Time of the build-up",
+            explanation="By the main pipe, until 95 % of the pressure: position P has 3 to 5 s. By wire, the time of "
+            "the ramp: about 1 s.",
+            default="4 s",
+            suggest=_time_of_build_up,
+            check=_echo("build_up_time", lambda wanted: f"{wanted.build_up_time:.4g} s"),
         ),
         _line(
             "fill_time",
@@ -230,6 +253,8 @@ _READERS: dict[str, Reader] = {
     "rotating_mass": _rotating,
     "speed": _read("speed", _SPEED),
     "deceleration": _read("deceleration", _DECELERATION),
+    "build_up": lambda text, _answers: text,
+    "build_up_delay": _read("build_up_delay", _SCHEMA["brake.build_up_delay"]),
     "build_up_time": _read("build_up_time", Quantity(dimension="time", low=0.0, plausible=(0.05, 60.0))),
     "fill_time": _read("fill_time", _SCHEMA["brake.fill_time"]),
     "vent_time": _read("vent_time", _SCHEMA["brake.vent_time"]),
@@ -247,6 +272,13 @@ def _suggested(text: Callable[[Wanted], str]) -> Callable[[Answers], str]:
         return text(like)
 
     return suggest
+
+
+def _time_of_build_up(answers: Answers) -> str:
+    like = wanted_like(answers.get("kind", KIND))
+    if answers.get("build_up", like.build_up) == like.build_up:
+        return f"{like.build_up_time:.4g} s"
+    return "1 s" if like.build_up == PIPE else "4 s"
 
 
 def _echo(key: str, say: Callable[[Wanted], str]) -> Callable[[str, Answers], str]:
@@ -281,7 +313,6 @@ _UNITS = {
     "mass": "kg",
     "bogie_spacing": "m",
     "speed": "m/s",
-    "build_up_time": "s",
     "fill_time": "s",
     "vent_time": "s",
 }
