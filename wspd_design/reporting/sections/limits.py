@@ -20,8 +20,8 @@ EVERYWHERE: tuple[str, ...] = (
 OF_PLANT = {
     "quarter": "One wheelset stands for all, with the same load: weight transfer, and wheelsets that "
     "slide differently, are not shown.",
-    "planar": "Bodies and bogies pitch about a quasi-static weight transfer; suspension, lateral motion and "
-    "curves are not modeled.",
+    "planar": "Bodies and bogies pitch about a quasi-static weight transfer without the moment by which turning "
+    "wheelsets are slowed down; suspension, lateral motion and curves are not modeled.",
 }
 
 
@@ -71,9 +71,11 @@ def _of_scenario(dossier: Dossier) -> list[str]:
 def _of_valves(dossier: Dossier) -> str:
     """Say what the valves are and what of them is left out."""
     has = dossier.vehicle.entries
+    by_stop = dossier.scenario.sensing.dead_time
+    dead_time = "brake.dead_time" in has if by_stop is None else by_stop
     orifice = "brake.valve" in has and has["brake.valve"].value == "orifice"
     left_out = [
-        *([] if dossier.trials[0].run.dead_time else ["dead times"]),
+        *([] if dead_time else ["dead times"]),
         *([] if "brake.hold_leak" in has else ["leakage"]),
         *([] if "brake.reservoir_volume" in has else ["a limit of the air supply"]),
     ]
