@@ -13,7 +13,8 @@ from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.cli.output import check_output, write_text
 from wspd_design.cli.wizard.draft import ENDING
 from wspd_design.cli.wizard.session import answer_option, answered, target_of
-from wspd_design.cli.wizard.vehicle_steps import NONE, vehicle_steps, wanted_vehicle
+from wspd_design.cli.wizard.vehicle_answers import NONE, wanted_vehicle
+from wspd_design.cli.wizard.vehicle_steps import vehicle_steps
 from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Entry
