@@ -11,7 +11,7 @@ from wspd_design.reporting.brakes import brake_text
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
-from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.description import disturbances_of, every_rail_of
 from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
 
@@ -48,7 +48,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),
         ("Sample time", format_quantity(specification.sample_time, "ms")),
         ("Plant of the stops", _plant(dossier.trials[0].run)),
-        ("Rails of the stops", rails_of(dossier.scenario)),
+        ("Rails of the stops", every_rail_of(dossier.scenario)),
         ("Disturbances of the stops", disturbances_of(dossier.scenario) or "none"),
     )
     return (
