@@ -94,6 +94,30 @@ def _table() -> dict[str, Quantity]:
         "torque": q("N m", "braking torque of one wheelset", "T", "T"),
         "command": q("-", "valve command or duty, 0 to 1", "ū", "overline(u)"),
         "period": q("s", "period of the pulse width modulation", "h", "h", positive),
+        # further valves and build-ups of the brake
+        "ramp_start": q("s", "time at which the demanded pressure begins to rise", "t_r", "t_r"),
+        "ramp_rate": q("Pa/s", "rate at which the demanded pressure rises", "k", "k", positive),
+        "vented_for": q("s", "time of venting", "t_V", "t_V"),
+        "held_for": q("s", "time of holding after it", "t_H", "t_H"),
+        "hold_leak": q("1/s", "rate at which a held cylinder leaks", "k_H", "k_H"),
+        "critical_ratio": q("-", "critical pressure ratio of an orifice, ISO 6358", "b", "b", positive),
+        "pressure_ratio": q(
+            "-", "absolute pressure behind an orifice over that before it", "r", "r", positive
+        ),
+        "tangent": q("-", "tangent of half the angle of the flow ellipse", "y", "y", positive),
+        "half_angle": q("-", "half the angle of the flow ellipse, 0 without flow", "χ", "chi", positive),
+        "flow_time": q(
+            "s",
+            "time in which choked flow would fill the cylinder to the supply pressure",
+            "τ_o",
+            "tau_o",
+            positive,
+        ),
+        "progress": q("-", "elapsed time over 2 (1 - b) times the time of the orifice", "ξ", "xi", positive),
+        "advance": q(
+            "-", "how far the tangent falls from 0 on, in the time of the progress", "Y", "Y", positive
+        ),
+        "root": q("-", "square root of |2 b - 1|", "κ", "kappa", positive),
         # sliding surface, eqs. (21)-(28)
         "slip_reference": q("-", "desired slip ratio", "λ_d", "lambda_d"),
         "error": q("-", "slip error", "e", "e"),

@@ -26,7 +26,7 @@ _NAMED = {
     "1": _ZERO,
     "-": _ZERO,
 }
-_PURE = (sp.exp, sp.atan, sp.tanh, sp.sin)  # take and give pure numbers
+_PURE = (sp.exp, sp.log, sp.atan, sp.tan, sp.tanh, sp.sin)  # take and give pure numbers
 
 
 def parse(unit: str) -> sp.Matrix:

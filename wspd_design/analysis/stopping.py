@@ -8,6 +8,8 @@ that the brake asks for.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wspd_design.analysis.stepwise import rolling_stop
+from wspd_design.model.brake import build_up_delay
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
@@ -118,15 +120,17 @@ def mean_stop(
 
 
 def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) -> MeanStop:
-    """Stop of a vehicle whose wheels do not slide, by mean values of the brake of eqs. (8)-(14).
+    """Stop of a vehicle whose wheels do not slide, by mean values of its brake.
 
-    The supply that builds up with ``supply_rate`` and the cylinder that follows with ``fill_time`` are together late
-    by 1/supply_rate + fill_time, exactly.
+    The equivalent time is that of build-up and filling together: a demand with ``supply_rate`` and a lag with
+    ``fill_time`` are late by 1/supply_rate + fill_time, exactly. Where pads fade, an electrodynamic brake is blended
+    in or magnets pull, the stop is worked out by steps, and the mean values are those which give its distance.
     """
-    brake = vehicle.brake
+    if vehicle.pads or vehicle.dynamic or vehicle.track_brake:
+        return _stop_by_steps(vehicle, speed, grade)
     return mean_stop(
         speed,
-        forces=[(rim_force(vehicle), 1.0 / brake.supply_rate + brake.fill_time)],
+        forces=[(rim_force(vehicle), build_up_delay(vehicle.brake))],
         mass=vehicle.mass,
         rotating_mass=rotating_mass(vehicle),
         resistance=(
@@ -135,6 +139,18 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
             vehicle.resistance_quadratic,
         ),
         grade=grade,
+    )
+
+
+def _stop_by_steps(vehicle: Vehicle, speed: float, grade: float) -> MeanStop:
+    """The deceleration is that of a stop with all brakes built up; what the whole one takes more is rolling freely."""
+    distance, time = rolling_stop(vehicle, speed, grade=grade)
+    developed, _ = rolling_stop(vehicle, speed, grade=grade, built_up=True)
+    return MeanStop(
+        equivalent_time=(distance - developed) / speed,
+        deceleration=speed**2 / (2.0 * developed),
+        distance=distance,
+        time=time,
     )
 
 

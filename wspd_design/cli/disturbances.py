@@ -86,12 +86,17 @@ class StopOptions:
         str | None,
         _described("--torque-error", "SHARE", 'Of the torque that it computes from the pressure: "-10 %".'),
     ] = None
-    dead_time: Annotated[str | None, _described("--dead-time", "TIME", 'From command to valve: "60 ms".')] = (
-        None
-    )
+    dead_time: Annotated[
+        str | None,
+        _described("--dead-time", "TIME", 'From command to valve, in place of that of the vehicle: "60 ms".'),
+    ] = None
     shortest_pulse: Annotated[
         str | None,
-        _described("--shortest-pulse", "TIME", 'Shorter ones do not open a valve: "10 ms".'),
+        _described(
+            "--shortest-pulse",
+            "TIME",
+            'Shorter ones do not open a valve, in place of those of the vehicle: "10 ms".',
+        ),
     ] = None
 
 

@@ -47,7 +47,11 @@ def campaign_object(
         "plant": campaign.plant,
         "sample_time_s": case.controller.sample_time,
         "initial_speed_m_s": scenario.initial_speed,
-        "scenario": scenario_object(scenario),
+        "scenario": scenario_object(
+            scenario,
+            dead_time=scenario.sensing.dead_time_of(case.vehicle.brake),
+            shortest_pulse=scenario.sensing.shortest_pulse_of(case.vehicle.brake),
+        ),
         "witness": None if start is None else witness_object(start),
         "runs": len(campaign.table),
         "runs_wanted": summary.wanted,

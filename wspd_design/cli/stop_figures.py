@@ -1,5 +1,7 @@
 """The table of the figures of one stop."""
 
+import math
+
 from rich.text import Text
 
 from wspd_design.cli.console import console, spaced, table
@@ -49,6 +51,8 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     shown.add_row("slip maximum", number(figures.slip_max, ".3f"), "-")
     shown.add_row("wheels locked", f"{figures.lock_time:.2f}", "s")
     shown.add_row("vented air per wheelset", f"{figures.vented_air:.2f}", "cylinders")
+    for row in _of_brake(figures):
+        shown.add_row(*row)
     shown.add_row("valve switches per wheelset", f"{figures.valve_switches}", "")
     shown.add_row("samples at a limit", number(100.0 * figures.saturated_share, ".0f"), "%")
     shown.add_row("momentum balance, relative", f"{figures.momentum_residual:.1e}", "-")
@@ -63,6 +67,18 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
         out.print(released, style="yellow", markup=False)
     out.print(_trust(made.check))
     out.print("Slip figures count above 10 km/h.", style="dim")
+
+
+def _of_brake(figures: Metrics) -> list[tuple[str, str, str]]:
+    """Rows of what only some brakes have: volumes, and watchdogs."""
+    rows = []
+    if not math.isnan(figures.air_used):
+        rows.append(("air from the reservoir, all wheelsets", f"{figures.air_used:.0f}", "normal litres"))
+    if not math.isnan(figures.lowest_reservoir):
+        rows.append(("lowest reservoir pressure", f"{figures.lowest_reservoir / 1e5:.2f}", "bar"))
+    if figures.watchdog_fills is not None:
+        rows.append(("fillings by a watchdog", f"{figures.watchdog_fills}", ""))
+    return rows
 
 
 def _ideal_stop(figures: Metrics) -> tuple[str, str]:

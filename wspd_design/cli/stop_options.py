@@ -106,8 +106,8 @@ def _sensing(disturbances: StopOptions) -> Sensing:
         else parse_quantity(drift, "acceleration", what="reference drift"),
         reference_noise=_amount(disturbances.reference_noise, "speed", "reference noise"),
         torque_error=_error(disturbances.torque_error, "torque error", "a torque computed"),
-        dead_time=_amount(disturbances.dead_time, "time", "dead time"),
-        shortest_pulse=_amount(disturbances.shortest_pulse, "time", "shortest pulse"),
+        dead_time=_of_valves(disturbances.dead_time, "dead time"),
+        shortest_pulse=_of_valves(disturbances.shortest_pulse, "shortest pulse"),
     )
 
 
@@ -147,6 +147,11 @@ def parse_grade(text: str) -> float:
         return rise / run
     except (UserError, ZeroDivisionError):
         raise UserError(f'grade "{text}" is not a number with permille or %; {_GRADE}') from None
+
+
+def _of_valves(text: str | None, what: str) -> float | None:
+    """Read a time of the valves; nothing written is that of the vehicle."""
+    return None if text is None else _amount(text, "time", what)
 
 
 def _amount(text: str | None, dimension: Dimension, what: str) -> float:

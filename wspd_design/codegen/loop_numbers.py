@@ -29,6 +29,8 @@ LANE_TOTALS = (
     "longest_lock",
     "vented_pressure",
     "valve_switches",
+    "filled_pressure",
+    "watchdog",
 )
 STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
 DISTURBANCES = (
@@ -41,6 +43,8 @@ DISTURBANCES = (
     "torque_factor",  # of the torque that a law is told
     "dead_time",  # s
     "shortest_pulse",  # s
+    "longest_release",  # s, 0 without a watchdog
+    "reservoir_pressure",  # Pa, at the start
 )
 """What disturbs measurement and valves of a stop; in C in the same order."""
 RAIL_NUMBERS = 5
@@ -132,7 +136,7 @@ class LoopOutput:
     lane_totals: dict[str, "Array"]  # (lanes,) each
     stop_totals: dict[str, "Array"]  # (stops,) each
     wheel_speeds: "Array"  # (lanes,)
-    trace: "Array"  # (rows, 3 + 5 axles), of the first stop
+    trace: "Array"  # (rows, 3 + (5 + states of an axle) axles), of the first stop
     samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
     bad_command: tuple[float, float, float]  # time, fill, vent
     steps: int

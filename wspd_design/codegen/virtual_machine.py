@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
+from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, plant_kernels
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
-from wspd_design.codegen.valves import CLOSED, followed
 from wspd_design.codegen.virtual_sensors import VirtualSensors
 from wspd_design.codegen.virtual_step import INERTIA, MASS, RADIUS, StepFunctions, step_functions
+from wspd_design.codegen.virtual_valves import START, VirtualValves
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State
+from wspd_design.model.further_brakes import friction_share
 from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 _SHORTEST = 1e-9  # s: edges closer together than this are one
 _BATCHES = (64, 16, 8, 4, 2)
 _OFFSET = PARAMETERS.index(("surroundings", "axle_offset"))
+_MAX_TORQUE = PARAMETERS.index(("brake", "max_torque"))
+_DROP_SLIP = PARAMETERS.index(("dynamic", "drop_slip"))
+_BLENDED = WINDOW.index("share")
 _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail")
 
 
@@ -46,7 +50,10 @@ def run_virtual(
     kernels = plant_kernels(plant, disturbed=disturbed)
     driven = _VirtualPlant(kernels, _functions(kernels, given.held_slips is not None), given)
     result, samples = drive(driven, _traced(controller), sample_rows)
-    lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), driven.vented, driven.switches])
+    valves = driven.valves
+    valves.end(driven.part("filled"))
+    counted = (valves.vented, valves.switches, valves.filled, valves.watchdog)
+    lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), *counted])
     stop = [*driven.part("stop"), driven.part("speed")[0]]
     stop_totals = {name: np.array([value]) for name, value in zip(STOP_TOTALS, stop, strict=True)}
     return LoopOutput(
@@ -82,12 +89,10 @@ class _VirtualPlant:
         self.part("speed")[:] = given.speeds[0]
         self.wheels[:] = given.wheel_speeds
         self.edges: tuple[float, ...] = ()
-        self.vented = np.zeros(axles)
-        self.switches = np.zeros(axles)
-        self.valves = [-1] * axles  # last states: fill, vent, hold; -1 before the first
+        self.valves = VirtualValves(given)
         self.sensors = VirtualSensors(given, self.parameters[RADIUS])
         self.waiting: deque[tuple[float, list[Command]]] = deque()
-        self.following = [CLOSED] * axles
+        self.dropped = np.zeros(axles, dtype=bool)  # electrodynamic brakes
         self.recorded = -1.0
         self.sample = self.steps = 0
         self._bends = _bends(given.load_factors)
@@ -101,10 +106,10 @@ class _VirtualPlant:
             for number, function in ((1, functions.single), *functions.batches.items())
         }
         self._observe = Bound(functions.observe, self.state, self.inputs)
-        self._window = np.zeros((axles, 4))
+        self._window = np.zeros((axles, len(WINDOW)))
         self._window_constants = Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
-        self._close_valves(given.pressures)
+        self._close_valves()
 
     def part(self, name: str) -> "Array":
         """One part of the state, to read and to write."""
@@ -148,7 +153,7 @@ class _VirtualPlant:
             speed=float(self.part("speed")[0]),
             wheels=self.wheels,
             angles=self.angles,
-            torques=self.part("torque"),
+            torques=self.part("torque") + self.part("dynamic"),
         )
 
     def advance(self, commands: list[Command]) -> int:
@@ -164,52 +169,55 @@ class _VirtualPlant:
         end, result = self.sample * h, GOOD
         while self.waiting and self.waiting[0][0] <= end and result == GOOD:
             time, due = self.waiting.popleft()
-            result = self._advance_to(time)
+            result = self._follow_until(time)
             if self.moving:
-                self._set_valves(due)
-        return result or self._advance_to(end)
+                present = float(self.part("time")[0])
+                self.valves.follow(due, present, self.part("pressure"), self.part("filled"))
+                self._blend()
+                self._set_windows()
+        return result or self._follow_until(end)
 
-    def _count_switches(self) -> None:
-        """Count the changes of the valve state that the commands make."""
-        for axle, (fill, vent) in enumerate(self.following):
-            for valve, share in enumerate((fill, vent, 1.0 - fill - vent)):
-                if share > 1e-9:
-                    self.switches[axle] += self.valves[axle] not in (-1, valve)
-                    self.valves[axle] = valve
+    def _set_windows(self) -> None:
+        """Work out the constants of the actuators for the patterns of the valves."""
+        self._window[:, :_BLENDED] = self.valves.patterns
+        self._window_constants.call()
+        self._give("window_constants", self._window_constants.outputs[0].ravel())
+        self.edges = self.valves.edges
 
-    def _set_valves(self, commands: list[Command]) -> None:
+    def _blend(self) -> None:
+        """Say what is asked of the friction brakes whose patterns begin now, and where the electrodynamic ones go to.
+
+        An electrodynamic brake drops out when its wheel slides too much, for the rest of the stop.
+        """
         import numpy as np
 
-        present, h = float(self.part("time")[0]), self.set.sample_time
-        shortest = float(self.given.disturbance("shortest_pulse")[0])
-        self.following = [
-            followed(command, before, sample_time=h, shortest_pulse=shortest)
-            for command, before in zip(commands, self.following, strict=True)
-        ]
-        self._count_switches()
-        fill, vent = np.array(self.following, dtype=np.float64).T
-        fill_end = present + fill * h
-        vent_end = np.where(1.0 - fill - vent < 1e-12, present + h, fill_end + vent * h)
-        self.vented += self.part("filled") - self.part("pressure")
-        self._set_windows(present, self.part("pressure"), fill_end, vent_end)
-        self.edges = tuple(sorted({*fill_end.tolist(), *vent_end.tolist()}))
+        begun = self.valves.patterns[:, START] == self.part("time")[0]
+        self.dropped |= begun & (self.part("slip") > self.parameters[_DROP_SLIP])
+        demanded = self.parameters[_MAX_TORQUE].tolist()
+        shares = list(map(friction_share, self.part("dynamic").tolist(), demanded))
+        goals = np.where(self.dropped, 0.0, 1.0)
+        self._window[begun, _BLENDED:] = np.stack([shares, self.part("level"), goals], axis=1)[begun]
 
-    def _close_valves(self, pressures: "Array") -> None:
-        """Begin with these pressures in the cylinders."""
-        self._set_windows(0.0, pressures, 0.0, 0.0)
+    def _close_valves(self) -> None:
+        """Begin with closed valves."""
+        self._set_windows()
         present = [self.kernels.actuator(constants, 0.0) for constants in self._window_constants.outputs[0]]
-        names = ("pressure", "torque", "filled", "damping")
+        names = ("pressure", "torque", "filled", "damping", "level")
         for name, values in zip(names, zip(*present, strict=True), strict=True):
             self.part(name)[:] = [float(value) for value in values]
         self._look_up()
         self._work_out_stage()
 
-    def _set_windows(self, *pattern: "float | Array") -> None:
-        """Work out the constants of the actuators: start, pressure there, end of filling, end of venting."""
-        for column, values in enumerate(pattern):
-            self._window[:, column] = values
-        self._window_constants.call()
-        self._give("window_constants", self._window_constants.outputs[0].ravel())
+    def _follow_until(self, goal: float) -> int:
+        """Advance to a time; watchdogs may fill on the way."""
+        result = GOOD
+        while self.moving and result == GOOD and (watched := self.valves.watch_time) < goal - _SHORTEST:
+            result = self._advance_to(watched)
+            if self.moving:
+                self.valves.watch(float(self.part("time")[0]), self.part("pressure"), self.part("filled"))
+                self._blend()
+                self._set_windows()
+        return result or self._advance_to(goal)
 
     def _advance_to(self, goal: float) -> int:
         result = GOOD

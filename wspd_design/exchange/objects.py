@@ -33,7 +33,7 @@ def stop_object(
         "plant": run.plant,
         "sample_time_s": run.sample_time,
         "initial_speed_m_s": run.initial_speed,
-        "scenario": scenario_object(scenario),
+        "scenario": scenario_object(scenario, dead_time=run.dead_time, shortest_pulse=run.shortest_pulse),
         "witness": witness,
         "slip_reference": slip_reference,
         "ending": run.ending.name.lower(),
@@ -54,6 +54,9 @@ def stop_object(
         "lock_time_s": figures.lock_time,
         "valve_switches": figures.valve_switches,
         "vented_air": figures.vented_air,
+        "air_used_Nl": figures.air_used,
+        "lowest_reservoir_Pa": figures.lowest_reservoir,
+        "watchdog_fills": figures.watchdog_fills,
         "saturated_share": figures.saturated_share,
         "momentum_residual": figures.momentum_residual,
         "energy_residual": figures.energy_residual,
@@ -71,8 +74,8 @@ def stop_object(
     }
 
 
-def scenario_object(scenario: Scenario) -> dict[str, Any]:
-    """Return where a stop starts and what disturbs it."""
+def scenario_object(scenario: Scenario, *, dead_time: float, shortest_pulse: float) -> dict[str, Any]:
+    """Return where a stop starts and what disturbs it; the valves have these times by scenario or vehicle."""
     rails, sensing, start = scenario.axle_rails, scenario.sensing, scenario.start
     loads = scenario.load_irregularity
     return {
@@ -93,8 +96,8 @@ def scenario_object(scenario: Scenario) -> dict[str, Any]:
         "reference_drift_m_s2": sensing.reference_drift,
         "reference_noise_m_s": sensing.reference_noise,
         "torque_error": sensing.torque_error,
-        "dead_time_s": sensing.dead_time,
-        "shortest_pulse_s": sensing.shortest_pulse,
+        "dead_time_s": dead_time,
+        "shortest_pulse_s": shortest_pulse,
     }
 
 

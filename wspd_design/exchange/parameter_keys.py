@@ -64,6 +64,7 @@ VEHICLE_KEYS = {
     "dynamic.fade_speed": "of the wheel rim, below which the torque falls in proportion",
     "dynamic.cut_out_speed": "of the wheel rim, where nothing is left of it",
     "dynamic.drop_slip": "beyond which the brake of the wheelset drops out for the rest of the stop; default never",
+    "dynamic.axle_shares": "torque and power of each axle from the front over these, 0 without a motor; default all 1",
     "track_brake.force": "of all magnets, outside the adhesion of the wheels",
     "track_brake.build_up_time": "time constant; default 0",
     "track_brake.cut_out_speed": "below which the magnets are lifted; default never",

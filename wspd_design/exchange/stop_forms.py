@@ -78,8 +78,12 @@ SCENARIO = Form(
             kind="number",
             meaning="relative error of the torque that the controller computes from the pressure",
         ),
-        Key(name="dead_time_s", kind="number", meaning="from the command to the valve"),
-        Key(name="shortest_pulse_s", kind="number", meaning="shorter ones do not open a valve"),
+        Key(name="dead_time_s", kind="number", meaning="from the command to the valve, by option or vehicle"),
+        Key(
+            name="shortest_pulse_s",
+            kind="number",
+            meaning="shorter ones do not open a valve; by option or vehicle",
+        ),
     ),
 )
 WITNESS = Form(
@@ -198,6 +202,22 @@ STOP = Form(
             name="vented_air",
             kind="number",
             meaning="full brake cylinders let out, mean of the wheelsets with a brake",
+        ),
+        nullable(
+            "air_used_Nl",
+            "normal litres that all brake cylinders took from the reservoir; null where the vehicle states no "
+            "cylinder volume",
+        ),
+        nullable(
+            "lowest_reservoir_Pa",
+            "pressure of the reservoir above the atmosphere at the end, which nothing refills; null where the vehicle "
+            "states no volume of its reservoir",
+        ),
+        Key(
+            name="watchdog_fills",
+            kind="integer",
+            nullable=True,
+            meaning="times that the watchdog of a wheelset filled, all wheelsets; null without watchdogs",
         ),
         nullable("saturated_share", "share of the samples that fill or vent all the time"),
         Key(

@@ -45,6 +45,21 @@ def sin(x: Number) -> Number:
     return math.sin(x) if type(x) is float else _elementary("sin", x)
 
 
+def tan(x: Number) -> Number:
+    """Tangent."""
+    return math.tan(x) if type(x) is float else _elementary("tan", x)
+
+
+def log(x: Number) -> Number:
+    """Natural logarithm."""
+    return math.log(x) if type(x) is float else _elementary("log", x)
+
+
+def sqrt(x: Number) -> Number:
+    """Square root."""
+    return math.sqrt(x) if type(x) is float else _elementary("sqrt", x)
+
+
 def maximum(x: Number, y: Number) -> Number:
     """Return the larger of two numbers."""
     return _extremum(x, y, largest=True)

@@ -1,13 +1,15 @@
 """From parameter files to the records that the physics and the controllers take."""
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
 
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.brake_checks import check_further_brakes
+from wspd_design.parameters.brakes import check_brake
 from wspd_design.parameters.contradictions import (
     check_heights,
     notice_of_rail,
@@ -29,14 +31,17 @@ from wspd_design.parameters.records import (
     Brake,
     Constants,
     Contact,
+    DynamicBrake,
     KnorrBremseTable,
     MitsubishiTable,
+    Pads,
     PaperGains,
     ParameterSet,
     Rail,
     RailProfile,
     Source,
     SpectrumCoefficients,
+    TrackBrake,
     TrackSpectrum,
     TrenitaliaTable,
     Vehicle,
@@ -61,7 +66,6 @@ __all__ = [
 
 _Record = TypeVar("_Record")
 
-_SINGULAR = 1e-6  # distance of supply_rate * fill_time from 1, where the filling law is 0/0
 _MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms or to 0.1 t
 
 
@@ -117,21 +121,20 @@ def vehicle_of(parameters: ParameterSet) -> Vehicle:
         for name in ("wheelsets", "axles_per_bogie", "bodies")
         if name in values
     }
-    together = values["brake.supply_rate"] * values["brake.fill_time"]
-    if abs(together - 1.0) < _SINGULAR:
-        raise UserError(
-            f"supply_rate times fill_time = {together:g} of the brake in vehicle {parameters.name} must differ from 1 "
-            "by more than 1e-6: the closed form of the filling is singular there; change one of them a little."
-        )
+    check_brake(values, parameters.name)
     vehicle = _build(
         Vehicle,
         values | counts,
         name=parameters.name,
         brake=_build(Brake, values, "brake.", bounds=_bounds(parameters, "brake.")),
         contact=_build(Contact, values, "contact.", bounds=_bounds(parameters, "contact.")),
+        pads=_part(Pads, parameters, "pads."),
+        dynamic=_part(DynamicBrake, parameters, "dynamic."),
+        track_brake=_part(TrackBrake, parameters, "track_brake."),
         bounds=_bounds(parameters),
     )
     _check_gear(vehicle)
+    check_further_brakes(vehicle)
     check_heights(vehicle)
     return vehicle
 
@@ -155,6 +158,22 @@ def _check_gear(vehicle: Vehicle) -> None:
             f"mass = {vehicle.mass:g} kg in vehicle {vehicle.name} must equal {bodies} + {gear.supports} bogie_mass "
             f"= {parts:g} kg; change the three together."
         )
+
+
+def _part(record: type[_Record], parameters: ParameterSet, prefix: str) -> _Record | None:
+    """Build a part that a vehicle may have, None where its file has no entry of it."""
+    values = _values(parameters)
+    given = {name.removeprefix(prefix) for name in values if name.startswith(prefix)}
+    if not given:
+        return None
+    needed = (field.name for field in fields(record) if field.default is MISSING)  # type: ignore[arg-type]
+    missing = [f"[{prefix}{name}]" for name in needed if name not in given]
+    if missing:
+        raise UserError(
+            f"vehicle {parameters.name} has [{prefix}{min(given)}] but lacks {', '.join(missing)}; add "
+            f"{'it' if len(missing) == 1 else 'them'}, or leave out all of {prefix.rstrip('.')}."
+        )
+    return _build(record, values, prefix, bounds=_bounds(parameters, prefix))
 
 
 def load_rail(name_or_path: str | Path) -> Rail:

@@ -4,9 +4,11 @@ The history of each number (unit, source, status) stays with the :class:`Entry` 
 stay with the record.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 from wspd_design.parameters.bounds import EXACT, Bounds
+from wspd_design.parameters.schema import BuildUp, ValveKind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,14 +89,31 @@ class Brake:
 
     max_torque: float  # N m per wheelset, of an axle with share 1
     max_pressure: float  # Pa
-    supply_rate: float  # 1/s, build-up of the supply pressure, eq. (8)
-    fill_time: float  # s, T_F
-    vent_time: float  # s, T_V
+    supply_rate: float = 0.0  # 1/s, build-up of the supply pressure, eq. (8); of the main pipe
+    fill_time: float  # s, T_F, or the time of the orifice
+    vent_time: float  # s, T_V, likewise
     disturbance_gain: float  # -, of T_d, the vibration of the pads at the onset of braking
     disturbance_decay: float  # 1/s
     disturbance_frequency: float  # Hz
+    build_up: BuildUp = "main-pipe"  # or "electro-pneumatic"
+    build_up_delay: float = 0.0  # s, until an electro-pneumatic demand rises
+    build_up_ramp: float = 0.0  # s, in which it rises evenly to the full pressure
+    valve: ValveKind = "lag"  # or "orifice"
+    critical_pressure_ratio: float = 0.528  # -, of the orifices, ISO 6358; that of an ideal nozzle
+    hold_leak: float = 0.0  # 1/s, rate at which a held cylinder loses its pressure
+    dead_time: float = 0.0  # s, from a command to the valve
+    shortest_pulse: float = 0.0  # s, that opens a valve
+    longest_release: float = 0.0  # s without filling, after which the watchdog fills; 0: there is none
+    cylinder_volume: float = 0.0  # m3, of all brake cylinders of one wheelset, with their pipes
+    reservoir_volume: float = 0.0  # m3, of the one reservoir of the vehicle; 0: it does not run low
+    reservoir_pressure: float = 0.0  # Pa above the atmosphere at the start; 0: max_pressure
     axle_shares: tuple[float, ...] = ()  # of max_torque, from the front, 0 without a brake; empty: all 1
     bounds: Bounds = EXACT
+
+    @property
+    def supply_pressure(self) -> float:
+        """Pressure of the reservoir at the start, above the atmosphere [Pa]."""
+        return self.reservoir_pressure or self.max_pressure
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,6 +125,51 @@ class Contact:
     semi_axis_lateral: float  # m, b
     kalker_c11: float  # -
     reference_load: float  # N, wheel load at which a and b are given
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pads:
+    """Friction of the pads or blocks of one wheelset, relative to that behind the torque at full pressure.
+
+    Empty tables stand for friction that does not depend on speed or temperature.
+    """
+
+    kind: str = "disc"  # or "tread"
+    speeds: tuple[float, ...] = ()  # m/s, of the wheel rim, rising
+    speed_factors: tuple[float, ...] = ()  # -
+    temperatures: tuple[float, ...] = ()  # K, above that before the stop, rising
+    temperature_factors: tuple[float, ...] = ()  # -
+    heat_capacity: float = math.inf  # J/K per wheelset, of what the friction heats
+    cooling: float = 0.0  # W/K per wheelset
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DynamicBrake:
+    """Electrodynamic brake of one wheelset, for which its friction brake stands back."""
+
+    torque: float  # N m per wheelset, at most
+    power: float = math.inf  # W per wheelset, at most
+    build_up_time: float  # s, time constant with which the torque comes and goes
+    fade_speed: float  # m/s of the wheel rim, below it the torque falls in proportion
+    cut_out_speed: float  # m/s of the wheel rim, where nothing is left of it
+    drop_slip: float = 1.0  # -, beyond it the brake of the wheelset drops out for the rest of the stop
+    axle_shares: tuple[
+        float, ...
+    ] = ()  # of torque and power, from the front, 0 without a motor; empty: all 1
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackBrake:
+    """Magnetic track brake of the vehicle: magnets that rub on the rails, outside the adhesion of the wheels."""
+
+    force: float  # N, of all magnets
+    build_up_time: float = 0.0  # s, time constant; 0 for a force that is there at once
+    cut_out_speed: float = 0.0  # m/s, below it the magnets are lifted; 0 where they stay down
+    speeds: tuple[float, ...] = ()  # m/s, rising
+    speed_factors: tuple[float, ...] = ()  # -, of the force
     bounds: Bounds = EXACT
 
 
@@ -139,7 +203,10 @@ class Vehicle:
     contact: Contact
     axles_per_bogie: int = 2  # 1 where single axles carry the body
     bodies: int = 1  # more than one: an articulated train on as many bogies and one
-    bounds: Bounds = EXACT  # of the numbers above; brake and contact have their own
+    pads: Pads | None = None  # None: pad friction is constant
+    dynamic: DynamicBrake | None = None
+    track_brake: TrackBrake | None = None
+    bounds: Bounds = EXACT  # of the numbers above; brake, contact and the like have their own
 
     @property
     def wheel_inertia(self) -> float:
@@ -150,6 +217,21 @@ class Vehicle:
     def brake_shares(self) -> tuple[float, ...]:
         """Torque of the brake of each axle over ``brake.max_torque``, from the front; 0 without a brake."""
         return self.brake.axle_shares or (1.0,) * self.wheelsets
+
+    @property
+    def dynamic_shares(self) -> tuple[float, ...]:
+        """Torque and power of the electrodynamic brake of each axle over those of ``dynamic``; 0 without one."""
+        if self.dynamic is None:
+            return (0.0,) * self.wheelsets
+        return self.dynamic.axle_shares or (1.0,) * self.wheelsets
+
+    def dynamic_of(self, axle: int) -> DynamicBrake | None:
+        """Return the electrodynamic brake of one axle, counted from 0 at the front."""
+        if self.dynamic is None:
+            return None
+        share = self.dynamic_shares[axle]
+        power = share * self.dynamic.power if share else 0.0
+        return replace(self.dynamic, torque=share * self.dynamic.torque, power=power)
 
     def brake_of(self, axle: int) -> Brake:
         """Return the brake of one axle, counted from 0 at the front; one without a brake has no torque."""

@@ -6,13 +6,15 @@ the file.
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 from wspd_design.parameters.units import Dimension
 
 Shape: TypeAlias = Literal["number", "word", "words", "vector", "matrix", "word matrix"]
 Kind: TypeAlias = Literal["constants", "vehicle", "rail", "controller", "track"]
 Preset: TypeAlias = Literal["calibrated", "textbook"]
+BuildUp: TypeAlias = Literal["main-pipe", "electro-pneumatic"]
+ValveKind: TypeAlias = Literal["lag", "orifice"]
 
 PRESETS: tuple[Preset, ...] = ("calibrated", "textbook")
 """Two reconstructions of each baseline: fitted to Table 10, or from conventional practice."""
@@ -77,11 +79,45 @@ def _share(shape: Shape = "number", *, zero: bool = True) -> Quantity:
     return Quantity(dimension="ratio", shape=shape, low=0.0, high=1.0, low_is_allowed=zero, plausible=least)
 
 
+def _at_most(dimension: Dimension, largest: float) -> Quantity:
+    return Quantity(dimension=dimension, low=0.0, plausible=(0.0, largest))
+
+
+def _optional(quantity: Quantity) -> Quantity:
+    return replace(quantity, optional=True)
+
+
+def _word(*words: str) -> Quantity:
+    return Quantity(dimension="ratio", shape="word", words=words, optional=True)
+
+
 _CONSTANTS: Schema = {
     "gravity": _positive("acceleration"),
     "slip_regularization_speed": _positive("speed"),
     "stop_speed": _positive("speed"),
     "time_limit": _positive("time"),
+}
+
+_FURTHER_BRAKES: Schema = {
+    "pads.kind": Quantity(dimension="ratio", shape="word", words=("disc", "tread")),
+    "pads.speeds": _not_negative("speed", "vector"),
+    "pads.speed_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
+    "pads.temperatures": _not_negative("temperature", "vector"),
+    "pads.temperature_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
+    "pads.heat_capacity": _positive("heat capacity", plausible=(1e3, 1e7)),
+    "pads.cooling": _not_negative("heat flow"),
+    "dynamic.torque": _positive("torque", plausible=(100.0, 1e6)),
+    "dynamic.power": _positive("power", plausible=(1e3, 1e7)),
+    "dynamic.build_up_time": _positive("time", plausible=(0.01, 10.0)),
+    "dynamic.fade_speed": _positive("speed"),
+    "dynamic.cut_out_speed": _positive("speed"),
+    "dynamic.drop_slip": _share(zero=False),
+    "dynamic.axle_shares": _not_negative("ratio", "vector"),
+    "track_brake.force": _positive("force", plausible=(1e3, 1e6)),
+    "track_brake.build_up_time": _not_negative("time"),
+    "track_brake.cut_out_speed": _not_negative("speed"),
+    "track_brake.speeds": _not_negative("speed", "vector"),
+    "track_brake.speed_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
 }
 
 _VEHICLE: Schema = {
@@ -109,9 +145,21 @@ _VEHICLE: Schema = {
     "brake.max_torque": _positive("torque", plausible=(100.0, 1e6)),
     "brake.axle_shares": replace(_not_negative("ratio", "vector"), optional=True),
     "brake.max_pressure": _positive("pressure", plausible=(1e4, 1e7)),
-    "brake.supply_rate": _positive("rate", plausible=(0.01, 1e3)),
+    "brake.build_up": _word(*get_args(BuildUp)),
+    "brake.supply_rate": _optional(_positive("rate", plausible=(0.01, 1e3))),
+    "brake.build_up_delay": _optional(_at_most("time", 10.0)),
+    "brake.build_up_ramp": _optional(_positive("time", plausible=(1e-3, 60.0))),
+    "brake.valve": _word(*get_args(ValveKind)),
     "brake.fill_time": _positive("time", plausible=(1e-3, 60.0)),
     "brake.vent_time": _positive("time", plausible=(1e-3, 60.0)),
+    "brake.critical_pressure_ratio": _optional(_positive("ratio", plausible=(0.1, 0.7))),
+    "brake.hold_leak": _optional(_at_most("rate", 1.0)),
+    "brake.dead_time": _optional(_at_most("time", 1.0)),
+    "brake.shortest_pulse": _optional(_at_most("time", 1.0)),
+    "brake.longest_release": _optional(_positive("time", plausible=(0.1, 120.0))),
+    "brake.cylinder_volume": _optional(_positive("volume", plausible=(1e-4, 0.1))),
+    "brake.reservoir_volume": _optional(_positive("volume", plausible=(1e-3, 5.0))),
+    "brake.reservoir_pressure": _optional(_positive("pressure", plausible=(1e4, 2e6))),
     "brake.disturbance_gain": _not_negative("ratio"),
     "brake.disturbance_decay": _positive("rate"),
     "brake.disturbance_frequency": _positive("frequency"),
@@ -120,6 +168,7 @@ _VEHICLE: Schema = {
     "contact.semi_axis_lateral": _positive("length", plausible=(5e-4, 0.05)),
     "contact.kalker_c11": _positive("ratio", plausible=(0.1, 20.0)),
     "contact.reference_load": _positive("force", plausible=(1e3, 1e6)),
+    **{name: _optional(quantity) for name, quantity in _FURTHER_BRAKES.items()},
     "laden.mass": replace(_positive("mass", plausible=(2e3, 1e6)), optional=True),
     "laden.body_height": replace(_positive("length", plausible=(0.1, 6.0)), optional=True),
     "laden.max_torque": replace(_positive("torque", plausible=(100.0, 1e6)), optional=True),

@@ -4,6 +4,7 @@ All wheels carry the static load, so one wheelset stands for all of them. It is 
 and with equal rails, for any number of wheelsets.
 """
 
+import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
@@ -46,10 +47,13 @@ class Quarter(RigidWheelsets):
         speed: Number,
         creep_forces: tuple[Number, ...],
         transfers: tuple[Number, ...] = (),  # noqa: ARG002 - there are none
+        time: Number = math.inf,
         grade_force: Number = 0.0,
     ) -> TrainMotion:
         """Acceleration of the train, eq. (1)."""
         resistance = slip_model.resistance(self.vehicle, speed, grade_force)
+        if self.vehicle.track_brake is not None:
+            resistance += self.track_brake_force(speed, time)
         mean = sum(creep_forces) / self.axles
         return TrainMotion(
             acceleration=slip_model.train_acceleration(self.vehicle, mean, resistance),
@@ -90,7 +94,7 @@ class QuarterOnRail:
         wheel_speed : number
             Angular speed [rad/s].
         torque : number
-            Braking torque per wheelset [N m].
+            Nominal torque of the friction brake per wheelset [N m].
         """
         plant = self.plant
         damping = plant.axle_condition(time=time, wheel_load=self.wheel_load).damping
@@ -102,7 +106,7 @@ class QuarterOnRail:
             torque=torque,
             condition=AxleCondition(stiffness=self.stiffness, damping=damping),
         )
-        train = plant.train_motion(speed=speed, creep_forces=(axle.creep_force,) * plant.axles)
+        train = plant.train_motion(speed=speed, creep_forces=(axle.creep_force,) * plant.axles, time=time)
         return Motion(
             acceleration=train.acceleration,
             wheel_acceleration=axle.rates[0],

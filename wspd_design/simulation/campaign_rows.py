@@ -16,12 +16,13 @@ from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Controller
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
-from wspd_design.parameters.records import Vehicle
+from wspd_design.parameters.records import Brake, Vehicle
 from wspd_design.plants.names import plant_of
 from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE, Batch, Cases, run_batch
 from wspd_design.simulation.draws import Deck, Draw
 from wspd_design.simulation.ideal import FILLING, ideal_input
 from wspd_design.simulation.loop_input import first_slip, loop_input
+from wspd_design.simulation.metrics import air_used, lowest_reservoir
 from wspd_design.simulation.records import Scenario, Sensing, Start
 from wspd_design.simulation.self_check import distance_difference, slip_difference
 from wspd_design.simulation.stop import simulate_on
@@ -45,6 +46,8 @@ FIGURES = (
     "vented_air",
 )
 """Of each stop, beside those of its axles."""
+AIR_FIGURES = ("air_used_Nl", "lowest_reservoir_Pa")
+"""Of each stop of a vehicle whose cylinders and reservoir have a volume."""
 AXLE_FIGURES = ("longest_lock_s", "total_lock_s", "sliding_work_J")
 """Of each axle, front axle first; locks count above 10 km/h, to one integration step."""
 CHECKED = ("step_distance_change", "step_slip_change")
@@ -124,8 +127,19 @@ def columns(plan: Plan) -> list[tuple[str, str]]:
     plant = plant_of(plan.plant, plan.vehicle)
     axles = 1 if plant.alike else plant.axles
     numbers = [draw.name for draw in plan.draws]
-    numbers += [*FIGURES, *(f"{name}_{axle + 1}" for name in AXLE_FIGURES for axle in range(axles)), *CHECKED]
+    numbers += [
+        *FIGURES,
+        *_brake_figures(plan.vehicle.brake),
+        *(f"{name}_{axle + 1}" for name in AXLE_FIGURES for axle in range(axles)),
+        *CHECKED,
+    ]
     return [("run", "i8"), ("seed", "i8"), *((name, "f8") for name in numbers), ("stopped", "?")]
+
+
+def _brake_figures(brake: Brake) -> list[str]:
+    """Figures that only some brakes have."""
+    known = (brake.cylinder_volume, brake.reservoir_volume, brake.longest_release)
+    return [name for name, number in zip((*AIR_FIGURES, "watchdog_fills"), known, strict=True) if number]
 
 
 def compute_rows(plan: Plan, first: int, count: int) -> "NDArray[Any]":
@@ -188,6 +202,9 @@ def _figures(plan: Plan, cases: Cases, first: int) -> dict[str, Any]:
         "lock_time_s": lanes["lock_time"].max(axis=0),
         "valve_switches_per_s": lanes["valve_switches"][braked].mean(axis=0) / lasted,
         "vented_air": lanes["vented_pressure"][braked].sum(axis=0) / full,
+        **_of_brakes(
+            cases, lanes["filled_pressure"][braked].sum(axis=0), lanes["watchdog"][braked].sum(axis=0)
+        ),
         **{
             f"{name}_{axle + 1}": values[axle]
             for name, values in zip(AXLE_FIGURES, by_axle, strict=True)
@@ -195,6 +212,17 @@ def _figures(plan: Plan, cases: Cases, first: int) -> dict[str, Any]:
         },
         "stopped": batch.stopped,
     }
+
+
+def _of_brakes(cases: Cases, filled: "Array", watchdog: "Array") -> dict[str, Any]:
+    """Columns of air and watchdogs, as far as the vehicle has them."""
+    brakes = [plant.vehicle.brake for plant, _ in cases]
+    columns = {
+        AIR_FIGURES[0]: [air_used(brake, each) for brake, each in zip(brakes, filled, strict=True)],
+        AIR_FIGURES[1]: [lowest_reservoir(brake, each) for brake, each in zip(brakes, filled, strict=True)],
+        "watchdog_fills": watchdog,
+    }
+    return {name: columns[name] for name in _brake_figures(brakes[0])}
 
 
 def _ideal_distances(cases: Cases, runs: str) -> "Array":

@@ -26,7 +26,7 @@ def disturbances_of(stop: Scenario) -> str:
         (sensing.reference_drift, f"reference drift {sensing.reference_drift:g} m/s2"),
         (sensing.reference_noise, f"reference noise {sensing.reference_noise:g} m/s rms"),
         (sensing.torque_error, f"torque error {100.0 * sensing.torque_error:g} %"),
-        (sensing.dead_time, f"dead time {1e3 * sensing.dead_time:g} ms"),
-        (sensing.shortest_pulse, f"shortest pulse {1e3 * sensing.shortest_pulse:g} ms"),
+        (sensing.dead_time, f"dead time {1e3 * (sensing.dead_time or 0.0):g} ms"),
+        (sensing.shortest_pulse, f"shortest pulse {1e3 * (sensing.shortest_pulse or 0.0):g} ms"),
     )
     return ", ".join(words for present, words in said if present)

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 _PER_COUNT = 4  # numbers that Philox makes of one state of its counter
 _CASTS: Mapping[Any, Callable[[float], Any]] = {
     float: float,
+    float | None: float,
     int: round,
     bool: bool,
 }  # of fields that can be drawn

@@ -60,6 +60,7 @@ def loop_input(
                     grade_force=each_plant.vehicle.mass * (gravity * each.grade),
                     axle_offset=each_plant.offsets[axle],
                     braking_time=each.start.braking_time,
+                    reservoir_drain=_drain(each_plant.vehicle, axle),
                 ),
             )
             for each_plant, each in cases
@@ -76,7 +77,7 @@ def loop_input(
         wheel_speeds=np.tile([_rim_speed(each) / p.vehicle.wheel_radius for p, each in cases], axles),
         pressures=np.tile([_pressure(p.vehicle.brake, each.start) for p, each in cases], axles),
         settings=_settings(cases, controller, refinement, longest_step or LONGEST_STEP),
-        disturbances=np.array([_disturbances(each.sensing) for each in scenarios]).T,
+        disturbances=np.array([_disturbances(p.vehicle.brake, each.sensing) for p, each in cases]).T,
         seeds=np.array([each.seed for each in scenarios], dtype=np.uint64),
         patch_starts=starts,
         patch_rails=rails,
@@ -90,15 +91,19 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
         raise UserError(
             f"sample time = {controller.sample_time:g} s of controller {controller.name} must lie between 1 ms and 10 s"
         )
-    if scenario.sensing.shortest_pulse > controller.sample_time:
+    shortest = scenario.sensing.shortest_pulse_of(plant.vehicle.brake)
+    if shortest > controller.sample_time:
         raise UserError(
-            f"shortest pulse = {scenario.sensing.shortest_pulse:g} s must not exceed the sample time of "
+            f"shortest pulse = {shortest:g} s must not exceed the sample time of "
             f"{controller.sample_time:g} s of controller {controller.name}, whose valves would never open"
         )
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
         raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
-    if plant.alike and len(set(plant.vehicle.brake_shares)) > 1:
+    if (
+        plant.alike
+        and len(set(zip(plant.vehicle.brake_shares, plant.vehicle.dynamic_shares, strict=True))) > 1
+    ):
         raise UserError(
             f"vehicle {plant.vehicle.name} has axles with other brakes than the rest, which need the plant "
             f'"{Planar.name}"'
@@ -166,12 +171,20 @@ def _settings(
 
 
 def _lane_vehicle(vehicle: Vehicle, axle: int, *, calm: bool) -> Vehicle:
-    """The vehicle with the brake of an axle; ``calm`` are pads that do not vibrate beside stops where they do."""
+    """The vehicle with the brakes of an axle; ``calm`` are pads that do not vibrate beside stops where they do."""
     brake = vehicle.brake_of(axle)
-    return replace(vehicle, brake=replace(brake, disturbance_gain=0.0) if calm else brake)
+    brake = replace(brake, disturbance_gain=0.0) if calm else brake
+    return replace(vehicle, brake=brake, dynamic=vehicle.dynamic_of(axle))
 
 
-def _disturbances(sensing: Sensing) -> list[float]:
+def _drain(vehicle: Vehicle, axle: int) -> float:
+    """Volume of the cylinders of an axle over that of the reservoir; 0 where the reservoir does not run low."""
+    brake = vehicle.brake
+    braked = vehicle.brake_shares[axle] > 0.0
+    return brake.cylinder_volume / brake.reservoir_volume if brake.reservoir_volume and braked else 0.0
+
+
+def _disturbances(brake: Brake, sensing: Sensing) -> list[float]:
     pulses = sensing.pulses_per_turn
     numbers = {
         "reference_factor": 1.0 + sensing.reference_error,
@@ -181,8 +194,10 @@ def _disturbances(sensing: Sensing) -> list[float]:
         "pulse_angle": 2.0 * math.pi / pulses if pulses else 0.0,
         "timed": float(sensing.period_timing),
         "torque_factor": 1.0 + sensing.torque_error,
-        "dead_time": sensing.dead_time,
-        "shortest_pulse": sensing.shortest_pulse,
+        "dead_time": sensing.dead_time_of(brake),
+        "shortest_pulse": sensing.shortest_pulse_of(brake),
+        "longest_release": brake.longest_release,
+        "reservoir_pressure": brake.supply_pressure,
     }
     return [numbers[name] for name in DISTURBANCES]
 

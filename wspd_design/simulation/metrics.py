@@ -4,9 +4,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wspd_design.model.number import Number
+from wspd_design.model.valve_flow import ATMOSPHERE
 from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
-from wspd_design.parameters.records import Vehicle
+from wspd_design.parameters.records import Brake, Vehicle
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario, Start
@@ -29,6 +31,11 @@ class Metrics:
     saturated_share: float  # -, samples that fill or vent for the whole sample time
     valve_switches: int  # changes of the valve state
     vented_air: float  # -, full brake cylinders let out, mean of the wheelsets
+    air_used: (
+        float  # normal litres that all cylinders took from the reservoir; NaN where their volume is not known
+    )
+    lowest_reservoir: float  # Pa above the atmosphere, in a stop without refilling; NaN without a reservoir
+    watchdog_fills: int | None  # times that a watchdog filled, all wheelsets; None without watchdogs
     adhesion_utilization: float  # -, creep force over the force at the adhesion peak, mean over time
     ideal_stop: float  # m, distance of the brake that holds the best slip; NaN where there is none
     ideal_ending: Ending | None  # of the ideal stop; None where it is not known
@@ -88,6 +95,9 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         else math.nan,
         valve_switches=round(totals.valve_switches),
         vented_air=totals.vented_pressure / vehicle.brake.max_pressure / braked_axles(vehicle),
+        air_used=air_used(vehicle.brake, totals.filled_pressure),
+        lowest_reservoir=lowest_reservoir(vehicle.brake, totals.filled_pressure),
+        watchdog_fills=totals.watchdog_fills if vehicle.brake.longest_release else None,
         adhesion_utilization=adhesion_utilization(run, vehicle, scenario),
         ideal_stop=ideal_distance,
         ideal_ending=None if ideal is None else ideal.ending,
@@ -96,6 +106,21 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         momentum_residual=momentum_residual(run, vehicle),
         energy_residual=energy_residual(run, vehicle),
     )
+
+
+def air_used(brake: Brake, filled: Number) -> Number:
+    """Air that cylinders take from the reservoir for pressures that add up to ``filled`` [Pa], in normal litres.
+
+    A normal litre is one at the pressure of the standard atmosphere and the temperature of the cylinder.
+    """
+    return 1e3 * brake.cylinder_volume * filled / ATMOSPHERE if brake.cylinder_volume else math.nan
+
+
+def lowest_reservoir(brake: Brake, filled: Number) -> Number:
+    """Pressure of a reservoir that nothing refills after pressures that add up to ``filled`` were let in [Pa]."""
+    if not brake.reservoir_volume:
+        return math.nan
+    return brake.supply_pressure - brake.cylinder_volume / brake.reservoir_volume * filled
 
 
 def braked_axles(vehicle: Vehicle) -> int:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Rail
+from wspd_design.parameters.records import Brake, Rail
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,16 +55,16 @@ class Sensing:
     torque_error: float = (
         0.0  # -, relative error of the torque that the controller computes from the pressure
     )
-    dead_time: float = 0.0  # s, from the command to the valve
-    shortest_pulse: float = 0.0  # s, that opens a valve; at most one sample time
+    dead_time: float | None = None  # s, from the command to the valve; None: that of the vehicle
+    shortest_pulse: float | None = None  # s, that opens a valve; at most one sample time; None: the vehicle's
 
     def __post_init__(self) -> None:
         """Refuse what is no disturbance."""
         for name, value, unit in (
             ("speed noise", self.speed_noise, "m/s"),
             ("reference noise", self.reference_noise, "m/s"),
-            ("dead time", self.dead_time, "s"),
-            ("shortest pulse", self.shortest_pulse, "s"),
+            ("dead time", self.dead_time or 0.0, "s"),
+            ("shortest pulse", self.shortest_pulse or 0.0, "s"),
         ):
             if not 0.0 <= value < math.inf:
                 raise UserError(f"{name} = {value:g} {unit} must be finite and not negative; 0 is none")
@@ -85,6 +85,14 @@ class Sensing:
             )
         if self.period_timing and not self.pulses_per_turn:
             raise UserError("period timing needs a pulse wheel; give the pulses per turn, such as 100")
+
+    def dead_time_of(self, brake: Brake) -> float:
+        """Dead time of a stop [s]: that of the vehicle's brake unless another one is given."""
+        return brake.dead_time if self.dead_time is None else self.dead_time
+
+    def shortest_pulse_of(self, brake: Brake) -> float:
+        """Shortest pulse that opens a valve in a stop [s], likewise."""
+        return brake.shortest_pulse if self.shortest_pulse is None else self.shortest_pulse
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -219,6 +227,8 @@ class Totals:
     valve_switches: (
         float  # changes of the valve state that the commands ask for, mean of the wheelsets with a brake
     )
+    filled_pressure: float  # Pa, sum over all fillings of all wheelsets with a brake of the pressure let in
+    watchdog_fills: int  # times that the watchdog of a wheelset with a brake filled
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -233,6 +243,8 @@ class Run:
     rail: str
     plant: str
     sample_time: float  # s
+    dead_time: float  # s, that the valves had
+    shortest_pulse: float  # s, likewise
     initial_speed: float  # m/s
     ending: Ending
     time: "Trace"  # s
@@ -247,6 +259,11 @@ class Run:
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
+    dynamic_torque: "Trace | None" = None  # N m, per wheelset, of an electrodynamic brake, within ``torque``
+    pad_temperature: "Trace | None" = (
+        None  # K above that before the stop, per wheelset, where friction depends on it
+    )
+    track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
 
     @property
     def train(self) -> str:

@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from wspd_design.model.generated import brake as generated
+from wspd_design.model.brake import demand_time, demanded_pressure
 from wspd_design.model.generated import motion
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.loading import constants
@@ -14,13 +14,16 @@ _FULL = 40.0  # time constants of the supply (8), after which it lacks less than
 
 
 def full_supply_time(brake: Brake) -> float:
-    """Time after which the air supply (8) is full [s]."""
-    return _FULL / brake.supply_rate
+    """Time after which the build-up of the brake demands the full pressure [s]."""
+    if brake.build_up == "main-pipe":
+        return _FULL / brake.supply_rate
+    return float(demand_time(brake, brake.max_pressure))
 
 
 def available_torque(brake: Brake, braking_time: float) -> float:
-    """Torque per wheelset that the supply (8) allows at a time [s] since the brake was applied [N m]."""
-    return brake.max_torque * float(generated.supply_pressure(braking_time, 1.0, brake.supply_rate))
+    """Torque per wheelset that the build-up allows at a time [s] since the brake was applied [N m]."""
+    unit = replace(brake, max_pressure=1.0)
+    return brake.max_torque * float(demanded_pressure(unit, braking_time))
 
 
 def holding_torque(

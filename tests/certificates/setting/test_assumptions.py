@@ -9,6 +9,11 @@ from wspd_design.certificates.setting import assumptions
 from wspd_design.certificates.setting.assumptions import Assumption, not_met
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.certificates.theorems.theorem import asked
+from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake
+
+
+def test_pads_of_constant_friction_are_no_other_vehicle(er24pc):
+    assert not_met(replace(er24pc, pads=Pads(kind="tread")), assumptions.ALL) == ""
 
 
 def unlike_brakes(vehicle):
@@ -21,7 +26,35 @@ def shared_bogies(vehicle):
     )
 
 
-OTHER = {Assumption.EQUAL_BRAKES: unlike_brakes, Assumption.EQUAL_LOADS: shared_bogies}
+BRAKES = {
+    Assumption.MAIN_PIPE: {"build_up": "electro-pneumatic", "build_up_delay": 0.2, "build_up_ramp": 1.0},
+    Assumption.LAG: {"valve": "orifice"},
+    Assumption.NO_LEAK: {"hold_leak": 0.01},
+    Assumption.NO_DEAD_TIME: {"dead_time": 0.03},
+    Assumption.ANY_PULSE: {"shortest_pulse": 0.01},
+    Assumption.NO_WATCHDOG: {"longest_release": 10.0},
+    Assumption.SUPPLY: {"cylinder_volume": 0.01, "reservoir_volume": 0.15},
+}
+
+
+def with_brake(**changes):
+    return lambda vehicle: replace(vehicle, brake=replace(vehicle.brake, **changes))
+
+
+def with_part(**parts):
+    return lambda vehicle: replace(vehicle, **parts)
+
+
+OTHER = {
+    Assumption.EQUAL_BRAKES: unlike_brakes,
+    Assumption.EQUAL_LOADS: shared_bogies,
+    Assumption.CONSTANT_PADS: with_part(pads=Pads(speeds=(0.0, 40.0), speed_factors=(1.0, 0.8))),
+    Assumption.FRICTION_ALONE: with_part(
+        dynamic=DynamicBrake(torque=8e3, build_up_time=0.5, fade_speed=3.0, cut_out_speed=1.0)
+    ),
+    Assumption.ADHESION_ALONE: with_part(track_brake=TrackBrake(force=4e4)),
+    **{assumption: with_brake(**changes) for assumption, changes in BRAKES.items()},
+}
 """Vehicles that break one assumption each."""
 
 

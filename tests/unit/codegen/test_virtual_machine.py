@@ -109,6 +109,30 @@ def test_all_features_of_a_scenario(er24pc, make_controller, feature):
     assert abs(compiled.stop_totals["distance"][0] - without) > 1e-5  # the feature does something
 
 
+RAMP = {"build_up": "electro-pneumatic", "build_up_delay": 0.25, "build_up_ramp": 1.3}
+ORIFICE = {"valve": "orifice", "fill_time": 0.5, "vent_time": 0.3, "reservoir_pressure": 8e5}
+AIR = {"cylinder_volume": 0.012, "reservoir_volume": 0.06}
+BRAKES = {
+    "ramp, leak and dead time": RAMP | {"hold_leak": 0.1, "dead_time": 0.06},
+    "orifice and shortest pulse": ORIFICE | {"shortest_pulse": 0.05},
+    "low reservoir and watchdog": AIR | {"longest_release": 0.35},
+    "ramp, orifice, low reservoir, watchdog and dead time": RAMP
+    | ORIFICE
+    | AIR
+    | {"longest_release": 0.25, "dead_time": 0.14, "critical_pressure_ratio": 0.4},
+}
+
+
+@pytest.mark.parametrize("kind", BRAKES)
+def test_all_brakes(er24pc, make_controller, kind):
+    vehicle = replace(er24pc, brake=replace(er24pc.brake, **BRAKES[kind]))
+    stop = Scenario(rail=load_rail("low-adhesion"), initial_speed=SPEED)
+    compiled, virtual = both(vehicle, make_controller("trenitalia"), stop)
+    assert_same(virtual, compiled)
+    assert bool(compiled.lane_totals["watchdog"].sum() > 0.0) is ("longest_release" in BRAKES[kind])
+    assert compiled.lane_totals["filled_pressure"].min() > 1e5
+
+
 def test_a_wrong_formula_is_seen(er24pc, make_controller, monkeypatch):
     # The planted fault: one sixth in place of one third for the stages in the middle, in the compiled loop.
     law = make_controller("trenitalia", sample_time=0.1 + 1e-7)

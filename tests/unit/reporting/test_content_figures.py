@@ -17,6 +17,7 @@ from wspd_design.reporting.blocks import Figure
 from wspd_design.reporting.figure_style import INK, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
+from wspd_design.reporting.figures.further_brakes import further_brakes, panels
 from wspd_design.reporting.figures.phase import phase_planes
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.figures.series import (
@@ -32,11 +33,18 @@ from wspd_design.studies.paper.published import load_table10
 
 DOSSIER = sample_dossier(rail="table10-dry")
 SPECIFICATION = DOSSIER.design.specification
+WITH_FURTHER_BRAKES = replace(
+    DOSSIER.trials[0].run,
+    dynamic_torque=0.5 * DOSSIER.trials[0].run.torque,
+    track_brake_force=np.linspace(3e4, 0.0, len(DOSSIER.trials[0].run.time)),
+    pad_temperature=np.abs(DOSSIER.trials[0].run.slip) * 100.0,
+)
 DRAWN = {
     "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds, (0.6, 0.6)),
     "stop": lambda figure: stop_traces(
         figure, DOSSIER.trials[0], SPECIFICATION, wheel_radius=0.55, max_torque=60e3
     ),
+    "further brakes": lambda figure: further_brakes(figure, WITH_FURTHER_BRAKES),
     "phase planes": lambda figure: phase_planes(
         figure, DOSSIER.trials[0].run, DOSSIER.phase_plane, SPECIFICATION
     ),
@@ -256,6 +264,20 @@ def test_thinning_keeps_a_spike_that_every_nth_point_would_lose():
     _, thin_y = thinned(np.arange(100_000.0), y)
     assert len(thin_y) <= 2000
     assert thin_y.max() == 1.0
+
+
+def test_a_stop_has_a_panel_for_each_brake_that_the_vehicle_has():
+    run = WITH_FURTHER_BRAKES
+    assert panels(DOSSIER.trials[0].run) == ()
+    assert [panel.title.split()[0] for panel in panels(run)] == ["Torque", "Force", "Temperature"]
+    (alone,) = panels(replace(DOSSIER.trials[0].run, track_brake_force=run.track_brake_force))
+    assert alone.words == "The track brake pulls with at most 30 kN."
+    with figure_style():
+        drawn = further_brakes(new_figure(height=4.0), run)
+    lines = [axes.get_lines() for axes in drawn.axes]
+    assert [len(each) for each in lines] == [4, 1, 4]
+    assert max(lines[0][0].get_ydata()) == pytest.approx(run.dynamic_torque[:, 0].max() / 1e3)
+    assert max(lines[2][3].get_ydata()) == pytest.approx(run.pad_temperature[:, 3].max())
 
 
 def _with_wheelsets(number):

@@ -21,7 +21,7 @@ ZERO = dict.fromkeys(
 ) | dict.fromkeys(
     (
         *("damping_work", "lock_time", "judged_time", "slip", "slip_squared", "vented_pressure"),
-        "valve_switches",
+        *("valve_switches", "filled_pressure", "watchdog_fills"),
     ),
     0.0,
 )
@@ -43,6 +43,8 @@ def made_up(
         rail="none",
         plant="quarter",
         sample_time=0.1,
+        dead_time=0.0,
+        shortest_pulse=0.0,
         initial_speed=initial_speed,
         ending=ending,
         time=np.array([0.0, end_time]),

@@ -110,7 +110,7 @@ def nominal(vehicle: Vehicle, rail: Rail, slip: Number, speed: Number) -> SlipMo
 
 
 def holding_torque(problem: Problem, speed: float) -> Number:
-    """Torque that holds the reference at a speed [m/s], nominal, whether the brake has it or not [N m]."""
+    """Torque that holds the reference with nominal parameters at a speed [m/s], whatever the brake has [N m]."""
     dynamics = slip_dynamics(problem.vehicle, problem.rail, problem.slip, speed)
     return -dynamics.drift / dynamics.gain
 

@@ -252,8 +252,8 @@ def _within_the_brake(problem: Problem) -> str:
         return ""
     return (
         f"holds slip {problem.slip:g}, which takes {torque:.4g} N m at {speed * KMH:.3g} km/h, and the brake of "
-        f"{problem.vehicle.name} has {limit:.4g} N m: the loop does not rest there, and a valve that fills all the "
-        "time has no averaged pulses"
+        f"{problem.vehicle.name} has {limit:.4g} N m: the loop does not rest there, and a valve that fills "
+        "all the time has no averaged pulses"
     )
 
 

@@ -16,9 +16,9 @@ from wspd_design.certificates.kernel.obligation import Condition, Inequality, Ob
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import AXLE
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.certificates.setting import assumptions, domain
+from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.adhesion_edges import Ranges
-from wspd_design.certificates.setting.assumptions import Assumption
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES, Assumption
 from wspd_design.certificates.setting.model_error import (
     inertia_ratio,
     residual,
@@ -45,8 +45,8 @@ MEASURED = ("wheel radius",)
 
 SETTLED = Fraction(1, 10)  # of the bound: what is left of the transient
 
-ANY_AXLE = assumptions.ALL - {Assumption.EQUAL_BRAKES, Assumption.EQUAL_LOADS}
-"""The claims are about each axle by itself, on its own load and with any torque that the law asks for."""
+ANY_AXLE = ALL - OF_VALVES - {Assumption.EQUAL_BRAKES, Assumption.EQUAL_LOADS}
+"""The claims are about each axle by itself, on its own load and with any torque that the law asks for, at once."""
 
 ASSUMED = ("T = u: no valve lag, no sampling, no limit of the brake torque", "slip reference constant")
 

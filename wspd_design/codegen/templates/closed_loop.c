@@ -1,9 +1,11 @@
 /* Closed loop of vehicles with one sampled controller per wheelset: steps, their ends, samples, results. */
 
+#define ROW (3 + (5 + AXLE_STATES) * AXLES) /* of the trace */
+
 static void write_trace(Loop *loop)
 {
     const Stage *stage = &loop->present;
-    double *row = loop->trace + loop->trace_used++ * (3 + 5 * AXLES);
+    double *row = loop->trace + loop->trace_used++ * ROW;
     loop->recorded = loop->time[0];
     *row++ = loop->stop[TIME * STOPS], *row++ = loop->now.speed[0], *row++ = loop->stop[DISTANCE * STOPS];
     for (int a = 0; a < AXLES; a++) {
@@ -11,12 +13,22 @@ static void write_trace(Loop *loop)
         row[AXLES + a] = stage->slip[a * STOPS];
         row[2 * AXLES + a] = stage->passed[a * STOPS];
         row[3 * AXLES + a] = stage->load[a * STOPS];
-        row[4 * AXLES + a] = loop->torque[a * STOPS];
+        row[4 * AXLES + a] = stage->given[a * STOPS];
+        row[5 * AXLES + a] = stage->dynamic[a * STOPS];
+        for (int k = 1; k < AXLE_STATES; k++) row[(5 + k) * AXLES + a] = loop->now.wheel[k * LANES + a * STOPS];
     }
+}
+
+/* What was filled into the cylinder since its pattern began, for good; nothing where it was let down. */
+static void count_filled(Loop *loop, int l)
+{
+    double gained = loop->filled[l] - loop->start_pressure[l];
+    loop->lane[FILLED * LANES + l] += gained > 0.0 ? gained : 0.0;
 }
 
 static void finish(Loop *loop, int stop)
 {
+    for (int l = stop; l < LANES; l += STOPS) count_filled(loop, l);
     loop->active[stop] = 0.0;
     loop->phase[stop] = DONE;
     loop->running--;
@@ -30,20 +42,20 @@ static int advance(Loop *loop)
     const Motion *const at[4] = {&loop->now, &moved[0], &moved[1], &moved[2]};
     const Stage *const stage[4] = {&loop->present, &further[0], &further[1], &further[2]};
     WIDE double next[STOPS], pressure[2 * LANES], torque[2 * LANES], filled[2 * LANES], damping[2 * LANES];
-    WIDE double lane_step[LANES], slid[LANES];
+    WIDE double lane_step[LANES], slid[LANES], time[2 * STOPS], level[2 * LANES];
     Exponential wheels;
     double *step = loop->step, stop_speed = loop->set.stop_speed;
     if (loop->patches > 0) lay_rails(loop);
     choose_steps(loop, next);
     for (int cuts = 0;; cuts++) { /* an event is found by interpolation, and once more */
-        follow_valves(loop, next, pressure, torque, filled, damping);
+        follow_valves(loop, next, time, pressure, torque, filled, damping, level);
         spread(step, lane_step);
         int adhering = begin_exponential(loop, lane_step, &wheels);
         for (int k = 0; k < 3; k++) {
-            int later = k == 2 ? LANES : 0; /* the last stage stands at the end of the step */
+            int last = k == 2, later = last * LANES; /* the last stage stands at the end of the step */
             move(&loop->now, at[k], stage[k], step, lane_step, k == 2 ? 1.0 : 0.5, &moved[k]);
             if (adhering) slide_exponential(loop, at, stage, k, &wheels, slid), place_exponential(loop, &wheels, slid, &moved[k]);
-            evaluate(loop, &moved[k], torque + later, damping + later, &further[k]);
+            evaluate(loop, &moved[k], time + last * STOPS, torque + later, level + later, damping + later, &further[k]);
         }
         #define ACCELERATION(k) stage[k]->acceleration[s]
         EACH_STOP reached.speed[s] = loop->now.speed[s] + step[s] * (1.0 / 6.0) * SUM(ACCELERATION);
@@ -53,7 +65,7 @@ static int advance(Loop *loop)
                 loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
         }
         if (adhering) end_exponential(loop, at, stage, lane_step, &wheels, &reached);
-        if (cuts == 2 || !shorten(loop, at, stage, torque, &reached, next)) break;
+        if (cuts == 2 || !shorten(loop, at, stage, &reached, next)) break;
     }
     for (int k = 0; k < TRANSFER_STATES; k++) {
         #define TRANSFERRED(j) stage[j]->transfer[k * STOPS + s]
@@ -67,17 +79,18 @@ static int advance(Loop *loop)
         loop->torque[l] = torque[LANES + l];
         loop->filled[l] = filled[LANES + l];
         loop->damping[l] = damping[LANES + l];
+        loop->level[l] = level[LANES + l];
     }
     settle_locks(loop, lane_step, &reached);
     if (loop->hold) settle_holds(loop, &reached);
     if (loop->timed) follow_pulses(loop, lane_step, &reached);
     loop->now = reached;
+    for (int s = 0; s < STOPS; s++) loop->time[s] = loop->active[s] != 0.0 ? next[s] : loop->time[s];
     observe(loop);
     note_slips(loop);
     loop->steps++;
     for (int s = 0; s < STOPS; s++) {
         if (loop->active[s] == 0.0) continue;
-        loop->time[s] = next[s];
         loop->stop[TIME * STOPS + s] += step[s];
         loop->stop[END_SPEED * STOPS + s] = loop->now.speed[s];
         if (loop->now.speed[s] <= stop_speed * (1.0 + 1e-6)) finish(loop, s);
@@ -93,17 +106,35 @@ static int advance(Loop *loop)
 /* Work out the constants of the actuators for the present valve patterns. */
 static void set_windows(Loop *loop)
 {
-    WIDE double window[4 * 2 * LANES];
+    WIDE double window[WINDOW * 2 * LANES];
     for (int copy = 0; copy < 2; copy++)
         for (int l = 0; l < LANES; l++) {
             double *to = window + copy * LANES + l;
             to[0] = loop->start[l], to[2 * LANES] = loop->start_pressure[l];
             to[4 * LANES] = loop->fill_end[l], to[6 * LANES] = loop->vent_end[l];
+            to[8 * LANES] = loop->reservoir[l];
+            to[10 * LANES] = loop->share[l], to[12 * LANES] = loop->start_level[l], to[14 * LANES] = loop->goal_level[l];
         }
     window_constants(loop->lp2, window, loop->window_fixed);
 }
 
-/* What a stop does next, and when: take the next sample, or follow the command that has waited longest. */
+/* Pressure of the reservoir after all that was counted: air keeps its temperature, and none comes in. */
+static double reservoir_of(const Loop *loop, int s)
+{
+    double pressure = DISTURBANCE(RESERVOIR_PRESSURE, s);
+    for (int l = s; l < LANES; l += STOPS) pressure -= loop->lp[DRAIN * LANES + l] * loop->lane[FILLED * LANES + l];
+    return pressure;
+}
+
+/* When the watchdog of a wheelset fills. */
+static double watch_time(const Loop *loop, int l)
+{
+    double longest = DISTURBANCE(LONGEST_RELEASE, l % STOPS);
+    return longest > 0.0 && loop->watched[l] == 0.0 ? loop->last_filled[l] + longest : 1e300;
+}
+
+/* What a stop does next, and when: take the next sample, follow the command that has waited longest, or see a watchdog
+   fill before that. */
 static void schedule(Loop *loop, int s)
 {
     double h = loop->set.sample_time, sampling = loop->sample[s] * h;
@@ -111,6 +142,10 @@ static void schedule(Loop *loop, int s)
     int waiting = loop->acted[s] < loop->sample[s] && acting <= sampling;
     loop->phase[s] = waiting ? ACT : DECIDE;
     loop->goal[s] = waiting ? acting : sampling;
+    for (int l = s; l < LANES; l += STOPS) {
+        double watched = watch_time(loop, l);
+        if (watched < loop->goal[s] - SHORTEST) loop->phase[s] = WATCH, loop->goal[s] = watched;
+    }
 }
 
 /* Count the changes of the valve state that a command makes: first fill, then vent, then hold. */
@@ -124,33 +159,78 @@ static void count_switches(Loop *loop, int l)
     }
 }
 
-/* Set the valves of the stops whose command takes effect now. A pulse that is too short to open its valve is left out,
-   unless the valve is open already. */
+/* Let the electrodynamic brake of a lane drop out when its wheel slides too much, for the rest of the stop, and ask the
+   friction brake for what it lacks to the torque of the full pressure. */
+static void blend(Loop *loop, int l)
+{
+    double most = loop->lp[MAX_TORQUE * LANES + l], rest = most > 0.0 ? 1.0 - loop->present.dynamic[l] / most : 0.0;
+    if (loop->present.slip[l] > loop->lp[DROP_SLIP * LANES + l]) loop->dropped[l] = 1.0;
+    loop->share[l] = rest > LEAST_SHARE ? rest : LEAST_SHARE;
+    loop->start_level[l] = loop->level[l];
+    loop->goal_level[l] = 1.0 - loop->dropped[l];
+}
+
+/* Close the accounts of a pattern of a wheelset and begin the next one, without its reservoir. */
+static void begin_pattern(Loop *loop, int l, double present, double fill_end, double vent_end)
+{
+    count_filled(loop, l);
+    count_switches(loop, l);
+    loop->lane[VENTED * LANES + l] += loop->filled[l] - loop->pressure[l];
+    loop->start[l] = present;
+    loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];
+    loop->fill_end[l] = fill_end, loop->vent_end[l] = vent_end;
+    blend(loop, l);
+}
+
+/* Let a wheelset follow its command. A pulse that is too short to open its valve is left out, unless the valve is open
+   already. A wheelset whose watchdog has filled does so until its command fills. */
+static void follow_command(Loop *loop, int l, double a, double b)
+{
+    double h = loop->set.sample_time, present = loop->time[l % STOPS];
+    double least = DISTURBANCE(SHORTEST_PULSE, l % STOPS) - SHORTEST;
+    int filling = 1.0 - loop->fill[l] < 1e-12;
+    int venting = !filling && 1.0 - loop->fill[l] - loop->vent[l] < 1e-12;
+    if (a * h < least && !filling) a = 0.0;
+    if (b * h < least && !(venting && a == 0.0)) b = 0.0;
+    if (a > 0.0) loop->last_filled[l] = present + a * h, loop->watched[l] = 0.0;
+    else if (loop->watched[l] != 0.0) a = 1.0, b = 0.0;
+    loop->fill[l] = a, loop->vent[l] = b;
+    double fill_end = present + a * h;
+    begin_pattern(loop, l, present, fill_end, 1.0 - a - b < 1e-12 ? present + h : fill_end + b * h);
+}
+
+/* Let the watchdogs fill that have waited long enough, until the next command acts. */
+static void watch(Loop *loop, int s)
+{
+    for (int l = s; l < LANES; l += STOPS) {
+        if (watch_time(loop, l) > loop->time[s] + SHORTEST) continue;
+        loop->watched[l] = 1.0;
+        loop->lane[WATCHED * LANES + l] += 1.0;
+        loop->fill[l] = 1.0, loop->vent[l] = 0.0;
+        begin_pattern(loop, l, loop->time[s], 1e300, 1e300);
+        loop->reservoir[l] = reservoir_of(loop, s);
+    }
+}
+
+/* Set the valves of the stops whose command takes effect now, or whose watchdog fills. */
 static void act(Loop *loop)
 {
-    double h = loop->set.sample_time;
     int any = 0;
     for (int s = 0; s < STOPS; s++) {
-        if (loop->phase[s] != ACT || loop->time[s] < loop->goal[s]) continue;
-        double present = loop->time[s], least = DISTURBANCE(SHORTEST_PULSE, s) - SHORTEST;
-        const double *command = loop->queue + loop->acted[s] % loop->queue_rows * 2 * LANES;
-        for (int l = s; l < LANES; l += STOPS) {
-            double a = command[l], b = command[LANES + l];
-            int filling = 1.0 - loop->fill[l] < 1e-12;
-            int venting = !filling && 1.0 - loop->fill[l] - loop->vent[l] < 1e-12;
-            if (a * h < least && !filling) a = 0.0;
-            if (b * h < least && !(venting && a == 0.0)) b = 0.0;
-            loop->fill[l] = a, loop->vent[l] = b;
-            count_switches(loop, l);
-            loop->lane[VENTED * LANES + l] += loop->filled[l] - loop->pressure[l];
-            loop->start[l] = present;
-            loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];
-            loop->fill_end[l] = present + a * h;
-            loop->vent_end[l] = 1.0 - a - b < 1e-12 ? present + h : loop->fill_end[l] + b * h;
+        if (loop->phase[s] == ACT && loop->time[s] >= loop->goal[s]) {
+            const double *command = loop->queue + loop->acted[s] % loop->queue_rows * 2 * LANES;
+            for (int l = s; l < LANES; l += STOPS) follow_command(loop, l, command[l], command[LANES + l]);
+            double reservoir = reservoir_of(loop, s);
+            for (int l = s; l < LANES; l += STOPS) loop->reservoir[l] = reservoir;
+            loop->acted[s]++;
+            schedule(loop, s);
+            any = 1;
         }
-        loop->acted[s]++;
-        schedule(loop, s);
-        any = 1;
+        if (loop->phase[s] == WATCH && loop->time[s] >= loop->goal[s]) {
+            watch(loop, s);
+            schedule(loop, s);
+            any = 1;
+        }
     }
     if (any) set_windows(loop);
 }
@@ -189,6 +269,7 @@ static int decide(Loop *loop, const double *fill, const double *vent)
 }
 
 long wspd_size(void) { return (long)sizeof(Loop); }
+long wspd_row(void) { return ROW; }
 const double *wspd_lane_totals(const Loop *loop) { return loop->lane; }
 const double *wspd_stop_totals(const Loop *loop) { return loop->stop; }
 const double *wspd_wheel_speeds(const Loop *loop) { return loop->now.wheel; }
@@ -208,7 +289,7 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
                 const double *pressure)
 {
     WIDE double present[2 * LANES] = {0}, pressures[2 * LANES], torques[2 * LANES];
-    WIDE double filled[2 * LANES], damping[2 * LANES];
+    WIDE double filled[2 * LANES], damping[2 * LANES], level[2 * LANES];
     memset(loop->lp, 0, (char *)(loop + 1) - (char *)loop->lp);
     memcpy(loop->lp, lp, sizeof loop->lp);
     for (int k = 0; k < PARAMETERS; k++)
@@ -219,12 +300,13 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     loop->running = STOPS;
     for (int s = 0; s < STOPS; s++) loop->active[s] = 1.0, loop->now.speed[s] = speed[s];
     for (int l = 0; l < LANES; l++) loop->now.wheel[l] = wheel[l], loop->start_pressure[l] = pressure[l];
+    for (int l = 0; l < LANES; l++) loop->reservoir[l] = DISTURBANCE(RESERVOIR_PRESSURE, l % STOPS);
     start_pulses(loop);
     set_windows(loop);
-    actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping);
+    actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping, level);
     for (int l = 0; l < LANES; l++) {
         loop->pressure[l] = pressures[l], loop->filled[l] = filled[l];
-        loop->torque[l] = torques[l], loop->damping[l] = damping[l];
+        loop->torque[l] = torques[l], loop->damping[l] = damping[l], loop->level[l] = level[l];
     }
     observe(loop);
     for (int s = 0; s < STOPS; s++) {

@@ -6,7 +6,7 @@
    a wheel that turned faster would have given another pulse. Before the stop the wheel turned at its first speed, and
    the angle at which it starts is drawn. */
 enum { REFERENCE_FACTOR, REFERENCE_DRIFT, REFERENCE_NOISE, SPEED_NOISE, PULSE_ANGLE, TIMED, TORQUE_FACTOR, DEAD_TIME,
-       SHORTEST_PULSE, DISTURBANCES };
+       SHORTEST_PULSE, LONGEST_RELEASE, RESERVOIR_PRESSURE, DISTURBANCES };
 enum { NOISE, PHASE }; /* what is drawn */
 #define TRAIN 0 /* whose; wheelset a is 1 + a */
 #define DISTURBANCE(name, s) loop->disturbance[(name) * STOPS + (s)]
@@ -110,6 +110,6 @@ void wspd_measure(const Loop *loop, double *restrict out)
             + loop->time[s] * DISTURBANCE(REFERENCE_DRIFT, s) + noise(loop, s, TRAIN, DISTURBANCE(REFERENCE_NOISE, s));
         out[l] = speed > 0.0 ? speed : 0.0;
         out[LANES + l] = wheel > 0.0 ? wheel : 0.0;
-        out[2 * LANES + l] = loop->torque[l] * DISTURBANCE(TORQUE_FACTOR, s);
+        out[2 * LANES + l] = (loop->torque[l] + loop->present.dynamic[l]) * DISTURBANCE(TORQUE_FACTOR, s);
     }
 }

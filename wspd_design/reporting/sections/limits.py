@@ -7,7 +7,7 @@ from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
 from wspd_design.reporting.text import CodeSpan, Text, escape, rich
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import disturbances_of, rails_of
-from wspd_design.simulation.records import Run, Scenario, Sensing
+from wspd_design.simulation.records import Run, Sensing
 from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (
@@ -28,30 +28,30 @@ OF_PLANT = {
 def limits(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about limits."""
     run: Run = dossier.trials[0].run
-    items: list[Text] = [OF_PLANT[run.plant], *_digits(dossier.trials), *_of_scenario(dossier.scenario)]
+    items: list[Text] = [OF_PLANT[run.plant], *_digits(dossier.trials), *_of_scenario(dossier)]
     return (
         Heading(text="What this report does not show", anchor="limits"),
         Bullets(items=(*items, *EVERYWHERE)),
     )
 
 
-def _of_scenario(scenario: Scenario) -> list[str]:
+def _of_scenario(dossier: Dossier) -> list[str]:
     """Say what the stops leave out of track, measurement and valve, and that the checks know no disturbance."""
+    scenario = dossier.scenario
     track = [
         "straight",
         *(["level"] if scenario.grade == 0.0 else []),
         *([] if scenario.patches or scenario.axle_rails else ["in one condition from end to end"]),
     ]
     sensing = scenario.sensing
-    dead = "" if sensing.dead_time else "dead times, "
-    exact = replace(sensing, dead_time=0.0, shortest_pulse=0.0) == Sensing()
+    exact = replace(sensing, dead_time=None, shortest_pulse=None) == Sensing()
     disturbances = disturbances_of(scenario)
     return [
         f"The track is {numbers.listing(track)}; no cleaning of the rail by the wheels ahead, no sand.",
         "Speeds and torque are measured without error, delay or quantization, and the train speed is known."
         if exact
         else "Speeds and torque have the stated disturbances of their measurement and no other ones.",
-        f"The valve follows its time constants; {dead}leakage, and a limit of the air supply are not modeled.",
+        _of_valves(dossier),
         *(
             [
                 f"The rail changes along the track in the stops ({rails_of(scenario)}); the checks speak about one "
@@ -66,6 +66,23 @@ def _of_scenario(scenario: Scenario) -> list[str]:
             else []
         ),
     ]
+
+
+def _of_valves(dossier: Dossier) -> str:
+    """Say what the valves are and what of them is left out."""
+    has = dossier.vehicle.entries
+    by_stop = dossier.scenario.sensing.dead_time
+    dead_time = "brake.dead_time" in has if by_stop is None else by_stop
+    orifice = "brake.valve" in has and has["brake.valve"].value == "orifice"
+    left_out = [
+        *([] if dead_time else ["dead times"]),
+        *([] if "brake.hold_leak" in has else ["leakage"]),
+        *([] if "brake.reservoir_volume" in has else ["a limit of the air supply"]),
+    ]
+    what = "is an orifice of ISO 6358" if orifice else "follows its time constants"
+    said = ", and ".join(filter(None, (", ".join(left_out[:-1]), *left_out[-1:])))
+    rest = f"; {said} {'are' if left_out[1:] else 'is'} not modeled" if left_out else ""
+    return f"The valve {what}{rest}."
 
 
 def _digits(trials: tuple[Trial, ...]) -> list[Text]:

@@ -5,6 +5,7 @@ from functools import partial
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph, Table
+from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.running_gear import alike_note
@@ -19,7 +20,16 @@ MEGA = 1e6
 def linearization(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the slip pole."""
     points, specification = dossier.linearizations, dossier.design.specification
-    times = dossier.vehicle.number("brake.fill_time"), dossier.vehicle.number("brake.vent_time")
+    times = lag_times(dossier.vehicle)
+    valve, tau = (
+        (
+            "The valve, a first-order lag,",
+            "the valve has a $tau$ between its fill and its vent time, by how much it has to fill and vent to hold the "
+            "torque",
+        )
+        if times
+        else ("The valve, orifices,", "the orifices have a $tau$ that depends on the pressure that they hold")
+    )
     beyond = [point for point in points if point.slip_pole > 1.0 / point.time_constant]
     unstable = [point for point in points if point.slip_pole > 0.0]
     note = alike_note(dossier.vehicle)
@@ -28,11 +38,10 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
         Paragraph(
             text=rich(
                 f"At the slip reference {specification.slip:g} and a frozen train speed the slip has the "
-                "pole $p = partial F\\/partial lambda$. The valve, a first-order lag, adds a pole at "
+                "pole $p = partial F\\/partial lambda$. " + valve + " adds a pole at "
                 "$-1\\/tau$ and leaves $p$ where it is. A law that does not read the torque and has a "
                 "memory of integrals alone leaves the sum of the poles at $p - 1\\/tau$: where $p > 1\\/tau$ one "
-                "of them is unstable whatever the gains. On average over its pulses the valve has a $tau$ between its "
-                "fill and its vent time, by how much it has to fill and vent to hold the torque. A law with "
+                "of them is unstable whatever the gains. On average over its pulses " + tau + ". A law with "
                 "dynamics of its own, such as a lead filter, is not bound by this."
             )
         ),
