@@ -2,6 +2,7 @@
 
 import base64
 import html
+import json
 import re
 import shlex
 from pathlib import Path
@@ -79,6 +80,23 @@ def test_the_numbers_of_a_laden_vehicle_are_shown(wspd):
         assert (outcome.code, outcome.err) == (0, "")
         assert "laden" in outcome.out.splitlines()[0]
     assert "has no laden state" in wspd("sources", "er24pc:laden").err
+
+
+def test_every_check_takes_a_vehicle_or_says_why_not(wspd):
+    """Motors on two axles ended all checks: one of them asked for the plant of axles that are alike."""
+    outcome = wspd("verify", "smc", "--vehicle", "my trains/emu.toml", "--rail", "low-adhesion", "--json")
+    assert (outcome.code, outcome.err) == (0, "")
+    checks = {each["name"]: each for each in json.loads(outcome.out)["checks"]}
+    assert checks["conservation"]["status"] == "EVIDENCE"
+    assert {point["name"].split(", ")[1] for point in checks["conservation"]["worst_point"]} == {"planar"}
+    silent = [each for each in checks.values() if each["status"] == "NOT_APPLICABLE"]
+    assert len(silent) > 10
+    for each in silent:
+        said = each["explanation"]
+        assert said.count(". ") == 0
+        assert said.endswith(".")
+        assert "emu" in said or "smc" in said
+    assert checks["stop_bound"]["explanation"].endswith("emu has pads.speeds.")
 
 
 def test_what_certify_prints_runs(wspd):

@@ -42,7 +42,9 @@ class BrakeSheet:
     vehicle: str
     grade: float  # -, rise over run
     rim_force: float  # N, of the fully applied friction brake, all wheels, where pads fade with their stated friction
-    by_steps: bool  # whether pads fade, an electrodynamic brake blends in or magnets pull, so that forces change
+    by_steps: (
+        bool  # whether pads fade, an electrodynamic brake blends in or magnets pull, so that forces change
+    )
     rotating_mass: float  # kg, that turning parts add
     demanded_adhesion: float  # -, of the axle that asks for most
     stops: tuple[SheetStop, ...]

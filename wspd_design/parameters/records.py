@@ -225,6 +225,11 @@ class Vehicle:
             return (0.0,) * self.wheelsets
         return self.dynamic.axle_shares or (1.0,) * self.wheelsets
 
+    @property
+    def axles_alike(self) -> bool:
+        """Whether all axles have the same brakes, so that one may stand for all."""
+        return len(set(zip(self.brake_shares, self.dynamic_shares, strict=True))) == 1
+
     def dynamic_of(self, axle: int) -> DynamicBrake | None:
         """Return the electrodynamic brake of one axle, counted from 0 at the front."""
         if self.dynamic is None:
