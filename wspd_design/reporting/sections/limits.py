@@ -12,7 +12,7 @@ from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (
     "Friction of the pads is constant; heat, wear and flats are not modeled.",
-    "Stops and checks sit on reconstructed data: the agreement with a real vehicle is unknown.",
+    "Stops and checks sit on numbers whose status the sources tell: the agreement with a real vehicle is unknown.",
     "EN 15595 and other standards are not checked: no statement about conformity is made.",
     "Sampled checks prove nothing between their samples; see the resolution of each.",
 )
