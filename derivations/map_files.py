@@ -147,7 +147,10 @@ def _theorem(theorem: Theorem) -> str:
             raise ValueError(f"{theorem.anchor}: {identity.text} has the residual {identity.residual}")
     needs = "\n".join(f"* {hypothesis}" for hypothesis in theorem.hypotheses)
     shown = "\n".join(f"* {identity.text}: residual 0" for identity in theorem.identities)
-    names = ", ".join(f"`{name}`" for name in theorem.certificates)
+    names = (
+        ", ".join(f"`{name}`" for name in theorem.certificates)
+        or "none; the brake of every stop is that of this page"
+    )
     return (
         f'\n## <a id="{theorem.anchor}"></a>{theorem.title}\n\n{theorem.statement}\n\n**Needs**\n\n{needs}\n\n'
         f"**Why.** {theorem.sketch}\n\n**Shown by SymPy**\n\n{shown}\n\n"

@@ -12,7 +12,7 @@ VEHICLES = Path(__file__).parent / "vehicles"
 LADEN = '\n[laden.mass]\nvalue = 54\nunit = "t"\n'
 
 
-@pytest.fixture
+@pytest.fixture(autouse=True)
 def folder(tmp_path):
     """Make a folder with a space in its name that holds the vehicles."""
     made = tmp_path / "my trains"
@@ -52,7 +52,6 @@ def designed(wspd, vehicle, *, target="my designs/d 1.toml"):
     return commands
 
 
-@pytest.mark.usefixtures("folder")
 @pytest.mark.parametrize("vehicle", ["coach.toml", "metro.toml", "coach.toml:laden"])
 def test_what_design_prints_runs(wspd, vehicle):
     commands = designed(wspd, vehicle)
@@ -74,7 +73,14 @@ def test_the_folder_of_the_design_does_not_matter(wspd, folder, monkeypatch):
     assert "coach.toml, which is not there; give its file with --vehicle" in gone.err
 
 
-@pytest.mark.usefixtures("folder")
+def test_the_numbers_of_a_laden_vehicle_are_shown(wspd):
+    for name in ("my trains/coach.toml:laden", "freight-wagon:laden"):
+        outcome = wspd("sources", name)
+        assert (outcome.code, outcome.err) == (0, "")
+        assert "laden" in outcome.out.splitlines()[0]
+    assert "has no laden state" in wspd("sources", "er24pc:laden").err
+
+
 def test_what_certify_prints_runs(wspd):
     designed(wspd, "coach.toml")
     outcome = wspd("certify", "my designs/d 1.toml", "--only", "gain_positive", "--only", "surface_hurwitz")

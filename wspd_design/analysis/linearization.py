@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.functions import slip_plant
+from wspd_design.model.brake import flow_rates
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.records import Brake, Rail, Vehicle
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,7 +31,7 @@ class Linearization:
     equilibrium_duty: float  # -; where the brake cannot hold this slip its torque over T_max, above 1
     slip_pole: float  # 1/s, without the valve lag
     gain: float  # 1/(N m s), G
-    time_constant: float  # s, of the averaged valve at this duty; between T_F and T_V
+    time_constant: float  # s, of the averaged valve at this duty and torque; of lags between T_F and T_V
     state_matrix: "NDArray[np.float64]"
     input_matrix: "NDArray[np.float64]"
 
@@ -70,6 +71,14 @@ class Linearization:
         )
 
 
+def _holding_duty(brake: Brake, share: float) -> float:
+    """Duty at which the averaged valve holds a share of the maximum torque, from 0 to 1."""
+    if brake.valve == "lag":
+        return share * brake.fill_time / ((1.0 - share) * brake.vent_time + share * brake.fill_time)
+    filling, venting = flow_rates(brake, share * brake.max_pressure)
+    return float(venting / (filling + venting))
+
+
 def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Linearization:
     """Linearize eqs. (19) and (14) at a slip ratio and a train speed.
 
@@ -105,7 +114,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     share = torque / brake.max_torque
     # A torque that the brake does not have is asked of a valve at its limit, which fills or vents all the time.
     held = min(max(share, 0.0), 1.0)
-    duty = held * brake.fill_time / ((1.0 - held) * brake.vent_time + held * brake.fill_time)
+    duty = _holding_duty(brake, held)
     a, b = plant.jacobians(slip, torque, speed, duty)
     a, b = np.array(a, dtype=np.float64), np.array(b, dtype=np.float64)
     return Linearization(

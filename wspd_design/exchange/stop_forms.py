@@ -196,9 +196,13 @@ STOP = Form(
         Key(
             name="valve_switches",
             kind="integer",
-            meaning="changes of the valve state, mean of the wheelsets",
+            meaning="changes of the valve state, mean of the wheelsets with a brake",
         ),
-        Key(name="vented_air", kind="number", meaning="full brake cylinders let out, mean of the wheelsets"),
+        Key(
+            name="vented_air",
+            kind="number",
+            meaning="full brake cylinders let out, mean of the wheelsets with a brake",
+        ),
         nullable(
             "air_used_Nl",
             "normal litres that all brake cylinders took from the reservoir; null where the vehicle states no "

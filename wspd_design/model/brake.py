@@ -12,7 +12,7 @@ from enum import Enum
 from wspd_design.model.generated import brake as generated
 from wspd_design.model.generated import valve_flow
 from wspd_design.model.number import Number, clip, exp, log, maximum, minimum, sin, sqrt, where
-from wspd_design.model.valve_flow import ATMOSPHERE, orifice_filled, orifice_vented
+from wspd_design.model.valve_flow import ATMOSPHERE, flow_share, orifice_filled, orifice_vented
 from wspd_design.parameters.records import Brake
 
 _NEVER = 1e300  # s
@@ -258,6 +258,24 @@ def _vented(brake: Brake, vented_for: Number, held_for: Number, start: Number) -
     ratio = brake.critical_pressure_ratio
     vented = orifice_vented(vented_for, start + ATMOSPHERE, brake.vent_time, ratio) - ATMOSPHERE
     return vented * exp(-brake.hold_leak * held_for)
+
+
+def flow_rates(brake: Brake, pressure: Number) -> tuple[Number, Number]:
+    """Rates at which the open valves fill and vent a cylinder under full demand and a full reservoir [Pa/s].
+
+    Parameters
+    ----------
+    brake : Brake
+        Valves.
+    pressure : number
+        Of the cylinder, below the full one [Pa].
+    """
+    if brake.valve == "lag":
+        return (brake.max_pressure - pressure) / brake.fill_time, pressure / brake.vent_time
+    ratio = brake.critical_pressure_ratio
+    here, supply = pressure + ATMOSPHERE, brake.supply_pressure + ATMOSPHERE
+    filling = supply / brake.fill_time * flow_share(here / supply, ratio)
+    return filling, here / brake.vent_time * flow_share(ATMOSPHERE / here, ratio)
 
 
 def braking_torque(brake: Brake, pressure: Number) -> Number:

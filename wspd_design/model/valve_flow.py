@@ -12,6 +12,12 @@ ATMOSPHERE = 101325.0
 _NEAR_HALF = 1e-8  # distance of 2 b - 1 from 0 up to which the series is exact to the last digit
 
 
+def flow_share(ratio: Number, critical_ratio: Number) -> Number:
+    """Flow of an orifice over the choked one, by the absolute pressure behind it over that before it [-]."""
+    beyond = (maximum(ratio, critical_ratio) - critical_ratio) / (1.0 - critical_ratio)
+    return where(ratio <= critical_ratio, 1.0, sqrt(maximum(1.0 - beyond * beyond, 0.0)))
+
+
 def orifice_filled(
     elapsed: Number, start: Number, supply: Number, flow_time: Number, critical_ratio: Number
 ) -> Number:

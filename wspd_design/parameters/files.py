@@ -5,6 +5,7 @@ Every number is a table with ``value``, ``unit``, ``bounds``, ``source``, ``at``
 then states only what differs. Such a number replaces that of the base as a whole, bounds included.
 """
 
+import re
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
@@ -28,6 +29,7 @@ _FOLDERS: dict[Kind, str] = {
     "controller": "controllers",
     "track": "track",
 }
+_DECIMAL_COMMA = re.compile(r"^[^\"\[#]*=\s*([-+]?\d+),(\d+)\s*(?:#.*)?$", re.MULTILINE)
 _FILE_KEYS = ("title", "base")
 PROFILE_RAILS = "profile.rails"
 """The entry of a rail file that changes along the track."""
@@ -91,14 +93,16 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
 
 def read_toml(file: Traversable | Path, where: str) -> dict[str, Any]:
     """Read a TOML file; whatever is wrong with it becomes one sentence about ``where``."""
+    text = ""
     try:
-        return tomllib.loads(
-            file.read_bytes().decode("utf-8-sig")
-        )  # some editors begin with a byte order mark
+        text = file.read_bytes().decode("utf-8-sig")  # some editors begin with a byte order mark
+        return tomllib.loads(text)
     except RecursionError:
         raise UserError(f"{where} is nested too deeply; a file has tables in tables, no more.") from None
     except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{where} is not valid TOML: {error}; correct that place.") from None
+        comma = _DECIMAL_COMMA.search(text)
+        remedy = f'write "{comma[1]}.{comma[2]}" with a point' if comma else "correct that place"
+        raise UserError(f"{where} is not valid TOML: {error}; {remedy}.") from None
     except UnicodeDecodeError:
         raise UserError(f"{where} is not a text file in UTF-8; save it as such.") from None
     except ValueError:  # of the integers alone: Python reads no more than some thousand digits

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from wspd_design.analysis.linearization import linearize
-from wspd_design.codegen.functions import slip_plant
+from wspd_design.codegen.functions import quarter_plant, slip_plant
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import uniform_rails
 from wspd_design.parameters.loading import load_rail
@@ -102,6 +102,42 @@ def test_slip_outside_its_range_is_refused(er24pc, slip):
 def test_speed_outside_its_range_is_refused(er24pc, speed):
     with pytest.raises(UserError, match=r"speed = .* must be above 0"):
         linearize(er24pc, load_rail("polach-dry"), slip=0.14, speed=speed)
+
+
+@pytest.mark.parametrize(
+    ("duty", "pressure", "pole"),
+    [(0.1, 0.14, 2.44), (0.2, 0.75, 0.89), (0.3, 1.99, 0.70), (0.4, 3.52, 0.82), (0.5, 4.65, 1.28)],
+)
+def test_known_poles_of_averaged_orifices(er24pc, duty, pressure, pole):
+    """Poles over 1/tau of ideal nozzles with a supply of 6 bar above the atmosphere, worked out by others."""
+    brake = replace(er24pc.brake, valve="orifice", fill_time=1.0, vent_time=1.0, reservoir_pressure=6e5)
+    other = replace(er24pc, brake=brake)
+    plant, torque = (
+        slip_plant(other, load_rail("polach-dry")),
+        brake.max_torque * pressure * 1e5 / brake.max_pressure,
+    )
+    found, _ = plant.jacobians(0.14, torque, 10.0, duty)
+    assert float(found[1, 1]) == pytest.approx(-pole, rel=0.02)
+    held = plant.derivative(0.14, torque, 10.0, duty)[1] * brake.max_pressure / brake.max_torque
+    assert abs(float(held)) < 0.02e5  # the equilibrium is given to 0.01 bar
+
+
+def test_orifices_are_linearized_where_they_hold_the_torque(er24pc):
+    other = replace(er24pc, brake=replace(er24pc.brake, valve="orifice"))
+    point = linearize(other, load_rail("polach-wet"), slip=0.14, speed=10.0)
+    rates = slip_plant(other, load_rail("polach-wet")).derivative(
+        0.14, point.equilibrium_torque, 10.0, point.equilibrium_duty
+    )
+    assert [abs(float(rate)) for rate in (rates[0], rates[1] / other.brake.max_torque)] == pytest.approx(
+        [0.0, 0.0], abs=1e-12
+    )
+    assert 0.0 < point.equilibrium_duty < 1.0
+    assert point.time_constant == pytest.approx(-1.0 / point.state_matrix[1, 1])
+
+
+def test_the_quarter_locomotive_is_no_function_of_other_brakes(er24pc):
+    with pytest.raises(UserError, match=r"brake of er24pc is not that of eqs\. \(8\), \(9\)"):
+        quarter_plant(replace(er24pc, brake=replace(er24pc.brake, valve="orifice")), load_rail("polach-wet"))
 
 
 @pytest.mark.parametrize("vent", [0.15, 0.4, 0.9])

@@ -201,4 +201,7 @@ def test_random_patterns_against_an_integration(brakes, name, low):
             expected = integrated(brake, reservoir, time, end, valve, pressure)
             found = float(pressure_after(brake, valve, end, time, pressure, reservoir))
             assert found == pytest.approx(expected, abs=2e-9 * brake.max_pressure + 1e-3), (valve, time, end)
+            # No command gives more than filling all along: what the bound of the shortest stop rests on.
+            most = float(pressure_after(brake, Valve.FILL, end, 0.0, 0.0))
+            assert found <= most * (1.0 + 1e-12)
             pressure, time = found, end

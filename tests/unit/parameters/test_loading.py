@@ -91,6 +91,8 @@ def test_own_vehicle_states_only_what_differs(write):
         (RAIL.replace('title = "Leaves"', "slip_limit = 3"), ("unknown key slip_limit",)),
         (RAIL.replace('"Leaves"', '"Leaves'), ("not valid TOML", "line 2")),
         (RAIL.replace("[slip_reduction]", "[mu0]"), ("not valid TOML", "line ")),
+        (RAIL.replace("value = 0.4", "value = 0,4"), ("not valid TOML", 'write "0.4" with a point')),
+        (RAIL.replace("value = 0.4", "value = [0,4"), ("not valid TOML", "correct that place")),
         (RAIL[: RAIL.index("[slip_reduction]")], ("lacks [slip_reduction]", "add it", "base")),
         ("mu0 = 0.3\n", ("lacks [friction_ratio]", "add them", "polach-wet")),
         ('base = "polach-wett"\n', ('base = "polach-wett"', 'did you mean "polach-wet"', "table10-dry")),

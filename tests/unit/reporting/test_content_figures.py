@@ -303,7 +303,7 @@ def test_wheelsets_of_any_number_have_curves_of_their_own(number):
     looks = {(line.get_color(), str(line._dash_pattern)) for line in speed.lines}
     assert len(looks) == number + 1  # and the train
     names = [text.get_text() for text in slip.get_legend().get_texts()]
-    assert len(set(names)) == len(names) == number
+    assert len(set(names)) == len(names) == min(number, 8)  # of many every fourth or so is named
     assert (names[0], names[-1]) == (
         "wheelset 1 (front)",
         f"wheelset {number} (rear)" if number <= 4 else f"{number} (rear)",

@@ -9,6 +9,7 @@ from wspd_design.certificates.kernel.obligation import Inequality, Obligation
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.adhesion_edges import Ranges
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
 from wspd_design.certificates.setting.plant import place, plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.theorems.adaptive_energy import (
     adaptation_conditions,
@@ -164,4 +165,5 @@ AFSMC_ENERGY = Theorem(
     speaks_about=adaptive,
     obligations=_obligations,
     tell=_tell,
+    assumes=ALL - OF_VALVES,
 )

@@ -9,6 +9,7 @@ from wspd_design.certificates.kernel.obligation import Inequality, Obligation, O
 from wspd_design.certificates.quantities import AXLE
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting.adhesion_edges import Ranges, adhesion_edges
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
 from wspd_design.certificates.setting.plant import (
     AXLE_PLANT,
     Values,
@@ -282,4 +283,5 @@ SLIDING_EXISTS = Theorem(
     speaks_about=with_surface,
     obligations=_obligations,
     tell=_tell,
+    assumes=ALL - OF_VALVES,
 )

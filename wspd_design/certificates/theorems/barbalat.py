@@ -19,6 +19,7 @@ from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.adhesion_edges import Ranges
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
 from wspd_design.certificates.setting.plant import plant_dynamics, plant_forces, plant_variables
 from wspd_design.certificates.theorems.adaptive_energy import (
     adaptation_conditions,
@@ -236,4 +237,5 @@ BARBALAT = Theorem(
     speaks_about=with_surface,
     obligations=_obligations,
     tell=_tell,
+    assumes=ALL - OF_VALVES,
 )

@@ -15,6 +15,7 @@ from wspd_design.certificates.kernel.finding import Finding, Place
 from wspd_design.certificates.kernel.obligation import Ends, Sampled, Special
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
 from wspd_design.certificates.setting.plant import exact_plant
 from wspd_design.certificates.theorems.adaptive_error import CHOICE, Ideal, signals
 from wspd_design.certificates.theorems.evidence import supported
@@ -346,6 +347,7 @@ LYAPUNOV_PRINTED = Theorem(
     speaks_about=_without_dead_zone,
     obligations=_printed_obligations,
     tell=_tell_printed,
+    assumes=ALL - OF_VALVES,
 )
 
 LYAPUNOV_REPAIRED = Theorem(
@@ -355,4 +357,5 @@ LYAPUNOV_REPAIRED = Theorem(
     speaks_about=adaptive,
     obligations=_repaired_obligations,
     tell=_tell_repaired,
+    assumes=ALL - OF_VALVES,
 )

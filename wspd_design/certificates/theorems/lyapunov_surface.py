@@ -11,6 +11,7 @@ from wspd_design.certificates.kernel.finding import Place
 from wspd_design.certificates.kernel.obligation import Sampled, Special
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
 from wspd_design.certificates.setting.domain import BASIC, PARAMETERS
 from wspd_design.certificates.setting.plant import exact_plant
 from wspd_design.certificates.setting.plant import place as readable
@@ -153,4 +154,5 @@ LYAPUNOV_SURFACE = Theorem(
     speaks_about=sliding_mode,
     obligations=_obligations,
     tell=_tell,
+    assumes=ALL - OF_VALVES,
 )

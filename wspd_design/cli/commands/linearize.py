@@ -10,7 +10,8 @@ from wspd_design.cli.console import console, print_json, spaced
 from wspd_design.cli.json_objects import linearization_object
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
-from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
+from wspd_design.reporting.running_gear import alike_note
 from wspd_design.reporting.tables import ColumnOf, build
 
 if TYPE_CHECKING:
@@ -53,6 +54,9 @@ def linearize(
         print_json(linearization_object(points, plant=plant))
     else:
         _show(points, beyond)
+        note = alike_note(load_entries("vehicle", vehicle or VEHICLE))
+        if note:
+            console().print(note, markup=False)
 
 
 def _show(points: "list[Linearization]", beyond: list[bool]) -> None:

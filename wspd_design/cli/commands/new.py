@@ -39,7 +39,7 @@ def new(
     ] = None,
     force: options.ForceOption = False,
 ) -> None:
-    """Answer some questions and get a design file; every default is explained."""
+    """Answer some questions and get a design file, or that of a vehicle or a rail; every default is explained."""
     if context.invoked_subcommand is None:
         design(output=output, yes=yes, resume=resume, force=force)
     elif output or yes or resume or force:
@@ -52,7 +52,7 @@ def design(
     *, output: Path | None = None, yes: bool = False, resume: Path | None = None, force: bool = False
 ) -> None:
     """Ask for a design and write it."""
-    target = target_of(output, resume, options.DESIGN_FILE)
+    target = target_of(output, resume, options.DESIGN_FILE, remedy="give the name of the design file with -o")
     check_output(target, force=force)
     answers, _ = answered(
         steps(),

@@ -1,5 +1,6 @@
 """``wspd new rail``: a rail file from the peak of its adhesion, or fitted to a measured creep curve."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -66,7 +67,7 @@ def rail(
         "slip_reduction": slip_reduction,
         "peak": peak,
     }
-    target = target_of(output, resume, RAIL_FILE)
+    target = target_of(output, resume, RAIL_FILE, remedy="give the name of the rail file, too")
     if target.suffix != ".toml":
         raise UserError(f"rail file {target} must end in .toml")
     check_output(target, force=force)
@@ -105,8 +106,9 @@ def rail(
     if notice:
         out.print(f"{notice}.", markup=False)
     out.print(f"Written: {target}", style="bold", markup=False, soft_wrap=True)
+    file, train = shlex.quote(str(target)), shlex.quote(answers["vehicle"])
     for purpose, command in (
-        ("See it", f"wspd sources {target}"),
-        ("Stop on it", f"wspd simulate trenitalia --vehicle {answers['vehicle']} --rail {target}"),
+        ("See it", f"wspd sources {file}"),
+        ("Stop on it", f"wspd simulate trenitalia --vehicle {train} --rail {file}"),
     ):
         out.print(f"{purpose + ':':<12}{command}", markup=False, soft_wrap=True)

@@ -1,5 +1,6 @@
 """``wspd new vehicle``: some questions about a train, and a vehicle file with everything else worked out."""
 
+import shlex
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
@@ -16,7 +17,7 @@ from wspd_design.cli.wizard.vehicle_steps import NONE, vehicle_steps, wanted_veh
 from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Entry
-from wspd_design.parameters.units import KMH, format_quantity
+from wspd_design.parameters.units import format_quantity
 from wspd_design.studies.new_vehicle import Wanted, derived_entries, derived_vehicle
 
 VEHICLE_FILE = "vehicle.toml"
@@ -94,7 +95,7 @@ def vehicle(
         "fill_time": fill_time,
         "vent_time": vent_time,
     }
-    target = target_of(output, resume, VEHICLE_FILE)
+    target = target_of(output, resume, VEHICLE_FILE, remedy="give the name of the vehicle file, too")
     if target.suffix != ".toml":
         raise UserError(f"vehicle file {target} must end in .toml")
     check_output(target, force=force)
@@ -134,12 +135,10 @@ def _show(target: Path, entries: tuple[Entry, ...], wanted: Wanted, demand: floa
     out.print(f"As of {wanted.kind}, and to be checked: {', '.join(taken)}.", markup=False)
     out.print(f"Fully applied, the brake asks for an adhesion of {demand:.3f}.", markup=False)
     out.print(f"Written: {target}", style="bold", markup=False, soft_wrap=True)
+    file = shlex.quote(str(target))
     for purpose, command in (
-        ("See it", f"wspd sources {target}"),
-        (
-            "Stop it",
-            f'wspd simulate trenitalia --vehicle {target} --rail low-adhesion --speed "{wanted.speed * KMH:g} km/h"',
-        ),
-        ("Design", f"wspd design --vehicle {target} --rail low-adhesion -o design.toml"),
+        ("See it", f"wspd sources {file}"),
+        ("Check it", f"wspd brake --vehicle {file}"),
+        ("Design", f"wspd design --vehicle {file} --rail low-adhesion -o design.toml"),
     ):
         out.print(f"{purpose + ':':<10}{command}", markup=False, soft_wrap=True)

@@ -11,6 +11,7 @@ from rich.text import Text
 from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
+from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.loading import available, load_entries
 from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
@@ -30,7 +31,7 @@ def sources(
     if name is None:
         _show_names()
         return
-    _show(load_entries(_kind_of(name), name))
+    _show(load_entries("vehicle" if name.endswith(LADEN) else _kind_of(name), name))
 
 
 def _kind_of(name: str) -> Kind:

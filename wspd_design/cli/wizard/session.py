@@ -78,12 +78,12 @@ def answered(
     return answers, frozenset(answers)
 
 
-def target_of(output: Path | None, resume: Path | None, default: str) -> Path:
-    """Return the file that the answers lead to."""
+def target_of(output: Path | None, resume: Path | None, default: str, *, remedy: str) -> Path:
+    """Return the file that the answers lead to; ``remedy`` says how to name it."""
     if output is not None or resume is None:
         return output or Path(default)
     if resume.suffix != ENDING:
-        raise UserError(f"{resume} does not end in {ENDING}; name the file to write, too")
+        raise UserError(f"{resume} does not end in {ENDING}; {remedy}")
     return resume.with_suffix("")
 
 

@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 def pole_map(
-    figure: "Figure", points: Sequence[Linearization], speeds: tuple[float, float], times: tuple[float, float]
+    figure: "Figure",
+    points: Sequence[Linearization],
+    speeds: tuple[float, float],
+    times: tuple[float, float] | None,
 ) -> "Figure":
     """Draw the open-loop poles over train speed, and where they exceed the rate of the averaged valve.
 
@@ -24,8 +27,8 @@ def pole_map(
         Over rising speed.
     speeds : tuple of float
         Range of operation [m/s].
-    times : tuple of float
-        Fill and vent time of the valve [s]; the rate of the averaged valve lies between theirs.
+    times : tuple of float or None
+        Fill and vent time of a lag [s]; the rate of the averaged valve lies between theirs. None for orifices.
     """
     import numpy as np
     from matplotlib.ticker import FixedLocator, NullLocator, ScalarFormatter
@@ -34,12 +37,13 @@ def pole_map(
     speed = np.array([point.speed * KMH for point in points])
     without = np.array([point.poles(with_lag=False)[0] for point in points])
     with_lag = np.array([point.poles() for point in points])
-    limit, highest = np.array([1.0 / point.time_constant for point in points]), 1.0 / min(times)
+    limit = np.array([1.0 / point.time_constant for point in points])
+    highest = 1.0 / min(times) if times else limit.max()
     top = max(1.25 * highest, without.max() + 0.15 * np.ptp(without))
     bottom = min(-1.6 * highest, without.min() - 0.05 * np.ptp(without))
     axes.fill_between(speed, limit, top, color=SERIES[1], alpha=0.12, linewidth=0)
     axes.plot(speed, limit, color=SERIES[1], linestyle="--", linewidth=1.0)
-    if times[0] != times[1]:
+    if times and times[0] != times[1]:
         for name, time in zip(("fill", "vent"), times, strict=True):
             axes.axhline(1.0 / time, color=SERIES[1], linestyle=":", linewidth=0.8)
             note(axes, f"1/{name} time", speed[-1], 1.0 / time, xytext=(-46, 2))
@@ -71,13 +75,15 @@ def pole_map(
 
 
 def pole_map_alt(
-    points: Sequence[Linearization], speeds: tuple[float, float], times: tuple[float, float]
+    points: Sequence[Linearization], speeds: tuple[float, float], times: tuple[float, float] | None
 ) -> str:
     """Say in words what the pole map shows."""
     highest = max(points, key=lambda point: point.slip_pole)
     lowest = min(points, key=lambda point: point.slip_pole)
     rates = [1.0 / point.time_constant for point in points]
-    if times[0] == times[1]:
+    if times is None:
+        line = f"A line marks 1/tau of the averaged orifices, {min(rates):.3g} to {max(rates):.3g} 1/s"
+    elif times[0] == times[1]:
         line = f"A line marks 1/tau = {1.0 / times[0]:.3g} 1/s"
     else:
         line = (

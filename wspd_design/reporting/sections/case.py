@@ -7,6 +7,7 @@ from wspd_design.plants.planar import Planar
 from wspd_design.plants.quarter import Quarter
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
+from wspd_design.reporting.brakes import brake_text
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.further_brakes import further_brakes
 from wspd_design.reporting.running_gear import running_gear
@@ -22,10 +23,11 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
     specification, family = design.specification, designed_family(design.law)
     low, high = (numbers.significant(speed * KMH) for speed in specification.speeds)
     slip_low, slip_high = specification.slips
-    brake = (
-        f"{_value(vehicle, 'brake.max_torque')} per wheelset; fills with a time constant of "
-        f"{_value(vehicle, 'brake.fill_time')}, vents with {_value(vehicle, 'brake.vent_time')}"
-    )
+    shown = {
+        name: _value(vehicle, name)
+        for name, entry in vehicle.entries.items()
+        if name.startswith("brake.") and isinstance(entry.value, float)
+    }
     friction = (
         f"{rail.title} ({rail.name}): friction coefficient {_value(rail, 'mu0')} without sliding, "
         f"{_value(rail, 'friction_ratio')} of it at large sliding speed, decay "
@@ -37,7 +39,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Mass", _value(vehicle, "mass")),
         ("Rotating inertia", f"{_value(vehicle, 'wheelset_inertia')} per wheelset"),
         ("Wheel radius", _value(vehicle, "wheel_radius")),
-        ("Brake", brake),
+        ("Brake", brake_text(vehicle, shown)),
         *further_brakes(vehicle),
         ("Rail", friction),
         (

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
 from wspd_design.reporting.text import CodeSpan, Text, escape, rich
@@ -11,7 +12,6 @@ from wspd_design.simulation.records import Run, Sensing
 from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (
-    "Friction of the pads is constant; heat, wear and flats are not modeled.",
     "Stops and checks sit on reconstructed data: the agreement with a real vehicle is unknown.",
     "EN 15595 and other standards are not checked: no statement about conformity is made.",
     "Sampled checks prove nothing between their samples; see the resolution of each.",
@@ -20,8 +20,8 @@ EVERYWHERE: tuple[str, ...] = (
 OF_PLANT = {
     "quarter": "One wheelset stands for all, with the same load: weight transfer, and wheelsets that "
     "slide differently, are not shown.",
-    "planar": "Bodies and bogies pitch about a quasi-static weight transfer; suspension, lateral motion and "
-    "curves are not modeled.",
+    "planar": "Bodies and bogies pitch about a quasi-static weight transfer without the moment by which turning "
+    "wheelsets are slowed down; suspension, lateral motion and curves are not modeled.",
 }
 
 
@@ -31,7 +31,7 @@ def limits(dossier: Dossier) -> tuple[Block, ...]:
     items: list[Text] = [OF_PLANT[run.plant], *_digits(dossier.trials), *_of_scenario(dossier)]
     return (
         Heading(text="What this report does not show", anchor="limits"),
-        Bullets(items=(*items, *EVERYWHERE)),
+        Bullets(items=(*items, *_of_brakes(dossier.vehicle), *EVERYWHERE)),
     )
 
 
@@ -68,12 +68,33 @@ def _of_scenario(dossier: Dossier) -> list[str]:
     ]
 
 
+def _of_brakes(vehicle: ParameterSet) -> list[Text]:
+    """Say what of pads, electrodynamic brake and track brake is left out."""
+    has = {name.partition(".")[0] for name in vehicle.entries}
+    fades = {"pads.speeds", "pads.temperatures"} & set(vehicle.entries)
+    said: list[Text] = [
+        "Wear of the pads, and flats, are not modeled."
+        if fades
+        else "Friction of the pads is constant; heat, wear and flats are not modeled."
+    ]
+    if "dynamic" in has:
+        said.append(
+            "The electrodynamic brake knows the slip exactly, and where it dropped out it stays out to the end of "
+            "the stop: an assumption."
+        )
+    if "track_brake" in has:
+        said.append("The magnets of the track brake do not clean the rail for the wheels behind them.")
+    return said
+
+
 def _of_valves(dossier: Dossier) -> str:
     """Say what the valves are and what of them is left out."""
     has = dossier.vehicle.entries
+    by_stop = dossier.scenario.sensing.dead_time
+    dead_time = "brake.dead_time" in has if by_stop is None else by_stop
     orifice = "brake.valve" in has and has["brake.valve"].value == "orifice"
     left_out = [
-        *([] if dossier.trials[0].run.dead_time else ["dead times"]),
+        *([] if dead_time else ["dead times"]),
         *([] if "brake.hold_leak" in has else ["leakage"]),
         *([] if "brake.reservoir_volume" in has else ["a limit of the air supply"]),
     ]

@@ -5,8 +5,10 @@ from functools import partial
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph, Table
+from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
+from wspd_design.reporting.running_gear import alike_note
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
@@ -18,19 +20,28 @@ MEGA = 1e6
 def linearization(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the slip pole."""
     points, specification = dossier.linearizations, dossier.design.specification
-    times = dossier.vehicle.number("brake.fill_time"), dossier.vehicle.number("brake.vent_time")
+    times = lag_times(dossier.vehicle)
+    valve, tau = (
+        (
+            "The valve, a first-order lag,",
+            "the valve has a $tau$ between its fill and its vent time, by how much it has to fill and vent to hold the "
+            "torque",
+        )
+        if times
+        else ("The valve, orifices,", "the orifices have a $tau$ that depends on the pressure that they hold")
+    )
     beyond = [point for point in points if point.slip_pole > 1.0 / point.time_constant]
     unstable = [point for point in points if point.slip_pole > 0.0]
+    note = alike_note(dossier.vehicle)
     return (
         Heading(text="Linearization", anchor="linearization"),
         Paragraph(
             text=rich(
                 f"At the slip reference {specification.slip:g} and a frozen train speed the slip has the "
-                "pole $p = partial F\\/partial lambda$. The valve, a first-order lag, adds a pole at "
+                "pole $p = partial F\\/partial lambda$. " + valve + " adds a pole at "
                 "$-1\\/tau$ and leaves $p$ where it is. A law that does not read the torque and has a "
                 "memory of integrals alone leaves the sum of the poles at $p - 1\\/tau$: where $p > 1\\/tau$ one "
-                "of them is unstable whatever the gains. On average over its pulses the valve has a $tau$ between its "
-                "fill and its vent time, by how much it has to fill and vent to hold the torque. A law with "
+                "of them is unstable whatever the gains. On average over its pulses " + tau + ". A law with "
                 "dynamics of its own, such as a lead filter, is not bound by this."
             )
         ),
@@ -39,6 +50,7 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
             f"{len(points)} speeds from {numbers.significant(points[0].speed * KMH)} to "
             f"{numbers.significant(points[-1].speed * KMH)} km/h, for the nominal parameters."
         ),
+        *([Paragraph(text=note)] if note else []),
         Figure(
             svg=picture(
                 partial(pole_map, points=points, speeds=specification.speeds, times=times), height=3.1

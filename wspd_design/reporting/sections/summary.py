@@ -8,6 +8,7 @@ from wspd_design.certificates.theorems.shortest_stop.stop_bound import rounded_d
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
+from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.sections.checks import check_anchor, is_bad_news, status_of
 from wspd_design.reporting.tables import ColumnOf, build
@@ -156,9 +157,9 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
 
 
 def _between_times(vehicle: ParameterSet) -> str:
-    """Say between which rates that of the averaged valve lies; nothing if it fills as fast as it vents."""
-    times = vehicle.number("brake.fill_time"), vehicle.number("brake.vent_time")
-    if times[0] == times[1]:
+    """Say between which rates that of an averaged lag lies; nothing if it fills as fast as it vents."""
+    times = lag_times(vehicle)
+    if times is None or times[0] == times[1]:
         return ""
     fill, vent = (numbers.decimals(1.0 / time, 2) for time in times)
     return f" there, between {fill} 1/s of filling and {vent} 1/s of venting"

@@ -14,6 +14,7 @@ from wspd_design.certificates.kernel.obligation import Obligation, Special
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Point, Problem
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.assumptions import ALL, Assumption
 from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import INSTANTS, NoBound, overspeed
 from wspd_design.certificates.theorems.shortest_stop.adhesion_peaks import decide
 from wspd_design.certificates.theorems.shortest_stop.extremes import (
@@ -120,6 +121,17 @@ def _size(numbers: Mapping[str, float]) -> str:
     )
 
 
+CANNOT_HELP = frozenset(
+    {
+        Assumption.NO_LEAK,
+        Assumption.NO_DEAD_TIME,
+        Assumption.ANY_PULSE,
+        Assumption.NO_WATCHDOG,
+        Assumption.SUPPLY,
+    }
+)
+"""No pressure is higher for a leak, a dead time, a lost pulse or a low reservoir than that of filling all along."""
+
 STOP_BOUND = Theorem(
     name="stop_bound",
     title="Shortest stop of any controller",
@@ -127,4 +139,5 @@ STOP_BOUND = Theorem(
     speaks_about=every_law,
     obligations=_obligations,
     tell=_tell,
+    assumes=ALL - CANNOT_HELP,
 )
