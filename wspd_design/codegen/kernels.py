@@ -82,6 +82,7 @@ class Kernels(NamedTuple):
     window_constants: (
         Any  # (p, [start, start pressure, fill end, vent end, reservoir]) -> constants of actuator
     )
+    kinks: Any  # (p, the same) -> times at which the rate of the pressure jumps; most brakes have none
     loads: Any  # (constants, transfers) -> wheel load of each axle
     train: Any  # (constants, speed, force of each axle, transfers) -> acceleration, resistance, transfers'
     contact: Any  # (constants, load) -> stiffness there, and the reciprocal of the load: where a step begins
@@ -148,11 +149,12 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
     functions = _functions(blank.on(vehicle), track, p, Surroundings(**symbols["surroundings"]), disturbed)
     stop_constants, (loads, train) = hoist(functions[:2], 1, "stop_constants")
     lane_constants, (contact, axle, slope) = hoist(functions[2:5], 1, "lane_constants")
-    window_constants, (actuator,) = hoist(functions[5:], 2, "window_constants")
+    window_constants, (actuator,) = hoist(functions[5:6], 2, "window_constants")
     return Kernels(
         stop_constants=stop_constants,
         lane_constants=lane_constants,
         window_constants=window_constants,
+        kinks=functions[6],
         loads=loads,
         train=train,
         contact=contact,
@@ -197,6 +199,7 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
     passed = where(locked != 0.0, 2.0 * plant.vehicle.wheel_radius * axle.creep_force, demand)
     valves = ca.SX.sym("valves", 5)
     pressures = brake_model.pattern_pressure(brake, time, _elements(valves), surroundings.braking_time)
+    kinks = brake_model.kinks(brake, _elements(valves), surroundings.braking_time)
     torque = brake_model.braking_torque(brake, pressures[0])
     if disturbed:
         torque *= 1.0 + brake_model.torque_disturbance(brake, braking_time)
@@ -219,6 +222,7 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
             [ca.substitute(ca.jacobian(wheel, states)[0], demand, 0.0)],
         ),
         ca.Function("actuator_kernel", [p, valves, time], [pressures[0], torque, pressures[1], damping]),
+        ca.Function("kinks_kernel", [p, valves], [ca.vertcat(ca.SX(0, 1), *kinks)]),
     ]
 
 

@@ -102,6 +102,7 @@ class _VirtualPlant:
         }
         self._observe = Bound(functions.observe, self.state, self.inputs)
         self._window = np.zeros((axles, 5))
+        self._kinks = Bound(kernels.kinks.map(axles), self._by_axle, self._window)
         self._window_constants = Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
         self._close_valves()
@@ -176,7 +177,8 @@ class _VirtualPlant:
         self._window[:] = self.valves.patterns
         self._window_constants.call()
         self._give("window_constants", self._window_constants.outputs[0].ravel())
-        self.edges = self.valves.edges
+        self._kinks.call()
+        self.edges = tuple(sorted({*self.valves.edges, *self._kinks.outputs[0].ravel().tolist()}))
 
     def _close_valves(self) -> None:
         """Begin with closed valves."""

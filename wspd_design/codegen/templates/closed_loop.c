@@ -109,6 +109,9 @@ static void set_windows(Loop *loop)
             to[8 * LANES] = loop->reservoir[l];
         }
     window_constants(loop->lp2, window, loop->window_fixed);
+    #if KINKS
+    kinks_kernel(loop->lp2, window, loop->kink);
+    #endif
 }
 
 /* Pressure of the reservoir after all that was counted: air keeps its temperature, and none comes in. */

@@ -88,6 +88,9 @@ typedef struct {
     WIDE double start_pressure[LANES];
     WIDE double fill_end[LANES];
     WIDE double vent_end[LANES];
+    #if KINKS
+    WIDE double kink[KINKS * 2 * LANES]; /* times at which the rate of the pressure jumps; of the first half only */
+    #endif
     WIDE double reservoir[LANES]; /* its pressure at the start of the pattern */
     WIDE double last_filled[LANES]; /* when the present or last filling ends; 0 before the first */
     WIDE double watched[LANES];  /* the watchdog fills until the command does */
