@@ -28,9 +28,14 @@ LAW = controller("afsmc", VEHICLE, RAIL, Specification(sample_time=SAMPLE_TIME))
 SCALAR_FLAGS = ("-O3", "-march=native", "-fPIC", "-shared", "-std=gnu11")
 
 
+def scenario() -> Scenario:
+    """Return the stop."""
+    return Scenario(rail=RAIL, initial_speed=SPEED)
+
+
 def given(*, stops: int = 1, refinement: int = 1, **changes: float) -> LoopInput:
     """Input of the compiled loop, with changes to its settings."""
-    case = (Planar(VEHICLE), Scenario(rail=RAIL, initial_speed=SPEED))
+    case = (Planar(VEHICLE), scenario())
     loop = loop_input([case] * stops, LAW, refinement=refinement)
     settings = Settings.from_buffer_copy(loop.settings)
     for name, value in changes.items():

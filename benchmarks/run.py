@@ -13,11 +13,12 @@ import tempfile
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 
 import references
-from case import LAW, SAMPLE_TIME, VEHICLE, Scalar, given, without_compiler
+from case import LAW, SAMPLE_TIME, VEHICLE, Scalar, given, scenario, without_compiler
 from proofs import measure_proofs
 from rows import Row, process_cpu
 
@@ -25,6 +26,7 @@ from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import FLAGS, find_compiler
 from wspd_design.codegen.virtual_machine import run_virtual
 from wspd_design.plants.planar import Planar
+from wspd_design.simulation.loop_input import loop_input
 
 PAGE = Path(__file__).parents[1] / "docs" / "benchmarks.md"
 ROUNDS = 5
@@ -158,6 +160,31 @@ def distance_of(output: object) -> float:
     return float(output.stop_totals["distance"][0])
 
 
+def measure_axles() -> list[Row]:
+    """One stop of vehicles with more axles, each with as much load, resistance and brake as four have."""
+    loops = {}
+    for axles in (VEHICLE.wheelsets, 6, 24):
+        share = axles / VEHICLE.wheelsets
+        parts = ("mass", "resistance_constant", "resistance_linear", "resistance_quadratic")
+        longer = replace(VEHICLE, wheelsets=axles, **{name: share * getattr(VEHICLE, name) for name in parts})
+        longer = replace(longer, body_mass=longer.mass - axles // 2 * VEHICLE.bogie_mass)
+        plant = Planar(longer)
+        loops[axles] = (load_closed_loop(plant, LAW), loop_input([(plant, scenario())], LAW))
+    seconds: dict[int, list[float]] = {axles: [] for axles in loops}
+    for _ in range(ROUNDS):
+        for axles, (loop, numbers) in loops.items():
+            seconds[axles].append(cpu(lambda: loop.run(numbers), QUICK))  # noqa: B023 - called at once
+    return [
+        Row(
+            what=f"one compiled stop of {axles} axles on two-axle bogies over that of four",
+            goal=goal,
+            at_least=False,
+            ratios=[a / b for a, b in zip(seconds[axles], seconds[VEHICLE.wheelsets], strict=True)],
+        )
+        for axles, goal in ((6, 1.6), (24, 4.0))
+    ]
+
+
 def measure_threads() -> Row:
     """A campaign on two threads against one, in wall time."""
     loop, many = load_closed_loop(Planar(VEHICLE), LAW, stops=SIDE_BY_SIDE), given(stops=SIDE_BY_SIDE)
@@ -284,7 +311,8 @@ solvers the ratios therefore grow with the sampling rate and with the number of 
 def main() -> int:
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
-        rows = [*measure_stops(Scalar(Path(folder))), measure_threads(), *measure_starts(), *measure_proofs()]
+        rows = [*measure_stops(Scalar(Path(folder))), *measure_axles(), measure_threads()]
+        rows += [*measure_starts(), *measure_proofs()]
     for row in rows:
         what, goal, spread, verdict, note = row.cells()
         print(f"{verdict.strip('*'):10}  {spread:28}  {goal:20}  {what}{f' ({note})' if note else ''}")

@@ -84,7 +84,10 @@ def _expect(
     __tracebackhide__ = True
     if not names:
         raise UserError(f"no check is named; available: {', '.join(suite.NAMES)}")
-    certificates = certify(design, only=names, vehicle=vehicle, rail=rail, effort=effort)
+    try:
+        certificates = certify(design, only=names, vehicle=vehicle, rail=rail, effort=effort)
+    except UserError as error:
+        raise UserError(str(error)) from None  # the sentence, without the way to where it was found
     failed = [_message(each, allowed) for each in certificates if each.status not in allowed]
     if failed:
         raise AssertionError("\n\n".join(failed))

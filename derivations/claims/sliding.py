@@ -134,7 +134,7 @@ CLAIMS = (
         sides=(sp.Symbol("duty_cycle"), sp.Symbol("u") / symbol("max_torque")),
         unknown=("u",),
         remark="u is a torque, and the printed gains make it one in kN m, or a duty: in N m the largest u that they "
-        f"allow stops the train after {_S.distance_in_newton_metres:.0f} m at the earliest, without running "
+        f"allow stops the ER24PC after {_S.distance_in_newton_metres:.0f} m at the earliest, without running "
         f"resistance; Table 10 has {_S.printed_distance} m.",
     ),
     Claim(

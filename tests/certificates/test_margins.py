@@ -213,6 +213,21 @@ def test_verdicts(make_problem, make_controller, good, bad):
     assert found.status is Status.NOT_APPLICABLE
 
 
+@pytest.mark.parametrize("vent", [0.1, 0.4])
+def test_a_brake_without_the_torque_of_the_reference_is_not_judged(make_problem, make_controller, vent):
+    """With a fast fill and a slow vent the averaged valve had a rate below zero, and the loop was refuted exactly."""
+    problem = make_problem(make_controller("torque-feedback", "polach-wet"), rail="polach-wet")
+    torque = max(float(linear.holding_torque(problem, v)) for v in np.geomspace(*problem.speeds, 25))
+    own = problem.vehicle
+    for share, status in ((1.001, None), (0.999, Status.NOT_APPLICABLE)):
+        brake = replace(own.brake, max_torque=share * torque, fill_time=0.1, vent_time=vent, bounds=EXACT)
+        other = replace(own, brake=brake)
+        law = replace(problem.controller, vehicle=other)
+        found = margins.CHECK.run(replace(problem, vehicle=other, controller=law))
+        assert (found.status is Status.NOT_APPLICABLE) == (status is Status.NOT_APPLICABLE)
+    assert f"and the brake of er24pc has {0.999 * torque:.4g} N m" in found.explanation
+
+
 def test_words_of_evidence_and_of_a_refutation(good, bad):
     no_word_can_be_changed(good)
     no_word_can_be_changed(bad)

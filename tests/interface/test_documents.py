@@ -12,7 +12,13 @@ import pytest
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
-PAGES = ("README.md", "docs/tutorial.md", "docs/certificates.md", "docs/campaigns.md")
+PAGES = (
+    "README.md",
+    "docs/tutorial.md",
+    "docs/certificates.md",
+    "docs/campaigns.md",
+    "docs/vehicle-files.md",
+)
 BLOCK = re.compile(r"^```(console|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 

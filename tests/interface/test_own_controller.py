@@ -145,7 +145,7 @@ def test_a_sample_time_that_it_does_not_take_is_refused(wspd, own):
 def test_comparison_with_shipped_controllers(wspd, own):
     outcome = wspd("compare", f"{own.name}:by_function", "trenitalia:textbook", "trenitalia", *FAR, "--json")
     stops = json.loads(outcome.out)["stops"]
-    assert [stop["controller"] for stop in stops] == ["by function", "trenitalia:textbook", "trenitalia"]
+    assert [stop["controller"] for stop in stops] == ["by function", "trenitalia (textbook)", "trenitalia"]
     assert len({stop["distance_m"] for stop in stops}) == 3
 
 

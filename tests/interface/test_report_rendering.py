@@ -6,6 +6,7 @@ import io
 import re
 import subprocess
 import sys
+import warnings
 from dataclasses import replace
 from datetime import timedelta
 from html.parser import HTMLParser
@@ -16,6 +17,7 @@ import pytest
 
 from tests.unit.reporting.sample_report import HOSTILE, sample
 from wspd_design.reporting.blocks import Code, Definition, Document, Figure, Paragraph, Table
+from wspd_design.reporting.figure_style import figure_svg, new_figure
 from wspd_design.reporting.html import render_html
 from wspd_design.reporting.pdf import render_pdf
 from wspd_design.reporting.text import rich
@@ -296,9 +298,30 @@ def test_hostile_text_is_shown_in_html(hostile: Document) -> None:
 
 
 def test_hostile_text_is_shown_in_pdf(hostile: Document) -> None:
-    reader = pypdf.PdfReader(io.BytesIO(render_pdf(hostile)))
+    with pytest.warns(UserWarning, match="the fonts of the PDF lack .*\N{PILE OF POO}.*the HTML has them"):
+        reader = pypdf.PdfReader(io.BytesIO(render_pdf(hostile)))
     text = "".join("".join(sheet.extract_text() for sheet in reader.pages).split())
     start, _ = HOSTILE.split("\N{PILE OF POO}")
     assert text.count("".join(start.split())) >= 10
+    assert text.count("[U+1F4A9]") >= 10
     assert reader.metadata is not None
     assert (reader.metadata.title or "").startswith("T #import")
+
+
+def test_names_that_the_fonts_lack_are_spelled_in_figures_too() -> None:
+    """A Chinese name became U+FFFD without a word, and figures lost it altogether (case h10)."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # Matplotlib has nothing to say: the PDF does
+        figure = new_figure(height=1.0)
+        figure.subplots().set_title("afsmc-\u673a\u8f66")
+        svg = figure_svg(figure)
+    assert "\u673a\u8f66" in svg
+    picture = Figure(svg=svg, caption="\u673a\u8f66", alt="\u673a", anchor="picture")
+    document = sample("plain")
+    document = replace(document, title="\u673a\u8f66", blocks=(*document.blocks, picture))
+    assert "\u673a\u8f66" in render_html(document)
+    with pytest.warns(UserWarning, match="lack \u673a \u8f66, .* as in \\[U\\+673A\\]; the HTML has them"):
+        reader = pypdf.PdfReader(io.BytesIO(render_pdf(document)))
+    text = "".join(" ".join(sheet.extract_text().split()) for sheet in reader.pages)
+    assert text.count("[U+673A U+8F66]") >= 3  # title, figure and caption
+    assert "\ufffd" not in text

@@ -7,7 +7,7 @@ from prompt_toolkit.application import create_app_session
 from prompt_toolkit.input import create_pipe_input
 from prompt_toolkit.output import DummyOutput
 
-from wspd_design.cli.commands import new
+from wspd_design.cli.wizard import session
 from wspd_design.design.file import read_design
 from wspd_design.design.records import Specification
 
@@ -19,7 +19,7 @@ STEPS = 8  # vehicle, rail, law, slip, speeds, sample time, tolerance, review
 @pytest.fixture
 def answer(wspd, monkeypatch):
     """Start the wizard and send keys; returns the outcome of the command."""
-    monkeypatch.setattr(new, "is_interactive", lambda: True)
+    monkeypatch.setattr(session, "is_interactive", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
 
     @contextmanager
@@ -91,17 +91,17 @@ def test_back(back, answer, tmp_path):
 def test_branches_are_evaluated_again(answer, tmp_path):
     """An own rail file is asked for, and no longer asked for after going back and choosing a shipped rail."""
     (tmp_path / "mine.toml").write_text('base = "polach-wet"\n[mu0]\nvalue = 0.33\nunit = "-"\n')
-    to_own = DOWN * 3
+    to_own = DOWN * 4
     own = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{ENTER * 6}", "new", "-o", "own.toml")
     assert own.code == 0
     assert read_design(tmp_path / "own.toml").rail == "mine"
-    back = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{BACK}{BACK}{UP * 3}{ENTER}{ENTER * 6}")
+    back = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{BACK}{BACK}{UP * 4}{ENTER}{ENTER * 6}")
     assert back.code == 0
     assert read_design(tmp_path / "design.toml").rail == "polach-wet"
 
 
 def test_missing_own_file_is_not_accepted(answer, tmp_path):
-    keys = f"{ENTER}{DOWN * 3}{ENTER}nowhere.toml{ENTER}{LEAVE}"
+    keys = f"{ENTER}{DOWN * 4}{ENTER}nowhere.toml{ENTER}{LEAVE}"
     assert answer(keys).code == 130
     assert "nowhere" not in (tmp_path / "design.toml.part").read_text()
 
@@ -145,7 +145,7 @@ def test_existing_output_is_refused_before_the_first_question(answer, tmp_path):
 def test_a_terminal_that_cannot_move_the_cursor(wspd, monkeypatch, tmp_path):
     """With ``TERM=dumb`` the questions come line by line, without an escape sequence."""
     lines = iter(["", "3", "smc", "1.4", "20 %", "<", "0.16", "", "", "", ""])
-    monkeypatch.setattr(new, "is_interactive", lambda: True)
+    monkeypatch.setattr(session, "is_interactive", lambda: True)
     monkeypatch.setattr("builtins.input", lambda _prompt: next(lines))
     monkeypatch.setenv("TERM", "dumb")
     outcome = wspd("new")
@@ -160,7 +160,7 @@ def test_input_that_ends_is_like_leaving(wspd, monkeypatch, tmp_path):
     def ended(_prompt):
         raise EOFError
 
-    monkeypatch.setattr(new, "is_interactive", lambda: True)
+    monkeypatch.setattr(session, "is_interactive", lambda: True)
     monkeypatch.setattr("builtins.input", ended)
     monkeypatch.setenv("TERM", "dumb")
     assert wspd("new").code == 130

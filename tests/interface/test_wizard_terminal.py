@@ -120,3 +120,44 @@ def test_ctrl_c_keeps_the_stops_that_are_done(terminal, tmp_path):
     rows = (tmp_path / "rows.csv").read_text().splitlines()
     assert len(rows) - 1 == int(said[1])
     assert 0 < int(said[1]) < 30000
+
+
+def test_vehicle_wizard_on_a_screen(terminal, tmp_path):
+    """Question, preview of the derived torque, one wrong unit, back, and the file."""
+    screen = terminal("new", "vehicle", "car.toml")
+    screen.wait_for("> coach ")
+    assert "Ctrl-C leaves and keeps the answers." in screen.text
+    screen.child.send("\x1b[B" * 3)
+    screen.wait_for("> metro ")
+    screen.child.send("\r")
+    screen.wait_for("> 36 t\n= 36000 kg")
+    screen.child.send("\x1540 kg")
+    screen.wait_for("did you mean\n40 t?")
+    screen.child.send("\x1540 t\r")
+    screen.wait_for("> 60 t\n= 60000 kg")  # as much load in proportion
+    screen.child.send("\x15none\r")
+    screen.wait_for("= 4 axles in 2 bogies of 2")  # the load-dependent brake is not asked for
+    screen.child.send("\x02")
+    screen.wait_for("> none\n= none")
+    screen.child.send("\r" * 7)
+    screen.wait_for("= a torque of")
+    assert "asks for an adhesion" in " ".join(screen.text.split())
+    screen.child.send("\r" * 4)
+    screen.wait_for("> save ")
+    screen.child.send("\r")
+    screen.wait_for("Written: car.toml")
+    assert screen.exit_code() == 0
+    assert 'at = "EN 14531 backwards' in (tmp_path / "car.toml").read_text()
+
+
+def test_rail_wizard_keeps_its_answers(terminal, tmp_path):
+    screen = terminal("new", "rail")
+    screen.wait_for("> none\n= none")
+    screen.child.send("\x15nowhere.csv")
+    screen.wait_for("cannot be read")
+    screen.child.send("\x15none\r")
+    screen.wait_for("> low-adhesion ")
+    screen.child.send("\x03")
+    assert screen.exit_code() == 130
+    assert "wspd new rail --resume rail.toml.part" in screen.text
+    assert 'curve = "none"' in (tmp_path / "rail.toml.part").read_text()

@@ -1,6 +1,10 @@
 """Helpers for the tests of users: they pass, fail and refuse as they should."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -114,3 +118,26 @@ def test_what_is_kept_beside_a_design_is_not_searched_again(design, tmp_path, mo
     assert_certified(path, "gain_positive")
     with pytest.raises(pytest.fail.Exception, match="searched"):
         assert_certified(design, "gain_positive")
+
+
+def test_pytest_shows_the_sentence_and_the_line_of_the_user(tmp_path):
+    """A misspelled check came with 40 lines of internals (users.md A16)."""
+    (tmp_path / "test_mine.py").write_text(
+        "from wspd_design.testing import assert_certified\n\n\n"
+        'def test_mine():\n    assert_certified("smc", "reachign")\n'
+    )
+    shown = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-c", os.devnull, "test_mine.py"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    ).stdout
+    told = [line for line in shown.splitlines() if line.startswith("E ")]
+    assert 'assert_certified("smc", "reachign")' in shown
+    assert len(told) == 1
+    assert "reaching" in told[0]
+    assert "certification.py" not in shown
+    assert len(shown.splitlines()) < 20

@@ -88,14 +88,20 @@ class IndependentStop:
     def _measure(self, y):
         return Measurement(speed=y[0], wheel_speed=y[1], torque=self.brake.max_torque * y[3])
 
+    tolerances = (1e-10, 1e-10, 1e-7, 1e-12)
+
+    def _lock(self, y, locked):
+        """What is positive until the wheel locks, or is let go."""
+        if locked:
+            return 0.5 * self.brake.max_torque * y[3] - self.R * self.creep_force(y[0], 0.0)
+        return y[1]
+
     def _advance(self, t, end, y, fill, vent, locked):
         def standstill(_t, y):
             return y[0] - STOP_SPEED
 
         def change(_t, y):
-            if locked:
-                return 0.5 * self.brake.max_torque * y[3] - self.R * self.creep_force(y[0], 0.0)
-            return y[1]
+            return self._lock(y, locked)
 
         standstill.terminal = change.terminal = True
         change.direction = -1.0
@@ -105,7 +111,7 @@ class IndependentStop:
             y,
             method="Radau",
             rtol=1e-9,
-            atol=(1e-10, 1e-10, 1e-7, 1e-12),
+            atol=self.tolerances,
             events=(standstill, change),
         )
         assert solution.success, solution.message

@@ -7,7 +7,8 @@ import pytest
 from gears import GEARS, GRAVITY, loads_by_hand
 
 from wspd_design.controllers.baselines.unprotected import Unprotected
-from wspd_design.parameters.loading import load_rail
+from wspd_design.parameters.files import available
+from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.plants.planar import Planar
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
@@ -45,6 +46,26 @@ def forces_of(vehicle):
     if vehicle.axles_per_bogie == 1 and vehicle.bodies > 1:
         return np.full(vehicle.wheelsets, 8e3)
     return RNG.uniform(5e3, 15e3, vehicle.wheelsets)
+
+
+PRESETS = available("vehicle")
+
+
+def preset(name):
+    """A shipped vehicle whose masses add up to the last digit, as the calculation by hand has them."""
+    vehicle = load_vehicle(name)
+    supports = vehicle.wheelsets // vehicle.axles_per_bogie
+    return replace(vehicle, mass=vehicle.bodies * vehicle.body_mass + supports * vehicle.bogie_mass)
+
+
+@pytest.mark.parametrize("grade", GRADES)
+@pytest.mark.parametrize("name", PRESETS)
+def test_loads_of_shipped_vehicles_settle_there_too(name, grade):
+    vehicle = smooth(preset(name))
+    forces = np.linspace(0.02, 0.12, vehicle.wheelsets) * vehicle.mass * GRAVITY / vehicle.wheelsets
+    found, deceleration = settled_loads(vehicle, forces, grade)
+    expected = loads_by_hand(vehicle, forces, deceleration, grade)
+    np.testing.assert_allclose(found, expected, rtol=SMALL_ANGLE if grade else EXACT)
 
 
 @pytest.mark.parametrize("grade", GRADES)

@@ -7,6 +7,7 @@ import pytest
 from gears import GEARS
 from independent_axles import IndependentAxles, two_bodies, two_bogies, two_long_bogies, two_single_axles
 
+from wspd_design.analysis.stopping import demanded_adhesion, full_adhesion_stop
 from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.virtual_machine import run_virtual
 from wspd_design.parameters.loading import load_rail
@@ -79,7 +80,7 @@ def test_a_wrong_share_is_seen(make_controller):
     assert abs(run.totals.distance / y[other.X] - 1.0) > 1e-5
 
 
-@pytest.mark.parametrize("name", ["two single axles", "two three-axle bogies", "two bodies on three axles"])
+@pytest.mark.parametrize("name", ["two single axles", "two three-axle bogies", "three bodies on four bogies"])
 def test_without_a_compiler_the_numbers_are_the_same(make_controller, name):
     vehicle = braked(GEARS[name], unlike(GEARS[name].wheelsets))
     plant, law = Planar(vehicle), make_controller("trenitalia")
@@ -119,3 +120,28 @@ def test_the_ideal_stop_asks_no_axle_for_more_than_its_brake_gives(make_controll
     ideal, filled = ideal_stop(half, scenario).distance, simulate(half, law, scenario).totals.distance
     assert ideal == pytest.approx(filled, rel=1e-6)
     assert ideal == pytest.approx(ideal_stop(all_weaker, scenario).distance, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["two two-axle bogies", "three bodies on four bogies", "two single axles"])
+def test_mean_value_rules_know_unlike_brakes(make_controller, name):
+    """On full adhesion: the distance of EN 14531-1 within 1 %, and the adhesion that the axle which asks most uses."""
+    plain = GEARS[name]
+    vehicle = braked(plain, unlike(plain.wheelsets), 9e3)
+    vehicle = replace(
+        vehicle, resistance_constant=600.0, resistance_linear=8.0, resistance_quadratic=1.6, wheel_damping=0.0
+    )
+    speed = 120.0 / 3.6
+    run = simulate(
+        vehicle, make_controller("none"), Scenario(rail=load_rail("polach-dry"), initial_speed=speed)
+    )
+    assert full_adhesion_stop(vehicle, speed).distance == pytest.approx(run.totals.distance, rel=0.01)
+    smooth = replace(vehicle, resistance_constant=0.0, resistance_linear=0.0, resistance_quadratic=0.0)
+    run = simulate(
+        smooth, make_controller("none"), Scenario(rail=load_rail("polach-dry"), initial_speed=speed)
+    )
+    late = slice(int(0.7 * len(run.time)), int(0.9 * len(run.time)))
+    slowing = -np.polyfit(run.time[late], run.speed[late], 1)[0]
+    turning = vehicle.wheelset_inertia * slowing / vehicle.wheel_radius
+    forces = (run.torque[late].mean(axis=0) - turning) / vehicle.wheel_radius
+    used = forces / (2.0 * run.wheel_load[0])
+    assert demanded_adhesion(vehicle) == pytest.approx(used.max(), rel=2e-3)

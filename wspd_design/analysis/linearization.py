@@ -28,7 +28,7 @@ class Linearization:
     slip: float  # -
     speed: float  # m/s
     equilibrium_torque: float  # N m per wheelset
-    equilibrium_duty: float  # -, above 1 the brake cannot hold this slip
+    equilibrium_duty: float  # -; where the brake cannot hold this slip its torque over T_max, above 1
     slip_pole: float  # 1/s, without the valve lag
     gain: float  # 1/(N m s), G
     time_constant: float  # s, of the averaged valve at this duty and torque; of lags between T_F and T_V
@@ -71,13 +71,10 @@ class Linearization:
         )
 
 
-def _holding_duty(brake: Brake, torque: float) -> float:
-    """Duty at which the averaged valve holds a torque; above 1 for one that the brake does not give."""
-    share = torque / brake.max_torque
+def _holding_duty(brake: Brake, share: float) -> float:
+    """Duty at which the averaged valve holds a share of the maximum torque, from 0 to 1."""
     if brake.valve == "lag":
         return share * brake.fill_time / ((1.0 - share) * brake.vent_time + share * brake.fill_time)
-    if not 0.0 <= share <= 1.0:
-        return share  # beyond the flow of an orifice
     filling, venting = flow_rates(brake, share * brake.max_pressure)
     return float(venting / (filling + venting))
 
@@ -88,7 +85,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     Parameters
     ----------
     vehicle, rail : Vehicle, Rail
-        Quarter locomotive and friction.
+        Quarter model and friction.
     slip : float
         Slip ratio in (0, 1).
     speed : float
@@ -114,7 +111,10 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     plant = slip_plant(vehicle, rail)
     drift, gain = (float(x) for x in plant.drift_and_gain(slip, speed))
     torque = -drift / gain
-    duty = _holding_duty(brake, torque)
+    share = torque / brake.max_torque
+    # A torque that the brake does not have is asked of a valve at its limit, which fills or vents all the time.
+    held = min(max(share, 0.0), 1.0)
+    duty = _holding_duty(brake, held)
     a, b = plant.jacobians(slip, torque, speed, duty)
     a, b = np.array(a, dtype=np.float64), np.array(b, dtype=np.float64)
     return Linearization(
@@ -123,7 +123,7 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
         slip=slip,
         speed=speed,
         equilibrium_torque=torque,
-        equilibrium_duty=duty,
+        equilibrium_duty=duty if held == share else share,
         slip_pole=float(a[0, 0]),
         gain=gain,
         time_constant=float(-1.0 / a[1, 1]),

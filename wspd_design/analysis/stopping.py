@@ -8,6 +8,7 @@ that the brake asks for.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from wspd_design.analysis.stepwise import rolling_stop
 from wspd_design.model.brake import build_up_delay
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import static_shares
@@ -122,13 +123,16 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
     """Stop of a vehicle whose wheels do not slide, by mean values of its brake.
 
     The equivalent time is that of build-up and filling together: a demand with ``supply_rate`` and a lag with
-    ``fill_time`` are late by 1/supply_rate + fill_time, exactly.
+    ``fill_time`` are late by 1/supply_rate + fill_time, exactly. Where pads fade, an electrodynamic brake is blended
+    in or magnets pull, the stop is worked out by steps, and the mean values are those which give its distance.
     """
+    if vehicle.pads or vehicle.dynamic or vehicle.track_brake:
+        return _stop_by_steps(vehicle, speed, grade)
     return mean_stop(
         speed,
-        forces=[(_rim_force(vehicle), build_up_delay(vehicle.brake))],
+        forces=[(rim_force(vehicle), build_up_delay(vehicle.brake))],
         mass=vehicle.mass,
-        rotating_mass=_rotating_mass(vehicle),
+        rotating_mass=rotating_mass(vehicle),
         resistance=(
             vehicle.resistance_constant,
             vehicle.resistance_linear,
@@ -138,30 +142,42 @@ def full_adhesion_stop(vehicle: Vehicle, speed: float, *, grade: float = 0.0) ->
     )
 
 
+def _stop_by_steps(vehicle: Vehicle, speed: float, grade: float) -> MeanStop:
+    """The deceleration is that of a stop with all brakes built up; what the whole one takes more is rolling freely."""
+    distance, time = rolling_stop(vehicle, speed, grade=grade)
+    developed, _ = rolling_stop(vehicle, speed, grade=grade, built_up=True)
+    return MeanStop(
+        equivalent_time=(distance - developed) / speed,
+        deceleration=speed**2 / (2.0 * developed),
+        distance=distance,
+        time=time,
+    )
+
+
 def demanded_adhesion(vehicle: Vehicle) -> float:
     """Adhesion that the fully applied brake asks for while no wheel slides, over the static wheel load [-].
 
     The rail slows the train; what slows the turning of the wheelsets comes from the brake alone. Where brakes or
     loads differ, it is that of the axle which asks for most.
     """
-    mean = _rim_force(vehicle) / ((vehicle.mass + _rotating_mass(vehicle)) * constants().gravity)
+    mean = rim_force(vehicle) / ((vehicle.mass + rotating_mass(vehicle)) * constants().gravity)
     shares, loads = vehicle.brake_shares, static_shares(vehicle)
     if len(set(shares)) == 1 and len(set(loads)) == 1:
         return mean
     # Of the force at its rims an axle takes what slows its own turning; that part is the same for all.
-    turning = mean * _rotating_mass(vehicle) / vehicle.mass
+    turning = mean * rotating_mass(vehicle) / vehicle.mass
     usual = sum(shares) / len(shares)
     return max(
         (share / usual * (mean + turning) - turning) / load for share, load in zip(shares, loads, strict=True)
     )
 
 
-def _rim_force(vehicle: Vehicle) -> float:
+def rim_force(vehicle: Vehicle) -> float:
     """Force of the fully applied brake at the rims of all wheels [N]."""
     return sum(vehicle.brake_shares) * vehicle.brake.max_torque / vehicle.wheel_radius
 
 
-def _rotating_mass(vehicle: Vehicle) -> float:
+def rotating_mass(vehicle: Vehicle) -> float:
     """Mass that the turning of the wheelsets adds [kg]."""
     return vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2
 

@@ -4,12 +4,15 @@ Every number of a vehicle or rail file either has a row here or a reason in :dat
 depends on it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Literal, TypeAlias
 
+from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake
 from wspd_design.parameters.schema import Schema, schema_of
 
-Record: TypeAlias = Literal["state", "axle", "vehicle", "brake", "contact", "rail", "laden"]
+Record: TypeAlias = Literal[
+    "state", "axle", "vehicle", "brake", "contact", "rail", "laden", "pads", "dynamic", "track_brake"
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,6 +98,11 @@ PLANT = (*STATE, *VEHICLE, *CONTACT, *RAIL)
 
 _TRANSFER = "enters through the range of the axle load share"
 _PADS = "the vibration of the pads at the onset of braking is part of no claim"
+_OTHER_BRAKES: tuple[tuple[Record, type, str], ...] = (
+    ("pads", Pads, "claims about brakes speak about pads whose friction is constant"),
+    ("dynamic", DynamicBrake, "claims about brakes speak about vehicles without an electrodynamic brake"),
+    ("track_brake", TrackBrake, "claims about brakes speak about vehicles without a track brake"),
+)
 OUTSIDE_CLAIMS: dict[tuple[Record, str], str] = {
     **{
         ("vehicle", count): "a count, not a measurement"
@@ -104,6 +112,12 @@ OUTSIDE_CLAIMS: dict[tuple[Record, str], str] = {
     **{
         ("laden", field): "the laden vehicle is a vehicle of its own"
         for field in ("mass", "body_height", "max_torque")
+    },
+    **{
+        (part, field.name): reason
+        for part, record, reason in _OTHER_BRAKES
+        for field in fields(record)
+        if field.name != "bounds"
     },
     ("vehicle", "wheel_damping_decay"): "claims take the damping of the wheels as it is at the start",
     **{

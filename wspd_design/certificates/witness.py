@@ -118,7 +118,8 @@ def plant_at(problem: Problem, witness: Witness) -> tuple[Vehicle, Rail]:
     """
     nominal = problem.vehicle
     mass = witness.numbers.get("mass", nominal.mass)
-    body_mass = nominal.body_mass + (mass - nominal.mass)  # the body takes up what the mass gains or loses
+    # The bodies take up what the mass gains or loses.
+    body_mass = nominal.body_mass + (mass - nominal.mass) / nominal.bodies
     if body_mass <= 0.0:
         raise UserError(
             f"{witness.source} has a witness with a mass of {mass:g} kg, which leaves none for the body of "

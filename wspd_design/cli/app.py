@@ -51,7 +51,7 @@ def _start(
     if context.invoked_subcommand is None:
         from wspd_design.cli.commands import new
 
-        new.new()
+        new.design()
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -124,4 +124,5 @@ def _usage_sentence(error: Exception) -> str:
     message: str = error.format_message()  # type: ignore[attr-defined]
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "wspd"
-    return f"{message.rstrip('.')}; see {command} --help"
+    joint = " See" if message.endswith("?") else "; see"
+    return f"{message.rstrip('.')}{joint} {command} --help"

@@ -35,10 +35,10 @@ def check_plant(name: str) -> None:
 
 
 def check_quarter(name: str, command: str) -> None:
-    """Refuse a plant other than the quarter locomotive, which the analysis at a point speaks about."""
+    """Refuse a plant other than the quarter model, which the analysis at a point speaks about."""
     check_plant(name)
     if name != QUARTER:
         raise UserError(
-            f"{command} speaks about the quarter locomotive, whose wheelsets are alike, not about {name}; "
+            f"{command} speaks about the quarter model, whose wheelsets are alike, not about {name}; "
             f"leave --plant out or write --plant {QUARTER}"
         )

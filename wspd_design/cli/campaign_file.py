@@ -11,7 +11,7 @@ from wspd_design.cli.arguments import check_plant, initial_speed
 from wspd_design.cli.campaign import Series
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.options import CONTROLLER, PLANT
-from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, load_case
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries, read_toml
@@ -112,9 +112,10 @@ def read_campaign(path: Path) -> CampaignFile:
     series = []
     for law in words.controllers:
         for rail in words.rails:
+            first, along = along_the_track(_beside(rail, path), given)
             options = CaseOptions(
                 vehicle=_beside(words.vehicle, path),
-                rail=_beside(rail, path),
+                rail=first,
                 slip=words.slip,
                 sample_time=words.sample_time,
             )
@@ -132,7 +133,7 @@ def read_campaign(path: Path) -> CampaignFile:
                     case=case,
                     scenario=scenario(
                         case.rail,
-                        given,
+                        along,
                         initial_speed=initial_speed(words.speed, case.specification),
                         seed=words.seed,
                         vehicle=case.vehicle,

@@ -1,5 +1,6 @@
 """The table of a design's gains with their reasons, for the commands that make designs."""
 
+import shlex
 from pathlib import Path
 
 from rich.text import Text
@@ -31,12 +32,14 @@ def show_design(made: Design, path: Path, vehicle: Vehicle, rail: Rail) -> None:
             shown.add_row(name.append("\n= ", style="dim").append(value), why)
     out.print(spaced(shown))
     out.print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
+    page = path.with_suffix(".html")
     for purpose, command in (
-        ("Prove it", f"wspd verify {path}"),
-        ("Try it", f"wspd simulate {path}"),
-        ("Show it", f"wspd report {path} -o {path.with_suffix('.html')}"),
+        ("Prove it", ("verify", path)),
+        ("Try it", ("simulate", path)),
+        ("Show it", ("report", path, "-o", page)),
     ):
-        out.print(f"{purpose + ':':<10}{command}", markup=False, soft_wrap=True)
+        spelled = shlex.join(["wspd", *map(str, command)])
+        out.print(f"{purpose + ':':<10}{spelled}", markup=False, soft_wrap=True)
 
 
 def _quantity(gain: Gain) -> str:

@@ -15,7 +15,7 @@ DESIGNING, JUDGING, KNOWING = "Design", "Prove and validate", "Look up"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A command: ``commands/NAME.py`` has a function of its name."""
+    """A command: ``commands/NAME.py`` has a function of its name, and commands below it in ``COMMANDS``."""
 
     panel: str
     summary: str  # first line of the function's docstring
@@ -23,9 +23,15 @@ class Entry:
 
     def load(self, name: str) -> TyperCommand:
         """Import the module of the command and build it."""
-        built = typer.Typer(add_completion=False, rich_markup_mode="rich")
-        function = getattr(import_module(f"wspd_design.cli.commands.{name}"), name)
-        built.command(name, rich_help_panel=self.panel, epilog=self.example)(function)
+        built = typer.Typer(name=name, add_completion=False, rich_markup_mode="rich")
+        module = import_module(f"wspd_design.cli.commands.{name}")
+        function, below = getattr(module, name), getattr(module, "COMMANDS", {})
+        if below:
+            built.callback(invoke_without_command=True, epilog=self.example)(function)
+            for inner, made in below.items():
+                built.command(inner)(made)
+        else:
+            built.command(name, rich_help_panel=self.panel, epilog=self.example)(function)
         command: Any = typer.main.get_command(built)
         return command  # type: ignore[no-any-return]
 
@@ -33,8 +39,8 @@ class Entry:
 COMMANDS = {
     "new": Entry(
         DESIGNING,
-        "Answer some questions and get a design file; every default is explained.",
-        "Example: wspd new -o design.toml",
+        "Answer some questions and get a design file, or that of a vehicle or a rail; every default is explained.",
+        "Examples: wspd new -o design.toml; wspd new vehicle coach7.toml; wspd new rail leaves.toml",
     ),
     "design": Entry(
         DESIGNING,
@@ -87,6 +93,11 @@ COMMANDS = {
         "Show open-loop poles, input gain and equilibrium torque of the slip over speed.",
         "Example: wspd linearize --rail polach-dry",
     ),
+    "brake": Entry(
+        KNOWING,
+        "Show what the brake does while no wheel slides: stops by mean values, braked weight, adhesion asked for.",
+        "Example: wspd brake --vehicle er24pc-service",
+    ),
     "equations": Entry(
         KNOWING,
         "Show every equation of the paper with its verdict, or all about one of them.",
@@ -96,6 +107,11 @@ COMMANDS = {
         KNOWING,
         "Show every number of a parameter set with unit, bounds, status, source and place.",
         "Example: wspd sources er24pc",
+    ),
+    "schema": Entry(
+        KNOWING,
+        "Print the JSON Schema of vehicle or rail files, for editors.",
+        "Example: wspd schema vehicle -o wspd-vehicle.json",
     ),
     "doctor": Entry(
         KNOWING,

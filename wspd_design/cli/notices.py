@@ -1,4 +1,4 @@
-"""Notices of the engine, such as a missing compiler, as plain sentences for the user."""
+"""Notices, such as a missing compiler or letters that a font lacks, as plain sentences for the user."""
 
 import sys
 import warnings
@@ -9,7 +9,7 @@ from typing import TextIO
 
 @contextmanager
 def plain_notices() -> Iterator[None]:
-    """Print each notice of the simulation once, as one line on standard error without file and code."""
+    """Print each notice of the program once, as one line on standard error without file and code."""
     said: set[str] = set()
     usual = warnings.showwarning
 
@@ -30,6 +30,8 @@ def plain_notices() -> Iterator[None]:
             print(f"wspd: {sentence}", file=sys.stderr)
 
     with warnings.catch_warnings():
-        warnings.filterwarnings("always", category=UserWarning, module=r"wspd_design\.simulation\.")
+        warnings.filterwarnings(
+            "always", category=UserWarning, module=r"wspd_design\.(simulation|reporting)\."
+        )
         warnings.showwarning = show
         yield

@@ -9,6 +9,7 @@ from wspd_design.controllers.family import FAMILIES, designed, with_presets
 from wspd_design.design.case import RAIL, VEHICLE
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import available
+from wspd_design.parameters.schema import PRESETS
 from wspd_design.parameters.units import format_quantity
 from wspd_design.plants.names import DEFAULT_PLANT, PLANTS
 from wspd_design.plants.quarter import Quarter
@@ -30,8 +31,8 @@ DESIGN_FILE = "design.toml"
 CASE = "Case"
 _CONTROLLERS = (
     f"{', '.join(FAMILIES)}, a design file, which brings its own case, or FILE.py:NAME "
-    f"(docs/own-controller.md). {', '.join(family.name for family in with_presets())} also with :textbook "
-    "for the textbook tables."
+    f"(docs/own-controller.md). {', '.join(family.name for family in with_presets())} also with "
+    f":{' or :'.join(PRESETS)} for their tables; without, those that belong to the vehicle."
 )
 
 

@@ -5,11 +5,13 @@ import math
 from rich.text import Text
 
 from wspd_design.cli.console import console, spaced, table
+from wspd_design.design.industry import table_note
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.released import released_sentence
 from wspd_design.simulation.self_check import StepCheck
 
 SENSITIVE = "sensitive: a change of the initial speed that nobody can measure moves the result"
@@ -22,7 +24,7 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     stopped = run.ending is Ending.STOPPED
     out = console()
     out.print(
-        f"{run.controller} on {rails_of(scenario)}, {run.vehicle} ({run.plant}), "
+        f"{run.controller} on {rails_of(scenario)}, {run.train}, "
         f"from {run.initial_speed * 3.6:g} km/h, sample time {run.sample_time * 1e3:g} ms",
         style="bold",
         markup=False,
@@ -30,6 +32,9 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     disturbances = disturbances_of(scenario)
     if disturbances:
         out.print(f"With {disturbances}.", markup=False)
+    note = table_note([run.controller])
+    if note:
+        out.print(note, markup=False)
     out.print(f"Ending: {run.ending.value}.", style="" if stopped else "bold yellow")
     shown = table("Figure", "Value", "Unit", numeric=("Value",))
     shown.add_row("distance", f"{figures.distance:.1f}", "m")
@@ -57,6 +62,9 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     out.print(spaced(shown))
     if figures.ideal_ending in NO_IDEAL_STOP:
         out.print(f"No ideal stop: {NO_IDEAL_STOP[figures.ideal_ending]}.", style="bold yellow")
+    released = released_sentence([(run.controller, figures.released_below)])
+    if released:
+        out.print(released, style="yellow", markup=False)
     out.print(_trust(made.check))
     out.print("Slip figures count above 10 km/h.", style="dim")
 

@@ -1,12 +1,13 @@
 """From the options of a stop to its scenario."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
-from wspd_design.parameters.loading import load_rail, load_track_spectrum
+from wspd_design.parameters.loading import load_rail, load_rail_profile, load_track_spectrum
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import Dimension, parse_quantity
 from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing
@@ -16,6 +17,30 @@ _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
 _RISE_IN_RUN = re.compile(r"(?P<rise>\S+)\s*(?:in|:)\s*(?P<run>\S+)", re.IGNORECASE)
 MOST_SPREAD = 0.2  # of the wheel loads: five standard deviations are the load
 _GRADE = 'write "5 permille", "0.5 %", "1 in 200" or 0.005, negative downhill'
+
+
+def along_the_track(rail: str | None, disturbances: StopOptions) -> tuple[str | None, StopOptions]:
+    """Return the rail below the train at the start; where it changes along the track, the rest become patches.
+
+    Parameters
+    ----------
+    rail : str or None
+        What the user wrote.
+    disturbances : StopOptions
+        What disturbs the stop.
+    """
+    if rail is None:
+        return rail, disturbances
+    profile = load_rail_profile(rail)
+    patches = [
+        f"{start!r} m {name}" for start, name in zip(profile.starts[1:], profile.rails[1:], strict=True)
+    ]
+    if patches and (disturbances.patch or disturbances.axle_rails):
+        other = "--patch" if disturbances.patch else "--axle-rails"
+        raise UserError(
+            f"rail {profile.name} changes along the track itself; leave {other} out or take another rail"
+        )
+    return profile.rails[0], replace(disturbances, patch=patches or disturbances.patch)
 
 
 def scenario(
@@ -42,7 +67,7 @@ def scenario(
         seed=seed,
         axle_rails=None if disturbances.axle_rails is None else _axle_rails(disturbances.axle_rails),
         patches=tuple(map(_patch, disturbances.patch or ())),
-        grade=0.0 if disturbances.grade is None else _grade(disturbances.grade),
+        grade=0.0 if disturbances.grade is None else parse_grade(disturbances.grade),
         pad_vibration=disturbances.pad_vibration,
         sensing=_sensing(disturbances),
         load_irregularity=None
@@ -112,7 +137,8 @@ def _patch(text: str) -> Patch:
     return Patch(start=start, rail=load_rail(found["rail"]))
 
 
-def _grade(text: str) -> float:
+def parse_grade(text: str) -> float:
+    """Read a grade, rise over run [-]."""
     parts = _RISE_IN_RUN.fullmatch(text.strip())
     try:
         if parts is None:

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
-from wspd_design.codegen.kernels import PARAMETERS, Kernels, kinds_of, plant_kernels
+from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, kinds_of, plant_kernels
 from wspd_design.codegen.law_library import LoadedLaw, load_law, pointer
 from wspd_design.codegen.loop_numbers import DOUBLES, LANE_TOTALS, STOP_TOTALS, Head, LoopInput, LoopOutput
 from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.prebuilt import prebuilt_library
 from wspd_design.codegen.sampled import drive
 from wspd_design.controllers.protocol import Command, Controller, Measurement
+from wspd_design.model.further_brakes import LEAST_SHARE
 from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ class ClosedLoop:
         self._library, self._law = library, law
         for name in ("wspd_lane_totals", "wspd_stop_totals", "wspd_wheel_speeds", "wspd_bad_command"):
             getattr(library, name).restype = DOUBLES
-        for name in ("wspd_size", "wspd_steps", "wspd_samples"):
+        for name in ("wspd_size", "wspd_row", "wspd_steps", "wspd_samples"):
             getattr(library, name).restype = ctypes.c_long
 
     @property
@@ -68,7 +69,7 @@ class ClosedLoop:
 
         buffer = _aligned(self._library.wspd_size())
         head = Head.from_buffer(buffer)
-        trace = np.zeros((given.trace_rows, 3 + 5 * self.axles))
+        trace = np.zeros((given.trace_rows, self._library.wspd_row()))
         head.set = given.settings
         head.trace_rows, head.queue_rows = given.trace_rows, given.waiting_commands
         arrays = {
@@ -196,6 +197,10 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
         "TRANSFERS": kernels.transfers,
         "PARAMETERS": len(PARAMETERS),
         "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
+        "MAX_TORQUE": PARAMETERS.index(("brake", "max_torque")),
+        "DROP_SLIP": PARAMETERS.index(("dynamic", "drop_slip")),
+        "WINDOW": len(WINDOW),
+        "LEAST_SHARE": LEAST_SHARE,
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
         "MASS": PARAMETERS.index(("vehicle", "mass")),
         "OFFSET": PARAMETERS.index(("surroundings", "axle_offset")),

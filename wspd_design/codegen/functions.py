@@ -63,7 +63,7 @@ def _averaged(brake: Brake, torque: Any, duty: Any) -> Any:
 
 @lru_cache(maxsize=64)
 def quarter_plant(vehicle: Vehicle, rail: Rail) -> Any:
-    """The quarter locomotive, eqs. (1), (2), (8), (9), as one CasADi function.
+    """The quarter model, eqs. (1), (2), (8), (9), as one CasADi function.
 
     Returns
     -------

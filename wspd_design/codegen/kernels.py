@@ -7,10 +7,18 @@ axles, every rail and every sample of parameters.
 from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
+from wspd_design.codegen.further_numbers import (
+    FURTHER_PARAMETERS,
+    PART_NAMES,
+    blank_parts,
+    further_values,
+    symbolic_parts,
+)
 from wspd_design.codegen.hoisting import hoist
 from wspd_design.codegen.memory import Memory
 from wspd_design.model import adhesion
 from wspd_design.model import brake as brake_model
+from wspd_design.model.further_brakes import build_up
 from wspd_design.model.number import where
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
 from wspd_design.plants.protocol import AxleCondition, Plant
@@ -43,6 +51,7 @@ _NOT_NUMBERS = (
     "brake",
     "contact",
     "axle_shares",
+    *PART_NAMES,
     "bounds",
     *KINDS,
     "dead_time",  # the numbers of a stop hold these, as its disturbances
@@ -53,11 +62,14 @@ _NOT_NUMBERS = (
     "reservoir_pressure",
 )
 
-PARAMETERS: tuple[tuple[str, str], ...] = tuple(
-    (record, field.name)
-    for record, kind in _RECORDS
-    for field in fields(kind)
-    if field.name not in _NOT_NUMBERS
+PARAMETERS: tuple[tuple[str, str], ...] = (
+    *(
+        (record, field.name)
+        for record, kind in _RECORDS
+        for field in fields(kind)
+        if field.name not in _NOT_NUMBERS
+    ),
+    *FURTHER_PARAMETERS,
 )
 """Record and field of every element of the parameter vector."""
 
@@ -71,7 +83,13 @@ def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -
         "rail": rail,
         "surroundings": surroundings,
     }
-    return [getattr(records[record], field) for record, field in PARAMETERS]
+    known = PARAMETERS[: -len(FURTHER_PARAMETERS)]
+    return [*(getattr(records[record], field) for record, field in known), *further_values(vehicle)]
+
+
+WINDOW = ("start", "start_pressure", "fill_end", "vent_end", "reservoir", "share", "start_level", "goal")
+"""What holds from one command of the valves to the next: times [s], pressures [Pa], share of the pressure that is asked
+of the friction brake, and the level of the electrodynamic brake, there and where it goes to."""
 
 
 class Kernels(NamedTuple):
@@ -79,17 +97,18 @@ class Kernels(NamedTuple):
 
     stop_constants: Any  # (p) -> constants of loads and train
     lane_constants: Any  # (p) -> constants of contact and axle
-    window_constants: (
-        Any  # (p, [start, start pressure, fill end, vent end, reservoir]) -> constants of actuator
-    )
-    kinks: Any  # (p, the same) -> times at which the rate of the pressure jumps; most brakes have none
+    window_constants: Any  # (p, window) -> constants of actuator
+    kinks: Any  # (p, window) -> times at which the rate of the pressure jumps; most brakes have none
     loads: Any  # (constants, transfers) -> wheel load of each axle
-    train: Any  # (constants, speed, force of each axle, transfers) -> acceleration, resistance, transfers'
+    train: (
+        Any  # (constants, speed, force of each axle, transfers, time) -> acceleration, resistance, transfers'
+    )
     contact: Any  # (constants, load) -> stiffness there, and the reciprocal of the load: where a step begins
-    axle: Any  # (constants, speed, axle states, load, torque, locked, contact, damping)
-    #           -> force, axle states', slip, damping torque, torque that is passed on
+    axle: Any  # (constants, speed, axle states, load, torque, level, locked, contact, damping)
+    #           -> force, axle states', slip, damping torque, torque that is passed on, torque of all brakes,
+    #              torque of the electrodynamic brake
     slope: Any  # (constants, speed, axle states, load, contact, damping) -> slope of the wheel's acceleration
-    actuator: Any  # (constants, time) -> pressure, torque, pressure without venting, damping
+    actuator: Any  # (constants, time) -> pressure, torque, pressure without venting, damping, level
 
     @property
     def axles(self) -> int:
@@ -119,7 +138,9 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     kinds = {name: getattr(present, name) for name in KINDS} | {
         "reservoir_volume": float(present.reservoir_volume > 0.0)
     }
-    shape = plant.on(Vehicle(**{**blank, **counts, "brake": Brake(**brake | kinds)}))
+    shape = plant.on(
+        Vehicle(**{**blank, **counts, **blank_parts(plant.vehicle), "brake": Brake(**brake | kinds)})
+    )
     return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))
 
 
@@ -135,7 +156,7 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
     import casadi as ca
 
     p = ca.SX.sym("p", len(PARAMETERS))
-    symbols: dict[str, dict[str, Any]] = {record: {} for record, _ in _RECORDS}
+    symbols: dict[str, dict[str, Any]] = {record: {} for record, _ in PARAMETERS}
     for index, (record, field) in enumerate(PARAMETERS):
         symbols[record][field] = p[index]
     vehicle = replace(
@@ -143,6 +164,7 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
         **symbols["vehicle"],
         brake=replace(blank.vehicle.brake, **symbols["brake"]),
         contact=Contact(**symbols["contact"]),
+        **symbolic_parts(blank.vehicle, dict(zip(PARAMETERS, p.elements(), strict=True))),
     )
     rail: dict[str, Any] = {field.name: None for field in fields(Rail)}
     track = Rail(**{**rail, **symbols["rail"]})
@@ -169,19 +191,20 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
     import casadi as ca
 
     brake = plant.vehicle.brake
-    speed, load, demand, locked, time = (
-        ca.SX.sym(name) for name in ("speed", "load", "torque", "locked", "time")
+    speed, load, demand, level, locked, time = (
+        ca.SX.sym(name) for name in ("speed", "load", "torque", "level", "locked", "time")
     )
     begin, damped, force = ca.SX.sym("contact", 2), ca.SX.sym("damping"), ca.SX.sym("force", plant.axles)
     states, transfers = ca.SX.sym("states", plant.axle_states), ca.SX.sym("transfers", 2 * plant.transfers)
+    braking_time = time + surroundings.braking_time
     loads = plant.wheel_loads(_elements(transfers))
     train = plant.train_motion(
         speed=speed,
         creep_forces=_elements(force),
         transfers=_elements(transfers),
+        time=braking_time,
         grade_force=surroundings.grade_force,
     )
-    braking_time = time + surroundings.braking_time
     contact = plant.axle_condition(time=0.0, wheel_load=load).stiffness
     damping = plant.axle_condition(time=braking_time, wheel_load=1.0).damping
     axle = plant.axle_motion(
@@ -193,13 +216,28 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
         condition=AxleCondition(
             stiffness=begin[0] * adhesion.stiffness_growth(load * begin[1]), damping=damped
         ),
+        dynamic_level=level,
     )
     wheel, *others = axle.rates
     rates = ca.vertcat(where(locked != 0.0, 0.0, wheel), *others)
-    passed = where(locked != 0.0, 2.0 * plant.vehicle.wheel_radius * axle.creep_force, demand)
-    valves = ca.SX.sym("valves", 5)
-    pressures = brake_model.pattern_pressure(brake, time, _elements(valves), surroundings.braking_time)
-    kinks = brake_model.kinks(brake, _elements(valves), surroundings.braking_time)
+    passed = where(locked != 0.0, 2.0 * plant.vehicle.wheel_radius * axle.creep_force, axle.brake_torque)
+    window, dynamic = ca.SX.sym("window", len(WINDOW)), plant.vehicle.dynamic
+    *pattern, share, start_level, goal = _elements(window)
+    pressures = brake_model.pattern_pressure(
+        brake,
+        time,
+        tuple(pattern),
+        surroundings.braking_time,
+        share=None if dynamic is None else share,
+    )
+    kinks = brake_model.kinks(
+        brake, tuple(pattern), surroundings.braking_time, share=None if dynamic is None else share
+    )
+    there = (
+        ca.SX(0.0)
+        if dynamic is None
+        else build_up(time - pattern[0], start_level, goal, dynamic.build_up_time)
+    )
     torque = brake_model.braking_torque(brake, pressures[0])
     if disturbed:
         torque *= 1.0 + brake_model.torque_disturbance(brake, braking_time)
@@ -207,22 +245,27 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
         ca.Function("loads_kernel", [p, transfers], [ca.vertcat(*loads)]),
         ca.Function(
             "train_kernel",
-            [p, speed, force, transfers],
+            [p, speed, force, transfers, time],
             [train.acceleration, train.resistance, ca.vertcat(ca.SX(0, 1), *train.transfer_rates)],
         ),
         ca.Function("contact_kernel", [p, load], [ca.vertcat(contact, 1.0 / load)]),
         ca.Function(
             "axle_kernel",
-            [p, speed, states, load, demand, locked, begin, damped],
-            [axle.creep_force, rates, axle.slip, axle.damping_torque, passed],
+            [p, speed, states, load, demand, level, locked, begin, damped],
+            [
+                *(axle.creep_force, rates, axle.slip, axle.damping_torque),
+                *(passed, axle.brake_torque, axle.dynamic_torque),
+            ],
         ),
         ca.Function(
             "slope_kernel",
             [p, speed, states, load, begin, damped],
-            [ca.substitute(ca.jacobian(wheel, states)[0], demand, 0.0)],
+            [ca.substitute(ca.jacobian(wheel, states)[0], ca.vertcat(demand, level), ca.SX.zeros(2))],
         ),
-        ca.Function("actuator_kernel", [p, valves, time], [pressures[0], torque, pressures[1], damping]),
-        ca.Function("kinks_kernel", [p, valves], [ca.vertcat(ca.SX(0, 1), *kinks)]),
+        ca.Function(
+            "actuator_kernel", [p, window, time], [pressures[0], torque, pressures[1], damping, there]
+        ),
+        ca.Function("kinks_kernel", [p, window], [ca.vertcat(ca.SX(0, 1), *kinks)]),
     ]
 
 

@@ -136,7 +136,7 @@ class LoopOutput:
     lane_totals: dict[str, "Array"]  # (lanes,) each
     stop_totals: dict[str, "Array"]  # (stops,) each
     wheel_speeds: "Array"  # (lanes,)
-    trace: "Array"  # (rows, 3 + 5 axles), of the first stop
+    trace: "Array"  # (rows, 3 + (5 + states of an axle) axles), of the first stop
     samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
     bad_command: tuple[float, float, float]  # time, fill, vent
     steps: int

@@ -21,6 +21,8 @@ class Stage(NamedTuple):
     slip: Any
     load: Any
     passed: Any
+    given: Any  # torque of all brakes
+    dynamic: Any  # of these that of the electrodynamic brake
 
 
 class Adhering:

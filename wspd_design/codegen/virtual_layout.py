@@ -18,6 +18,7 @@ class Layout:
     """Places of everything in the vectors of a step."""
 
     axles: int
+    axle_states: int
     state: dict[str, slice]
     given: dict[str, slice]  # what a step needs beside the state
 
@@ -38,7 +39,7 @@ class Layout:
         After it come whether the step was made, the share of it before its first event, and the angles that the wheels
         have turned.
         """
-        return 3 + 5 * self.axles
+        return 3 + (5 + self.axle_states) * self.axles
 
 
 def layout(kernels: Kernels) -> Layout:
@@ -50,6 +51,7 @@ def layout(kernels: Kernels) -> Layout:
     }
     return Layout(
         axles=axles,
+        axle_states=kernels.axle_states,
         state=_places(
             {
                 "speed": 1,
@@ -61,6 +63,7 @@ def layout(kernels: Kernels) -> Layout:
                 "lock_length": axles,
                 "pressure": axles,
                 "torque": axles,
+                "level": axles,
                 "filled": axles,
                 "damping": axles,
                 "time": 1,
@@ -70,6 +73,8 @@ def layout(kernels: Kernels) -> Layout:
                 "slip": axles,
                 "load": axles,
                 "passed": axles,
+                "given": axles,
+                "dynamic": axles,
                 "contact": 2 * axles,
                 "lane": (INTEGRATED + 4) * axles,
                 "stop": 5,  # distance, impulse and work of the resistance, judged time, time

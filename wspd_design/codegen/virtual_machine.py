@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.kernels import PARAMETERS, Kernels, plant_kernels
+from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, plant_kernels
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
 from wspd_design.codegen.virtual_sensors import VirtualSensors
 from wspd_design.codegen.virtual_step import INERTIA, MASS, RADIUS, StepFunctions, step_functions
-from wspd_design.codegen.virtual_valves import VirtualValves
+from wspd_design.codegen.virtual_valves import START, VirtualValves
 from wspd_design.controllers.protocol import Command, Controller, Measurement, State
+from wspd_design.model.further_brakes import friction_share
 from wspd_design.plants.protocol import Plant
 
 if TYPE_CHECKING:
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 _SHORTEST = 1e-9  # s: edges closer together than this are one
 _BATCHES = (64, 16, 8, 4, 2)
 _OFFSET = PARAMETERS.index(("surroundings", "axle_offset"))
+_MAX_TORQUE = PARAMETERS.index(("brake", "max_torque"))
+_DROP_SLIP = PARAMETERS.index(("dynamic", "drop_slip"))
+_BLENDED = WINDOW.index("share")
 _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail")
 
 
@@ -88,6 +92,7 @@ class _VirtualPlant:
         self.valves = VirtualValves(given)
         self.sensors = VirtualSensors(given, self.parameters[RADIUS])
         self.waiting: deque[tuple[float, list[Command]]] = deque()
+        self.dropped = np.zeros(axles, dtype=bool)  # electrodynamic brakes
         self.recorded = -1.0
         self.sample = self.steps = 0
         self._bends = _bends(given.load_factors)
@@ -101,7 +106,7 @@ class _VirtualPlant:
             for number, function in ((1, functions.single), *functions.batches.items())
         }
         self._observe = Bound(functions.observe, self.state, self.inputs)
-        self._window = np.zeros((axles, 5))
+        self._window = np.zeros((axles, len(WINDOW)))
         self._kinks = Bound(kernels.kinks.map(axles), self._by_axle, self._window)
         self._window_constants = Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
@@ -149,7 +154,7 @@ class _VirtualPlant:
             speed=float(self.part("speed")[0]),
             wheels=self.wheels,
             angles=self.angles,
-            torques=self.part("torque"),
+            torques=self.part("torque") + self.part("dynamic"),
         )
 
     def advance(self, commands: list[Command]) -> int:
@@ -169,22 +174,40 @@ class _VirtualPlant:
             if self.moving:
                 present = float(self.part("time")[0])
                 self.valves.follow(due, present, self.part("pressure"), self.part("filled"))
+                self._blend()
                 self._set_windows()
         return result or self._follow_until(end)
 
     def _set_windows(self) -> None:
         """Work out the constants of the actuators for the patterns of the valves."""
-        self._window[:] = self.valves.patterns
+        import numpy as np
+
+        self._window[:, :_BLENDED] = self.valves.patterns
         self._window_constants.call()
         self._give("window_constants", self._window_constants.outputs[0].ravel())
         self._kinks.call()
-        self.edges = tuple(sorted({*self.valves.edges, *self._kinks.outputs[0].ravel().tolist()}))
+        kinks = self._kinks.outputs[0].ravel()
+        self.edges = tuple(sorted({*self.valves.edges, *kinks[np.isfinite(kinks)].tolist()}))
+
+    def _blend(self) -> None:
+        """Say what is asked of the friction brakes whose patterns begin now, and where the electrodynamic ones go to.
+
+        An electrodynamic brake drops out when its wheel slides too much, for the rest of the stop.
+        """
+        import numpy as np
+
+        begun = self.valves.patterns[:, START] == self.part("time")[0]
+        self.dropped |= begun & (self.part("slip") > self.parameters[_DROP_SLIP])
+        demanded = self.parameters[_MAX_TORQUE].tolist()
+        shares = list(map(friction_share, self.part("dynamic").tolist(), demanded))
+        goals = np.where(self.dropped, 0.0, 1.0)
+        self._window[begun, _BLENDED:] = np.stack([shares, self.part("level"), goals], axis=1)[begun]
 
     def _close_valves(self) -> None:
         """Begin with closed valves."""
         self._set_windows()
         present = [self.kernels.actuator(constants, 0.0) for constants in self._window_constants.outputs[0]]
-        names = ("pressure", "torque", "filled", "damping")
+        names = ("pressure", "torque", "filled", "damping", "level")
         for name, values in zip(names, zip(*present, strict=True), strict=True):
             self.part(name)[:] = [float(value) for value in values]
         self._look_up()
@@ -197,6 +220,7 @@ class _VirtualPlant:
             result = self._advance_to(watched)
             if self.moving:
                 self.valves.watch(float(self.part("time")[0]), self.part("pressure"), self.part("filled"))
+                self._blend()
                 self._set_windows()
         return result or self._advance_to(goal)
 

@@ -83,18 +83,19 @@ class _Step:
         now, given, axles = self.state, self.given, self.axles
         integrated = INTEGRATED * axles
         h, following, settling = self._length()
-        pressure, torque, filled, damping = self._actuators(now["time"] + 0.5 * h, following)
+        middle = now["time"] + 0.5 * h
+        pressure, torque, filled, damping, level = self._actuators(middle, following)
         motion = self.motion(now)
         present = Stage(
             motion,
             now["torque"],
-            *(now[name] for name in ("rates", "integrands", "force", "slip", "load", "passed")),
+            *(now[name] for name in Stage._fields[2:]),
         )
         stages = [present]
         wheels = Adhering(motion, h, settling, given["radius"])
-        for share, column in ((0.5, 0), (0.5, 0), (1.0, 1)):
+        for share, column, time in ((0.5, 0, middle), (0.5, 0, middle), (1.0, 1, following)):
             at = wheels.placed(motion + share * h * stages[-1].rates, wheels.moved(stages))
-            stages.append(self._stage(at, torque[column], damping[column], now))
+            stages.append(self._stage(at, time, torque[column], level[column], damping[column], now))
         reached, totals = (
             h / 6.0 * sum((2.0 * part for part in parts[1:3]), parts[0] + parts[3])
             for parts in ([stage.rates for stage in stages], [stage.integrands for stage in stages])
@@ -120,6 +121,7 @@ class _Step:
             "lock_length": length,
             "pressure": pressure,
             "torque": torque[1],
+            "level": level[1],
             "filled": filled,
             "damping": damping[1],
             "time": following,
@@ -148,7 +150,8 @@ class _Step:
                 after["passed"],
                 after["load"],
             ),
-            *(torque[1], made, share, after["lane"][(INTEGRATED - 1) * axles : integrated]),
+            *(after["given"], after["dynamic"], after["axle"][axles:]),
+            *(made, share, after["lane"][(INTEGRATED - 1) * axles : integrated]),
         )
         return [where(made, ca.vertcat(*after.values()), self.whole), row]
 
@@ -247,8 +250,8 @@ class _Step:
             )
         )
 
-    def _actuators(self, middle: Any, end: Any) -> tuple[Any, Any, Any, Any]:
-        """Pressure at the end, torque in the middle and at the end, pressure without venting, damping at both."""
+    def _actuators(self, middle: Any, end: Any) -> tuple[Any, Any, Any, Any, Any]:
+        """Pressure at the end, torque at both times, pressure without venting at the end, damping and level at both."""
         import casadi as ca
 
         half, full = (
@@ -264,7 +267,7 @@ class _Step:
             ]
             for time in (middle, end)
         )
-        return full[0], (half[1], full[1]), full[2], (half[3], full[3])
+        return full[0], (half[1], full[1]), full[2], (half[3], full[3]), (half[4], full[4])
 
     def _loads(self, motion: Any) -> Any:
         """Wheel loads of the axles: those of the plant times the table, which is straight up to its next point."""
@@ -285,8 +288,8 @@ class _Step:
         ]
         state = {**state, "contact": ca.reshape(ca.horzcat(*begins).T, -1, 1)}
         for _ in range(2):
-            stage = self._stage(motion, torque, state["damping"], state)
-            brake = torque * (1.0 - BALANCED)
+            stage = self._stage(motion, state["time"], torque, state["level"], state["damping"], state)
+            brake = stage.given * (1.0 - BALANCED)
             state["locked"] = where(brake < 2.0 * radius * stage.force, 0.0, state["locked"])
             state["held"] = where(brake < stage.passed, 0.0, state["held"])
         return {
@@ -295,7 +298,9 @@ class _Step:
             "torque": torque,
         }
 
-    def _stage(self, motion: Any, torque: Any, damping: Any, state: dict[str, Any]) -> Stage:
+    def _stage(
+        self, motion: Any, time: Any, torque: Any, level: Any, damping: Any, state: dict[str, Any]
+    ) -> Stage:
         """Everything at one moment; locks, holds and contact are those of the state."""
         import casadi as ca
 
@@ -309,20 +314,21 @@ class _Step:
                 states[a :: self.axles],
                 load[a],
                 torque[a],
+                level[a],
                 state["locked"][a],
                 state["contact"][a :: self.axles],
                 damping[a],
             )
             for a in range(self.axles)
         ]
-        force, rolling, slip, damped, passed = (
+        force, rolling, slip, damped, passed, braking, dynamic = (
             # Element by element, each for all axles, as the state has them.
             ca.reshape(ca.horzcat(*column).T, -1, 1)
             for column in zip(*axles, strict=True)
         )
         rolling, others = rolling[: self.axles], rolling[self.axles :]
         acceleration, resistance, transferring = self.kernels.train(
-            given["stop_constants"], speed, force, transfer
+            given["stop_constants"], speed, force, transfer, time
         )
         if self.holding:
             held_slip, slope = self._held_slip(speed)
@@ -343,7 +349,9 @@ class _Step:
             resistance * speed,
         )
         rates = ca.vertcat(acceleration, rolling, others, transferring, speed)
-        return Stage(motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed)
+        return Stage(
+            motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed, braking, dynamic
+        )
 
     def _held_slip(self, speed: Any) -> tuple[Any, Any]:
         """The slip to be held at a speed, and its slope over speed."""
@@ -377,10 +385,10 @@ class _Step:
                 motion[0] - target,
                 where(
                     now["locked"],
-                    stage.torque - 2.0 * given["radius"] * stage.force,
+                    stage.given - 2.0 * given["radius"] * stage.force,
                     where(
                         now["held"],
-                        stage.torque - stage.passed,
+                        stage.given - stage.passed,
                         motion[1 : 1 + axles] - self._rolling(motion[0]),
                     ),
                 ),

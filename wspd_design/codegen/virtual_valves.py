@@ -83,11 +83,14 @@ class VirtualValves:
 
     def end(self, filled: "Array") -> None:
         """Count what was filled last."""
-        self.filled += filled - self.patterns[:, START_PRESSURE]
+        import numpy as np
+
+        self.filled += np.maximum(filled - self.patterns[:, START_PRESSURE], 0.0)
 
     def _begin_pattern(self, axle: int, pattern: tuple[float, float, float, float], filled: "Array") -> None:
         """Close the accounts of a pattern; ``filled`` begins anew."""
-        self.filled[axle] += filled[axle] - self.patterns[axle, START_PRESSURE]
+        # Nothing where the cylinder was let down.
+        self.filled[axle] += max(float(filled[axle] - self.patterns[axle, START_PRESSURE]), 0.0)
         self.vented[axle] += filled[axle] - pattern[START_PRESSURE]
         filled[axle] = pattern[START_PRESSURE]
         self.patterns[axle, :RESERVOIR] = pattern

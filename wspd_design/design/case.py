@@ -13,6 +13,7 @@ from wspd_design.design.own_controller import is_own_controller, load_controller
 from wspd_design.design.records import Design, Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
+from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import parse_quantity
@@ -232,13 +233,14 @@ def _specification_of(made: Controller, options: CaseOptions, base: Specificatio
 def _stated(kind: str, name: str, file: str, design: str) -> str:
     """Return the vehicle or rail that a design file states: a file beside it, or a shipped name."""
     if file:
-        path = Path(design).parent / file
+        own = file.removesuffix(LADEN)
+        path = Path(design).parent / own
         if not path.is_file():
             raise UserError(
                 f"{design} was made for the {kind} of {path}, which is not there; give its file with --{kind}"
             )
-        return str(path)
-    if name not in available(kind):  # type: ignore[arg-type]
+        return str(path) + file.removeprefix(own)
+    if name.removesuffix(LADEN) not in available(kind):  # type: ignore[arg-type]
         raise UserError(f"{design} was made for a {kind} of your own, {name}; give its file with --{kind}")
     return name
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from wspd_design.controllers.family import FAMILIES, Given, preset_of
 from wspd_design.controllers.protocol import Controller
 from wspd_design.design.file import read_design
+from wspd_design.design.industry import named_with, usual_table
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
@@ -21,7 +22,9 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     ----------
     name_or_path : str
         A family of laws, such as ``smc`` or ``trenitalia``, or the path of a design file ending in ``.toml``. The
-        three laws of the industry take a preset after a colon, ``trenitalia:textbook``; ``calibrated`` without one.
+        three laws of the industry take a preset after a colon, ``trenitalia:textbook``; without one the preset that
+        belongs to the vehicle. Their names say which, ``trenitalia (textbook)``, except the calibrated one of a
+        vehicle that it belongs to.
     vehicle : Vehicle
         The vehicle it shall brake.
     rail : Rail
@@ -42,10 +45,14 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
         raise UserError(_unknown(name_or_path))
     if family.gains is not None:
         return named_design(base, vehicle, rail, specification).build(vehicle, rail)
-    table = family.tables and family.tables(preset_of(family, preset if colon else "calibrated"))
+    table, name = None, base
+    if family.tables is not None:
+        chosen = preset_of(family, preset) if colon else usual_table(vehicle)
+        table = family.tables(chosen)
+        name = named_with(base, chosen) if colon or chosen != "calibrated" else base
     return family.build(
         Given(
-            name=name_or_path,
+            name=name,
             sample_time=specification.sample_time,
             vehicle=vehicle,
             rail=rail,

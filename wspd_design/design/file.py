@@ -12,6 +12,7 @@ from wspd_design.controllers.gains import GainForm
 from wspd_design.design.records import Design, Gain, GainValue, Specification, in_the_law
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
+from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.writing import write_whole
 
 SCHEMA = "wspd-design/2"
@@ -48,7 +49,10 @@ def write_design(design: Design, path: str | Path) -> None:
 def seen_from(design_file: Path, name_or_path: str | Path | None) -> str:
     """Return the path of a parameter file as seen from the folder of a design file; nothing for a shipped name."""
     text = str(name_or_path or "")
-    return Path(os.path.relpath(text, design_file.parent)).as_posix() if text.endswith(".toml") else ""
+    path = text.removesuffix(LADEN)
+    if not path.endswith(".toml"):
+        return ""
+    return Path(os.path.relpath(path, design_file.parent)).as_posix() + text.removeprefix(path)
 
 
 def read_design(path: str | Path) -> Design:

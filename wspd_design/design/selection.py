@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from wspd_design.controllers.family import Family, designed_family
+from wspd_design.design.industry import PRINTED, named_with, usual_table
 from wspd_design.design.printed_gains import printed_gains
 from wspd_design.design.records import Design, Gain, Specification, rail_hash, vehicle_hash
 from wspd_design.design.sliding_gains import adaptive_gains, sliding_mode_gains
@@ -63,9 +64,14 @@ def design_controller(
 
 
 def named_design(law: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:
-    """Return the design behind the name of a law: printed gains if the paper has them, else those of the rules."""
+    """Return the design behind the name of a law: printed gains if the paper has them, else those of the rules.
+
+    On a vehicle that the paper does not speak about, the name says that the gains are printed.
+    """
     if _rules(designed_family(law)).printed is not None:
-        return paper_design(vehicle, rail, specification, law=law)
+        made = paper_design(vehicle, rail, specification, law=law)
+        foreign = usual_table(vehicle) != "calibrated"
+        return replace(made, name=named_with(law, PRINTED)) if foreign else made
     return replace(design_controller(vehicle, rail, specification, law=law), name=law)
 
 

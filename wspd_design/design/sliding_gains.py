@@ -106,7 +106,9 @@ def adaptive_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
     low, high = specification.speeds
     middle = math.sqrt(low * high)
     point = slip_dynamics(vehicle, rail, specification.slip, middle)
+    full = vehicle.brake.max_torque / unit
     equilibrium = -point.drift / point.gain / unit
+    held = f"slip {specification.slip:g} at {middle * 3.6:.0f} km/h on {rail.name}"
     bound = switching.value / (middle * point.gain) / unit
     adaptation = ADAPTATION_SHARE * vehicle.brake.max_torque / unit * rate.value / layer.value
     span = specification.slip
@@ -133,10 +135,11 @@ def adaptive_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
         ),
         Gain(
             name="initial_weights",
-            value=(equilibrium,) * RULES,
+            value=(min(equilibrium, full),) * RULES,
             unit="kN m",
-            why=f"b_hat(0) = -F/G: the torque that holds slip {specification.slip:g} at "
-            f"{middle * 3.6:.0f} km/h on {rail.name}",
+            why=f"b_hat(0) = -F/G: the torque that holds {held}"
+            if equilibrium <= full
+            else f"b_hat(0) = T_max: the {equilibrium:.4g} kN m that would hold {held} are more than the brake has",
         ),
         Gain(
             name="initial_bound",

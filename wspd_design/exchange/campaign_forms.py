@@ -36,8 +36,8 @@ _SPREADS = (
     ("slip_rms", "above 10 km/h about the reference of the law, null without one,"),
     ("lock_time_s", "of the wheelset that is locked longest,"),
     ("longest_lock_s", "longest lock of any wheelset above 10 km/h,"),
-    ("valve_switches_per_s", "mean of the wheelsets,"),
-    ("vented_air", "full brake cylinders let out, mean of the wheelsets,"),
+    ("valve_switches_per_s", "mean of the wheelsets with a brake,"),
+    ("vented_air", "full brake cylinders let out, mean of the wheelsets with a brake,"),
 )
 CAMPAIGN = Form(
     name="campaign",

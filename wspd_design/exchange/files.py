@@ -1,6 +1,7 @@
 """The schema files in the package.
 
-``python -m wspd_design.exchange.files`` writes them and the tables of ``docs/json.md`` again.
+``python -m wspd_design.exchange.files`` writes them and the tables of ``docs/json.md`` and ``docs/vehicle-files.md``
+again.
 """
 
 import json
@@ -10,6 +11,7 @@ from typing import Any
 
 from wspd_design.exchange.documentation import with_tables
 from wspd_design.exchange.forms import Form, json_schema
+from wspd_design.exchange.parameter_schema import with_key_tables
 from wspd_design.exchange.vocabulary import WITH_SCHEMA
 
 FOLDER = "data/schemas"
@@ -41,5 +43,6 @@ def write_schemas(folder: Path) -> None:
 if __name__ == "__main__":
     package = Path(__file__).parents[1]
     write_schemas(package / FOLDER)
-    page = package.parent / "docs" / "json.md"
-    page.write_text(with_tables(page.read_text(encoding="utf-8")), encoding="utf-8")
+    for name, with_all in (("json.md", with_tables), ("vehicle-files.md", with_key_tables)):
+        page = package.parent / "docs" / name
+        page.write_text(with_all(page.read_text(encoding="utf-8")), encoding="utf-8")

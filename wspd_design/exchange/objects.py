@@ -9,12 +9,14 @@ from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.records import Certificate
 from wspd_design.design.records import Design
 from wspd_design.exchange.stop_forms import STOP
+from wspd_design.exchange.study_forms import BRAKE
 from wspd_design.exchange.version import program_version
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Scenario
 
 if TYPE_CHECKING:
+    from wspd_design.analysis.brake_sheet import BrakeSheet
     from wspd_design.analysis.linearization import Linearization
 
 
@@ -41,6 +43,7 @@ def stop_object(
         "ideal_stop_m": figures.ideal_stop,
         "ideal_ending": None if figures.ideal_ending is None else figures.ideal_ending.name.lower(),
         "efficiency": figures.efficiency,
+        "released_below_m_s": figures.released_below,
         "adhesion_utilization": figures.adhesion_utilization,
         "lag_s": figures.lag,
         "lag_distance_m": run.initial_speed * figures.lag,
@@ -151,6 +154,30 @@ def linearization_point_object(point: "Linearization") -> dict[str, Any]:
         "equilibrium_torque_Nm": point.equilibrium_torque,
         "equilibrium_duty": point.equilibrium_duty,
         "pole_beyond_lag": bool(point.slip_pole > 1.0 / point.time_constant),
+    }
+
+
+def brake_object(sheet: "BrakeSheet") -> dict[str, Any]:
+    """Return the brake of a vehicle on full adhesion."""
+    return {
+        "schema": BRAKE.schema,
+        "vehicle": sheet.vehicle,
+        "grade": sheet.grade,
+        "rim_force_N": sheet.rim_force,
+        "rotating_mass_kg": sheet.rotating_mass,
+        "demanded_adhesion": sheet.demanded_adhesion,
+        "stops": [
+            {
+                "speed_m_s": each.speed,
+                "equivalent_time_s": each.mean.equivalent_time,
+                "deceleration_m_s2": each.mean.deceleration,
+                "distance_m": each.mean.distance,
+                "time_s": each.mean.time,
+                "braked_weight_percentage": each.percentage,
+            }
+            for each in sheet.stops
+        ],
+        "version": program_version(),
     }
 
 

@@ -180,6 +180,11 @@ STOP = Form(
             "it is not known: changes of rail along the track, starts from a witness",
         ),
         nullable("efficiency", "ideal stop over distance"),
+        nullable(
+            "released_below_m_s",
+            "speed from which on the wheelsets transmit less than a tenth of what brake and rail give until the end, "
+            "for a second or more; null where the brake was not released",
+        ),
         nullable("adhesion_utilization", "impulse of the creep forces over that of the adhesion peak"),
         nullable("lag_s", "2 d/v0 - t: what the build-up of the brake costs"),
         nullable("lag_distance_m", "initial speed times lag"),
@@ -191,9 +196,13 @@ STOP = Form(
         Key(
             name="valve_switches",
             kind="integer",
-            meaning="changes of the valve state, mean of the wheelsets",
+            meaning="changes of the valve state, mean of the wheelsets with a brake",
         ),
-        Key(name="vented_air", kind="number", meaning="full brake cylinders let out, mean of the wheelsets"),
+        Key(
+            name="vented_air",
+            kind="number",
+            meaning="full brake cylinders let out, mean of the wheelsets with a brake",
+        ),
         nullable(
             "air_used_Nl",
             "normal litres that all brake cylinders took from the reservoir; null where the vehicle states no "

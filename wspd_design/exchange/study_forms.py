@@ -12,6 +12,7 @@ from wspd_design.exchange.common_keys import (
     SEED_KEY,
     VEHICLE_KEY,
     VERSION_KEY,
+    nullable,
 )
 from wspd_design.exchange.forms import Form, Key
 from wspd_design.exchange.stop_forms import STOP
@@ -52,6 +53,40 @@ LINEARIZATION = Form(
         REFERENCE_KEY,
         Key(name="valve_time_constant_s", kind="number", meaning="tau"),
         Key(name="points", kind=LINEARIZATION_POINT, many=(1, None), meaning="one object for each speed"),
+        VERSION_KEY,
+    ),
+)
+SHEET_STOP = Form(
+    name="sheet_stop",
+    keys=(
+        Key(name="speed_m_s", kind="number", meaning="where the stop begins"),
+        Key(name="equivalent_time_s", kind="number", meaning="of the build-up, t_e"),
+        Key(name="deceleration_m_s2", kind="number", meaning="of the developed brake, mean value a_e"),
+        Key(name="distance_m", kind="number", meaning="v0 t_e + v0^2/(2 a_e), EN 14531-1"),
+        Key(name="time_s", kind="number", meaning="t_e + v0/a_e"),
+        nullable(
+            "braked_weight_percentage",
+            "C/s - D of a single vehicle, EN 16834; null off the level and from speeds without constants",
+        ),
+    ),
+)
+BRAKE = Form(
+    name="brake",
+    schema="wspd-brake/1",
+    keys=(
+        SCHEMA_KEY,
+        VEHICLE_KEY,
+        Key(name="grade", kind="number", meaning="rise over run, positive uphill"),
+        Key(
+            name="rim_force_N", kind="number", meaning="of the fully applied brake at the rims of all wheels"
+        ),
+        Key(name="rotating_mass_kg", kind="number", meaning="that turning parts add to the mass"),
+        Key(
+            name="demanded_adhesion",
+            kind="number",
+            meaning="that the fully applied brake asks for, over the static load, of the axle that asks for most",
+        ),
+        Key(name="stops", kind=SHEET_STOP, many=(1, None), meaning="by mean values, one for each speed"),
         VERSION_KEY,
     ),
 )
@@ -140,6 +175,7 @@ REPORT = Form(
             many=ANY,
             meaning="of each other controller that has gains",
         ),
+        Key(name="brake", kind=BRAKE, meaning="while no wheel slides, by mean values"),
         Key(name="linearizations", kind=LINEARIZATION_POINT, many=ANY, meaning="over speed"),
         Key(name="checks", kind=CHECK, many=ANY, meaning="one object for each claim"),
         Key(name="stops", kind=STOP, many=(1, None), meaning="the design's own stop first"),

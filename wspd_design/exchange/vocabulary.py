@@ -5,9 +5,19 @@ from wspd_design.exchange.certificate_forms import CERTIFICATE
 from wspd_design.exchange.check_forms import VERIFICATION
 from wspd_design.exchange.design_forms import DESIGN_FILE
 from wspd_design.exchange.stop_forms import COMPARISON, STOP
-from wspd_design.exchange.study_forms import LINEARIZATION, REPORT
+from wspd_design.exchange.study_forms import BRAKE, LINEARIZATION, REPORT
 
-STANDING_ALONE = (STOP, CAMPAIGN, CAMPAIGNS, COMPARISON, VERIFICATION, LINEARIZATION, REPORT, CERTIFICATE)
+STANDING_ALONE = (
+    STOP,
+    CAMPAIGN,
+    CAMPAIGNS,
+    COMPARISON,
+    VERIFICATION,
+    LINEARIZATION,
+    BRAKE,
+    REPORT,
+    CERTIFICATE,
+)
 """Forms of the JSON objects that stand alone, each with a schema file."""
 WITH_SCHEMA = (*STANDING_ALONE, DESIGN_FILE)
 """Those and the design file, which is TOML with keys of its own."""

@@ -7,7 +7,7 @@ while it fills: where the supply is below its pressure, the cylinder keeps it. A
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from wspd_design.model.generated import brake as generated
@@ -70,7 +70,12 @@ def pressure_after(
 
 
 def pattern_pressure(
-    brake: Brake, time: Number, pattern: tuple[Number, ...], before: Number = 0.0
+    brake: Brake,
+    time: Number,
+    pattern: tuple[Number, ...],
+    before: Number = 0.0,
+    *,
+    share: Number | None = None,
 ) -> tuple[Number, Number]:
     """Cylinder pressure under fill, then vent, then hold.
 
@@ -85,6 +90,9 @@ def pattern_pressure(
         the reservoir all along [Pa].
     before : number
         Time from the start of braking to the zero of that clock [s].
+    share : number, optional
+        Of the demanded pressure, that another brake leaves to this one. A cylinder that has more when the pattern
+        begins is let down to it while it fills, with the time constant of filling.
 
     Returns
     -------
@@ -95,8 +103,14 @@ def pattern_pressure(
     if brake.valve == "lag" and not brake.reservoir_volume:
         reservoir = None  # it never gets below the demanded pressure
 
+    asked = _asked(brake, share)
+
     def filled_until(end: Number) -> Number:
-        return filled_pressure(brake, end + before, start + before, start_pressure, reservoir)
+        rising = filled_pressure(asked, end + before, start + before, start_pressure, reservoir)
+        if share is None:
+            return rising
+        left = demanded_pressure(asked, start + before)
+        return where(start_pressure > left, _approached(brake, end, start, start_pressure, left), rising)
 
     filled = filled_until(minimum(time, fill_end))
     vented_for = maximum(minimum(time, vent_end) - fill_end, 0.0)
@@ -107,12 +121,19 @@ def pattern_pressure(
     return where(time > fill_end, after, filled), filled
 
 
-def kinks(brake: Brake, pattern: tuple[Number, ...], before: Number = 0.0) -> tuple[Number, ...]:
+def _asked(brake: Brake, share: Number | None) -> Brake:
+    """The brake of which a share of the demanded pressure is asked."""
+    return brake if share is None else replace(brake, max_pressure=share * brake.max_pressure)
+
+
+def kinks(
+    brake: Brake, pattern: tuple[Number, ...], before: Number = 0.0, *, share: Number | None = None
+) -> tuple[Number, ...]:
     """Times at which the rate of a filling cylinder's pressure jumps, so that no step goes across one.
 
     Parameters
     ----------
-    brake, pattern, before
+    brake, pattern, before, share
         As of :func:`pattern_pressure`.
 
     Returns
@@ -123,7 +144,7 @@ def kinks(brake: Brake, pattern: tuple[Number, ...], before: Number = 0.0) -> tu
     if brake.valve == "lag":  # its rate follows pressures that have no jumps
         return ()
     start, start_pressure, fill_end, _, reservoir = pattern
-    begin = start + before
+    brake, begin = _asked(brake, share), start + before
     end = begin + minimum(fill_end - start, _HALF_PI * brake.fill_time)  # it is full or at the demand by then
     way = _Way(brake, begin, start_pressure, reservoir)
     apart = minimum(maximum(way.falls_behind, begin), end)

@@ -1,4 +1,4 @@
-"""Slip ratio and slip dynamics of the quarter locomotive, eqs. (3) and (19)."""
+"""Slip ratio and slip dynamics of the quarter model, eqs. (3) and (19)."""
 
 from typing import NamedTuple
 
@@ -97,7 +97,7 @@ def slip_dynamics(
     wheel_load: Number | None = None,
     deceleration: Number | None = None,
 ) -> SlipDynamics:
-    """Evaluate eq. (19), by default of the quarter locomotive.
+    """Evaluate eq. (19), by default of the quarter model.
 
     Parameters
     ----------

@@ -1,27 +1,47 @@
 """From parameter files to the records that the physics and the controllers take."""
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
 
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.brake_checks import check_further_brakes
 from wspd_design.parameters.brakes import check_brake
+from wspd_design.parameters.contradictions import (
+    check_heights,
+    notice_of_rail,
+    notice_of_vehicle,
+    tell,
+)
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.files import available, data_file, load_entries, read_toml
+from wspd_design.parameters.files import (
+    PROFILE_RAILS,
+    available,
+    beside,
+    data_file,
+    load_entries,
+    read_toml,
+)
 from wspd_design.parameters.gear import contradiction, gear_of
+from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.records import (
     Brake,
     Constants,
     Contact,
+    DynamicBrake,
     KnorrBremseTable,
     MitsubishiTable,
+    Pads,
     PaperGains,
     ParameterSet,
     Rail,
+    RailProfile,
     Source,
     SpectrumCoefficients,
+    TrackBrake,
     TrackSpectrum,
     TrenitaliaTable,
     Vehicle,
@@ -36,10 +56,12 @@ __all__ = [
     "load_mitsubishi",
     "load_paper_gains",
     "load_rail",
+    "load_rail_profile",
     "load_track_spectrum",
     "load_trenitalia",
     "load_vehicle",
     "sources",
+    "vehicle_of",
 ]
 
 _Record = TypeVar("_Record")
@@ -79,6 +101,20 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         If there is no such vehicle, its file is wrong, or its running gear or masses contradict each other.
     """
     parameters = load_entries("vehicle", name_or_path)
+    vehicle = vehicle_of(parameters)
+    if _is_own(name_or_path):
+        tell(notice_of_vehicle(parameters, constants().gravity))
+    return vehicle
+
+
+def vehicle_of(parameters: ParameterSet) -> Vehicle:
+    """Return the vehicle of the entries of a file.
+
+    Raises
+    ------
+    UserError
+        If the numbers contradict each other.
+    """
     values = _values(parameters)
     counts = {
         name: _count(values[name], name, parameters.name)
@@ -92,9 +128,14 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         name=parameters.name,
         brake=_build(Brake, values, "brake.", bounds=_bounds(parameters, "brake.")),
         contact=_build(Contact, values, "contact.", bounds=_bounds(parameters, "contact.")),
+        pads=_part(Pads, parameters, "pads."),
+        dynamic=_part(DynamicBrake, parameters, "dynamic."),
+        track_brake=_part(TrackBrake, parameters, "track_brake."),
         bounds=_bounds(parameters),
     )
     _check_gear(vehicle)
+    check_further_brakes(vehicle)
+    check_heights(vehicle)
     return vehicle
 
 
@@ -119,6 +160,22 @@ def _check_gear(vehicle: Vehicle) -> None:
         )
 
 
+def _part(record: type[_Record], parameters: ParameterSet, prefix: str) -> _Record | None:
+    """Build a part that a vehicle may have, None where its file has no entry of it."""
+    values = _values(parameters)
+    given = {name.removeprefix(prefix) for name in values if name.startswith(prefix)}
+    if not given:
+        return None
+    needed = (field.name for field in fields(record) if field.default is MISSING)  # type: ignore[arg-type]
+    missing = [f"[{prefix}{name}]" for name in needed if name not in given]
+    if missing:
+        raise UserError(
+            f"vehicle {parameters.name} has [{prefix}{min(given)}] but lacks {', '.join(missing)}; add "
+            f"{'it' if len(missing) == 1 else 'them'}, or leave out all of {prefix.rstrip('.')}."
+        )
+    return _build(record, values, prefix, bounds=_bounds(parameters, prefix))
+
+
 def load_rail(name_or_path: str | Path) -> Rail:
     """Load a rail condition by its name, such as ``polach-wet``, or from a ``.toml`` file.
 
@@ -135,10 +192,54 @@ def load_rail(name_or_path: str | Path) -> Rail:
     Raises
     ------
     UserError
-        If there is no such rail or its file is wrong.
+        If there is no such rail, its file is wrong, or it changes along the track.
     """
     parameters = load_entries("rail", name_or_path)
-    return _build(Rail, _values(parameters), name=parameters.name, bounds=parameters.bounds)
+    if PROFILE_RAILS in parameters.entries:
+        rails = parameters.entries[PROFILE_RAILS].value
+        assert isinstance(rails, tuple)
+        raise UserError(
+            f"rail {parameters.name} changes along the track, and one adhesion is asked for here; take one of "
+            f"{', '.join(dict.fromkeys(map(str, rails)))}."
+        )
+    rail = _build(Rail, _values(parameters), name=parameters.name, bounds=parameters.bounds)
+    if _is_own(name_or_path):
+        tell(notice_of_rail(rail))
+    return rail
+
+
+def load_rail_profile(name_or_path: str | Path) -> RailProfile:
+    """Load rails along the track, such as ``patchy``, or from a ``.toml`` file; another rail is one from 0 m on.
+
+    Parameters
+    ----------
+    name_or_path : str or Path
+        Name of a shipped rail condition or path of a user's own file.
+
+    Returns
+    -------
+    RailProfile
+        Where each rail starts.
+
+    Raises
+    ------
+    UserError
+        If there is no such rail, its file is wrong, or the starts do not fit.
+    """
+    parameters = load_entries("rail", name_or_path)
+    if PROFILE_RAILS not in parameters.entries:
+        return RailProfile(name=parameters.name, starts=(0.0,), rails=(str(name_or_path),))
+    values = _values(parameters)
+    starts, rails = values.get("profile.starts", ()), values[PROFILE_RAILS]
+    if len(starts) != len(rails) or starts[0] != 0.0 or any(a >= b for a, b in pairwise(starts)):
+        raise UserError(
+            f"profile.starts = {', '.join(f'{start:g} m' for start in starts) or 'nothing'} of rail {parameters.name} "
+            f"must be {len(rails)} places that rise from 0 m, one for each of its rails; correct them."
+        )
+    folder = Path(name_or_path).parent
+    return RailProfile(
+        name=parameters.name, starts=starts, rails=tuple(beside(rail, folder) for rail in rails)
+    )
 
 
 def load_paper_gains() -> PaperGains:
@@ -195,6 +296,10 @@ def load_track_spectrum(name: str) -> TrackSpectrum:
         for row in TRACK_ROWS
     }
     return _build(TrackSpectrum, values, name=parameters.name, rows=rows, one_sided=values["sides"] == 1.0)
+
+
+def _is_own(name_or_path: str | Path) -> bool:
+    return str(name_or_path).removesuffix(LADEN).endswith(".toml")
 
 
 def _values(parameters: ParameterSet) -> dict[str, Any]:

@@ -4,6 +4,7 @@ The history of each number (unit, source, status) stays with the :class:`Entry` 
 stay with the record.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 from wspd_design.parameters.bounds import EXACT, Bounds
@@ -19,13 +20,21 @@ class Entry:
     """
 
     name: str
-    value: float | tuple[float, ...] | tuple[tuple[float, ...], ...] | tuple[tuple[str, ...], ...] | str
+    value: (
+        float
+        | tuple[float, ...]
+        | tuple[tuple[float, ...], ...]
+        | tuple[str, ...]
+        | tuple[tuple[str, ...], ...]
+        | str
+    )
     unit: str
     bounds: tuple[float, float] | None
     source: str
     at: str
     status: str
     note: str
+    inherited: str = ""  # name of the file that it was taken from, where its own file does not state it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,6 +129,51 @@ class Contact:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Pads:
+    """Friction of the pads or blocks of one wheelset, relative to that behind the torque at full pressure.
+
+    Empty tables stand for friction that does not depend on speed or temperature.
+    """
+
+    kind: str = "disc"  # or "tread"
+    speeds: tuple[float, ...] = ()  # m/s, of the wheel rim, rising
+    speed_factors: tuple[float, ...] = ()  # -
+    temperatures: tuple[float, ...] = ()  # K, above that before the stop, rising
+    temperature_factors: tuple[float, ...] = ()  # -
+    heat_capacity: float = math.inf  # J/K per wheelset, of what the friction heats
+    cooling: float = 0.0  # W/K per wheelset
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DynamicBrake:
+    """Electrodynamic brake of one wheelset, for which its friction brake stands back."""
+
+    torque: float  # N m per wheelset, at most
+    power: float = math.inf  # W per wheelset, at most
+    build_up_time: float  # s, time constant with which the torque comes and goes
+    fade_speed: float  # m/s of the wheel rim, below it the torque falls in proportion
+    cut_out_speed: float  # m/s of the wheel rim, where nothing is left of it
+    drop_slip: float = 1.0  # -, beyond it the brake of the wheelset drops out for the rest of the stop
+    axle_shares: tuple[
+        float, ...
+    ] = ()  # of torque and power, from the front, 0 without a motor; empty: all 1
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrackBrake:
+    """Magnetic track brake of the vehicle: magnets that rub on the rails, outside the adhesion of the wheels."""
+
+    force: float  # N, of all magnets
+    build_up_time: float = 0.0  # s, time constant; 0 for a force that is there at once
+    cut_out_speed: float = 0.0  # m/s, below it the magnets are lifted; 0 where they stay down
+    speeds: tuple[float, ...] = ()  # m/s, rising
+    speed_factors: tuple[float, ...] = ()  # -, of the force
+    bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Vehicle:
     """A vehicle on bogies or single axles, eqs. (1)-(4); what it stands on is told by ``parameters.gear``."""
 
@@ -149,7 +203,10 @@ class Vehicle:
     contact: Contact
     axles_per_bogie: int = 2  # 1 where single axles carry the body
     bodies: int = 1  # more than one: an articulated train on as many bogies and one
-    bounds: Bounds = EXACT  # of the numbers above; brake and contact have their own
+    pads: Pads | None = None  # None: pad friction is constant
+    dynamic: DynamicBrake | None = None
+    track_brake: TrackBrake | None = None
+    bounds: Bounds = EXACT  # of the numbers above; brake, contact and the like have their own
 
     @property
     def wheel_inertia(self) -> float:
@@ -160,6 +217,21 @@ class Vehicle:
     def brake_shares(self) -> tuple[float, ...]:
         """Torque of the brake of each axle over ``brake.max_torque``, from the front; 0 without a brake."""
         return self.brake.axle_shares or (1.0,) * self.wheelsets
+
+    @property
+    def dynamic_shares(self) -> tuple[float, ...]:
+        """Torque and power of the electrodynamic brake of each axle over those of ``dynamic``; 0 without one."""
+        if self.dynamic is None:
+            return (0.0,) * self.wheelsets
+        return self.dynamic.axle_shares or (1.0,) * self.wheelsets
+
+    def dynamic_of(self, axle: int) -> DynamicBrake | None:
+        """Return the electrodynamic brake of one axle, counted from 0 at the front."""
+        if self.dynamic is None:
+            return None
+        share = self.dynamic_shares[axle]
+        power = share * self.dynamic.power if share else 0.0
+        return replace(self.dynamic, torque=share * self.dynamic.torque, power=power)
 
     def brake_of(self, axle: int) -> Brake:
         """Return the brake of one axle, counted from 0 at the front; one without a brake has no torque."""
@@ -177,6 +249,15 @@ class Rail:
     adhesion_reduction: float  # -, kA
     slip_reduction: float  # -, kS
     bounds: Bounds = EXACT
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RailProfile:
+    """Rails one after the other along the track, each from its start on."""
+
+    name: str
+    starts: tuple[float, ...]  # m, rising from 0
+    rails: tuple[str, ...]  # names or paths
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias, get_args
 
 from wspd_design.parameters.units import Dimension
 
-Shape: TypeAlias = Literal["number", "word", "vector", "matrix", "word matrix"]
+Shape: TypeAlias = Literal["number", "word", "words", "vector", "matrix", "word matrix"]
 Kind: TypeAlias = Literal["constants", "vehicle", "rail", "controller", "track"]
 Preset: TypeAlias = Literal["calibrated", "textbook"]
 BuildUp: TypeAlias = Literal["main-pipe", "electro-pneumatic"]
@@ -98,6 +98,28 @@ _CONSTANTS: Schema = {
     "time_limit": _positive("time"),
 }
 
+_FURTHER_BRAKES: Schema = {
+    "pads.kind": Quantity(dimension="ratio", shape="word", words=("disc", "tread")),
+    "pads.speeds": _not_negative("speed", "vector"),
+    "pads.speed_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
+    "pads.temperatures": _not_negative("temperature", "vector"),
+    "pads.temperature_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
+    "pads.heat_capacity": _positive("heat capacity", plausible=(1e3, 1e7)),
+    "pads.cooling": _not_negative("heat flow"),
+    "dynamic.torque": _positive("torque", plausible=(100.0, 1e6)),
+    "dynamic.power": _positive("power", plausible=(1e3, 1e7)),
+    "dynamic.build_up_time": _positive("time", plausible=(0.01, 10.0)),
+    "dynamic.fade_speed": _positive("speed"),
+    "dynamic.cut_out_speed": _positive("speed"),
+    "dynamic.drop_slip": _share(zero=False),
+    "dynamic.axle_shares": _not_negative("ratio", "vector"),
+    "track_brake.force": _positive("force", plausible=(1e3, 1e6)),
+    "track_brake.build_up_time": _not_negative("time"),
+    "track_brake.cut_out_speed": _not_negative("speed"),
+    "track_brake.speeds": _not_negative("speed", "vector"),
+    "track_brake.speed_factors": _positive("ratio", "vector", plausible=(0.01, 10.0)),
+}
+
 _VEHICLE: Schema = {
     "mass": _positive("mass", plausible=(2e3, 1e6)),
     "wheelsets": Quantity(dimension="ratio", low=1.0, high=32.0),
@@ -146,6 +168,7 @@ _VEHICLE: Schema = {
     "contact.semi_axis_lateral": _positive("length", plausible=(5e-4, 0.05)),
     "contact.kalker_c11": _positive("ratio", plausible=(0.1, 20.0)),
     "contact.reference_load": _positive("force", plausible=(1e3, 1e6)),
+    **{name: _optional(quantity) for name, quantity in _FURTHER_BRAKES.items()},
     "laden.mass": replace(_positive("mass", plausible=(2e3, 1e6)), optional=True),
     "laden.body_height": replace(_positive("length", plausible=(0.1, 6.0)), optional=True),
     "laden.max_torque": replace(_positive("torque", plausible=(100.0, 1e6)), optional=True),
@@ -157,6 +180,8 @@ _RAIL: Schema = {
     "friction_decay": Quantity(dimension="1/speed", low=0.0, plausible=(0.0, 10.0)),
     "adhesion_reduction": _share(zero=False),
     "slip_reduction": _share(zero=False),
+    "profile.starts": Quantity(dimension="length", shape="vector", low=0.0, optional=True),
+    "profile.rails": Quantity(dimension="ratio", shape="words", optional=True),
 }
 
 _AFSMC: Schema = {

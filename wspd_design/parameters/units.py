@@ -31,6 +31,10 @@ Dimension: TypeAlias = Literal[
     "rotational damping",
     "1/speed",
     "torque rate",
+    "power",
+    "temperature",
+    "heat capacity",
+    "heat flow",
     "1/length",
     "1/length^2",
     "1/length^3",
@@ -59,6 +63,10 @@ _TABLE: dict[Dimension, dict[str, Fraction]] = {
     "rotational damping": {"N m s": _ONE},
     "1/speed": {"s/m": _ONE},
     "torque rate": {"N m/s": _ONE, "kN m/s": Fraction(1000)},
+    "power": {"W": _ONE, "kW": Fraction(1000), "MW": Fraction(1000000)},
+    "temperature": {"K": _ONE},
+    "heat capacity": {"J/K": _ONE, "kJ/K": Fraction(1000)},
+    "heat flow": {"W/K": _ONE},
     "1/length": {"1/m": _ONE},
     "1/length^2": {"1/m^2": _ONE},
     "1/length^3": {"1/m^3": _ONE},
@@ -179,6 +187,35 @@ def parse_quantity(text: str, dimension: Dimension, *, what: str) -> float:
     UserError
         If the text is not a finite number, or its unit is missing, unknown or of another dimension.
     """
+    number, unit = split_quantity(text, dimension, what=what)
+    value = to_si(number, unit)
+    if not math.isfinite(value):
+        raise UserError(f'{what} = "{text}" is not a finite number; {_instruction(dimension)}.')
+    return value
+
+
+def split_quantity(text: str, dimension: Dimension, *, what: str) -> tuple[float, str]:
+    """Read a number and its unit, which stay apart.
+
+    Parameters
+    ----------
+    text : str
+        What the user wrote.
+    dimension : str
+        Dimension that is expected; only a ratio may stand without a unit.
+    what : str
+        Name of the quantity for the error sentence.
+
+    Returns
+    -------
+    (float, str)
+        The number, and the unit as this program spells it.
+
+    Raises
+    ------
+    UserError
+        If the text is not a number, or its unit is missing, unknown or of another dimension.
+    """
     match = _NUMBER.fullmatch(text.strip().translate(_MINUS))
     allowed = _instruction(dimension)
     if match is None:
@@ -199,10 +236,7 @@ def parse_quantity(text: str, dimension: Dimension, *, what: str) -> float:
         ) from None
     if found != dimension:
         raise UserError(f'{what} = "{text}" has a unit of {found}, not of {dimension}; {allowed}.')
-    value = to_si(float(number.replace(",", ".")), unit or "-")
-    if not math.isfinite(value):
-        raise UserError(f'{what} = "{text}" is not a finite number; {allowed}.')
-    return value
+    return float(number.replace(",", ".")), _spelling(unit or "-")
 
 
 def nearest_unit(unit: str, dimension: Dimension | None = None) -> str | None:

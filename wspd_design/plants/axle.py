@@ -1,9 +1,12 @@
-"""One braked wheelset on the rail, eqs. (2), (3), (5)-(7); its one state is the wheel speed."""
+"""One braked wheelset on the rail, eqs. (2), (3), (5)-(7).
+
+Its states are the wheel speed and, where the friction of the pads depends on it, the temperature of what they heat.
+"""
 
 import math
 from typing import Protocol
 
-from wspd_design.model import adhesion
+from wspd_design.model import adhesion, further_brakes
 from wspd_design.model import slip as slip_model
 from wspd_design.model.generated import motion as generated
 from wspd_design.model.number import Number
@@ -27,9 +30,10 @@ class RigidWheelsets:
         return self.vehicle.wheelsets
 
     @property
-    def axle_states(self) -> int:
-        """Number of states of one wheelset: its wheel speed."""
-        return 1
+    def axle_states(self: _OnWheelsets) -> int:
+        """Number of states of one wheelset: its wheel speed, and the temperature of its pads where that counts."""
+        pads = self.vehicle.pads
+        return 1 + (pads is not None and bool(pads.temperatures))
 
     def axle_condition(self: _OnWheelsets, *, time: Number, wheel_load: Number) -> AxleCondition:
         """Stiffness of the contact and damping of the wheel."""
@@ -48,21 +52,42 @@ class RigidWheelsets:
         wheel_load: Number,
         torque: Number,
         condition: AxleCondition,
+        dynamic_level: Number = 0.0,
     ) -> AxleMotion:
-        """Creep force and acceleration of one wheelset; torque per wheelset [N m]."""
-        vehicle, (wheel_speed,) = self.vehicle, states
+        """Creep force and rates of one wheelset under the nominal torque of its friction brake [N m]."""
+        vehicle, (wheel_speed, *temperature) = self.vehicle, states
+        pads, warming = vehicle.pads, []
+        friction = torque
+        if pads is not None:
+            warmth = temperature[0] if temperature else 0.0
+            friction = torque * further_brakes.pad_factor(pads, vehicle.wheel_radius * wheel_speed, warmth)
+            if temperature:
+                warming = [further_brakes.pad_warming(pads, friction, wheel_speed, warmth)]
+        dynamic = 0.0
+        if vehicle.dynamic is not None:
+            dynamic = dynamic_level * further_brakes.dynamic_torque(
+                vehicle.dynamic, wheel_speed, vehicle.wheel_radius
+            )
+        braking = friction if vehicle.dynamic is None else friction + dynamic
         slip = slip_model.slip_ratio(speed, wheel_speed, vehicle.wheel_radius)
         sliding = speed - vehicle.wheel_radius * wheel_speed
         force = adhesion.creep_force(slip, abs(sliding), wheel_load, rail, condition.stiffness)
         acceleration = generated.wheel_acceleration(
-            force, wheel_speed, torque, vehicle.wheel_inertia, vehicle.wheel_radius, condition.damping
+            force, wheel_speed, braking, vehicle.wheel_inertia, vehicle.wheel_radius, condition.damping
         )
         return AxleMotion(
-            rates=(acceleration,),
+            rates=(acceleration, *warming),
             creep_force=force,
             slip=slip,
             damping_torque=condition.damping * wheel_speed,
+            brake_torque=braking,
+            dynamic_torque=dynamic,
         )
+
+    def track_brake_force(self: _OnWheelsets, speed: Number, time: Number) -> Number:
+        """Force of the magnets on the train, some time [s] after the brake was applied [N]."""
+        brake = self.vehicle.track_brake
+        return 0.0 if brake is None else further_brakes.track_brake_force(brake, speed, time)
 
     def creep_rate(self: _OnWheelsets, rail: Rail, speed: Number) -> Number:
         """Fastest rate of the slip on the adhering side under the static load [1/s]."""

@@ -12,7 +12,7 @@ from wspd_design.plants.quarter import Quarter
 _PLANTS: Final[dict[str, Callable[[Vehicle], Plant]]] = {kind.name: kind for kind in (Planar, Quarter)}
 
 PLANTS: Final = tuple(_PLANTS)
-"""The first transfers load; the quarter locomotive is its case without heights and with equal rails."""
+"""The first transfers load; the quarter model is its case without heights and with equal rails."""
 
 DEFAULT_PLANT: Final = Planar.name
 """The plant of a stop that names none."""

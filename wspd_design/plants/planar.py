@@ -88,22 +88,29 @@ class Planar(RigidWheelsets):
         speed: Number,
         creep_forces: tuple[Number, ...],
         transfers: tuple[Number, ...],
+        time: Number = math.inf,
         grade_force: Number = 0.0,
     ) -> TrainMotion:
         """Acceleration of the train, eq. (1) with one creep force per wheel of each axle, and pitch response.
 
         What tips body and bogies is the force on them beside gravity: by mass the deceleration less g times the grade.
+        The magnets of a track brake hang in the bogies and pull at the height of the rail, as the wheels do.
         """
         vehicle, gear = self.vehicle, self.gear
         resistance = slip_model.resistance(vehicle, speed, grade_force)
+        magnets = self.track_brake_force(speed, time)
+        if vehicle.track_brake is not None:
+            resistance += magnets
         acceleration = slip_model.train_acceleration(vehicle, sum(creep_forces) / self.axles, resistance)
         held = -acceleration - grade_force / vehicle.mass
         height = vehicle.body_height - vehicle.traction_rod_height
         body = vehicle.body_mass * held * height
-        supports = [
-            _support_moment(vehicle, 2.0 * _total(creep_forces[gear.axles * k : gear.axles * (k + 1)]), held)
-            for k in range(gear.supports)
+        at_rail = [
+            2.0 * _total(creep_forces[gear.axles * k : gear.axles * (k + 1)]) for k in range(gear.supports)
         ]
+        if vehicle.track_brake is not None:
+            at_rail = [force + magnets / gear.supports for force in at_rail]
+        supports = [_support_moment(vehicle, force, held) for force in at_rail]
         if self.bogies:
             targets = [body / vehicle.bogie_spacing, *(moment / vehicle.wheelbase for moment in supports)]
         else:

@@ -5,6 +5,7 @@ transfers with their rates of change. The closed loop takes all numbers of axles
 functions on CasADi symbols and compiles what comes out; ``vehicle`` then carries symbols in place of numbers.
 """
 
+import math
 from typing import NamedTuple, Protocol
 
 from wspd_design.model.number import Number
@@ -25,13 +26,15 @@ class AxleMotion(NamedTuple):
     creep_force: Number  # N
     slip: Number  # -
     damping_torque: Number  # N m
+    brake_torque: Number  # N m per wheelset, of all brakes; a locked wheel passes on less
+    dynamic_torque: Number  # N m per wheelset, the part of the electrodynamic brake
 
 
 class TrainMotion(NamedTuple):
     """The train at one instant."""
 
     acceleration: Number  # m/s2
-    resistance: Number  # N
+    resistance: Number  # N, running resistance and track brake
     transfer_rates: tuple[Number, ...]  # of the load transfers and of their rates
 
 
@@ -84,8 +87,13 @@ class Plant(Protocol):
         wheel_load: Number,
         torque: Number,
         condition: AxleCondition,
+        dynamic_level: Number = 0.0,
     ) -> AxleMotion:
-        """Creep force and rates of one wheelset; torque per wheelset [N m]."""
+        """Creep force and rates of one wheelset.
+
+        The torque per wheelset [N m] is the nominal one of the friction brake, eq. (12); the level is the share to
+        which the electrodynamic brake is built up.
+        """
 
     def train_motion(
         self,
@@ -93,9 +101,13 @@ class Plant(Protocol):
         speed: Number,
         creep_forces: tuple[Number, ...],
         transfers: tuple[Number, ...],
+        time: Number = math.inf,
         grade_force: Number = 0.0,
     ) -> TrainMotion:
-        """Acceleration of the train with one creep force per wheel of each axle, and the load transfers' rates."""
+        """Acceleration of the train with one creep force per wheel of each axle, and the load transfers' rates.
+
+        The time counts from the application of the brake, and the resistance is with that of a track brake.
+        """
 
     def creep_rate(self, rail: Rail, speed: Number) -> Number:
         """Fastest rate of the slip on the adhering side, which limits an explicit step [1/s]."""

@@ -1,9 +1,10 @@
-"""The quarter locomotive: equal wheels under one train mass, eqs. (1)-(7).
+"""The quarter model: equal wheels under one train mass, eqs. (1)-(7).
 
 All wheels carry the static load, so one wheelset stands for all of them. It is the planar vehicle without heights
 and with equal rails, for any number of wheelsets.
 """
 
+import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
@@ -46,10 +47,13 @@ class Quarter(RigidWheelsets):
         speed: Number,
         creep_forces: tuple[Number, ...],
         transfers: tuple[Number, ...] = (),  # noqa: ARG002 - there are none
+        time: Number = math.inf,
         grade_force: Number = 0.0,
     ) -> TrainMotion:
         """Acceleration of the train, eq. (1)."""
         resistance = slip_model.resistance(self.vehicle, speed, grade_force)
+        if self.vehicle.track_brake is not None:
+            resistance += self.track_brake_force(speed, time)
         mean = sum(creep_forces) / self.axles
         return TrainMotion(
             acceleration=slip_model.train_acceleration(self.vehicle, mean, resistance),
@@ -59,7 +63,7 @@ class Quarter(RigidWheelsets):
 
 
 class Motion(NamedTuple):
-    """Accelerations and forces of the quarter locomotive at one instant."""
+    """Accelerations and forces of the quarter model at one instant."""
 
     acceleration: Number  # m/s2, train
     wheel_acceleration: Number  # rad/s2
@@ -71,7 +75,7 @@ class Motion(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QuarterOnRail:
-    """The quarter locomotive on one rail, with what does not change during a stop worked out once."""
+    """The quarter model on one rail, with what does not change during a stop worked out once."""
 
     plant: Quarter
     rail: Rail
@@ -90,7 +94,7 @@ class QuarterOnRail:
         wheel_speed : number
             Angular speed [rad/s].
         torque : number
-            Braking torque per wheelset [N m].
+            Nominal torque of the friction brake per wheelset [N m].
         """
         plant = self.plant
         damping = plant.axle_condition(time=time, wheel_load=self.wheel_load).damping
@@ -102,7 +106,7 @@ class QuarterOnRail:
             torque=torque,
             condition=AxleCondition(stiffness=self.stiffness, damping=damping),
         )
-        train = plant.train_motion(speed=speed, creep_forces=(axle.creep_force,) * plant.axles)
+        train = plant.train_motion(speed=speed, creep_forces=(axle.creep_force,) * plant.axles, time=time)
         return Motion(
             acceleration=train.acceleration,
             wheel_acceleration=axle.rates[0],

@@ -1,5 +1,6 @@
 """How figures look: one Matplotlib style for the screen and for print, and reproducible SVG."""
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import StringIO
@@ -97,7 +98,9 @@ def figure_svg(figure: "Figure") -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     buffer = StringIO()
-    with figure_style():
+    with figure_style(), warnings.catch_warnings():
+        # A browser has more fonts, and the PDF says what it lacks.
+        warnings.filterwarnings("ignore", message=r"Glyph .* missing from font")
         # Matplotlib would draw every figure with a layout engine twice, the first time for the layout alone.
         FigureCanvasSVG(figure)
         figure.set_dpi(POINTS)

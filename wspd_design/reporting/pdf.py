@@ -4,8 +4,11 @@ The template gets the document as data, never as source: no text can turn into T
 """
 
 import json
+import warnings
+from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -34,16 +37,25 @@ from wspd_design.reporting.text import CodeSpan, Emphasis, Inline, Link, Math, T
 def render_pdf(document: Document) -> bytes:
     """Return a document as PDF.
 
-    Fonts come from Typst and Matplotlib alone, so that every machine sets the same pages.
+    Fonts come from Typst and Matplotlib alone, so that every machine sets the same pages. What they cannot draw, such
+    as Chinese or an emoji, is spelled by its code points; a warning says so.
     """
     import typst
 
+    missing: set[str] = set()
+    content = spelled(_document(document), missing)
+    if missing:
+        warnings.warn(
+            f"the fonts of the PDF lack {' '.join(sorted(missing))}, which stand there by their code points, as in "
+            f"{spelled(min(missing), set())}; the HTML has them",
+            stacklevel=2,
+        )
     source = files("wspd_design.reporting").joinpath("templates/report.typ").read_bytes()
     pdf: bytes = typst.compile(
         source,
         format="pdf",
         font_paths=typst.Fonts(include_system_fonts=False, font_paths=[_font_folder()]),
-        sys_inputs={"document": json.dumps(_document(document)), "fallback": FONT_FAMILY},
+        sys_inputs={"document": json.dumps(content), "fallback": FONT_FAMILY},
         pdf_standards="ua-1",
         timestamp=int(document.timestamp.timestamp()),
     )
@@ -65,17 +77,43 @@ def _drawable() -> frozenset[str]:
     return frozenset(map(chr, font.get_charmap())) | {"\n", "\t"}
 
 
-def _plain(text: str) -> str:
-    """Replace what no font of ours can draw: PDF/UA refuses a document with missing glyphs."""
-    return "".join(c if c in _drawable() else "\N{REPLACEMENT CHARACTER}" for c in printable(text))
+def spelled(value: Any, missing: set[str]) -> Any:
+    """Return data for the template with code points in place of what no font of ours can draw.
+
+    PDF/UA refuses a document with missing glyphs. Attached files stay as they are.
+
+    Parameters
+    ----------
+    value : any
+        Text, or lists and dictionaries of it.
+    missing : set of str
+        Gets the characters that were spelled.
+    """
+    match value:
+        case str():
+            lacking = set(value) - _drawable()
+            if not lacking:
+                return value
+            missing |= lacking
+            runs = groupby(value, key=lacking.__contains__)
+            return "".join(_code_points(run) if lacks else "".join(run) for lacks, run in runs)
+        case list():
+            return [spelled(each, missing) for each in value]
+        case dict():
+            return {key: each if key == "content" else spelled(each, missing) for key, each in value.items()}
+    return value
+
+
+def _code_points(characters: Iterable[str]) -> str:
+    return f"[{' '.join(f'U+{ord(each):04X}' for each in characters)}]"
 
 
 def _document(document: Document) -> dict[str, Any]:
     numbering = number(document)
     return {
-        "title": _plain(document.title),
-        "subtitle": _plain(document.subtitle),
-        "status-line": _plain(document.status_line),
+        "title": printable(document.title),
+        "subtitle": printable(document.subtitle),
+        "status-line": printable(document.status_line),
         "verdict": _verdict(document.verdict),
         "summary": [_block(each) for each in numbering.summary],
         "blocks": [_block(each) for each in numbering.blocks],
@@ -86,10 +124,10 @@ def _document(document: Document) -> dict[str, Any]:
         },
         "attachments": [
             {
-                "name": _plain(each.name),
+                "name": printable(each.name),
                 "media-type": each.media_type,
                 "content": each.content,
-                "description": _plain(each.description),
+                "description": printable(each.description),
             }
             for each in document.attachments
         ],
@@ -103,15 +141,15 @@ def _text(text: Text) -> list[dict[str, str]]:
 def _span(span: Inline) -> dict[str, str]:
     match span:
         case Emphasis():
-            return {"kind": "emphasis", "text": _plain(span.text)}
+            return {"kind": "emphasis", "text": printable(span.text)}
         case CodeSpan():
-            return {"kind": "code", "text": _plain(span.text)}
+            return {"kind": "code", "text": printable(span.text)}
         case Math():
             return {"kind": "math", "source": span.source, "spoken": span.spoken}
         case Link():
-            return {"kind": "link", "anchor": span.anchor, "text": _plain(span.text)}
+            return {"kind": "link", "anchor": span.anchor, "text": printable(span.text)}
         case str():
-            return {"kind": "plain", "text": _plain(span)}
+            return {"kind": "plain", "text": printable(span)}
 
 
 def _status(status: Status) -> dict[str, str]:
@@ -160,7 +198,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
         case Heading():
             return {
                 "kind": "heading",
-                "text": _plain(block.text),
+                "text": printable(block.text),
                 "level": block.level,
                 "anchor": block.anchor,
             }
@@ -172,13 +210,13 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
             rows = [{"term": _text(row.term), "text": _text(row.text)} for row in block.rows]
             return {"kind": "definitions", "rows": rows}
         case Code():
-            return {"kind": "code", "text": _plain(block.text)}
+            return {"kind": "code", "text": printable(block.text)}
         case Equation():
             return {
                 "kind": "equation",
                 "source": block.source,
                 "spoken": block.description,
-                "number": _plain(block.number),
+                "number": printable(block.number),
                 "anchor": block.anchor,
             }
         case Figure():
@@ -186,7 +224,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "kind": "figure",
                 "svg": block.svg,
                 "width": size(block.svg)[0],
-                "alt": _plain(block.alt),
+                "alt": printable(block.alt),
                 "label": numbered.label,
                 "caption": _text(block.caption),
                 "anchor": block.anchor,
@@ -200,7 +238,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "columns": [
                     {
                         "title": _text(column.title),
-                        "unit": _plain(column.unit),
+                        "unit": printable(column.unit),
                         "align": column.align,
                         "share": share,
                     }
@@ -215,9 +253,9 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "kind": "key-numbers",
                 "numbers": [
                     {
-                        "label": _plain(each.label),
-                        "value": _plain(each.value),
-                        "unit": _plain(each.unit),
+                        "label": printable(each.label),
+                        "value": printable(each.value),
+                        "unit": printable(each.unit),
                         "note": _text(each.note),
                     }
                     for each in block.numbers

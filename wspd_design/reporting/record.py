@@ -4,6 +4,7 @@ from dataclasses import asdict
 from typing import Any
 
 from wspd_design.exchange.objects import (
+    brake_object,
     check_object,
     design_object,
     linearization_point_object,
@@ -37,6 +38,7 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
             "provenance": {**asdict(dossier.provenance), "versions": dict(dossier.provenance.versions)},
             "design": design_object(dossier.design),
             "compared_designs": [design_object(each) for each in dossier.compared_designs],
+            "brake": brake_object(dossier.brake),
             "linearizations": [linearization_point_object(point) for point in dossier.linearizations],
             "checks": [check_object(each) for each in dossier.certificates],
             "stops": [

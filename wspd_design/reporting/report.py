@@ -12,6 +12,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Attachment, Document
 from wspd_design.reporting.output import write_document
 from wspd_design.reporting.record import report_record
+from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
 from wspd_design.reporting.sections.checks import certificate_files, checks
 from wspd_design.reporting.sections.comparison import comparison
@@ -24,7 +25,7 @@ from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
 from wspd_design.studies.dossier import Dossier
 
-SECTIONS = (case, slip_equation, design, linearization, checks, stop, comparison, sources, limits)
+SECTIONS = (case, brake, slip_equation, design, linearization, checks, stop, comparison, sources, limits)
 
 
 def write_report(dossier: Dossier, *paths: str | Path) -> None:
@@ -72,6 +73,15 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
                 media_type="application/toml",
                 content=design_text(made),
                 description="the design, which every command takes in place of a controller's name",
+            ),
+            *(
+                Attachment(
+                    name=own.name,
+                    media_type="application/toml",
+                    content=own.text,
+                    description=f"the {own.kind}, a file of its own",
+                )
+                for own in dossier.own_files
             ),
             Attachment(
                 name="report.json",

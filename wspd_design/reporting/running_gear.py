@@ -28,5 +28,15 @@ def running_gear(vehicle: ParameterSet) -> str:
     return said
 
 
+def alike_note(vehicle: ParameterSet) -> str:
+    """Say that a linearization counts wheelsets as alike, for a vehicle where they are not; nothing else."""
+    if len(set(axle_shares(vehicle))) == 1 and _count(vehicle, "bodies", 1) == 1:
+        return ""
+    return (
+        "The linearization counts all wheelsets as alike, with the mean load and the brake of an axle with share 1; "
+        f"those of {vehicle.name} are not."
+    )
+
+
 def _count(vehicle: ParameterSet, name: str, default: int) -> int:
     return int(vehicle.number(name)) if name in vehicle.entries else default

@@ -22,6 +22,7 @@ from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.campaign_rows import Plan, columns, compute_rows, make_plan, plan_key
 from wspd_design.simulation.campaign_store import Store
+from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.draws import Draw
 from wspd_design.simulation.parquet import check_parquet
 from wspd_design.simulation.records import Scenario
@@ -141,7 +142,7 @@ def simulate_many(
         kept.clear()
     return Campaign(
         controller=controller.name,
-        rail=scenario.rail.name,
+        rail=rails_of(scenario),
         plant=plant,
         sampled=tuple(draw.name for draw in draws),
         check_every=check_every,

@@ -34,7 +34,15 @@ _CASTS: Mapping[Any, Callable[[float], Any]] = {
     int: round,
     bool: bool,
 }  # of fields that can be drawn
-_NEVER = ("seed", "wheelsets", "rail", "bounds", "load_irregularity")  # of each stop anyway, or no number
+_NEVER = (
+    "seed",
+    "wheelsets",
+    "axles_per_bogie",
+    "bodies",
+    "rail",
+    "bounds",
+    "load_irregularity",
+)  # of each stop anyway, or no number
 
 
 class Distribution(Protocol):

@@ -1,7 +1,8 @@
 """Ideal stops: simulations of a brake that holds the best slip, the yardstick of every simulated stop.
 
 An ideal brake never lets the slip exceed a given one. It fills until the slip gets there and from then on passes
-on what keeps it there, unless even the filling brake cannot give that. By default it holds the slip of the adhesion
+on what keeps it there, unless even the filling brake cannot give that. Its electrodynamic part never drops out, and its
+pads warm up as if they took all that it offers. By default it holds the slip of the adhesion
 peak. Nothing is proved here: what no controller can beat is decided by the check ``stop_bound``.
 """
 
@@ -145,8 +146,15 @@ def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None =
         held = np.array([found[lane] for lane in lanes])
     else:
         held = np.full((len(lanes), len(speeds)), slip)
-    numbers = loop_input(cases, FILLING, longest_step=_LONGEST_STEP)
+    staying = [(plant.on(_without_drop_out(plant.vehicle)), scenario) for plant, scenario in cases]
+    numbers = loop_input(staying, FILLING, longest_step=_LONGEST_STEP)
     return replace(numbers, held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1])))
+
+
+def _without_drop_out(vehicle: Vehicle) -> Vehicle:
+    """The same vehicle with an electrodynamic brake that stays whatever the slip, which is never above 1."""
+    dynamic = vehicle.dynamic
+    return vehicle if dynamic is None else replace(vehicle, dynamic=replace(dynamic, drop_slip=1.0))
 
 
 def _load_shares(plant: Plant) -> list[float]:

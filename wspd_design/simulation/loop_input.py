@@ -100,7 +100,10 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
         raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
-    if plant.alike and len(set(plant.vehicle.brake_shares)) > 1:
+    if (
+        plant.alike
+        and len(set(zip(plant.vehicle.brake_shares, plant.vehicle.dynamic_shares, strict=True))) > 1
+    ):
         raise UserError(
             f"vehicle {plant.vehicle.name} has axles with other brakes than the rest, which need the plant "
             f'"{Planar.name}"'
@@ -168,9 +171,10 @@ def _settings(
 
 
 def _lane_vehicle(vehicle: Vehicle, axle: int, *, calm: bool) -> Vehicle:
-    """The vehicle with the brake of an axle; ``calm`` are pads that do not vibrate beside stops where they do."""
+    """The vehicle with the brakes of an axle; ``calm`` are pads that do not vibrate beside stops where they do."""
     brake = vehicle.brake_of(axle)
-    return replace(vehicle, brake=replace(brake, disturbance_gain=0.0) if calm else brake)
+    brake = replace(brake, disturbance_gain=0.0) if calm else brake
+    return replace(vehicle, brake=brake, dynamic=vehicle.dynamic_of(axle))
 
 
 def _drain(vehicle: Vehicle, axle: int) -> float:

@@ -12,6 +12,7 @@ from wspd_design.parameters.records import Brake, Vehicle
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario, Start
+from wspd_design.simulation.released import released_below
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +40,7 @@ class Metrics:
     ideal_stop: float  # m, distance of the brake that holds the best slip; NaN where there is none
     ideal_ending: Ending | None  # of the ideal stop; None where it is not known
     efficiency: float  # -, ideal stop over distance
+    released_below: float  # m/s, speed from which on the brake was let go until the end; NaN where it was not
     momentum_residual: float  # -, relative to the initial momentum
     energy_residual: float  # -, relative to the initial energy
 
@@ -100,6 +102,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         ideal_stop=ideal_distance,
         ideal_ending=None if ideal is None else ideal.ending,
         efficiency=ideal_distance / totals.distance if stopped and moved else math.nan,
+        released_below=released_below(run, vehicle, scenario),
         momentum_residual=momentum_residual(run, vehicle),
         energy_residual=energy_residual(run, vehicle),
     )

@@ -259,6 +259,16 @@ class Run:
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
+    dynamic_torque: "Trace | None" = None  # N m, per wheelset, of an electrodynamic brake, within ``torque``
+    pad_temperature: "Trace | None" = (
+        None  # K above that before the stop, per wheelset, where friction depends on it
+    )
+    track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
+
+    @property
+    def train(self) -> str:
+        """Vehicle and plant, as sentences name them."""
+        return f"{self.vehicle} ({self.plant})"
 
     @property
     def samples(self) -> tuple[Sample, ...]:

@@ -34,7 +34,7 @@ def holding_torque(
     Parameters
     ----------
     vehicle, rail : Vehicle, Rail
-        The quarter locomotive and its friction.
+        The quarter model and its friction.
     slip : float
         Slip ratio [-].
     speed : float

@@ -17,6 +17,7 @@ from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
 from wspd_design.codegen.notices import tell_once
 from wspd_design.codegen.sampled import BAD_COMMAND
 from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.model.further_brakes import track_brake_force
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
@@ -117,13 +118,15 @@ def _run_record(
 ) -> Run:
     import numpy as np
 
-    axles = plant.axles
+    axles, magnets = plant.axles, plant.vehicle.track_brake
     columns = 1 if plant.alike else axles
     lane, stop = output.lane_totals, {name: float(x[0]) for name, x in output.stop_totals.items()}
     braked = np.array(plant.vehicle.brake_shares) > 0.0
     start = _first_row(plant, scenario, output)
     trace = np.vstack([start, output.trace])
-    wheel, slip, passed, load = (trace[:, 3 + k * axles : 3 + k * axles + columns] for k in range(4))
+    wheel, slip, passed, load, _, dynamic, *warmth = (
+        trace[:, begin : begin + columns] for begin in range(3, trace.shape[1], axles)
+    )
     states = (output.samples.shape[1] - 1) // axles - 5
     by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 5, axles)
     return Run(
@@ -168,6 +171,16 @@ def _run_record(
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),
         engine=engine,
+        dynamic_torque=None if plant.vehicle.dynamic is None else dynamic,
+        pad_temperature=warmth[0] if plant.vehicle.pads is not None and warmth else None,
+        track_brake_force=None
+        if magnets is None
+        else np.array(
+            [
+                track_brake_force(magnets, v, t + scenario.start.braking_time)
+                for t, v in zip(trace[:, 0].tolist(), trace[:, 1].tolist(), strict=True)
+            ]
+        ),
     )
 
 
@@ -200,9 +213,12 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     at_rest = len(output.samples) == 0  # a start below the stop speed
     # As the first sample saw them, without the error of their measurement.
     factor = 1.0 + scenario.sensing.torque_error
+    others = np.zeros(
+        axles * plant.axle_states
+    )  # electrodynamic brakes, which begin at zero, and further states
     torques = (
         scenario.start.torque * np.array(plant.vehicle.brake_shares)
         if at_rest
         else output.samples[0, -axles:] / factor
     )
-    return np.concatenate([(0.0, speed, 0.0), np.repeat(alike, axles), torques, loads, torques])
+    return np.concatenate([(0.0, speed, 0.0), np.repeat(alike, axles), torques, loads, torques, others])

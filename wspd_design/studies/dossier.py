@@ -7,18 +7,22 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
+from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
 from wspd_design.analysis.linearization import Linearization, linearize
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Controller
+from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import design_text, read_design
+from wspd_design.design.industry import usual_table
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.files import available, load_entries
+from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
@@ -28,7 +32,6 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
 
 POLE_SPEEDS = 60  # points of the pole map
-PRESET = "calibrated"  # of the baselines, as the catalog builds them
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
 
 
@@ -53,14 +56,27 @@ class PhasePlane:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OwnFile:
+    """A vehicle or rail of the user's own, which no one else has."""
+
+    kind: str  # vehicle or rail
+    name: str  # of the file, without its folder
+    variant: str  # what follows it in options, such as :laden
+    text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Dossier:
     """A design, the numbers it rests on, its linearizations, certificates and simulated stops."""
 
     design: Design
     vehicle: ParameterSet
     rail: ParameterSet
+    own_files: tuple[OwnFile, ...]  # of those two, where they do not ship with the program
     other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
+    brake: BrakeSheet  # on full adhesion
+    adhesion_use: str  # how much of what the rail gives the brake asks for, in the range of the design
     linearizations: tuple[Linearization, ...]  # over speed, at the slip reference
     certificates: tuple[Certificate, ...]
     trials: tuple[Trial, ...]  # the design's own stop first
@@ -97,7 +113,7 @@ def dossier(
     command : str
         The command line, for the record.
     plant : {"planar", "quarter"}
-        Of the stops; the certificates speak about the quarter locomotive.
+        Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
         Folder of certificate files; what the checkers accept of it for this design is not searched again.
     progress : callable, optional
@@ -133,8 +149,11 @@ def dossier(
         design=made,
         vehicle=load_entries("vehicle", vehicle_name),
         rail=load_entries("rail", rail_name),
-        other_parameters=_other_parameters(made, rail, baselines),
+        own_files=(*_own_file("vehicle", vehicle_name), *_own_file("rail", rail_name)),
+        other_parameters=_other_parameters(made, vehicle, rail, baselines),
         compared_designs=tuple(design for _, design in others if design is not None),
+        brake=brake_sheet(vehicle),
+        adhesion_use=adhesion_sentence(vehicle, rail, specification.speeds),
         linearizations=linearizations,
         certificates=certificates,
         trials=trials,
@@ -148,6 +167,14 @@ def dossier(
             input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
         ),
     )
+
+
+def _own_file(kind: str, written: str) -> tuple[OwnFile, ...]:
+    path = Path(written.removesuffix(LADEN))
+    if path.suffix != ".toml":
+        return ()
+    text = path.read_text(encoding="utf-8-sig")
+    return (OwnFile(kind=kind, name=path.name, variant=written.removeprefix(str(path)), text=text),)
 
 
 def versions() -> tuple[tuple[str, str], ...]:
@@ -185,14 +212,17 @@ def _baseline(
     return controller_of(found, vehicle, rail), found
 
 
-def _other_parameters(made: Design, rail: Rail, baselines: Sequence[str]) -> tuple[ParameterSet, ...]:
+def _other_parameters(
+    made: Design, vehicle: Vehicle, rail: Rail, baselines: Sequence[str]
+) -> tuple[ParameterSet, ...]:
     found = [load_entries("constants", "constants")]
     if not made.made_on(rail):
         found.append(load_entries("rail", made.rail))
-    unused = tuple(f"{preset}." for preset in PRESETS if preset != PRESET)
-    for name in baselines:
+    for written in baselines:
+        name, _, preset = written.partition(":")
         if name in available("controller"):
             parameters = load_entries("controller", name)
+            unused = tuple(f"{each}." for each in PRESETS if each != (preset or usual_table(vehicle)))
             used = {key: entry for key, entry in parameters.entries.items() if not key.startswith(unused)}
             found.append(replace(parameters, entries=used))
     return tuple(found)

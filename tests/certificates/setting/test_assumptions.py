@@ -9,6 +9,11 @@ from wspd_design.certificates.setting import assumptions
 from wspd_design.certificates.setting.assumptions import Assumption, not_met
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.certificates.theorems.theorem import asked
+from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake
+
+
+def test_pads_of_constant_friction_are_no_other_vehicle(er24pc):
+    assert not_met(replace(er24pc, pads=Pads(kind="tread")), assumptions.ALL) == ""
 
 
 def unlike_brakes(vehicle):
@@ -36,9 +41,18 @@ def with_brake(**changes):
     return lambda vehicle: replace(vehicle, brake=replace(vehicle.brake, **changes))
 
 
+def with_part(**parts):
+    return lambda vehicle: replace(vehicle, **parts)
+
+
 OTHER = {
     Assumption.EQUAL_BRAKES: unlike_brakes,
     Assumption.EQUAL_LOADS: shared_bogies,
+    Assumption.CONSTANT_PADS: with_part(pads=Pads(speeds=(0.0, 40.0), speed_factors=(1.0, 0.8))),
+    Assumption.FRICTION_ALONE: with_part(
+        dynamic=DynamicBrake(torque=8e3, build_up_time=0.5, fade_speed=3.0, cut_out_speed=1.0)
+    ),
+    Assumption.ADHESION_ALONE: with_part(track_brake=TrackBrake(force=4e4)),
     **{assumption: with_brake(**changes) for assumption, changes in BRAKES.items()},
 }
 """Vehicles that break one assumption each."""

@@ -1,5 +1,6 @@
 """(19) at one axle of several: as at static load where it has to be, arranged as the kernels, known answers."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -32,16 +33,40 @@ from wspd_design.design.selection import design_controller
 from wspd_design.parameters.loading import load_rail
 
 
+def on_wet_rail(vehicle):
+    rail = load_rail("polach-wet")
+    law = design_controller(vehicle, rail, Specification(), law="smc").build(vehicle, rail)
+    return stability_problem(vehicle, rail, law, Specification())
+
+
 @pytest.fixture(scope="module")
 def wet(er24pc):
-    rail = load_rail("polach-wet")
-    law = design_controller(er24pc, rail, Specification(), law="smc").build(er24pc, rail)
-    return stability_problem(er24pc, rail, law, Specification())
+    return on_wet_rail(er24pc)
 
 
-@pytest.fixture(params=["wet", "reference"])
+@pytest.fixture(scope="module")
+def six(er24pc):
+    """Two three-axle bogies: 12 wheels, of which no eighth is a whole number."""
+    return on_wet_rail(
+        replace(
+            er24pc,
+            wheelsets=6,
+            axles_per_bogie=3,
+            body_mass=er24pc.body_mass - 100.0,
+            mass=er24pc.mass - 100.0,
+        )
+    )
+
+
+@pytest.fixture(params=["wet", "six", "reference"])
 def problem(request, wet, make_reference_problem):
-    return wet if request.param == "wet" else make_reference_problem(20.0)
+    return (
+        make_reference_problem(20.0)
+        if request.param == "reference"
+        else wet
+        if request.param == "wet"
+        else request.getfixturevalue("six")
+    )
 
 
 def points(problem, count=200):

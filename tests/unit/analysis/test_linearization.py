@@ -9,12 +9,13 @@ import pytest
 from wspd_design.analysis.linearization import linearize
 from wspd_design.codegen.functions import quarter_plant, slip_plant
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import available, load_rail
+from wspd_design.parameters.files import uniform_rails
+from wspd_design.parameters.loading import load_rail
 
 SPEEDS = (33.333, 20.0, 10.0, 5.0, 2.0, 1.0)
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_jacobians_against_central_differences(er24pc, name, speed):
     rail = load_rail(name)
@@ -43,7 +44,7 @@ def test_jacobians_against_central_differences(er24pc, name, speed):
     assert numerical[0, 0] == pytest.approx(point.slip_pole, rel=1e-6)
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_equilibrium_and_poles(er24pc, name, speed):
     rail = load_rail(name)
@@ -151,3 +152,15 @@ def test_a_valve_that_fills_and_vents_with_two_times(er24pc, vent):
     assert found.state_matrix[1] == pytest.approx([0.0, -rate])
     assert found.input_matrix[1] == pytest.approx((top - torque) / fill + torque / vent)
     assert min(fill, vent) < found.time_constant < max(fill, vent)
+
+
+@pytest.mark.parametrize("vent", [0.15, 0.3, 1.2])
+@pytest.mark.parametrize("speed", [30.0, 5.0, 1.5])
+def test_a_torque_that_the_brake_does_not_have_leaves_the_valve_filling(er24pc, vent, speed):
+    """A weak brake on a dry rail: no averaged valve holds more than T_max, and none has a negative time constant."""
+    weak = replace(er24pc, brake=replace(er24pc.brake, max_torque=8e3, fill_time=0.3, vent_time=vent))
+    found = linearize(weak, load_rail("polach-dry"), slip=0.14, speed=speed)
+    assert found.equilibrium_torque > 8e3
+    assert found.equilibrium_duty == found.equilibrium_torque / 8e3
+    assert found.time_constant == pytest.approx(0.3)
+    assert min(found.poles()) == pytest.approx(-1.0 / 0.3)

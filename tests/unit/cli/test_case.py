@@ -164,7 +164,7 @@ def test_all_in_a_comparison_follow_the_options():
 def test_presets_select_the_tables(base, load):
     assert load("textbook") != load("calibrated")
     textbook = load_case(f"{base}:textbook", CaseOptions()).controller
-    assert (textbook.name, textbook.table) == (f"{base}:textbook", load("textbook"))
+    assert (textbook.name, textbook.table) == (f"{base} (textbook)", load("textbook"))
     for name in (base, f"{base}:calibrated"):
         assert load_case(name, CaseOptions()).controller.table == load("calibrated")
 

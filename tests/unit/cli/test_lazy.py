@@ -62,4 +62,6 @@ def test_summary_is_the_first_line_of_the_command(name):
 
 def test_every_command_is_in_the_table():
     (folder,) = wspd_design.cli.commands.__path__
-    assert {path.stem for path in Path(folder).glob("*.py")} - {"__init__"} == set(COMMANDS)
+    below = {f"new_{name}" for name in import_module("wspd_design.cli.commands.new").COMMANDS}
+    assert below == {"new_vehicle", "new_rail"}
+    assert {path.stem for path in Path(folder).glob("*.py")} - {"__init__"} == set(COMMANDS) | below

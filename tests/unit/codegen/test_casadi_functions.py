@@ -5,7 +5,8 @@ import pytest
 
 from wspd_design.codegen.functions import quarter_plant, slip_plant
 from wspd_design.model.slip import slip_dynamics
-from wspd_design.parameters.loading import available, load_rail
+from wspd_design.parameters.files import uniform_rails
+from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.quarter import quarter
 
 
@@ -24,7 +25,7 @@ def random_states(vehicle, count):
         }
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 def test_quarter_plant(er24pc, name):
     rail, brake = load_rail(name), er24pc.brake
     function, plant = quarter_plant(er24pc, rail), quarter(er24pc, rail)
@@ -43,7 +44,7 @@ def test_quarter_plant(er24pc, name):
         )
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 def test_slip_plant_and_its_jacobians(er24pc, name):
     rail, brake = load_rail(name), er24pc.brake
     plant = slip_plant(er24pc, rail)

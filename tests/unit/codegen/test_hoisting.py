@@ -75,9 +75,9 @@ def test_the_axle_kernel_is_the_model(er24pc, rail_name):
             kernels.contact, constants, load * RNG.uniform(0.98, 1.02)
         )  # a step began there
         stiffness = adhesion.contact_stiffness(er24pc.contact, load)
-        force, rolling, slip, damping, passed = (
+        force, rolling, slip, damping, passed, given, dynamic = (
             float(x[0])
-            for x in evaluated(kernels.axle, constants, speed, wheel, load, 2e4, 0.0, contact, 0.2)
+            for x in evaluated(kernels.axle, constants, speed, wheel, load, 2e4, 1.0, 0.0, contact, 0.2)
         )
         referred = (speed - er24pc.wheel_radius * wheel) / max(speed, 0.1)
         expected = adhesion.creep_force(
@@ -87,7 +87,7 @@ def test_the_axle_kernel_is_the_model(er24pc, rail_name):
         assert slip == pytest.approx(referred, rel=1e-12, abs=1e-15)
         balance = (er24pc.wheel_radius * force - 1e4 - damping) / er24pc.wheel_inertia
         assert rolling == pytest.approx(balance, rel=1e-9, abs=1e-9)
-        assert passed == 2e4
-        locked = evaluated(kernels.axle, constants, speed, wheel, load, 2e4, 1.0, contact, 0.2)
+        assert (passed, given, dynamic) == (2e4, 2e4, 0.0)  # there is no electrodynamic brake
+        locked = evaluated(kernels.axle, constants, speed, wheel, load, 2e4, 1.0, 1.0, contact, 0.2)
         assert float(locked[1][0]) == 0.0
         assert float(locked[4][0]) == pytest.approx(2.0 * er24pc.wheel_radius * force, rel=1e-12, abs=1e-6)

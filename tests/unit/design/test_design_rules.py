@@ -163,6 +163,16 @@ def test_adaptive_law_starts_at_the_equilibrium(er24pc, rail):
     assert torque == pytest.approx([point.equilibrium_torque] * 5, rel=1e-9)
 
 
+def test_adaptive_law_does_not_start_above_a_weak_brake(er24pc, rail):
+    """A coach on a wet rail began with twice its largest torque (users.md A7)."""
+    weak = replace(er24pc, brake=replace(er24pc.brake, max_torque=7e3, bounds=EXACT))
+    made = design_controller(weak, rail, Specification(), law="afsmc")
+    assert made.gain("initial_weights") == (7.0,) * 5
+    why = next(gain.why for gain in made.gains if gain.name == "initial_weights")
+    assert why.startswith("b_hat(0) = T_max: ")
+    assert "more than the brake has" in why
+
+
 def test_initial_bound_is_the_switching_torque(er24pc, rail):
     adaptive = design_controller(er24pc, rail, Specification(), law="afsmc")
     w0 = gain("switching_gain", er24pc, rail)

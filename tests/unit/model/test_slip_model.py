@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from wspd_design.model import slip
-from wspd_design.parameters.loading import available, load_rail
+from wspd_design.parameters.files import uniform_rails
+from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.quarter import quarter
 
 SPEEDS = (0.5, 1.0, 5.0, 20.0, 33.333)
 SLIPS = (0.001, 0.05, 0.14, 0.6, 0.99)
-RAILS = available("rail")
+RAILS = uniform_rails()
 
 
 def test_slip_ratio_is_kept_finite_at_standstill():

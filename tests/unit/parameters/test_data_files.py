@@ -6,7 +6,8 @@ from itertools import pairwise
 import pytest
 
 from wspd_design.parameters import loading
-from wspd_design.parameters.files import STATUSES, data_file, read_toml
+from wspd_design.parameters.entry import STATUSES
+from wspd_design.parameters.files import data_file, read_toml
 from wspd_design.parameters.schema import PRESETS
 
 ALL_FILES = [

@@ -10,6 +10,8 @@ from functools import partial
 import numpy as np
 import pytest
 
+from wspd_design.design.records import vehicle_hash
+from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.loading import constants, load_rail, load_vehicle
@@ -135,3 +137,14 @@ def test_fingerprints_are_the_same_in_every_process():
         for _ in range(2)
     }
     assert found == {fingerprint(load_vehicle("er24pc"), {"a", "b", "c"}) + "\n"}
+
+
+def test_a_vehicle_without_something_has_the_fingerprint_of_before_it_was_known(er24pc):
+    """What a file may leave out does not count while it is left out, and counts as soon as it is there."""
+    plain = fingerprint(er24pc)
+    assert vehicle_hash(er24pc).startswith("8faf1348b3d7")  # as in the designs of reports/, which are older
+    for changes in ({"axles_per_bogie": 1}, {"bodies": 2}):
+        assert fingerprint(replace(er24pc, **changes)) != plain
+    unlike = replace(er24pc, brake=replace(er24pc.brake, axle_shares=(1.0, 0.0, 1.0, 1.0)))
+    assert fingerprint(unlike) != plain
+    assert fingerprint(replace(er24pc, bounds=EXACT)) != plain  # bounds count always

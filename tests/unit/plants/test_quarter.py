@@ -5,7 +5,8 @@ import math
 import pytest
 
 from wspd_design.model.number import maximum
-from wspd_design.parameters.loading import available, load_rail
+from wspd_design.parameters.files import uniform_rails
+from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.quarter import quarter
 
 
@@ -26,7 +27,7 @@ def written_out(vehicle, rail, time, v, omega, torque):
     return (-f_d - 8 * f) / m, (-0.5 * torque - B_W * omega + R * f) / I_W, lam, f, f_d, B_W
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 @pytest.mark.parametrize(
     ("v", "omega", "torque"),
     [(33.3, 60.0, 0.0), (20.0, 20.0, 31e3), (10.0, 0.0, 60e3), (0.05, 0.05, 1e3), (5.0, 9.2, 100.0)],
@@ -39,7 +40,7 @@ def test_motion(er24pc, name, v, omega, torque):
     )
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 @pytest.mark.parametrize("v", [0.01, 1.0, 30.0])
 def test_the_creep_force_balances_a_locked_wheel(er24pc, name, v):
     # With exactly this torque a wheel at rest has no acceleration.
@@ -50,7 +51,7 @@ def test_the_creep_force_balances_a_locked_wheel(er24pc, name, v):
     assert plant.motion(0.0, v, 0.0, torque).wheel_acceleration == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", available("rail"))
+@pytest.mark.parametrize("name", uniform_rails())
 @pytest.mark.parametrize("v", [0.2, 2.0, 33.0])
 def test_creep_rate_bounds_the_rate_of_the_slip(er24pc, name, v):
     rail = load_rail(name)

@@ -1,14 +1,16 @@
 """A small dossier made by hand, with invented numbers: no simulation and no check runs."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
+from wspd_design.analysis.brake_sheet import brake_sheet
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
-from wspd_design.parameters.loading import load_entries, load_rail
+from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
@@ -111,6 +113,7 @@ def trial(
         ideal_stop=174.25,
         ideal_ending=Ending.STOPPED,
         efficiency=0.9286,
+        released_below=math.nan,
         momentum_residual=1.2e-9,
         energy_residual=-3.4e-8,
     )
@@ -165,8 +168,11 @@ def sample_dossier(
         ),
         vehicle=load_entries("vehicle", "er24pc"),
         rail=load_entries("rail", rail),
+        own_files=(),
         other_parameters=(load_entries("constants", "constants"), load_entries("controller", "trenitalia")),
         compared_designs=(),
+        brake=brake_sheet(load_vehicle("er24pc")),
+        adhesion_use="The brake asks for much.",
         linearizations=tuple(
             linearization(float(v), 2.0 - 8.0 / v) for v in np.geomspace(1.0, INITIAL_SPEED, 12)
         ),

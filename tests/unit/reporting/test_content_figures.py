@@ -17,6 +17,7 @@ from wspd_design.reporting.blocks import Figure
 from wspd_design.reporting.figure_style import INK, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
+from wspd_design.reporting.figures.further_brakes import further_brakes, panels
 from wspd_design.reporting.figures.phase import phase_planes
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.figures.series import (
@@ -32,11 +33,18 @@ from wspd_design.studies.paper.published import load_table10
 
 DOSSIER = sample_dossier(rail="table10-dry")
 SPECIFICATION = DOSSIER.design.specification
+WITH_FURTHER_BRAKES = replace(
+    DOSSIER.trials[0].run,
+    dynamic_torque=0.5 * DOSSIER.trials[0].run.torque,
+    track_brake_force=np.linspace(3e4, 0.0, len(DOSSIER.trials[0].run.time)),
+    pad_temperature=np.abs(DOSSIER.trials[0].run.slip) * 100.0,
+)
 DRAWN = {
     "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds, (0.6, 0.6)),
     "stop": lambda figure: stop_traces(
         figure, DOSSIER.trials[0], SPECIFICATION, wheel_radius=0.55, max_torque=60e3
     ),
+    "further brakes": lambda figure: further_brakes(figure, WITH_FURTHER_BRAKES),
     "phase planes": lambda figure: phase_planes(
         figure, DOSSIER.trials[0].run, DOSSIER.phase_plane, SPECIFICATION
     ),
@@ -256,3 +264,51 @@ def test_thinning_keeps_a_spike_that_every_nth_point_would_lose():
     _, thin_y = thinned(np.arange(100_000.0), y)
     assert len(thin_y) <= 2000
     assert thin_y.max() == 1.0
+
+
+def test_a_stop_has_a_panel_for_each_brake_that_the_vehicle_has():
+    run = WITH_FURTHER_BRAKES
+    assert panels(DOSSIER.trials[0].run) == ()
+    assert [panel.title.split()[0] for panel in panels(run)] == ["Torque", "Force", "Temperature"]
+    (alone,) = panels(replace(DOSSIER.trials[0].run, track_brake_force=run.track_brake_force))
+    assert alone.words == "The track brake pulls with at most 30 kN."
+    with figure_style():
+        drawn = further_brakes(new_figure(height=4.0), run)
+    lines = [axes.get_lines() for axes in drawn.axes]
+    assert [len(each) for each in lines] == [4, 1, 4]
+    assert max(lines[0][0].get_ydata()) == pytest.approx(run.dynamic_torque[:, 0].max() / 1e3)
+    assert max(lines[2][3].get_ydata()) == pytest.approx(run.pad_temperature[:, 3].max())
+
+
+def _with_wheelsets(number):
+    """The sample trial with so many wheelsets, which are its own ones again and again."""
+    made = DOSSIER.trials[0]
+    own = made.run
+    again = [k % own.slip.shape[1] for k in range(number)]
+    arrays = {each: getattr(own, each)[:, again] for each in ("wheel_speed", "slip", "torque", "wheel_load")}
+    run = replace(own, **arrays, axle_samples=tuple(own.axle_samples[0] for _ in again))
+    return replace(made, run=run)
+
+
+@pytest.mark.parametrize("number", [2, 6, 7, 8, 32])
+def test_wheelsets_of_any_number_have_curves_of_their_own(number):
+    """Up to four had colors; the seventh was drawn as the train, the eighth ended in a traceback."""
+    made = _with_wheelsets(number)
+    with figure_style():
+        drawn = stop_traces(new_figure(height=8.6), made, SPECIFICATION, wheel_radius=0.55, max_torque=60e3)
+        drawn.draw_without_rendering()
+        compared = slip_of_all(new_figure(height=5.0), [made, made], SPECIFICATION)
+        compared.draw_without_rendering()
+    slip, speed, *_ = drawn.axes
+    looks = {(line.get_color(), str(line._dash_pattern)) for line in speed.lines}
+    assert len(looks) == number + 1  # and the train
+    names = [text.get_text() for text in slip.get_legend().get_texts()]
+    assert len(set(names)) == len(names) == min(number, 8)  # of many every fourth or so is named
+    assert (names[0], names[-1]) == (
+        "wheelset 1 (front)",
+        f"wheelset {number} (rear)" if number <= 4 else f"{number} (rear)",
+    )
+    for each, legend in ((drawn, slip.get_legend()), (compared, compared.legends[0])):
+        box = legend.get_window_extent()
+        assert 0.0 <= box.x0 < box.x1 <= each.bbox.width
+        assert 0.0 <= box.y0 < box.y1 <= each.bbox.height

@@ -16,6 +16,9 @@ class Assumption(Enum):
     """A property of the vehicle; the value says it as a clause."""
 
     EQUAL_BRAKES = "every axle has a brake, and all brakes are alike"
+    CONSTANT_PADS = "the friction of the pads depends on neither speed nor temperature"
+    FRICTION_ALONE = "the friction brake alone brakes the wheels"
+    ADHESION_ALONE = "nothing but adhesion and running resistance brakes the train"
     EQUAL_LOADS = "all axles carry the same load at rest"
     MAIN_PIPE = "the demanded pressure builds up as that of the main pipe, eq. (8)"
     LAG = "the valves fill and vent as first-order lags, eq. (9)"
@@ -70,6 +73,12 @@ def _unequal_brakes(vehicle: Vehicle) -> str:
     return f"has the brake.axle_shares {', '.join(f'{share:g}' for share in shares)}"
 
 
+def _pads_that_fade(vehicle: Vehicle) -> str:
+    pads = vehicle.pads
+    over = [name for name in ("speeds", "temperatures") if pads is not None and getattr(pads, name)]
+    return f"has pads.{over[0]}" if over else ""
+
+
 def _unequal_loads(vehicle: Vehicle) -> str:
     loads = static_shares(vehicle)
     if min(loads) == max(loads):
@@ -99,6 +108,9 @@ def _other_valve(vehicle: Vehicle) -> str:
 
 _REASONS: Final[Mapping[Assumption, Callable[[Vehicle], str]]] = {
     Assumption.EQUAL_BRAKES: _unequal_brakes,
+    Assumption.CONSTANT_PADS: _pads_that_fade,
+    Assumption.FRICTION_ALONE: lambda vehicle: "has an electrodynamic brake" if vehicle.dynamic else "",
+    Assumption.ADHESION_ALONE: lambda vehicle: "has a track brake" if vehicle.track_brake else "",
     Assumption.EQUAL_LOADS: _unequal_loads,
     Assumption.MAIN_PIPE: _other_build_up,
     Assumption.LAG: _other_valve,

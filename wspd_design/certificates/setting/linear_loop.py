@@ -109,6 +109,12 @@ def nominal(vehicle: Vehicle, rail: Rail, slip: Number, speed: Number) -> SlipMo
     return SlipModel(pole=dynamics.pole, gain=dynamics.gain)
 
 
+def holding_torque(problem: Problem, speed: float) -> Number:
+    """Torque that holds the reference with nominal parameters at a speed [m/s], whatever the brake has [N m]."""
+    dynamics = slip_dynamics(problem.vehicle, problem.rail, problem.slip, speed)
+    return -dynamics.drift / dynamics.gain
+
+
 def quartic(plant: SlipModel, valve: Valve, law: Feedback) -> Quartic:
     """Characteristic polynomial of the loop."""
     back = valve.decay + valve.rate * law.torque

@@ -24,7 +24,7 @@ from wspd_design.parameters.records import Rail, Vehicle
 
 ASSUMPTIONS = (
     "T = u: torque equals command, without valve lag, sampling or limits of the brake",
-    "quarter locomotive with static wheel load and nominal parameters",
+    "quarter model with static wheel load and nominal parameters",
     "slip reference constant",
 )
 EVALUATION_WORK = 20_000  # of a budget of operations: what a derivative at a state takes

@@ -21,6 +21,7 @@ from wspd_design.certificates.setting.linear_loop import (
     RATE,
     SHARE,
     Quartic,
+    holding_torque,
     law_of,
     linear_law,
     loop_at,
@@ -44,6 +45,7 @@ STATIC = "axle at static load, all axles alike"
 VARIED = tuple(name for name in (*PLANT, *BRAKE) if name not in ("slip", *OTHERS))
 MARGINS = ("speed", "gain up", "gain down", "phase", "delay", "disk")
 WORK_OF_POLES = 20_000
+SPEEDS = 25  # at which margins are worked out, evenly spaced in the logarithm
 
 
 def conditions(problem: Problem) -> dict[str, Claim]:
@@ -237,6 +239,24 @@ ROUTH_LAG = Theorem(
 )
 
 
+def _within_the_brake(problem: Problem) -> str:
+    """Say why the theorem is not about a law, or at which speed the brake does not have what holds its slip."""
+    reason = linear_law(problem)
+    if reason:
+        return reason
+    low, high = problem.speeds
+    speeds = [low * (high / low) ** (k / (SPEEDS - 1)) for k in range(SPEEDS)]
+    torque, speed = max((float(holding_torque(problem, each)), each) for each in speeds)
+    limit = problem.vehicle.brake.max_torque
+    if torque <= limit:
+        return ""
+    return (
+        f"holds slip {problem.slip:g}, which takes {torque:.4g} N m at {speed * KMH:.3g} km/h, and the brake of "
+        f"{problem.vehicle.name} has {limit:.4g} N m: the loop does not rest there, and a valve that fills "
+        "all the time has no averaged pulses"
+    )
+
+
 def _margin_obligations(problem: Problem) -> tuple[Obligation, ...]:
     domain.box(problem)
     within = {"speed": problem.speeds}
@@ -350,7 +370,7 @@ MARGINS_THEOREM = Theorem(
     name="margins",
     title="Margins of the loop near its reference",
     claim="The nominal loop near its reference has margins at every speed.",
-    speaks_about=linear_law,
+    speaks_about=_within_the_brake,
     obligations=_margin_obligations,
     tell=_tell_margins,
 )

@@ -135,7 +135,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         witness=witness,
         assumptions=(
             ASSUMPTIONS[0],
-            "quarter locomotive with static wheel load; its other numbers are nominal",
+            "quarter model with static wheel load; its other numbers are nominal",
             ASSUMPTIONS[2],
         ),
         varied=PARAMETERS,

@@ -171,5 +171,5 @@ WELL_POSED = Theorem(
     speaks_about=every_law,
     obligations=sign_obligations,
     tell=_tell,
-    assumes={Assumption.EQUAL_BRAKES, Assumption.EQUAL_LOADS},
+    assumes={Assumption.EQUAL_BRAKES, Assumption.EQUAL_LOADS, Assumption.ADHESION_ALONE},
 )

@@ -252,7 +252,7 @@ def _tell_tracking(problem: Problem, findings: Findings) -> Certificate:
         )
         seen += "simulate says how far its steps can be trusted."
     return Certificate(
-        claim="In the simulated stop of the quarter locomotive with nominal parameters, sampling, valves, lag and "
+        claim="In the simulated stop of the quarter model with nominal parameters, sampling, valves, lag and "
         f"wheel lock, the slip error stays below 2 Phi/K_P = {bound:.3g} around the reference {reference:g} of the law "
         f"from {settled * KMH:.3g} km/h, half of the initial speed, down to {problem.speeds[0] * KMH:.3g} km/h on "
         f"{problem.rail.name}.",
@@ -265,7 +265,7 @@ def _tell_tracking(problem: Problem, findings: Findings) -> Certificate:
         if status is Status.VACUOUS
         else (),
         assumptions=(
-            "quarter locomotive, nominal parameters",
+            "quarter model, nominal parameters",
             "exact measurement",
             "the integral of the error has decayed: 2 Phi/K_P bounds the error only after the transient",
         ),

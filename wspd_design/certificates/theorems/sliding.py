@@ -18,7 +18,7 @@ from wspd_design.certificates.quantities import AXLE
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.adhesion_edges import Ranges
-from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES, Assumption
 from wspd_design.certificates.setting.model_error import (
     inertia_ratio,
     residual,
@@ -44,6 +44,9 @@ MEASURED = ("wheel radius",)
 """Held: the law works out its slip from it."""
 
 SETTLED = Fraction(1, 10)  # of the bound: what is left of the transient
+
+ANY_AXLE = ALL - OF_VALVES - {Assumption.EQUAL_BRAKES, Assumption.EQUAL_LOADS}
+"""The claims are about each axle by itself, on its own load and with any torque that the law asks for, at once."""
 
 ASSUMED = ("T = u: no valve lag, no sampling, no limit of the brake torque", "slip reference constant")
 
@@ -255,7 +258,7 @@ REACHING = Theorem(
     speaks_about=sliding_mode,
     obligations=_reaching_obligations,
     tell=_tell_reaching,
-    assumes=ALL - OF_VALVES,
+    assumes=ANY_AXLE,
 )
 
 BOUNDARY_LAYER = Theorem(
@@ -265,5 +268,5 @@ BOUNDARY_LAYER = Theorem(
     speaks_about=sliding_mode,
     obligations=lambda problem: (*_reaching_obligations(problem), *layer_conditions(problem)),
     tell=_tell_layer,
-    assumes=ALL - OF_VALVES,
+    assumes=ANY_AXLE,
 )

@@ -75,7 +75,10 @@ def certify(
     show_not_varied(problem, certificates)
     if sizes:
         console().print(Text(f"\nWritten: {folder}/NAME.json, {len(sizes)} file{'s' * (len(sizes) != 1)}"))
-        console().print(Text(f"Check them: wspd check {folder}{_as_given(design, folder, vehicle, rail)}"))
+        given = _as_given(design, folder, vehicle, rail)
+        console().print(
+            f"Check them: wspd check {shlex.quote(str(folder))}{given}", markup=False, soft_wrap=True
+        )
     raise typer.Exit(exit_code(certificates, asked=bool(only)))
 
 

@@ -6,16 +6,18 @@ from wspd_design.cli.console import console, print_json, progress, spaced
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.json_objects import comparison_object
 from wspd_design.cli.stop_figures import SENSITIVE, UNRESOLVED
-from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import CaseOptions, load_cases
+from wspd_design.design.industry import table_note
 from wspd_design.exchange.objects import stop_object
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.released import released_sentence
 
 _ALL_COLUMNS = 78
 """Columns of a terminal from which on the table shows everything."""
@@ -56,6 +58,7 @@ def compare(
     file among them.
     """
     check_plant(plant)
+    rail, disturbances = along_the_track(rail, disturbances)
     wanted = CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     cases = load_cases(names or list(FAMILIES), wanted)
     stop = scenario(
@@ -81,8 +84,7 @@ def compare(
 def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> None:
     out, first = console(), trials[0]
     out.print(
-        f"{first.run.vehicle} ({first.run.plant}) on {rails_of(scenario)}, "
-        f"from {first.run.initial_speed * 3.6:g} km/h",
+        f"{first.run.train} on {rails_of(scenario)}, from {first.run.initial_speed * 3.6:g} km/h",
         style="bold",
         markup=False,
     )
@@ -108,11 +110,17 @@ def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> N
         f"rms about {_references(trials, references)}; lock: how long the wheels were locked{more}.",
         style="dim",
     )
+    note = table_note(made.run.controller for made in trials)
+    if note:
+        out.print(note, style="dim", markup=False)
     if first.metrics.ideal_ending in NO_IDEAL_STOP:
         out.print(f"No ideal stop: {NO_IDEAL_STOP[first.metrics.ideal_ending]}.", style="bold yellow")
     if len(stopped) < len(trials):
         (ending, *_) = {made.run.ending for made in trials if made.run.ending is not Ending.STOPPED}
         out.print(f"* {ending.value}.", style="yellow")
+    released = released_sentence((made.run.controller, made.metrics.released_below) for made in trials)
+    if released:
+        out.print(released, style="yellow", markup=False)
     spreads = [f"{made.run.controller} {made.check.spread:.2g} m" for made in trials if made.check.sensitive]
     if spreads:
         out.print(

@@ -39,10 +39,10 @@ def design(
         CaseOptions(slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time)
     )
     chosen = designed_family(law).name
-    locomotive, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
+    braked, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
     with progress() as tell:
         tell("choosing the gains")
-        made = selection.design_controller(locomotive, friction, wanted, law=chosen)
+        made = selection.design_controller(braked, friction, wanted, law=chosen)
     made = replace(made, vehicle_file=seen_from(output, vehicle), rail_file=seen_from(output, rail))
     write_design(made, output)
-    show_design(made, output, locomotive, friction)
+    show_design(made, output, braked, friction)

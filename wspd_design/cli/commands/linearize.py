@@ -10,7 +10,8 @@ from wspd_design.cli.console import console, print_json, spaced
 from wspd_design.cli.json_objects import linearization_object
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
-from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
+from wspd_design.reporting.running_gear import alike_note
 from wspd_design.reporting.tables import ColumnOf, build
 
 if TYPE_CHECKING:
@@ -45,14 +46,17 @@ def linearize(
 
     check_quarter(plant, "linearize")
     reference = specification(CaseOptions(slip=slip)).slip
-    locomotive, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
+    braked, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
     speeds = [parse_speed(text) for text in speed] if speed else [kmh / 3.6 for kmh in SPEEDS_KMH]
-    points = [linearization.linearize(locomotive, friction, slip=reference, speed=v) for v in speeds]
+    points = [linearization.linearize(braked, friction, slip=reference, speed=v) for v in speeds]
     beyond = [point.slip_pole > 1.0 / point.time_constant for point in points]
     if as_json:
         print_json(linearization_object(points, plant=plant))
     else:
         _show(points, beyond)
+        note = alike_note(load_entries("vehicle", vehicle or VEHICLE))
+        if note:
+            console().print(note, markup=False)
 
 
 def _show(points: "list[Linearization]", beyond: list[bool]) -> None:

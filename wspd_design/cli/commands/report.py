@@ -12,7 +12,7 @@ from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.output import check_output
-from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.certification import stored_beside
@@ -51,6 +51,7 @@ def report(
             raise UserError(f"report {path} must end in .html or .pdf, which chooses the format")
         check_output(path, force=force)
     chosen_name = chosen(name, controller)
+    rail, disturbances = along_the_track(rail, disturbances)
     case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
     made = _design(chosen_name, case)
     braked_from = initial_speed(speed, case.specification)
@@ -61,7 +62,7 @@ def report(
             vehicle_name=case.vehicle_name,
             rail_name=case.rail_name,
             scenario=stop,
-            baselines=[other for other in FAMILIES if other != made.name],
+            baselines=[other for other in FAMILIES if other not in (made.name, chosen_name)],
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
             stored=stored_beside(chosen_name),

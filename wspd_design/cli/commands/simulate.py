@@ -14,7 +14,7 @@ from wspd_design.cli.disturbances import StopOptions, takes_stop_options
 from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
 from wspd_design.cli.json_objects import witness_object
 from wspd_design.cli.stop_figures import show_stop
-from wspd_design.cli.stop_options import scenario
+from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.tables import check_table, write_table
 from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.exchange.objects import stop_object
@@ -95,6 +95,7 @@ def simulate(
             named=bool(name or controller), speed=speed, axle_rails=disturbances.axle_rails, draws=draws
         )
         witness = read(from_witness)
+    rail, disturbances = along_the_track(rail, disturbances)
     case = load_case(
         chosen(name, controller), CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
     )

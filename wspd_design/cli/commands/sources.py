@@ -11,6 +11,7 @@ from rich.text import Text
 from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
+from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.loading import available, load_entries
 from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
@@ -30,14 +31,15 @@ def sources(
     if name is None:
         _show_names()
         return
-    _show(load_entries(_kind_of(name), name))
+    _show(load_entries("vehicle" if name.endswith(LADEN) else _kind_of(name), name))
 
 
 def _kind_of(name: str) -> Kind:
     """Find what a name stands for; the first kind that has it wins."""
     if name.endswith(".toml"):
         document = read_toml(Path(name), name)
-        own_rail = document.get("base") in available("rail") or bool(document.keys() & schema_of("rail", ""))
+        keys = {key.partition(".")[0] for key in schema_of("rail", "")}
+        own_rail = document.get("base") in available("rail") or bool(document.keys() & keys)
         return "rail" if own_rail else "vehicle"
     for kind in _KINDS:
         if name in available(kind):
@@ -67,7 +69,7 @@ def _show(parameters: ParameterSet) -> None:
             shown.columns[column].no_wrap = True
         for entry in entries:
             shown.add_row(
-                entry.name, _value(entry), _bounds(entry), entry.status, entry.source, Text(entry.at)
+                entry.name, _value(entry), _bounds(entry), entry.status, entry.source, _place(entry)
             )
     else:
         shown = table("Number", "Status", "Source")
@@ -76,13 +78,33 @@ def _show(parameters: ParameterSet) -> None:
             number = Text(entry.name, style="bold").append("\n").append(_value(entry))
             if entry.bounds is not None:
                 number.append("\n").append(_bounds(entry))
-            shown.add_row(number, entry.status, Text(f"{entry.source}\n{entry.at}"))
+            shown.add_row(number, entry.status, Text(f"{entry.source}\n").append_text(_place(entry)))
     out.print(spaced(shown))
+    _show_inherited(parameters)
     notes = [(entry.name, entry.note) for entry in entries if entry.note]
     _list(notes, "Notes")
     titles = known_sources()
     keys = dict.fromkeys(entry.source for entry in entries)
     _list([(key, _citation(key)) for key in keys if key in titles], "Sources")
+
+
+def _show_inherited(parameters: ParameterSet) -> None:
+    """Say which numbers the file does not state itself."""
+    for base in dict.fromkeys(entry.inherited for entry in parameters.entries.values() if entry.inherited):
+        taken = [entry.name for entry in parameters.entries.values() if entry.inherited == base]
+        console().print(
+            f"{len(taken)} of {len(parameters.entries)} are not of this file but taken over from {base}: "
+            f"{', '.join(taken)}.",
+            markup=False,
+        )
+
+
+def _place(entry: Entry) -> Text:
+    return (
+        Text(f"from {entry.inherited}: ", style="bold").append(entry.at, style="not bold")
+        if entry.inherited
+        else Text(entry.at)
+    )
 
 
 def _list(rows: Iterable[tuple[str, str]], heading: str) -> None:

@@ -43,7 +43,7 @@ def walk(steps: Sequence[Step], answers: dict[str, str], ask: Ask) -> dict[str, 
             answers.pop(step.key, None)
             index += 1
             continue
-        answer = ask(step, answers, answers.get(step.key, step.default))
+        answer = ask(step, answers, step.suggestion(answers))
         if isinstance(answer, Back):
             index = visited.pop() if visited else index
         elif step is steps[-1]:
@@ -68,7 +68,7 @@ def complete(steps: Sequence[Step], answers: Answers) -> dict[str, str]:
     made: dict[str, str] = {}
     for step in steps[:-1]:
         if step.applies(made):
-            made[step.key] = answers.get(step.key, step.default)
+            made[step.key] = answers.get(step.key) or step.suggestion(made)
             accept(step, made[step.key], made)
     return made
 

@@ -9,6 +9,7 @@ from wspd_design.controllers.family import designed
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import uniform_rails
 from wspd_design.parameters.loading import available, load_entries, load_rail, load_vehicle
 from wspd_design.parameters.schema import Kind
 
@@ -32,7 +33,8 @@ class Step:
     """One question.
 
     With ``options`` it is a list to choose from, otherwise a line to write. ``check`` returns what the
-    program understands, and raises :class:`UserError` for what it does not accept.
+    program understands, and raises :class:`UserError` for what it does not accept. ``suggest`` takes the place of the
+    default where that follows from the answers before.
     """
 
     key: str
@@ -42,6 +44,13 @@ class Step:
     check: Callable[[str, Answers], str] = lambda text, _answers: text
     options: tuple[Option, ...] = ()
     applies: Callable[[Answers], bool] = lambda _answers: True
+    suggest: Callable[[Answers], str] | None = None
+
+    def suggestion(self, answers: Answers) -> str:
+        """Return the answer of the user who went through here before, or what the program suggests."""
+        if self.key in answers:
+            return answers[self.key]
+        return self.default if self.suggest is None else self.suggest(answers)
 
 
 def steps() -> tuple[Step, ...]:
@@ -168,7 +177,8 @@ def _check_tolerance(text: str, answers: Answers) -> str:
 
 
 def _parameter_set(kind: Kind, title: str, default: str, explanation: str) -> Step:
-    shipped = [Option(value=name, text=load_entries(kind, name).title) for name in available(kind)]
+    names = uniform_rails() if kind == "rail" else available(kind)  # a design is for one adhesion
+    shipped = [Option(value=name, text=load_entries(kind, name).title) for name in names]
     return Step(
         key=kind,
         title=title,

@@ -1,9 +1,11 @@
 /* Closed loop of vehicles with one sampled controller per wheelset: steps, their ends, samples, results. */
 
+#define ROW (3 + (5 + AXLE_STATES) * AXLES) /* of the trace */
+
 static void write_trace(Loop *loop)
 {
     const Stage *stage = &loop->present;
-    double *row = loop->trace + loop->trace_used++ * (3 + 5 * AXLES);
+    double *row = loop->trace + loop->trace_used++ * ROW;
     loop->recorded = loop->time[0];
     *row++ = loop->stop[TIME * STOPS], *row++ = loop->now.speed[0], *row++ = loop->stop[DISTANCE * STOPS];
     for (int a = 0; a < AXLES; a++) {
@@ -11,14 +13,17 @@ static void write_trace(Loop *loop)
         row[AXLES + a] = stage->slip[a * STOPS];
         row[2 * AXLES + a] = stage->passed[a * STOPS];
         row[3 * AXLES + a] = stage->load[a * STOPS];
-        row[4 * AXLES + a] = loop->torque[a * STOPS];
+        row[4 * AXLES + a] = stage->given[a * STOPS];
+        row[5 * AXLES + a] = stage->dynamic[a * STOPS];
+        for (int k = 1; k < AXLE_STATES; k++) row[(5 + k) * AXLES + a] = loop->now.wheel[k * LANES + a * STOPS];
     }
 }
 
-/* What was filled into the cylinder since its pattern began, for good. */
+/* What was filled into the cylinder since its pattern began, for good; nothing where it was let down. */
 static void count_filled(Loop *loop, int l)
 {
-    loop->lane[FILLED * LANES + l] += loop->filled[l] - loop->start_pressure[l];
+    double gained = loop->filled[l] - loop->start_pressure[l];
+    loop->lane[FILLED * LANES + l] += gained > 0.0 ? gained : 0.0;
 }
 
 static void finish(Loop *loop, int stop)
@@ -37,20 +42,20 @@ static int advance(Loop *loop)
     const Motion *const at[4] = {&loop->now, &moved[0], &moved[1], &moved[2]};
     const Stage *const stage[4] = {&loop->present, &further[0], &further[1], &further[2]};
     WIDE double next[STOPS], pressure[2 * LANES], torque[2 * LANES], filled[2 * LANES], damping[2 * LANES];
-    WIDE double lane_step[LANES], slid[LANES];
+    WIDE double lane_step[LANES], slid[LANES], time[2 * STOPS], level[2 * LANES];
     Exponential wheels;
     double *step = loop->step, stop_speed = loop->set.stop_speed;
     if (loop->patches > 0) lay_rails(loop);
     choose_steps(loop, next);
     for (int cuts = 0;; cuts++) { /* an event is found by interpolation, and once more */
-        follow_valves(loop, next, pressure, torque, filled, damping);
+        follow_valves(loop, next, time, pressure, torque, filled, damping, level);
         spread(step, lane_step);
         int adhering = begin_exponential(loop, lane_step, &wheels);
         for (int k = 0; k < 3; k++) {
-            int later = k == 2 ? LANES : 0; /* the last stage stands at the end of the step */
+            int last = k == 2, later = last * LANES; /* the last stage stands at the end of the step */
             move(&loop->now, at[k], stage[k], step, lane_step, k == 2 ? 1.0 : 0.5, &moved[k]);
             if (adhering) slide_exponential(loop, at, stage, k, &wheels, slid), place_exponential(loop, &wheels, slid, &moved[k]);
-            evaluate(loop, &moved[k], torque + later, damping + later, &further[k]);
+            evaluate(loop, &moved[k], time + last * STOPS, torque + later, level + later, damping + later, &further[k]);
         }
         #define ACCELERATION(k) stage[k]->acceleration[s]
         EACH_STOP reached.speed[s] = loop->now.speed[s] + step[s] * (1.0 / 6.0) * SUM(ACCELERATION);
@@ -60,7 +65,7 @@ static int advance(Loop *loop)
                 loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
         }
         if (adhering) end_exponential(loop, at, stage, lane_step, &wheels, &reached);
-        if (cuts == 2 || !shorten(loop, at, stage, torque, &reached, next)) break;
+        if (cuts == 2 || !shorten(loop, at, stage, &reached, next)) break;
     }
     for (int k = 0; k < TRANSFER_STATES; k++) {
         #define TRANSFERRED(j) stage[j]->transfer[k * STOPS + s]
@@ -74,17 +79,18 @@ static int advance(Loop *loop)
         loop->torque[l] = torque[LANES + l];
         loop->filled[l] = filled[LANES + l];
         loop->damping[l] = damping[LANES + l];
+        loop->level[l] = level[LANES + l];
     }
     settle_locks(loop, lane_step, &reached);
     if (loop->hold) settle_holds(loop, &reached);
     if (loop->timed) follow_pulses(loop, lane_step, &reached);
     loop->now = reached;
+    for (int s = 0; s < STOPS; s++) loop->time[s] = loop->active[s] != 0.0 ? next[s] : loop->time[s];
     observe(loop);
     note_slips(loop);
     loop->steps++;
     for (int s = 0; s < STOPS; s++) {
         if (loop->active[s] == 0.0) continue;
-        loop->time[s] = next[s];
         loop->stop[TIME * STOPS + s] += step[s];
         loop->stop[END_SPEED * STOPS + s] = loop->now.speed[s];
         if (loop->now.speed[s] <= stop_speed * (1.0 + 1e-6)) finish(loop, s);
@@ -100,13 +106,14 @@ static int advance(Loop *loop)
 /* Work out the constants of the actuators for the present valve patterns. */
 static void set_windows(Loop *loop)
 {
-    WIDE double window[5 * 2 * LANES];
+    WIDE double window[WINDOW * 2 * LANES];
     for (int copy = 0; copy < 2; copy++)
         for (int l = 0; l < LANES; l++) {
             double *to = window + copy * LANES + l;
             to[0] = loop->start[l], to[2 * LANES] = loop->start_pressure[l];
             to[4 * LANES] = loop->fill_end[l], to[6 * LANES] = loop->vent_end[l];
             to[8 * LANES] = loop->reservoir[l];
+            to[10 * LANES] = loop->share[l], to[12 * LANES] = loop->start_level[l], to[14 * LANES] = loop->goal_level[l];
         }
     window_constants(loop->lp2, window, loop->window_fixed);
     #if KINKS
@@ -155,6 +162,17 @@ static void count_switches(Loop *loop, int l)
     }
 }
 
+/* Let the electrodynamic brake of a lane drop out when its wheel slides too much, for the rest of the stop, and ask the
+   friction brake for what it lacks to the torque of the full pressure. */
+static void blend(Loop *loop, int l)
+{
+    double most = loop->lp[MAX_TORQUE * LANES + l], rest = most > 0.0 ? 1.0 - loop->present.dynamic[l] / most : 0.0;
+    if (loop->present.slip[l] > loop->lp[DROP_SLIP * LANES + l]) loop->dropped[l] = 1.0;
+    loop->share[l] = rest > LEAST_SHARE ? rest : LEAST_SHARE;
+    loop->start_level[l] = loop->level[l];
+    loop->goal_level[l] = 1.0 - loop->dropped[l];
+}
+
 /* Close the accounts of a pattern of a wheelset and begin the next one, without its reservoir. */
 static void begin_pattern(Loop *loop, int l, double present, double fill_end, double vent_end)
 {
@@ -164,6 +182,7 @@ static void begin_pattern(Loop *loop, int l, double present, double fill_end, do
     loop->start[l] = present;
     loop->start_pressure[l] = loop->filled[l] = loop->pressure[l];
     loop->fill_end[l] = fill_end, loop->vent_end[l] = vent_end;
+    blend(loop, l);
 }
 
 /* Let a wheelset follow its command. A pulse that is too short to open its valve is left out, unless the valve is open
@@ -253,6 +272,7 @@ static int decide(Loop *loop, const double *fill, const double *vent)
 }
 
 long wspd_size(void) { return (long)sizeof(Loop); }
+long wspd_row(void) { return ROW; }
 const double *wspd_lane_totals(const Loop *loop) { return loop->lane; }
 const double *wspd_stop_totals(const Loop *loop) { return loop->stop; }
 const double *wspd_wheel_speeds(const Loop *loop) { return loop->now.wheel; }
@@ -272,7 +292,7 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
                 const double *pressure)
 {
     WIDE double present[2 * LANES] = {0}, pressures[2 * LANES], torques[2 * LANES];
-    WIDE double filled[2 * LANES], damping[2 * LANES];
+    WIDE double filled[2 * LANES], damping[2 * LANES], level[2 * LANES];
     memset(loop->lp, 0, (char *)(loop + 1) - (char *)loop->lp);
     memcpy(loop->lp, lp, sizeof loop->lp);
     for (int k = 0; k < PARAMETERS; k++)
@@ -286,10 +306,10 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     for (int l = 0; l < LANES; l++) loop->reservoir[l] = DISTURBANCE(RESERVOIR_PRESSURE, l % STOPS);
     start_pulses(loop);
     set_windows(loop);
-    actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping);
+    actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping, level);
     for (int l = 0; l < LANES; l++) {
         loop->pressure[l] = pressures[l], loop->filled[l] = filled[l];
-        loop->torque[l] = torques[l], loop->damping[l] = damping[l];
+        loop->torque[l] = torques[l], loop->damping[l] = damping[l], loop->level[l] = level[l];
     }
     observe(loop);
     for (int s = 0; s < STOPS; s++) {

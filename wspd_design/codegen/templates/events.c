@@ -11,22 +11,22 @@ static double crossing(double begin, double middle, double end)
 /* Share of a step up to its first event: a wheel locks, is let go, or comes to the slip to be held; or the train comes
    to the judging or the stop speed. */
 static double before_event(const Loop *loop, int s, const Motion *const at[4], const Stage *const stage[4],
-                           const double *torque, const Motion *reached)
+                           const Motion *reached)
 {
     const double *radius = loop->lp + RADIUS * LANES;
     double speed = loop->now.speed[s], first = 1.0, judging = loop->set.judging_speed;
     double target = speed > judging ? judging : loop->set.stop_speed;
     if (reached->speed[s] < target) first = crossing(speed - target, at[2]->speed[s] - target, reached->speed[s] - target);
     for (int l = s; l < LANES; l += STOPS) {
-        double value[3], brake[3] = {loop->torque[l], torque[l], torque[LANES + l]};
+        double value[3];
         for (int k = 0; k < 3; k++) {
             const Stage *taken = stage[k == 0 ? 0 : k + 1];
             const Motion *moved = k == 0 ? at[0] : k == 1 ? at[2] : reached;
             double slope, limit = 0.0;
             double fast = moved->speed[s];
             if (loop->hold) limit = fast * (1.0 - held_slip(loop, l, fast, hold_place(loop, fast), &slope)) / radius[l];
-            if (loop->locked[l] != 0.0) value[k] = brake[k] - 2.0 * radius[l] * taken->force[l];
-            else if (loop->held[l] != 0.0) value[k] = brake[k] - taken->passed[l];
+            if (loop->locked[l] != 0.0) value[k] = taken->given[l] - 2.0 * radius[l] * taken->force[l];
+            else if (loop->held[l] != 0.0) value[k] = taken->given[l] - taken->passed[l];
             else value[k] = moved->wheel[l] - limit;
         }
         int below = value[0] > 0.0 && (value[1] < 0.0 || value[2] < 0.0);
@@ -38,8 +38,7 @@ static double before_event(const Loop *loop, int s, const Motion *const at[4], c
 }
 
 /* Tell whether a wheel may come to the slip to be held, or leave it, in the middle or at the end of a step. */
-static INLINE int changes_hold(const Loop *loop, const Motion *middle, const Motion *end, const Stage *const stage[4],
-                               const double *torque)
+static INLINE int changes_hold(const Loop *loop, const Motion *middle, const Motion *end, const Stage *const stage[4])
 {
     const double *radius = loop->lp + RADIUS * LANES;
     const Motion *const moved[2] = {middle, end};
@@ -50,7 +49,7 @@ static INLINE int changes_hold(const Loop *loop, const Motion *middle, const Mot
         spread(moved[k]->speed, speed);
         EACH_LANE {
             double free = moved[k]->wheel[l] - speed[l] * (1.0 - slip[l]) / radius[l];
-            double held = torque[k * LANES + l] - stage[2 + k]->passed[l];
+            double held = stage[2 + k]->given[l] - stage[2 + k]->passed[l];
             any = (loop->held[l] != 0.0 ? held : free) < 0.0 ? 1.0 : any;
         }
     }
@@ -58,8 +57,8 @@ static INLINE int changes_hold(const Loop *loop, const Motion *middle, const Mot
 }
 
 /* Shorten the steps to their first events; tells whether any was. */
-static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *const stage[4], const double *torque,
-                          const Motion *reached, double *next)
+static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *const stage[4], const Motion *reached,
+                          double *next)
 {
     const double *radius = loop->lp + RADIUS * LANES, judging = loop->set.judging_speed;
     double any = 0.0;
@@ -69,12 +68,12 @@ static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *co
     for (int l = 0; l < LANES; l++) {
         double taken = 2.0 * radius[l] * stage[2]->force[l], later = 2.0 * radius[l] * stage[3]->force[l];
         any = at[2]->wheel[l] < 0.0 || reached->wheel[l] < 0.0 ? 1.0 : any;
-        any = loop->locked[l] != 0.0 && (torque[l] < taken || torque[LANES + l] < later) ? 1.0 : any;
+        any = loop->locked[l] != 0.0 && (stage[2]->given[l] < taken || stage[3]->given[l] < later) ? 1.0 : any;
     }
-    if (any == 0.0 && !(loop->hold && changes_hold(loop, at[2], reached, stage, torque))) return 0;
+    if (any == 0.0 && !(loop->hold && changes_hold(loop, at[2], reached, stage))) return 0;
     any = 0.0;
     for (int s = 0; s < STOPS; s++) {
-        double share = loop->active[s] != 0.0 ? before_event(loop, s, at, stage, torque, reached) : 1.0;
+        double share = loop->active[s] != 0.0 ? before_event(loop, s, at, stage, reached) : 1.0;
         if (share >= 1.0) continue;
         loop->step[s] *= share;
         next[s] = loop->time[s] + loop->step[s];

@@ -46,6 +46,8 @@ typedef struct {
     WIDE double damping[LANES];
     WIDE double load[LANES];
     WIDE double passed[LANES];
+    WIDE double given[LANES];        /* torque of all brakes; a locked or held wheel passes on less */
+    WIDE double dynamic[LANES];      /* of these the torque of the electrodynamic brake */
     WIDE double resistance[STOPS];
 } Stage;
 
@@ -81,10 +83,11 @@ typedef struct {
     WIDE double contact[2 * LANES]; /* stiffness and reciprocal load there */
     WIDE double locked[LANES];
     WIDE double held[LANES];
+    WIDE double dropped[LANES];  /* electrodynamic brakes that dropped out */
     WIDE double settling[LANES]; /* 1/s: rates of sliding speeds that take an exponential step, 0 of the others */
     WIDE double lock_length[LANES]; /* of the present lock, above the judging speed */
     WIDE double valve[LANES];    /* last state of the valve: 0 none yet, 1 fill, 2 vent, 3 hold */
-    WIDE double start[LANES];    /* of the valve pattern, as the next three */
+    WIDE double start[LANES];    /* of the valve pattern, as the next six */
     WIDE double start_pressure[LANES];
     WIDE double fill_end[LANES];
     WIDE double vent_end[LANES];
@@ -92,11 +95,15 @@ typedef struct {
     WIDE double kink[KINKS * 2 * LANES]; /* times at which the rate of the pressure jumps; of the first half only */
     #endif
     WIDE double reservoir[LANES]; /* its pressure at the start of the pattern */
+    WIDE double share[LANES];        /* of its pressure that is asked of the friction brake */
+    WIDE double start_level[LANES];  /* of the electrodynamic brake, and where it goes to */
+    WIDE double goal_level[LANES];
     WIDE double last_filled[LANES]; /* when the present or last filling ends; 0 before the first */
     WIDE double watched[LANES];  /* the watchdog fills until the command does */
-    WIDE double pressure[LANES]; /* at the present time, as the next three */
+    WIDE double pressure[LANES]; /* at the present time, as the next four */
     WIDE double torque[LANES];
     WIDE double damping[LANES];
+    WIDE double level[LANES];
     WIDE double filled[LANES];   /* pressure without the venting since the last command */
     WIDE double fill[LANES];     /* command that the valves follow */
     WIDE double vent[LANES];
@@ -175,15 +182,16 @@ static void hold_wheels(const Loop *loop, const Motion *at, Stage *out)
     }
 }
 
-static INLINE void evaluate(const Loop *loop, const Motion *at, const double *torque, const double *damping,
-                            Stage *out)
+static INLINE void evaluate(const Loop *loop, const Motion *at, const double *time, const double *torque,
+                            const double *level, const double *damping, Stage *out)
 {
     WIDE double speed[LANES];
     load_wheels(loop, at, out->load);
     spread(at->speed, speed);
-    axle_kernel(loop->lane_fixed, speed, at->wheel, out->load, torque, loop->locked, loop->contact, damping,
-                out->force, out->wheel, out->slip, out->damping, out->passed);
-    train_kernel(loop->stop_fixed, at->speed, out->force, at->transfer, out->acceleration, out->resistance, out->transfer);
+    axle_kernel(loop->lane_fixed, speed, at->wheel, out->load, torque, level, loop->locked, loop->contact, damping,
+                out->force, out->wheel, out->slip, out->damping, out->passed, out->given, out->dynamic);
+    train_kernel(loop->stop_fixed, at->speed, out->force, at->transfer, time, out->acceleration, out->resistance,
+                 out->transfer);
     if (loop->hold) hold_wheels(loop, at, out);
 }
 
@@ -195,14 +203,14 @@ static INLINE void observe(Loop *loop)
     double released = 0.0;
     load_wheels(loop, &loop->now, load);
     contact_kernel(loop->lane_fixed, load, loop->contact);
-    evaluate(loop, &loop->now, loop->torque, loop->damping, &loop->present);
+    evaluate(loop, &loop->now, loop->time, loop->torque, loop->level, loop->damping, &loop->present);
     for (int l = 0; l < LANES; l++) {
         const Stage *at = &loop->present;
-        double given = loop->torque[l] * (1.0 - BALANCED);
+        double given = at->given[l] * (1.0 - BALANCED);
         if (loop->locked[l] != 0.0 && given < 2.0 * radius[l] * at->force[l]) loop->locked[l] = 0.0, released = 1.0;
         if (loop->held[l] != 0.0 && given < at->passed[l]) loop->held[l] = 0.0, released = 1.0;
     }
-    if (released != 0.0) evaluate(loop, &loop->now, loop->torque, loop->damping, &loop->present);
+    if (released != 0.0) evaluate(loop, &loop->now, loop->time, loop->torque, loop->level, loop->damping, &loop->present);
 }
 
 /* to = from + share * step * rates, which are those at another moment */

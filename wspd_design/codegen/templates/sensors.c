@@ -110,6 +110,6 @@ void wspd_measure(const Loop *loop, double *restrict out)
             + loop->time[s] * DISTURBANCE(REFERENCE_DRIFT, s) + noise(loop, s, TRAIN, DISTURBANCE(REFERENCE_NOISE, s));
         out[l] = speed > 0.0 ? speed : 0.0;
         out[LANES + l] = wheel > 0.0 ? wheel : 0.0;
-        out[2 * LANES + l] = loop->torque[l] * DISTURBANCE(TORQUE_FACTOR, s);
+        out[2 * LANES + l] = (loop->torque[l] + loop->present.dynamic[l]) * DISTURBANCE(TORQUE_FACTOR, s);
     }
 }

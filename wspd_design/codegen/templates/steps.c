@@ -157,15 +157,19 @@ static INLINE void choose_steps(Loop *loop, double *next)
     }
 }
 
-/* Pressure, torque and damping in the middle and at the end of the step. */
-static INLINE void follow_valves(const Loop *loop, const double *next, double *pressure, double *torque,
-                                 double *filled, double *damping)
+/* Times of middle and end of the step, and pressure, torque, damping and level of the electrodynamic brake there. */
+static INLINE void follow_valves(const Loop *loop, const double *next, double *time, double *pressure, double *torque,
+                                 double *filled, double *damping, double *level)
 {
     WIDE double when[2 * LANES];
+    EACH_STOP {
+        time[s] = loop->time[s] + 0.5 * loop->step[s];
+        time[STOPS + s] = next[s];
+    }
     for (int a = 0; a < AXLES; a++)
         EACH_STOP {
-            when[a * STOPS + s] = loop->time[s] + 0.5 * loop->step[s];
-            when[LANES + a * STOPS + s] = next[s];
+            when[a * STOPS + s] = time[s];
+            when[LANES + a * STOPS + s] = time[STOPS + s];
         }
-    actuator_kernel(loop->window_fixed, when, pressure, torque, filled, damping);
+    actuator_kernel(loop->window_fixed, when, pressure, torque, filled, damping, level);
 }

@@ -9,7 +9,7 @@ from wspd_design.design.records import Specification
 from wspd_design.reporting import numbers
 from wspd_design.reporting.figure_style import INK, MUTED, SERIES
 from wspd_design.reporting.figures.drawing import note
-from wspd_design.reporting.figures.stop import IN_A_ROW, slip_panel
+from wspd_design.reporting.figures.stop import named, slip_panel
 from wspd_design.reporting.yardsticks import ideal_distance
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
@@ -108,7 +108,7 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
     figure.supxlabel("time [s]", fontsize="medium")
     if trials[0].run.slip.shape[1] > 1:
         lines = grid.flat[0].get_legend_handles_labels()
-        figure.legend(*lines, loc="outside upper right", ncols=min(IN_A_ROW, trials[0].run.slip.shape[1]))
+        figure.legend(*lines, loc="outside upper right", ncols=len(named(trials[0].run.slip.shape[1])))
     return figure
 
 

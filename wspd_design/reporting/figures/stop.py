@@ -25,9 +25,8 @@ MOST = 900
 
 LOCK_BAR = 0.02  # of the height of the slip panel, one for each wheelset, and all of them at most:
 LOCK_BARS = 0.16
-MOST_ROWS = 8  # of valves that are numbered
-IN_FULL = 4  # wheelsets whose names stand in the legend in full, and names in one of its rows beyond
-IN_A_ROW = 8
+MOST_NAMED = 8  # wheelsets in a legend and at the rows of valves; of more than these every second or so
+IN_FULL = 4  # wheelsets whose names stand in the legend in full
 
 
 def stop_traces(
@@ -139,7 +138,7 @@ def valve_panel(axes: "Axes", run: Run) -> None:
         axes.stairs(
             fill, times, baseline=floor, fill=True, color=look(line_of(wheelset))[0], alpha=0.7, linewidth=0
         )
-    numbered = range(0, wheelsets, -(-wheelsets // MOST_ROWS))
+    numbered = named(wheelsets)
     axes.set_yticks(
         [1.25 * (wheelsets - 1 - wheelset) + 0.5 for wheelset in numbered],
         [str(wheelset + 1) for wheelset in numbered],
@@ -151,8 +150,14 @@ def valve_panel(axes: "Axes", run: Run) -> None:
 def wheelset_legend(axes: "Axes", run: Run) -> None:
     """Say above the axes which line is which wheelset, if there are several."""
     if run.slip.shape[1] > 1:
-        columns = min(run.slip.shape[1], IN_A_ROW)
+        columns = len(named(run.slip.shape[1]))
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.1)
+
+
+def named(wheelsets: int) -> tuple[int, ...]:
+    """Return the wheelsets that a legend names: all, or so many that they fit, with the first and the last."""
+    step = -(-(wheelsets - 1) // (MOST_NAMED - 1)) or 1
+    return tuple(sorted({*range(0, wheelsets, step)[: MOST_NAMED - 1], wheelsets - 1}))
 
 
 def line_of(wheelset: int) -> int:
@@ -161,9 +166,11 @@ def line_of(wheelset: int) -> int:
 
 
 def _label(run: Run, wheelset: int) -> str:
-    """Name in the legend: without the word where there are many."""
-    full = name(run, wheelset)
-    return full if run.slip.shape[1] <= IN_FULL or wheelset == 0 else full.removeprefix("wheelset ")
+    """Name in the legend: without the word where there are many; none of a wheelset that is not named."""
+    wheelsets, full = run.slip.shape[1], name(run, wheelset)
+    if wheelset not in named(wheelsets):
+        return f"_{full}"
+    return full if wheelsets <= IN_FULL or wheelset == 0 else full.removeprefix("wheelset ")
 
 
 def name(run: Run, wheelset: int) -> str:

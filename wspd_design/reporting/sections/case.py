@@ -3,6 +3,8 @@
 from wspd_design.controllers.family import designed_family
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.units import format_quantity
+from wspd_design.plants.planar import Planar
+from wspd_design.plants.quarter import Quarter
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
 from wspd_design.reporting.brakes import brake_text
@@ -10,6 +12,7 @@ from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
 from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
 
 
@@ -44,7 +47,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Slip reference", f"{specification.slip:g}, tolerance {specification.slip_tolerance:g}"),
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),
         ("Sample time", format_quantity(specification.sample_time, "ms")),
-        ("Plant of the stops", f"{dossier.trials[0].run.plant} locomotive"),
+        ("Plant of the stops", _plant(dossier.trials[0].run)),
         ("Rails of the stops", rails_of(dossier.scenario)),
         ("Disturbances of the stops", disturbances_of(dossier.scenario) or "none"),
     )
@@ -53,6 +56,15 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         Definitions(rows=tuple(Definition(term=term, text=text) for term, text in rows)),
         Paragraph(text=rich("Every number with its unit, bounds, status and source stands in [](#sources).")),
     )
+
+
+def _plant(run: Run) -> str:
+    axles = len(run.final_wheel_speeds)
+    of_axles = {
+        Quarter.name: f"one wheelset stands for all {axles}",
+        Planar.name: f"{axles} wheelsets with load transfer",
+    }
+    return f"{run.plant}: {of_axles[run.plant]}"
 
 
 def _value(parameters: ParameterSet, name: str) -> str:

@@ -30,7 +30,7 @@ from wspd_design.reporting.figures.series import (
     series_caption,
 )
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import rich
+from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
 
 MAP_HEIGHT = 2.6  # in
@@ -109,11 +109,16 @@ def _replay(dossier: Dossier) -> tuple[Block, ...]:
     if not kept:
         return ()
     example = next((each for each in kept if each.status is Finding.PROVED), kept[0])
-    case = ("--vehicle", dossier.vehicle.name, "--rail", dossier.rail.name)
+    stated = {"vehicle": dossier.vehicle.name, "rail": dossier.rail.name}
+    stated |= {own.kind: own.name + own.variant for own in dossier.own_files}
+    case = [word for kind, name in stated.items() for word in (f"--{kind}", name)]
+    files = ", ".join(
+        f"`{name}`" for name in ("design.toml", *(escape(own.name) for own in dossier.own_files))
+    )
     return (
         Paragraph(
             text=rich(
-                "Nobody has to trust the prover. Save the attached `design.toml` and the attached file of a check "
+                f"Nobody has to trust the prover. Save the attached {files} and the attached file of a check "
                 "into one folder. The command below decides again about its proofs, or about the witness of what is "
                 "refuted, without the program that found them."
             )

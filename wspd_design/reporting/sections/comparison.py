@@ -3,6 +3,7 @@
 import math
 from functools import partial
 
+from wspd_design.design.industry import table_note
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Block,
@@ -21,6 +22,7 @@ from wspd_design.reporting.text import CodeSpan, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, ideal_sentence, proved_bound
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.released import released_sentence
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.paper.published import PublishedStop, load_table10
 
@@ -48,6 +50,7 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
         ),
         Paragraph(text=_yardsticks(dossier)),
         Paragraph(text=_ranking(dossier)),
+        *_notes(trials),
         _stops(trials),
         _efforts(trials),
         _accuracy(trials),
@@ -67,6 +70,13 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
         )
     )
     return tuple(found)
+
+
+def _notes(trials: tuple[Trial, ...]) -> tuple[Block, ...]:
+    """Say which tables the laws of the industry take, where their names state it, and which laws let the brake go."""
+    note = table_note(each.run.controller for each in trials)
+    released = released_sentence((each.run.controller, each.metrics.released_below) for each in trials)
+    return tuple(Paragraph(text=text) for text in (note[:1].upper() + note[1:], released) if text)
 
 
 def _yardsticks(dossier: Dossier) -> Text:
@@ -154,7 +164,7 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
             ColumnOf(title="Largest", unit="-", decimals=3, read=lambda each: each.metrics.slip_max),
             ColumnOf(title="Locked", unit="s", decimals=2, read=lambda each: each.metrics.lock_time),
         ),
-        caption=f"Stops of the {trials[0].run.plant} locomotive; this design first. The ideal stop: "
+        caption=f"Stops of {trials[0].run.train}; this design first. The ideal stop: "
         f"{ideal_distance(trials[0].metrics)}; efficiency is ideal stop over distance. Slip of all "
         "wheelsets about its reference above 10 km/h; locked: the wheelset that is locked longest. Lag "
         "2 d/v0 − t and plateau v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",

@@ -4,15 +4,15 @@ from dataclasses import replace
 
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
-from wspd_design.reporting.text import CodeSpan, Text, rich
+from wspd_design.reporting.text import CodeSpan, Text, escape, rich
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.description import disturbances_of
+from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Run, Sensing
 from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (
     "Friction of the pads is constant; heat, wear and flats are not modeled.",
-    "Stops and checks sit on reconstructed data: the agreement with a real locomotive is unknown.",
+    "Stops and checks sit on reconstructed data: the agreement with a real vehicle is unknown.",
     "EN 15595 and other standards are not checked: no statement about conformity is made.",
     "Sampled checks prove nothing between their samples; see the resolution of each.",
 )
@@ -20,8 +20,8 @@ EVERYWHERE: tuple[str, ...] = (
 OF_PLANT = {
     "quarter": "One wheelset stands for all, with the same load: weight transfer, and wheelsets that "
     "slide differently, are not shown.",
-    "planar": "Bodies and bogies pitch about a quasi-static weight transfer; suspension, lateral motion and "
-    "curves are not modeled.",
+    "planar": "Bodies and bogies pitch about a quasi-static weight transfer without the moment by which turning "
+    "wheelsets are slowed down; suspension, lateral motion and curves are not modeled.",
 }
 
 
@@ -52,6 +52,14 @@ def _of_scenario(dossier: Dossier) -> list[str]:
         if exact
         else "Speeds and torque have the stated disturbances of their measurement and no other ones.",
         _of_valves(dossier),
+        *(
+            [
+                f"The rail changes along the track in the stops ({rails_of(scenario)}); the checks speak about one "
+                "rail."
+            ]
+            if scenario.patches
+            else []
+        ),
         *(
             [f"The stops are disturbed ({disturbances}); the checks know nothing of it."]
             if disturbances
@@ -102,6 +110,7 @@ def _digits(trials: tuple[Trial, ...]) -> list[Text]:
 def provenance(dossier: Dossier) -> tuple[Definition, ...]:
     """Return how the report was made."""
     made = dossier.provenance
+    own = ", ".join(f"`{escape(each.name)}`" for each in dossier.own_files)
     return (
         Definition(term="Command", text=(CodeSpan(text=made.command),)),
         Definition(
@@ -110,6 +119,7 @@ def provenance(dossier: Dossier) -> tuple[Definition, ...]:
                 "Save the attached `design.toml` and run the command with the versions below. With "
                 "`SOURCE_DATE_EPOCH` set, the same inputs give the same file, byte for byte. The attached "
                 "`report.json` holds the numbers in full length."
+                + (f" Attached, too: {own}; the design says in which folder it looks for it." if own else "")
             ),
         ),
         Definition(term="Versions", text=", ".join(f"{name} {number}" for name, number in made.versions)),

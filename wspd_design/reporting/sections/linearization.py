@@ -8,6 +8,7 @@ from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph, Tabl
 from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
+from wspd_design.reporting.running_gear import alike_note
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
@@ -31,6 +32,7 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
     )
     beyond = [point for point in points if point.slip_pole > 1.0 / point.time_constant]
     unstable = [point for point in points if point.slip_pole > 0.0]
+    note = alike_note(dossier.vehicle)
     return (
         Heading(text="Linearization", anchor="linearization"),
         Paragraph(
@@ -48,6 +50,7 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
             f"{len(points)} speeds from {numbers.significant(points[0].speed * KMH)} to "
             f"{numbers.significant(points[-1].speed * KMH)} km/h, for the nominal parameters."
         ),
+        *([Paragraph(text=note)] if note else []),
         Figure(
             svg=picture(
                 partial(pole_map, points=points, speeds=specification.speeds, times=times), height=3.1

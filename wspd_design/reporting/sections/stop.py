@@ -6,6 +6,7 @@ from wspd_design.certificates.records import Certificate
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
+from wspd_design.reporting.figures.further_brakes import further_brakes, height, panels
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
@@ -13,6 +14,7 @@ from wspd_design.reporting.running_gear import axle_shares
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
+from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
 
 
@@ -28,7 +30,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"The {run.plant} locomotive from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
+            text=f"The stop of {run.train} from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
             f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
             f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
             f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
@@ -40,12 +42,13 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         ),
         Figure(
             svg=picture(draw, height=8.6),
-            caption=f"The stop over time, {run.plant} locomotive. Green: tolerance about the reference "
+            caption=f"The stop over time, {run.train}. Green: tolerance about the reference "
             f"(dashed). Gray: below {judged} km/h, where the slip is not judged. Bars at the upper edge of the "
             "slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
         ),
+        *_further_brakes(run),
         Figure(
             svg=picture(
                 partial(phase_planes, run=run, plane=dossier.phase_plane, specification=specification),
@@ -61,6 +64,23 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             anchor="phase-plane",
         ),
         *_lyapunov(dossier.certificates),
+    )
+
+
+def _further_brakes(run: Run) -> tuple[Block, ...]:
+    shown = panels(run)
+    if not shown:
+        return ()
+    return (
+        Figure(
+            svg=picture(partial(further_brakes, run=run), height=height(run)),
+            caption="The same stop: what acts beside the friction brake, and how warm its pads get. Lines as in the "
+            "figure before.",
+            alt=" ".join(
+                (f"{len(shown)} panels over {run.time[-1]:.2f} s.", *(panel.words for panel in shown))
+            ),
+            anchor="stop-further-brakes",
+        ),
     )
 
 

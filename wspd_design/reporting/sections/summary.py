@@ -97,7 +97,7 @@ def _stop(dossier: Dossier) -> tuple[str, bool]:
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
     start = (
-        f"The simulated stop of the {run.plant} locomotive from "
+        f"The simulated stop of {run.train} from "
         f"{numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
     )
     if run.ending is not Ending.STOPPED:

@@ -14,7 +14,7 @@ from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.search.settle import finding
 from wspd_design.certificates.setting.linear_loop import law_of, on_brake, valve
 from wspd_design.certificates.setting.pulsed_valve import Times, sample_of
-from wspd_design.certificates.theorems.linear import MARGINS_THEOREM, decibel
+from wspd_design.certificates.theorems.linear import MARGINS_THEOREM, SPEEDS, decibel
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.units import KMH
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-SPEEDS = 25
 MOST_GAIN, MOST_DELAY = 1e3, 10.0  # larger margins are reported as these: factor, s
 
 

@@ -1,7 +1,7 @@
 """Theorem: no controller stops this vehicle within less than a distance and a time, shown from the adhesion peaks.
 
 Twice: over all bounds, whatever the wheelsets do, and for the nominal parameters with static wheel loads and wheelsets
-that are alike, which is the quarter locomotive that reports set a simulated stop against.
+that are alike, which is the quarter model that reports set a simulated stop against.
 """
 
 import math

@@ -1,0 +1,119 @@
+"""A brake engineer with a vehicle of their own: every command that is printed runs as printed, from any folder."""
+
+import base64
+import html
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+VEHICLES = Path(__file__).parent / "vehicles"
+LADEN = '\n[laden.mass]\nvalue = 54\nunit = "t"\n'
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path):
+    """Make a folder with a space in its name that holds the vehicles."""
+    made = tmp_path / "my trains"
+    made.mkdir()
+    for each in VEHICLES.glob("*.toml"):
+        (made / each.name).write_text(each.read_text())
+    (made / "coach.toml").write_text((VEHICLES / "coach.toml").read_text() + LADEN)
+    return made
+
+
+def printed(outcome):
+    """Return the commands that an outcome prints, each as its words."""
+    lines = (line.partition("wspd ") for line in outcome.out.splitlines())
+    return [shlex.split(rest) for before, command, rest in lines if command and before.endswith((" ", ""))]
+
+
+def designed(wspd, vehicle, *, target="my designs/d 1.toml"):
+    Path(target).parent.mkdir(exist_ok=True)
+    outcome = wspd(
+        *(
+            "design",
+            "--law",
+            "smc",
+            "--vehicle",
+            f"my trains/{vehicle}",
+            "--rail",
+            "low-adhesion",
+            "-o",
+            target,
+        )
+    )
+    assert outcome.code == 0, outcome.err
+    commands = {words[0]: words for words in printed(outcome)}
+    assert commands["verify"] == ["verify", target]
+    assert commands["simulate"] == ["simulate", target]
+    assert commands["report"] == ["report", target, "-o", str(Path(target).with_suffix(".html"))]
+    return commands
+
+
+@pytest.mark.parametrize("vehicle", ["coach.toml", "metro.toml", "coach.toml:laden"])
+def test_what_design_prints_runs(wspd, vehicle):
+    commands = designed(wspd, vehicle)
+    stop = wspd(*commands["simulate"])
+    assert stop.code == 0, stop.err
+    name = vehicle.replace(".toml", "")
+    assert f"{name} (planar), from 120 km/h" in " ".join(stop.out.split())
+    assert wspd(*commands["verify"], "--only", "gain_positive").code == 0
+
+
+def test_the_folder_of_the_design_does_not_matter(wspd, folder, monkeypatch):
+    designed(wspd, "coach.toml")
+    monkeypatch.chdir("my designs")
+    stop = wspd("simulate", "d 1.toml", "--speed", "60 km/h")
+    assert (stop.code, stop.err) == (0, "")
+    (folder / "coach.toml").unlink()
+    gone = wspd("simulate", "d 1.toml")
+    assert gone.code == 2
+    assert "coach.toml, which is not there; give its file with --vehicle" in gone.err
+
+
+def test_the_numbers_of_a_laden_vehicle_are_shown(wspd):
+    for name in ("my trains/coach.toml:laden", "freight-wagon:laden"):
+        outcome = wspd("sources", name)
+        assert (outcome.code, outcome.err) == (0, "")
+        assert "laden" in outcome.out.splitlines()[0]
+    assert "has no laden state" in wspd("sources", "er24pc:laden").err
+
+
+def test_what_certify_prints_runs(wspd):
+    designed(wspd, "coach.toml")
+    outcome = wspd("certify", "my designs/d 1.toml", "--only", "gain_positive", "--only", "surface_hurwitz")
+    assert outcome.code == 0, outcome.err
+    (check,) = printed(outcome)
+    assert check == ["check", "my designs/d 1.certificates"]
+    again = wspd(*check)
+    assert again.code == 0, again.err
+    assert "gain_positive: ✓ PROVED" in again.out
+
+
+def assert_check_runs(wspd, page, folder):
+    """Save what the report attaches into an empty folder, without the user's own files, and check a proof there."""
+    for each in folder.iterdir():
+        each.unlink()
+    attached = re.findall(r'download="([^"]+)"[^>]*href="data:[^,"]*;base64,([^"]+)"', page)
+    assert {"design.toml", "coach.toml"} <= {name for name, _ in attached}
+    for name, content in attached:
+        Path(name).write_bytes(base64.b64decode(content))
+    (command,) = re.findall(r"wspd (check [^<]+)", page)
+    again = wspd(*shlex.split(html.unescape(command)))
+    assert again.code == 0, again.err
+    assert "PROVED" in again.out
+
+
+@pytest.mark.slow
+def test_the_report_that_design_prints_runs(wspd, folder):
+    commands = designed(wspd, "coach.toml")
+    outcome = wspd(*commands["report"])
+    assert outcome.code == 0, outcome.err
+    page = Path("my designs/d 1.html").read_text(encoding="utf-8")
+    assert_check_runs(wspd, page, folder)
+    for word in ("trenitalia (textbook)", "The brake on full adhesion", "coach (planar)"):
+        assert word in page
+    for word in ("four-axle", "quarter locomotive", "planar locomotive", "ER24PC locomotive"):
+        assert word not in page

@@ -1,0 +1,114 @@
+"""``wspd new rail``: a rail file from the peak of its adhesion, or fitted to a measured creep curve."""
+
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from wspd_design.cli import options
+from wspd_design.cli.console import console, spaced, table
+from wspd_design.cli.output import check_output, write_text
+from wspd_design.cli.wizard.draft import ENDING
+from wspd_design.cli.wizard.rail_steps import NONE, rail_steps, wanted_rail
+from wspd_design.cli.wizard.session import answer_option, answered, target_of
+from wspd_design.exchange.parameter_file import parameter_file
+from wspd_design.parameters.contradictions import notice_of_rail
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.units import format_quantity
+
+RAIL_FILE = "rail.toml"
+_COMMENTS = (
+    "Written by wspd new rail. Every number may be changed; docs/vehicle-files.md says what each one means.",
+    "Bounds are 20 % about each number, an engineering estimate that proofs and campaigns go through.",
+)
+
+
+def rail(
+    output: Annotated[
+        Path | None,
+        typer.Argument(metavar="FILE", help=f"Rail file to write. Default: {RAIL_FILE}.", show_default=False),
+    ] = None,
+    curve: Annotated[
+        str | None, answer_option("--curve", "FILE", f"CSV file of slip and adhesion, or {NONE}.")
+    ] = None,
+    like: Annotated[str | None, answer_option("--like", "NAME", "Shipped rail that it is most like.")] = None,
+    vehicle: Annotated[
+        str | None, answer_option("--vehicle", "NAME", "Vehicle of the curve or of the peak.")
+    ] = None,
+    speed: Annotated[
+        str | None, answer_option("--speed", "SPEED", "Speed of the curve or of the peak.")
+    ] = None,
+    friction_ratio: Annotated[str | None, answer_option("--friction-ratio", "SHARE", "A of eq. (7).")] = None,
+    friction_decay: Annotated[str | None, answer_option("--friction-decay", "VALUE", "B of eq. (7).")] = None,
+    adhesion_reduction: Annotated[
+        str | None, answer_option("--adhesion-reduction", "SHARE", "kA of eq. (5).")
+    ] = None,
+    slip_reduction: Annotated[
+        str | None, answer_option("--slip-reduction", "SHARE", "kS of eq. (5).")
+    ] = None,
+    peak: Annotated[str | None, answer_option("--peak", "SHARE", "Adhesion at the peak.")] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Ask nothing and take all suggestions.")] = False,
+    resume: Annotated[
+        Path | None,
+        typer.Option("--resume", metavar="FILE", help=f"Go on with the answers of a {ENDING} file."),
+    ] = None,
+    force: options.ForceOption = False,
+) -> None:
+    """Answer some questions about a rail, or fit it to a measured creep curve, and get its file."""
+    given = {
+        "curve": curve,
+        "like": like,
+        "vehicle": vehicle,
+        "speed": speed,
+        "friction_ratio": friction_ratio,
+        "friction_decay": friction_decay,
+        "adhesion_reduction": adhesion_reduction,
+        "slip_reduction": slip_reduction,
+        "peak": peak,
+    }
+    target = target_of(output, resume, RAIL_FILE, remedy="give the name of the rail file, too")
+    if target.suffix != ".toml":
+        raise UserError(f"rail file {target} must end in .toml")
+    check_output(target, force=force)
+    answers, _ = answered(
+        rail_steps(),
+        {key: answer for key, answer in given.items() if answer is not None},
+        target=target,
+        resume=resume,
+        yes=yes,
+        command="wspd new rail",
+        remedy="give all answers as options, or add --yes and the suggestions answer what is left",
+    )
+    made, entries, fit = wanted_rail(target.stem, answers)
+    kind = f"like {answers['like']}" if fit is None else f"fit to {Path(answers['curve']).name}"
+    write_text(target, parameter_file(f"Own rail, {kind}", _COMMENTS, entries), force=force)
+    if resume is not None:
+        resume.unlink()
+    out = console()
+    shown = table("Number", "Value", "Bounds", "Where from", numeric=("Value",))
+    for entry in entries:
+        assert isinstance(entry.value, float)
+        assert entry.bounds is not None
+        shown.add_row(
+            entry.name,
+            format_quantity(entry.value, entry.unit),
+            "{:g} to {:g}".format(*entry.bounds),
+            entry.at,
+        )
+    out.print(spaced(shown))
+    if fit is not None:
+        out.print(
+            f"The fit leaves {fit.rms:.2g} of adhesion rms, {fit.largest:.2g} at most, over {fit.points} points.",
+            markup=False,
+        )
+    notice = notice_of_rail(made)
+    if notice:
+        out.print(f"{notice}.", markup=False)
+    out.print(f"Written: {target}", style="bold", markup=False, soft_wrap=True)
+    file, train = shlex.quote(str(target)), shlex.quote(answers["vehicle"])
+    for purpose, command in (
+        ("See it", f"wspd sources {file}"),
+        ("Stop on it", f"wspd simulate trenitalia --vehicle {train} --rail {file}"),
+    ):
+        out.print(f"{purpose + ':':<12}{command}", markup=False, soft_wrap=True)

@@ -1,0 +1,133 @@
+"""One run of a wizard: its questions on a terminal, the answers that are kept, and the review."""
+
+import os
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.text import Text
+
+from wspd_design.cli.console import console, is_interactive, spaced, table
+from wspd_design.cli.exit_codes import INTERRUPTED
+from wspd_design.cli.wizard.draft import ENDING, draft_path, read_draft, write_draft
+from wspd_design.cli.wizard.flow import Ask, Back, complete, walk
+from wspd_design.cli.wizard.steps import SAVE, Answers, Step, accept
+from wspd_design.parameters.errors import UserError
+
+
+def answer_option(flag: str, metavar: str, meaning: str) -> Any:
+    """Describe an option that answers a question."""
+    return typer.Option(
+        flag,
+        metavar=metavar,
+        help=meaning,
+        show_default=False,
+        rich_help_panel="Answers, in place of questions",
+    )
+
+
+def answered(
+    questions: Sequence[Step],
+    given: Answers,
+    *,
+    target: Path,
+    resume: Path | None,
+    yes: bool,
+    command: str,
+    remedy: str,
+) -> tuple[dict[str, str], frozenset[str]]:
+    """Return an answer to each question that applies, and the questions that the user answered.
+
+    Parameters
+    ----------
+    questions : sequence of Step
+        All questions, the review last.
+    given : mapping
+        Answers that the command line brought; where they answer all, nothing is asked.
+    target : Path
+        File that the answers lead to; when the user leaves, they are kept beside it.
+    resume : Path or None
+        File of answers that were kept.
+    yes : bool
+        Whether the suggestions answer what is left, which the user then did not.
+    command : str
+        The command line that goes on, such as ``wspd new vehicle``.
+    remedy : str
+        What to do without a terminal.
+    """
+    kept = {} if resume is None else read_draft(resume, tuple(questions))
+    _check_given(questions, given)
+    answers = {**kept, **given}
+    if yes or (given and not _open_questions(questions, answers)):
+        return complete(questions, answers), frozenset(answers)
+    if not is_interactive():
+        raise UserError(f"the wizard needs a terminal; start it in one, {remedy}")
+    try:
+        walk(questions, answers, _asking(questions))
+    except KeyboardInterrupt:
+        draft = draft_path(target)
+        write_draft(answers, draft)
+        console().print(
+            f"The answers are kept. Go on with:\n{command} --resume {shlex.quote(str(draft))}",
+            markup=False,
+            soft_wrap=True,
+        )
+        raise typer.Exit(INTERRUPTED) from None
+    return answers, frozenset(answers)
+
+
+def target_of(output: Path | None, resume: Path | None, default: str, *, remedy: str) -> Path:
+    """Return the file that the answers lead to; ``remedy`` says how to name it."""
+    if output is not None or resume is None:
+        return output or Path(default)
+    if resume.suffix != ENDING:
+        raise UserError(f"{resume} does not end in {ENDING}; {remedy}")
+    return resume.with_suffix("")
+
+
+def _open_questions(questions: Sequence[Step], answers: Answers) -> list[str]:
+    return [step.key for step in questions[:-1] if step.applies(answers) and step.key not in answers]
+
+
+def _check_given(questions: Sequence[Step], given: Answers) -> None:
+    """Refuse a wrong answer of the command line before the first question."""
+    made: dict[str, str] = {}
+    for step in questions[:-1]:
+        if step.key in given:
+            accept(step, given[step.key], made)
+            made[step.key] = given[step.key]
+
+
+def _asking(questions: Sequence[Step]) -> Ask:
+    """Return the way to ask that suits the terminal, with a line for each answer."""
+    if os.environ.get("TERM", "") in ("dumb", "unknown"):
+        from wspd_design.cli.wizard import plain
+
+        asker: Ask = plain.ask
+    else:
+        from wspd_design.cli.wizard import widgets
+
+        asker = widgets.ask
+
+    def ask(step: Step, answers: Answers, suggestion: str) -> str | Back:
+        out = console()
+        if any(option.value == SAVE for option in step.options):
+            _review(questions, answers)
+        answer = asker(step, answers, suggestion)
+        if isinstance(answer, Back):
+            out.print(f"< back from {step.title}", style="dim", markup=False)
+        else:
+            out.print(Text(f"{step.title}: ").append(answer, style="bold"))
+        return answer
+
+    return ask
+
+
+def _review(questions: Sequence[Step], answers: Answers) -> None:
+    shown = table("Question", "Answer")
+    for step in questions:
+        if step.key in answers:
+            shown.add_row(step.title, Text(answers[step.key]))
+    console().print(spaced(shown))

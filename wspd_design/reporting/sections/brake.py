@@ -1,0 +1,52 @@
+"""The brake on full adhesion, by mean values."""
+
+import math
+
+from wspd_design.analysis.brake_sheet import RULES, BrakeSheet
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import Block, Heading, Paragraph, Table
+from wspd_design.reporting.figures.drawing import KILO, KMH
+from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.studies.dossier import Dossier
+
+
+def brake(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the section about the brake while no wheel slides."""
+    sheet = dossier.brake
+    return (
+        Heading(text="The brake on full adhesion", anchor="brake"),
+        Paragraph(text=f"{brake_sentence(sheet)} {dossier.adhesion_use}"),
+        brake_table(sheet),
+    )
+
+
+def brake_sentence(sheet: BrakeSheet) -> str:
+    """Say what force the brake has, and what turning parts add to the mass."""
+    return (
+        f"Fully applied, the brake of {sheet.vehicle} has {numbers.significant(sheet.rim_force / KILO, 4)} kN at the "
+        f"rims; turning parts add {numbers.significant(sheet.rotating_mass / KILO, 3)} t to the mass."
+    )
+
+
+def brake_table(sheet: BrakeSheet) -> Table:
+    """Return the stops by mean values, one row for each speed."""
+    return build(
+        sheet.stops,
+        (
+            ColumnOf(
+                title="From", unit="km/h", flush_right=True, read=lambda each: f"{each.speed * KMH:.4g}"
+            ),
+            ColumnOf(title="t_e", unit="s", decimals=3, read=lambda each: each.mean.equivalent_time),
+            ColumnOf(title="a_e", unit="m/s²", decimals=3, read=lambda each: each.mean.deceleration),
+            ColumnOf(title="Distance", unit="m", decimals=1, read=lambda each: each.mean.distance),
+            ColumnOf(title="Time", unit="s", decimals=1, read=lambda each: each.mean.time),
+            ColumnOf(
+                title="Braked weight",
+                unit="%",
+                decimals=1,
+                read=lambda each: math.nan if each.percentage is None else each.percentage,
+            ),
+        ),
+        caption=RULES,
+        anchor="brake-table",
+    )
