@@ -1,6 +1,7 @@
 """Corners of tables and characteristics of brakes, rounded so that integration keeps its order.
 
-The rounded corner is the sharp one, max(x, 0), smeared by a bump of half the width w: its second derivative is the bump.
+The rounded corner is the sharp one, max(x, 0), smeared by a bump of half the width w: its second derivative is the
+bump.
 """
 
 import sympy as sp
