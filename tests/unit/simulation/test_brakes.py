@@ -150,7 +150,9 @@ def test_no_step_goes_across_a_kink_of_the_pressure(er24pc, make_controller, kin
     assert with_kinks < 1e-7
     # The planted fault: nobody says where they are.
     plain = brake_model.kinks
-    monkeypatch.setattr(brake_model, "kinks", lambda *given: tuple(1e300 for _ in plain(*given)))
+    monkeypatch.setattr(
+        brake_model, "kinks", lambda *given, **more: tuple(1e300 for _ in plain(*given, **more))
+    )
     monkeypatch.setattr(kernels, "_memory", Memory(4))
     assert change() > 10.0 * with_kinks
 
