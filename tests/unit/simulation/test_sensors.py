@@ -202,7 +202,7 @@ def test_a_counter_that_loses_the_rest_of_an_angle_is_seen(er24pc, make_controll
         assert_counted(run, 1000, wet.seed)
 
 
-def test_the_train_speed_drifts_and_is_noisy_for_all_brakes_alike(light, wet):
+def test_the_train_speed_drifts_and_is_noisy_for_all_axles_alike(light, wet):
     law = Scheduled(commands=COMMANDS, sample_time=0.02)
     exact = simulate(light, law, wet)
     sensing = Sensing(reference_error=0.02, reference_drift=-0.03, reference_noise=0.2)
