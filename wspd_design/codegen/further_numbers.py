@@ -6,6 +6,7 @@ table is filled up with points beyond its end, where its last value stays.
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
+from functools import lru_cache
 from typing import Any, Final
 
 from wspd_design.parameters.brake_checks import MOST_POINTS
@@ -39,18 +40,21 @@ FURTHER_PARAMETERS: Final = tuple(
 
 def further_values(vehicle: Vehicle) -> list[float]:
     """Return these elements; those of a part that the vehicle does not have say that there is none."""
+    return [value for part in _PARTS for value in _part_values(part, getattr(vehicle, part))]
+
+
+@lru_cache(maxsize=64)  # most stops of a campaign have the same part, or none
+def _part_values(part: str, has: Pads | DynamicBrake | TrackBrake | None) -> tuple[float, ...]:
     values: list[float] = []
-    for part, record in _PARTS.items():
-        has = getattr(vehicle, part)
-        for field in fields(record):
-            if field.name in _NOT_NUMBERS:
-                continue
-            if has is None:
-                values += [_ABSENT.get(field.name, 0.0)] * len(_elements(part, field.name))
-                continue
-            value = getattr(has, field.name)
-            values += _filled(field.name, value) if isinstance(value, tuple) else [value]
-    return values
+    for field in fields(_PARTS[part]):
+        if field.name in _NOT_NUMBERS:
+            continue
+        if has is None:
+            values += [_ABSENT.get(field.name, 0.0)] * len(_elements(part, field.name))
+            continue
+        value = getattr(has, field.name)
+        values += _filled(field.name, value) if isinstance(value, tuple) else [value]
+    return tuple(values)
 
 
 def _filled(name: str, given: tuple[float, ...]) -> list[float]:

@@ -74,6 +74,9 @@ PARAMETERS: tuple[tuple[str, str], ...] = (
 """Record and field of every element of the parameter vector."""
 
 
+_KNOWN = PARAMETERS[: -len(FURTHER_PARAMETERS)]
+
+
 def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -> list[float]:
     """Parameter vector of one wheelset: the vehicle, the rail below it and what the scenario adds."""
     records = {
@@ -83,8 +86,7 @@ def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -
         "rail": rail,
         "surroundings": surroundings,
     }
-    known = PARAMETERS[: -len(FURTHER_PARAMETERS)]
-    return [*(getattr(records[record], field) for record, field in known), *further_values(vehicle)]
+    return [*(getattr(records[record], field) for record, field in _KNOWN), *further_values(vehicle)]
 
 
 WINDOW = ("start", "start_pressure", "fill_end", "vent_end", "reservoir", "share", "start_level", "goal")

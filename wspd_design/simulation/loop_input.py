@@ -49,24 +49,9 @@ def loop_input(
     for each_plant, each in cases:
         _check(each, controller, each_plant)
         _check_start(each_plant.vehicle, each.start)
-    gravity = constants().gravity
     shaken = any(each.pad_vibration for _, each in cases)
-    columns = [
-        [
-            parameter_values(
-                _lane_vehicle(each_plant.vehicle, axle, calm=shaken and not each.pad_vibration),
-                _rails(each, each_plant)[axle],
-                Surroundings(
-                    grade_force=each_plant.vehicle.mass * (gravity * each.grade),
-                    axle_offset=each_plant.offsets[axle],
-                    braking_time=each.start.braking_time,
-                    reservoir_drain=_drain(each_plant.vehicle, axle),
-                ),
-            )
-            for each_plant, each in cases
-        ]
-        for axle in range(axles)
-    ]
+    lanes = [_lanes(plant, each, calm=shaken and not each.pad_vibration) for plant, each in cases]
+    columns = [[rows[axle] for rows in lanes] for axle in range(axles)]
     scenarios = [each for _, each in cases]
     starts, rails = _patches(scenarios)
     factors, spacings = _load_factors(scenarios, axles)
@@ -167,8 +152,30 @@ def _settings(
     )
 
 
+def _lanes(plant: Plant, scenario: Scenario, *, calm: bool) -> list[list[float]]:
+    """Parameters of each axle of a stop; ``calm`` are pads that do not vibrate beside stops where they do."""
+    vehicle, rails, offsets = plant.vehicle, _rails(scenario, plant), plant.offsets
+    grade_force = vehicle.mass * (constants().gravity * scenario.grade)
+    usual = not (
+        calm or vehicle.brake.axle_shares or vehicle.dynamic
+    )  # so that campaigns do not wait for copies
+    return [
+        parameter_values(
+            vehicle if usual else _lane_vehicle(vehicle, axle, calm=calm),
+            rails[axle],
+            Surroundings(
+                grade_force=grade_force,
+                axle_offset=offsets[axle],
+                braking_time=scenario.start.braking_time,
+                reservoir_drain=_drain(vehicle, axle),
+            ),
+        )
+        for axle in range(plant.axles)
+    ]
+
+
 def _lane_vehicle(vehicle: Vehicle, axle: int, *, calm: bool) -> Vehicle:
-    """The vehicle with the brakes of an axle; ``calm`` are pads that do not vibrate beside stops where they do."""
+    """The vehicle with the brakes of an axle."""
     brake = vehicle.brake_of(axle)
     brake = replace(brake, disturbance_gain=0.0) if calm else brake
     return replace(vehicle, brake=brake, dynamic=vehicle.dynamic_of(axle))
