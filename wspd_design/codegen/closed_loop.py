@@ -207,6 +207,7 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
         "DRAIN": PARAMETERS.index(("surroundings", "reservoir_drain")),
         "FIRST_RAIL": next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail"),
     }
+    places["KINKS"] = kernels.kinks.size1_out(0)
     for name in ("stop_constants", "lane_constants", "window_constants"):
         places[name.upper()] = getattr(kernels, name).size1_out(0)
     folder = files("wspd_design").joinpath("codegen", "templates")
@@ -216,7 +217,7 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
     groups = {
         "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
         lanes: (kernels.lane_constants, kernels.contact, kernels.axle, kernels.slope),
-        twice: (kernels.window_constants, kernels.actuator),
+        twice: (kernels.window_constants, kernels.actuator, *((kernels.kinks,) if places["KINKS"] else ())),
     }
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
     parts += [folder.joinpath(name).read_text() for name in _TEMPLATES]

@@ -98,6 +98,7 @@ class Kernels(NamedTuple):
     stop_constants: Any  # (p) -> constants of loads and train
     lane_constants: Any  # (p) -> constants of contact and axle
     window_constants: Any  # (p, window) -> constants of actuator
+    kinks: Any  # (p, window) -> times at which the rate of the pressure jumps; most brakes have none
     loads: Any  # (constants, transfers) -> wheel load of each axle
     train: (
         Any  # (constants, speed, force of each axle, transfers, time) -> acceleration, resistance, transfers'
@@ -170,11 +171,12 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
     functions = _functions(blank.on(vehicle), track, p, Surroundings(**symbols["surroundings"]), disturbed)
     stop_constants, (loads, train) = hoist(functions[:2], 1, "stop_constants")
     lane_constants, (contact, axle, slope) = hoist(functions[2:5], 1, "lane_constants")
-    window_constants, (actuator,) = hoist(functions[5:], 2, "window_constants")
+    window_constants, (actuator,) = hoist(functions[5:6], 2, "window_constants")
     return Kernels(
         stop_constants=stop_constants,
         lane_constants=lane_constants,
         window_constants=window_constants,
+        kinks=functions[6],
         loads=loads,
         train=train,
         contact=contact,
@@ -228,6 +230,9 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
         surroundings.braking_time,
         share=None if dynamic is None else share,
     )
+    kinks = brake_model.kinks(
+        brake, tuple(pattern), surroundings.braking_time, share=None if dynamic is None else share
+    )
     there = (
         ca.SX(0.0)
         if dynamic is None
@@ -260,6 +265,7 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
         ca.Function(
             "actuator_kernel", [p, window, time], [pressures[0], torque, pressures[1], damping, there]
         ),
+        ca.Function("kinks_kernel", [p, window], [ca.vertcat(ca.SX(0, 1), *kinks)]),
     ]
 
 

@@ -107,6 +107,7 @@ class _VirtualPlant:
         }
         self._observe = Bound(functions.observe, self.state, self.inputs)
         self._window = np.zeros((axles, len(WINDOW)))
+        self._kinks = Bound(kernels.kinks.map(axles), self._by_axle, self._window)
         self._window_constants = Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
         self._close_valves()
@@ -179,10 +180,14 @@ class _VirtualPlant:
 
     def _set_windows(self) -> None:
         """Work out the constants of the actuators for the patterns of the valves."""
+        import numpy as np
+
         self._window[:, :_BLENDED] = self.valves.patterns
         self._window_constants.call()
         self._give("window_constants", self._window_constants.outputs[0].ravel())
-        self.edges = self.valves.edges
+        self._kinks.call()
+        kinks = self._kinks.outputs[0].ravel()
+        self.edges = tuple(sorted({*self.valves.edges, *kinks[np.isfinite(kinks)].tolist()}))
 
     def _blend(self) -> None:
         """Say what is asked of the friction brakes whose patterns begin now, and where the electrodynamic ones go to.

@@ -6,7 +6,8 @@ while it fills: where the supply is below its pressure, the cylinder keeps it. A
 """
 
 import math
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from wspd_design.model.generated import brake as generated
@@ -18,6 +19,7 @@ from wspd_design.parameters.records import Brake
 _NEVER = 1e300  # s
 _HALF_PI = math.pi / 2.0
 _PARTS = 4000  # of the filling through an orifice, whose lateness is a sum
+_TRIALS = 12  # of a search for a kink, which a microsecond does not matter to
 
 
 class Valve(Enum):
@@ -101,7 +103,7 @@ def pattern_pressure(
     if brake.valve == "lag" and not brake.reservoir_volume:
         reservoir = None  # it never gets below the demanded pressure
 
-    asked = brake if share is None else replace(brake, max_pressure=share * brake.max_pressure)
+    asked = _asked(brake, share)
 
     def filled_until(end: Number) -> Number:
         rising = filled_pressure(asked, end + before, start + before, start_pressure, reservoir)
@@ -117,6 +119,53 @@ def pattern_pressure(
         return _vented(brake, vented_for, held_for, filled), filled
     after = _vented(brake, vented_for, held_for, filled_until(fill_end))
     return where(time > fill_end, after, filled), filled
+
+
+def _asked(brake: Brake, share: Number | None) -> Brake:
+    """The brake of which a share of the demanded pressure is asked."""
+    return brake if share is None else replace(brake, max_pressure=share * brake.max_pressure)
+
+
+def kinks(
+    brake: Brake, pattern: tuple[Number, ...], before: Number = 0.0, *, share: Number | None = None
+) -> tuple[Number, ...]:
+    """Times at which the rate of a filling cylinder's pressure jumps, so that no step goes across one.
+
+    Parameters
+    ----------
+    brake, pattern, before, share
+        As of :func:`pattern_pressure`.
+
+    Returns
+    -------
+    tuple of numbers
+        On the clock of the pattern [s], as many as this kind of brake may have; far beyond where there is none.
+    """
+    if brake.valve == "lag":  # its rate follows pressures that have no jumps
+        return ()
+    start, start_pressure, fill_end, _, reservoir = pattern
+    brake, begin = _asked(brake, share), start + before
+    end = begin + minimum(fill_end - start, _HALF_PI * brake.fill_time)  # it is full or at the demand by then
+    way = _Way(brake, begin, start_pressure, reservoir)
+    apart = minimum(maximum(way.falls_behind, begin), end)
+    found = [_crossing(way.above_demand, *ends) for ends in ((begin, apart), (apart, end))]
+    if brake.build_up == "electro-pneumatic":
+        found += [brake.build_up_delay, demand_time(brake, brake.max_pressure)]
+    return tuple(time - before for time in found)
+
+
+def _crossing(value: Callable[[Number], Number], low: Number, high: Number) -> Number:
+    """Where a function gets above zero between two places, by false position; far beyond where it does not."""
+    below, above = value(low), value(high)
+    there = where(below < 0.0, above > 0.0, 0.0)
+    for _ in range(_TRIALS):
+        place = (low * above - high * below) / where(above - below > 0.0, above - below, 1.0)
+        found = value(place)
+        up = found > 0.0
+        # The end that stays counts half, so that both ends move (Illinois).
+        low, high = where(up, low, place), where(up, place, high)
+        below, above = where(up, 0.5 * below, found), where(up, found, 0.5 * above)
+    return where(there, where(up, high, low), _NEVER)
 
 
 def demanded_pressure(brake: Brake, time: Number) -> Number:
@@ -161,7 +210,7 @@ def filled_pressure(
     """Cylinder pressure while filling since ``start_time``; arguments as of :func:`pressure_after` [Pa]."""
     if brake.valve == "orifice":
         supply = brake.supply_pressure if reservoir is None else reservoir
-        return _filled_by_orifice(brake, time, start_time, start_pressure, supply)
+        return _Way(brake, start_time, start_pressure, supply).pressure(time)
     if brake.build_up == "electro-pneumatic":
         top = brake.max_pressure if reservoir is None else minimum(reservoir, brake.max_pressure)
         return _filled_from_ramp(brake, time, start_time, start_pressure, top)
@@ -201,30 +250,46 @@ def _filled_from_ramp(brake: Brake, time: Number, start_time: Number, start: Num
     return maximum(where(time > end, late, on_ramp(time)), start)
 
 
-def _filled_by_orifice(
-    brake: Brake, time: Number, start_time: Number, start: Number, supply: Number
-) -> Number:
-    """Through the orifice from the reservoir, never above what the build-up demands.
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """A cylinder that an orifice fills from a reservoir, never above what the build-up demands.
 
     A cylinder at the demanded pressure follows it as long as the orifice passes what that takes, and falls behind
     from one moment on. The pressure is the least of what the orifice makes of the start, what it makes of that moment,
     and the demand: docs/theory.md#orifice.
     """
-    ratio = brake.critical_pressure_ratio
 
-    def passed(since: Number, pressure: Number) -> Number:
-        elapsed = maximum(time - since, 0.0)
+    brake: Brake
+    start_time: Number
+    start: Number
+    supply: Number
+
+    @property
+    def falls_behind(self) -> Number:
+        """Moment from which on the demand rises faster than the orifice passes [s]."""
+        return demand_time(self.brake, _falling_behind(self.brake, self.supply))
+
+    def passed(self, time: Number) -> Number:
+        """Pressure without the limit of the present demand [Pa]; far beyond where only the demand counts."""
+        behind, since = _falling_behind(self.brake, self.supply), self.falls_behind
+        on_the_way = where(self.start_time <= since, time > since, 0.0)
+        late = where(on_the_way, self._through(time, since, behind), _NEVER)
+        return minimum(self._through(time, self.start_time, self.start), late)
+
+    def _through(self, time: Number, since: Number, pressure: Number) -> Number:
+        brake, elapsed = self.brake, maximum(time - since, 0.0)
+        here, supply = pressure + ATMOSPHERE, self.supply + ATMOSPHERE
         return (
-            orifice_filled(elapsed, pressure + ATMOSPHERE, supply + ATMOSPHERE, brake.fill_time, ratio)
-            - ATMOSPHERE
+            orifice_filled(elapsed, here, supply, brake.fill_time, brake.critical_pressure_ratio) - ATMOSPHERE
         )
 
-    falls_at = _falling_behind(brake, supply)
-    falls_behind = demand_time(brake, falls_at)
-    demanded = demanded_pressure(brake, time)
-    on_the_way = where(start_time <= falls_behind, time > falls_behind, 0.0)
-    behind = where(on_the_way, passed(falls_behind, falls_at), demanded)
-    return maximum(minimum(minimum(passed(start_time, start), demanded), behind), start)
+    def above_demand(self, time: Number) -> Number:
+        """What the orifice would make of the cylinder above the demand [Pa]; below 0 where the orifice counts."""
+        return self.passed(time) - demanded_pressure(self.brake, time)
+
+    def pressure(self, time: Number) -> Number:
+        """Pressure of the cylinder [Pa]."""
+        return maximum(minimum(self.passed(time), demanded_pressure(self.brake, time)), self.start)
 
 
 def _falling_behind(brake: Brake, supply: Number) -> Number:

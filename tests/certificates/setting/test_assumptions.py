@@ -27,7 +27,12 @@ def shared_bogies(vehicle):
 
 
 BRAKES = {
-    Assumption.MAIN_PIPE: {"build_up": "electro-pneumatic", "build_up_delay": 0.2, "build_up_ramp": 1.0},
+    Assumption.MAIN_PIPE: {
+        "build_up": "electro-pneumatic",
+        "supply_rate": 0.0,
+        "build_up_delay": 0.2,
+        "build_up_ramp": 1.0,
+    },
     Assumption.LAG: {"valve": "orifice"},
     Assumption.NO_LEAK: {"hold_leak": 0.01},
     Assumption.NO_DEAD_TIME: {"dead_time": 0.03},

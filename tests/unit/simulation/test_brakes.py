@@ -5,8 +5,11 @@ from dataclasses import dataclass, replace
 
 import pytest
 
+from wspd_design.codegen import kernels
+from wspd_design.codegen.memory import Memory
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.controllers.protocol import Command
+from wspd_design.model import brake as brake_model
 from wspd_design.model.brake import Valve, braking_torque, pressure_after
 from wspd_design.model.number import where
 from wspd_design.model.valve_flow import ATMOSPHERE
@@ -15,7 +18,7 @@ from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.campaign_rows import columns, make_plan
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Scenario, Sensing
-from wspd_design.simulation.self_check import simulate_checked
+from wspd_design.simulation.self_check import simulate_checked, slip_difference
 from wspd_design.simulation.stop import simulate
 
 BAR = 1e5
@@ -124,6 +127,34 @@ def test_stops_that_slide_pass_the_step_check_and_keep_their_balances(er24pc, ma
     assert judged.slip_max > 0.1
     assert abs(judged.momentum_residual) < 1e-6
     assert abs(judged.energy_residual) < 1e-6
+
+
+KINKED = {
+    "meets the demand of the main pipe": ORIFICE,
+    "follows a ramp from its start": RAMP | ORIFICE | {"fill_time": 0.3, "build_up_delay": 0.2237},
+}
+
+
+@pytest.mark.parametrize("kind", KINKED)
+def test_no_step_goes_across_a_kink_of_the_pressure(er24pc, make_controller, kind, monkeypatch):
+    vehicle = replace(er24pc, brake=replace(er24pc.brake, **KINKED[kind]))
+    stop = Scenario(rail=load_rail("low-adhesion"), initial_speed=10.0)
+
+    def change():
+        law = make_controller("trenitalia")
+        runs = [simulate(vehicle, law, stop, plant="quarter", refinement=parts) for parts in (1, 8)]
+        early = [replace(run, axle_samples=(run.samples[:16],)) for run in runs]  # while the demand rises
+        return slip_difference(vehicle, *early)
+
+    with_kinks = change()
+    assert with_kinks < 1e-7
+    # The planted fault: nobody says where they are.
+    plain = brake_model.kinks
+    monkeypatch.setattr(
+        brake_model, "kinks", lambda *given, **more: tuple(1e300 for _ in plain(*given, **more))
+    )
+    monkeypatch.setattr(kernels, "_memory", Memory(4))
+    assert change() > 10.0 * with_kinks
 
 
 def test_a_reservoir_that_runs_low_lengthens_the_stop(braked):

@@ -41,6 +41,8 @@ OF_VALVES: Final = frozenset(
     }
 )
 """What is between the command and the torque: nothing to a theorem that takes the torque as commanded."""
+BUILT_UP: Final = ALL - {Assumption.MAIN_PIPE}
+"""For theorems about a brake that demands the full pressure, whatever way it got there."""
 
 
 def not_met(vehicle: Vehicle, assumes: Iterable[Assumption]) -> str:

@@ -15,6 +15,7 @@ from wspd_design.certificates.kernel.obligation import Inequality, Numbers, Obli
 from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.assumptions import BUILT_UP
 from wspd_design.certificates.setting.linear_loop import (
     BRAKE,
     DECAY,
@@ -236,6 +237,7 @@ ROUTH_LAG = Theorem(
     speaks_about=linear_law,
     obligations=_routh_obligations,
     tell=_tell_routh,
+    assumes=BUILT_UP,
 )
 
 
@@ -373,4 +375,5 @@ MARGINS_THEOREM = Theorem(
     speaks_about=_within_the_brake,
     obligations=_margin_obligations,
     tell=_tell_margins,
+    assumes=BUILT_UP,
 )

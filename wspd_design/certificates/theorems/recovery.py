@@ -27,6 +27,7 @@ from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.assumptions import BUILT_UP
 from wspd_design.certificates.setting.plant import (
     EXPONENT,
     Values,
@@ -416,4 +417,5 @@ HARD_LIMITS = Theorem(
     speaks_about=_always,
     obligations=_obligations,
     tell=_tell,
+    assumes=BUILT_UP,
 )

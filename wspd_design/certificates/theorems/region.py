@@ -14,6 +14,7 @@ from wspd_design.certificates.kernel.obligation import Inequality, Obligation, S
 from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
+from wspd_design.certificates.setting.assumptions import BUILT_UP
 from wspd_design.certificates.setting.plant import complete, place, plant_forces
 from wspd_design.certificates.setting.pulsed_valve import Sample, Times, may_hold, sample_of
 from wspd_design.certificates.setting.traced_law import law_of_theorem
@@ -301,6 +302,7 @@ SAMPLED_INVARIANCE = Theorem(
     speaks_about=_memoryless,
     obligations=_set_obligations,
     tell=_tell_sets,
+    assumes=BUILT_UP,
 )
 
 LPV_LYAPUNOV = Theorem(
@@ -311,4 +313,5 @@ LPV_LYAPUNOV = Theorem(
     speaks_about=torque_feedback,
     obligations=_obligations,
     tell=_tell,
+    assumes=BUILT_UP,
 )

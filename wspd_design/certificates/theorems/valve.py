@@ -32,6 +32,7 @@ from wspd_design.certificates.kernel.obligation import Inequality, Obligation, O
 from wspd_design.certificates.quantities import PLANT
 from wspd_design.certificates.records import Certificate, Point, Problem, Status
 from wspd_design.certificates.setting import domain
+from wspd_design.certificates.setting.assumptions import BUILT_UP
 from wspd_design.certificates.setting.plant import (
     Values,
     place,
@@ -343,6 +344,7 @@ OPEN_LOOP_POLE = Theorem(
     speaks_about=integrals_of_slip,
     obligations=_pole_obligations,
     tell=_tell_pole,
+    assumes=BUILT_UP,
 )
 
 NO_GO = Theorem(
@@ -353,6 +355,7 @@ NO_GO = Theorem(
     speaks_about=integrals_of_slip,
     obligations=_no_go_obligations,
     tell=_tell_no_go,
+    assumes=BUILT_UP,
 )
 
 SAMPLING = Theorem(
@@ -362,4 +365,5 @@ SAMPLING = Theorem(
     speaks_about=_sampled,
     obligations=_sampling_obligations,
     tell=_tell_sampling,
+    assumes=BUILT_UP,
 )

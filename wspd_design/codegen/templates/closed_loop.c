@@ -116,6 +116,9 @@ static void set_windows(Loop *loop)
             to[10 * LANES] = loop->share[l], to[12 * LANES] = loop->start_level[l], to[14 * LANES] = loop->goal_level[l];
         }
     window_constants(loop->lp2, window, loop->window_fixed);
+    #if KINKS
+    kinks_kernel(loop->lp2, window, loop->kink);
+    #endif
 }
 
 /* Pressure of the reservoir after all that was counted: air keeps its temperature, and none comes in. */

@@ -91,6 +91,9 @@ typedef struct {
     WIDE double start_pressure[LANES];
     WIDE double fill_end[LANES];
     WIDE double vent_end[LANES];
+    #if KINKS
+    WIDE double kink[KINKS * 2 * LANES]; /* times at which the rate of the pressure jumps; of the first half only */
+    #endif
     WIDE double reservoir[LANES]; /* its pressure at the start of the pattern */
     WIDE double share[LANES];        /* of its pressure that is asked of the friction brake */
     WIDE double start_level[LANES];  /* of the electrodynamic brake, and where it goes to */

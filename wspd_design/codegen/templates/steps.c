@@ -115,6 +115,13 @@ static INLINE void choose_steps(Loop *loop, double *next)
             double filled = loop->fill_end[a * STOPS + s], vented = loop->vent_end[a * STOPS + s];
             double edge = filled > after ? filled : 1e300, other = vented > after ? vented : 1e300;
             edge = edge < other ? edge : other;
+            #if KINKS
+            for (int k = 0; k < KINKS; k++) {
+                double kink = loop->kink[k * 2 * LANES + a * STOPS + s];
+                kink = kink > after ? kink : 1e300;
+                edge = kink < edge ? kink : edge;
+            }
+            #endif
             edge = edge < before ? edge : 1e300;
             nearest = edge < nearest ? edge : nearest;
         }

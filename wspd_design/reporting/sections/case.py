@@ -9,6 +9,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
 from wspd_design.reporting.brakes import brake_text
 from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.further_brakes import further_brakes
 from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
 from wspd_design.simulation.description import disturbances_of, every_rail_of
@@ -39,6 +40,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Rotating inertia", f"{_value(vehicle, 'wheelset_inertia')} per wheelset"),
         ("Wheel radius", _value(vehicle, "wheel_radius")),
         ("Brake", brake_text(vehicle, shown)),
+        *further_brakes(vehicle),
         ("Rail", friction),
         (
             "Controller",
