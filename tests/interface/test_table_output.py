@@ -45,6 +45,17 @@ def test_fits_the_terminal(name, columns, wspd, monkeypatch):
     assert max(map(len, outcome.out.splitlines())) <= columns
 
 
+@pytest.mark.parametrize("columns", [60, 80, 120])
+@pytest.mark.parametrize("name", ["coach", "er24pc", "very-low"])
+def test_no_word_of_a_place_is_cut_off(name, columns, wspd, monkeypatch):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    shown = wspd("sources", name).out.split()
+    entries = load_entries("rail" if name == "very-low" else "vehicle", name).entries.values()
+    words = {word for entry in entries for word in entry.at.split() if len(word) < 20}
+    assert len(words) > 10
+    assert words - set(shown) == set()
+
+
 @pytest.mark.parametrize(
     "changes", [{"NO_COLOR": "1"}, {"TERM": "dumb"}, {}], ids=["NO_COLOR", "dumb", "piped"]
 )

@@ -73,7 +73,11 @@ def _show(parameters: ParameterSet) -> None:
             )
     else:
         shown = table("Number", "Status", "Source")
-        shown.columns[0].min_width = min(max(len(entry.name) for entry in entries), out.width // 2)
+        first = min(max(len(entry.name) for entry in entries), out.width // 2)
+        second = max(len("Status"), *(len(entry.status) for entry in entries))
+        # Stated for all, less 5 between them: a least width of one would push the last out of the terminal.
+        for each, width in zip(shown.columns, (first, second, out.width - first - second - 5), strict=True):
+            each.width = width
         for entry in entries:
             number = Text(entry.name, style="bold").append("\n").append(_value(entry))
             if entry.bounds is not None:
