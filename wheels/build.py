@@ -22,6 +22,7 @@ from wspd_design.codegen.closed_loop import closed_loop_source  # noqa: E402
 from wspd_design.codegen.compiler import PORTABLE_FLAGS  # noqa: E402
 from wspd_design.codegen.kernels import plant_kernels  # noqa: E402
 from wspd_design.codegen.prebuilt import CPU_LEVEL, library_name  # noqa: E402
+from wspd_design.parameters.files import available  # noqa: E402
 from wspd_design.parameters.loading import load_vehicle  # noqa: E402
 from wspd_design.plants.names import plant_of  # noqa: E402
 from wspd_design.plants.planar import Planar  # noqa: E402
@@ -29,7 +30,10 @@ from wspd_design.plants.quarter import Quarter  # noqa: E402
 from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE  # noqa: E402
 
 AXLES = {Planar.name: (4, 6, 8, 12), Quarter.name: (1, 2, 4, 6, 8, 12)}
-"""Numbers of axles whose plants are built; others need a compiler on the machine that simulates them."""
+"""Numbers of axles on two-axle bogies whose plants are built, beside those of all shipped vehicles.
+
+Others need a compiler on the machine that simulates them.
+"""
 
 X86_64 = {"x86-64": "x86_64", "x86-64-v3": "x86_64_v3", "x86-64-v4": "x86_64_v4"}
 ARM64 = {"arm64": "generic"}
@@ -75,12 +79,19 @@ setup(distclass=Binary, cmdclass={{"bdist_wheel": Wheel}})
 
 
 def plant_sources() -> Iterator[tuple[str, int]]:
-    """Sources of all plants that are built, with their number of stops side by side."""
-    vehicle = load_vehicle("er24pc")
-    for name, numbers in AXLES.items():
-        for axles, disturbed, stops in product(numbers, (False, True), (1, STOPS_SIDE_BY_SIDE)):
-            plant = plant_of(name, replace(vehicle, wheelsets=axles))
-            yield closed_loop_source(plant_kernels(plant, disturbed=disturbed), stops=stops), stops
+    """Sources of all plants that are built, with their number of stops side by side; each source once."""
+    plain = load_vehicle("er24pc")
+    plants = [
+        plant_of(name, replace(plain, wheelsets=axles))
+        for name, numbers in AXLES.items()
+        for axles in numbers
+    ]
+    plants += [plant_of(name, load_vehicle(vehicle)) for vehicle in available("vehicle") for name in AXLES]
+    found = {
+        closed_loop_source(plant_kernels(plant, disturbed=disturbed), stops=stops): stops
+        for plant, disturbed, stops in product(plants, (False, True), (1, STOPS_SIDE_BY_SIDE))
+    }
+    yield from found.items()
 
 
 def compile_plants(platform: Platform, folder: Path) -> None:

@@ -21,6 +21,8 @@ COMMAND_LINES = {
     "speed misspelled": (("simulate", "--speed", "100 kmh"), ("100 kmh", 'did you mean "100 km/h"?')),
     "speed of a time": (("simulate", "--speed", "100 ms"), ("unit of time", "km/h")),
     "speed of a word": (("compare", "--speed", "fast"), ("fast", "120 km/h")),
+    "range in one word": (("design", "--speeds", "10-160 km/h"), ("2 arguments", "wspd design --help")),
+    "command misspelled": (("desing",), ("'design'? See wspd --help.",)),
     "slip above 1": (("simulate", "--slip", "1.4"), ("1.4", "(0, 1)")),
     "slip 0": (("simulate", "--slip", "0"), ("slip = 0 ", "(0, 1)")),
     "slip 1": (("linearize", "--slip", "1"), ("slip = 1 ", "(0, 1)")),

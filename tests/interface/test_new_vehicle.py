@@ -29,6 +29,8 @@ CAR = {
     "--rotating-mass": "10 %",
     "--speed": "100 km/h",
     "--deceleration": "1 m/s^2",
+    "--build-up": "electro-pneumatic",
+    "--build-up-delay": "200 ms",
     "--build-up-time": "1,2 s",
     "--fill-time": "0.3 s",
     "--vent-time": "100 ms",
@@ -64,6 +66,7 @@ def test_all_answers_as_options_need_no_terminal(wspd, tmp_path):
     car, entries = load_vehicle("car.toml"), load_entries("vehicle", "car.toml").entries
     assert (car.mass, car.wheelsets, car.wheel_radius, car.bogie_spacing) == (40e3, 4, 0.42, 14.0)
     assert (car.brake.fill_time, car.brake.vent_time) == (0.3, 0.1)
+    assert (car.brake.build_up_delay, car.brake.build_up_ramp) == (0.2, 1.2)
     assert 4 * car.wheelset_inertia / 0.42**2 == pytest.approx(4e3, rel=1e-3)
     assert full_adhesion_stop(car, 100 / 3.6).deceleration == pytest.approx(1.0, rel=1e-3)
     laden = load_vehicle("car.toml:laden")
@@ -78,8 +81,13 @@ def test_all_answers_as_options_need_no_terminal(wspd, tmp_path):
 
 def test_the_same_answers_by_keys_give_the_same_file(answer, wspd, tmp_path):
     wspd("new", "vehicle", "a.toml", *options_of(CAR))
-    lines = [f"{ERASE}{text}{ENTER}" for flag, text in CAR.items() if flag not in ("--kind", "--weighs")]
-    keys = DOWN * 3 + ENTER + lines[0] + lines[1] + DOWN + ENTER + "".join(lines[2:]) + ENTER
+    lines = [
+        f"{ERASE}{text}{ENTER}"
+        for flag, text in CAR.items()
+        if flag not in ("--kind", "--weighs", "--build-up")
+    ]
+    keys = DOWN * 3 + ENTER + lines[0] + lines[1] + DOWN + ENTER + "".join(lines[2:9]) + ENTER
+    keys += "".join(lines[9:]) + ENTER
     outcome = answer(keys, "new", "vehicle", "b.toml")
     assert (outcome.code, outcome.err) == (0, "")
     a, b = (read_toml(tmp_path / name, name) for name in ("a.toml", "b.toml"))
@@ -123,6 +131,8 @@ def test_a_vehicle_like_each_kind(wspd, kind):
         ("--rotating-mass", "90 %", ("rotating_mass", "0.005 to 0.5")),
         ("--deceleration", "12 m/s^2", ("deceleration", "0.1 to 5")),
         ("--deceleration", "0.001 m/s^2", ("deceleration",)),
+        ("--build-up", "wire", ("build_up", "main-pipe, electro-pneumatic")),
+        ("--build-up-delay", "20 s", ("build_up_delay", "0 to 10")),
         ("--fill-time", "0.3", ("fill_time", "no unit")),
         ("--wheelbase", "20 m", ("wheelbase",)),
     ],
@@ -168,7 +178,7 @@ def test_leaving_back_and_resume(answer, tmp_path):
     assert left.code == 130
     assert "wspd new vehicle --resume car.toml.part" in left.out
     assert [path.name for path in tmp_path.iterdir()] == ["car.toml.part"]
-    keys = f"{BACK * 3}{ERASE}51 t{ENTER * (QUESTIONS - 1)}"
+    keys = f"{BACK * 3}{ERASE}51 t{ENTER * (QUESTIONS - 2)}"
     resumed = answer(keys, "new", "vehicle", "--resume", "car.toml.part")
     assert resumed.code == 0
     assert load_vehicle("car.toml").mass == 51e3
@@ -177,7 +187,7 @@ def test_leaving_back_and_resume(answer, tmp_path):
 
 def test_another_kind_after_going_back_is_asked_for_its_own(answer):
     """Single axles have no wheelbase, which is then not asked for."""
-    keys = f"{ENTER}{BACK}{DOWN * 4}{ENTER}{ENTER * (QUESTIONS - 2)}"
+    keys = f"{ENTER}{BACK}{DOWN * 4}{ENTER}{ENTER * (QUESTIONS - 3)}"
     assert answer(keys, "new", "vehicle", "wagon.toml").code == 0
     wagon = load_vehicle("wagon.toml")
     assert (wagon.axles_per_bogie, wagon.wheelsets) == (1, 2)

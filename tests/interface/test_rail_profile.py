@@ -34,14 +34,14 @@ def test_a_profile_is_what_patches_say(wspd):
 def test_the_shipped_profile_in_a_comparison_and_a_campaign(wspd, tmp_path):
     shown = wspd("compare", "none", "trenitalia", *STOP, "--rail", "patchy")
     assert shown.code == 0
-    assert "very-low from 100 m" in " ".join(shown.out.split())
+    assert "on 12 stretches of polach-wet, low-adhesion and very-low," in " ".join(shown.out.split())
     (tmp_path / "campaign.toml").write_text(
         'controllers = ["none"]\nrails = ["patchy", "polach-wet"]\nvehicle = "er24pc-service"\n'
         'plant = "quarter"\nspeed = "30 km/h"\nstops = 2\ncheck_every = 0\n'
     )
     assert wspd("campaign", "campaign.toml", "-o", "rows.csv").code == 0
     rows = (tmp_path / "rows.csv").read_text()
-    assert "very-low from 100 m" in rows
+    assert "12 stretches of polach-wet, low-adhesion and very-low" in rows
     assert ",polach-wet," in rows
 
 
@@ -86,3 +86,15 @@ def test_a_profile_takes_no_other_change_of_rail(wspd, option):
     outcome = wspd("simulate", "none", "--rail", "patchy", *option)
     assert outcome.code == 2
     assert f"leave {option[0]} out" in outcome.err
+
+
+def test_rails_of_a_campaign_that_are_told_alike_are_refused(wspd, track):
+    (track / "leaf-2").mkdir()
+    (track / "leaf-2" / "leaf.toml").write_text('base = "very-low"\nmu0 = 0.03\n')
+    (track / "campaign.toml").write_text(
+        'controllers = ["none"]\nrails = ["leaf.toml", "leaf-2/leaf.toml"]\nstops = 2\ncheck_every = 0\n'
+    )
+    outcome = wspd("campaign", "campaign.toml", "-o", "rows.csv")
+    assert outcome.code == 2
+    assert "told alike" in outcome.err
+    assert not (track / "rows.csv").exists()

@@ -19,5 +19,7 @@ def test_more_than_1200_m_without_sand(law):
     controller = wd.controller(law, metro, rail, wd.Specification())
     stop = wd.simulate(metro, controller, wd.Scenario.stop(from_kmh=55 * 1.609344, rail=rail))
     assert stop.totals.distance > PRINTED
-    if law == "trenitalia":  # running resistance shortens the stop, friction that falls with sliding lengthens it
+    if (
+        law == "trenitalia"
+    ):  # running resistance shortens the stop, friction that falls with sliding lengthens it
         assert stop.totals.distance == pytest.approx(BOUND, rel=0.1)

@@ -41,7 +41,10 @@ class BrakeSheet:
 
     vehicle: str
     grade: float  # -, rise over run
-    rim_force: float  # N, of the fully applied brake, all wheels
+    rim_force: float  # N, of the fully applied friction brake, all wheels, where pads fade with their stated friction
+    by_steps: (
+        bool  # whether pads fade, an electrodynamic brake blends in or magnets pull, so that forces change
+    )
     rotating_mass: float  # kg, that turning parts add
     demanded_adhesion: float  # -, of the axle that asks for most
     stops: tuple[SheetStop, ...]
@@ -68,6 +71,7 @@ def brake_sheet(vehicle: Vehicle, speeds: Sequence[float] = SPEEDS, *, grade: fl
         vehicle=vehicle.name,
         grade=grade,
         rim_force=rim_force(vehicle),
+        by_steps=bool(vehicle.pads or vehicle.dynamic or vehicle.track_brake),
         rotating_mass=rotating_mass(vehicle),
         demanded_adhesion=demanded_adhesion(vehicle),
         stops=tuple(_stop(vehicle, speed, grade) for speed in speeds),

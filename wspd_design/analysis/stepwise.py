@@ -98,6 +98,20 @@ class _Axle:
         return torque
 
 
+def _axles(vehicle: Vehicle, *, built_up: bool) -> list[tuple[int, _Axle]]:
+    """Axles that differ, each with the number of those that are like it."""
+    shares = list(zip(vehicle.brake_shares, vehicle.dynamic_shares, strict=True))
+    return [
+        (number, _Axle(vehicle, shares.index(each), built_up=built_up))
+        for each, number in Counter(shares).items()
+    ]
+
+
+def developed_force(vehicle: Vehicle, speed: float) -> float:
+    """Force of all built-up brakes at the rims of the wheels while they roll, with cold pads [N]."""
+    return math.fsum(number * axle.force(0.0, speed) for number, axle in _axles(vehicle, built_up=True))
+
+
 def rolling_stop(
     vehicle: Vehicle, speed: float, *, grade: float = 0.0, built_up: bool = False, step: float = STEP
 ) -> tuple[float, float]:
@@ -126,9 +140,7 @@ def rolling_stop(
     UserError
         If the brakes do not hold the vehicle on the grade.
     """
-    shares = Counter(zip(vehicle.brake_shares, vehicle.dynamic_shares, strict=True))
-    first = list(zip(vehicle.brake_shares, vehicle.dynamic_shares, strict=True)).index
-    axles = [(number, _Axle(vehicle, first(each), built_up=built_up)) for each, number in shares.items()]
+    axles = _axles(vehicle, built_up=built_up)
     climbing = vehicle.mass * constants().gravity * grade
     whole = vehicle.mass + vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2
 

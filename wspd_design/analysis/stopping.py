@@ -8,7 +8,7 @@ that the brake asks for.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from wspd_design.analysis.stepwise import rolling_stop
+from wspd_design.analysis.stepwise import developed_force, rolling_stop
 from wspd_design.model.brake import build_up_delay
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import static_shares
@@ -22,6 +22,9 @@ PERCENTAGE_SPEEDS: dict[float, tuple[float, float]] = {
     160.0: (161280.0, 19.0),
 }
 """C [m] and D [-] of lambda = C/s - D for single vehicles, by the speed in km/h, EN 16834."""
+
+_SPEEDS = tuple(0.5 * k for k in range(201))
+"""Among which the one of the largest force is looked for [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,7 +176,9 @@ def demanded_adhesion(vehicle: Vehicle) -> float:
 
 
 def rim_force(vehicle: Vehicle) -> float:
-    """Force of the fully applied brake at the rims of all wheels [N]."""
+    """Force of the fully applied brake at the rims of all wheels, at the speed where it is largest [N]."""
+    if vehicle.pads or vehicle.dynamic:
+        return max(developed_force(vehicle, speed) for speed in _SPEEDS)
     return sum(vehicle.brake_shares) * vehicle.brake.max_torque / vehicle.wheel_radius
 
 

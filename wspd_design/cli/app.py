@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli.exit_codes import BUG, INTERRUPTED, WRONG_USE
-from wspd_design.cli.lazy import LazyGroup
+from wspd_design.cli.lazy import COMMANDS, LazyGroup
 from wspd_design.cli.notices import plain_notices
 from wspd_design.parameters.errors import UserError
 
@@ -73,7 +73,7 @@ def run(arguments: Sequence[str]) -> int:
     except UserError as error:
         return _refuse(str(error))
     except _USAGE_ERROR as error:
-        return _refuse(_usage_sentence(error))
+        return _refuse(_usage_sentence(error, arguments))
     except (KeyboardInterrupt, typer.Abort):
         return INTERRUPTED
     except Exception as error:
@@ -119,10 +119,12 @@ def _refuse(message: str) -> int:
     return WRONG_USE
 
 
-def _usage_sentence(error: Exception) -> str:
+def _usage_sentence(error: Exception, arguments: Sequence[str]) -> str:
     """What Typer says about a wrong option, in one sentence with the place to look."""
     message: str = error.format_message()  # type: ignore[attr-defined]
     context = getattr(error, "ctx", None)
-    command = context.command_path if context is not None else "wspd"
+    # An option that lacks its value comes without the command that it stands in.
+    named = next((word for word in arguments if word in COMMANDS), "")
+    command = context.command_path if context is not None else f"wspd {named}".rstrip()
     joint = " See" if message.endswith("?") else "; see"
     return f"{message.rstrip('.')}{joint} {command} --help"

@@ -18,6 +18,7 @@ from wspd_design.parameters.files import load_entries, read_toml
 from wspd_design.parameters.schema import schema_of
 from wspd_design.parameters.units import Dimension, parse_quantity
 from wspd_design.simulation.campaign import CHECK_EVERY
+from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.draws import (
     FILE_KINDS,
     Choice,
@@ -141,6 +142,12 @@ def read_campaign(path: Path) -> CampaignFile:
                     draws=(*(draw for draw in bounded if draw.name not in named), *drawn),
                 )
             )
+    told = {rails_of(each.scenario) for each in series}
+    if len(told) < len(words.rails):
+        raise UserError(
+            f"two rails of {where} are told alike, and their rows could not be told apart: {', '.join(sorted(told))}; "
+            "run them in campaigns of their own"
+        )
     return CampaignFile(
         series=tuple(series), plant=words.plant, stops=words.stops, check_every=words.check_every
     )

@@ -78,7 +78,7 @@ def quarter_plant(vehicle: Vehicle, rail: Rail) -> Any:
     brake = vehicle.brake
     if (brake.build_up, brake.valve, brake.hold_leak) != ("main-pipe", "lag", 0.0):
         raise UserError(
-            f"the brake of {vehicle.name} is not that of eqs. (8), (9); the quarter locomotive is one function with "
+            f"the brake of {vehicle.name} is not that of eqs. (8), (9); the quarter model is one function with "
             'brake.build_up = "main-pipe", brake.valve = "lag" and no brake.hold_leak'
         )
     motion = quarter(vehicle, rail).motion(time, speed, wheel_speed, braking_torque(brake, pressure))

@@ -164,6 +164,7 @@ def brake_object(sheet: "BrakeSheet") -> dict[str, Any]:
         "vehicle": sheet.vehicle,
         "grade": sheet.grade,
         "rim_force_N": sheet.rim_force,
+        "by_steps": sheet.by_steps,
         "rotating_mass_kg": sheet.rotating_mass,
         "demanded_adhesion": sheet.demanded_adhesion,
         "stops": [

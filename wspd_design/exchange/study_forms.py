@@ -78,7 +78,15 @@ BRAKE = Form(
         VEHICLE_KEY,
         Key(name="grade", kind="number", meaning="rise over run, positive uphill"),
         Key(
-            name="rim_force_N", kind="number", meaning="of the fully applied brake at the rims of all wheels"
+            name="rim_force_N",
+            kind="number",
+            meaning="of the fully applied friction brake at the rims of all wheels, pads with their stated friction",
+        ),
+        Key(
+            name="by_steps",
+            kind="flag",
+            meaning="pads fade, an electrodynamic brake blends in or magnets pull: the stops are worked out by steps "
+            "and have the mean values that give their distance",
         ),
         Key(name="rotating_mass_kg", kind="number", meaning="that turning parts add to the mass"),
         Key(

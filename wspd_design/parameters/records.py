@@ -225,6 +225,17 @@ class Vehicle:
             return (0.0,) * self.wheelsets
         return self.dynamic.axle_shares or (1.0,) * self.wheelsets
 
+    @property
+    def braked(self) -> tuple[bool, ...]:
+        """Tell which axles have a brake on their wheels, of friction or electrodynamic."""
+        pairs = zip(self.brake_shares, self.dynamic_shares, strict=True)
+        return tuple(friction > 0.0 or dynamic > 0.0 for friction, dynamic in pairs)
+
+    @property
+    def brakes_alike(self) -> bool:
+        """Tell whether all axles have the same brakes."""
+        return len(set(zip(self.brake_shares, self.dynamic_shares, strict=True))) == 1
+
     def dynamic_of(self, axle: int) -> DynamicBrake | None:
         """Return the electrodynamic brake of one axle, counted from 0 at the front."""
         if self.dynamic is None:

@@ -93,7 +93,9 @@ _OTHER_OF_RAIL = {
     "gradient": "the grade is no part of a rail: use --grade",
     "grade": "the grade is no part of a rail: use --grade",
 }
-_CALLED: Mapping[str, Mapping[str, str]] = {"vehicle": _VEHICLE, "rail": _RAIL}
+CALLED: Mapping[str, Mapping[str, str]] = {"vehicle": _VEHICLE, "rail": _RAIL}
+"""The key that a word in small letters stands for, by the kind of file."""
+
 _INSTEAD: Mapping[str, Mapping[str, str]] = {"vehicle": _OTHER_QUANTITY, "rail": _OTHER_OF_RAIL}
 
 
@@ -118,7 +120,7 @@ def remedy_for(kind: Kind, key: str, raw: object, known: Iterable[str]) -> str:
     instead = _INSTEAD.get(kind, {}).get(word)
     if instead is not None:
         return f"; {instead}."
-    called = _CALLED.get(kind, {}).get(word)
+    called = CALLED.get(kind, {}).get(word)
     if called in known:
         return f' (did you mean "{called}"?); correct or remove it.'
     grouped = [each for each in known if each.rpartition(".")[2] == word and each != key]

@@ -179,11 +179,12 @@ def _figures(plan: Plan, cases: Cases, first: int) -> dict[str, Any]:
     batch = run_batch(cases, controller, lambda some: loop_input(some, controller), what=runs)
     lanes, stops = batch.lanes, batch.stops
     judged = np.where(stops["judged_time"] > 0.0, stops["judged_time"], np.nan)
-    braked = np.array(cases[0][0].vehicle.brake_shares) > 0.0
+    leading = cases[0][0].vehicle  # of all of them the same axles have a brake
+    braked, valved = np.array(leading.braked), np.array(leading.brake_shares) > 0.0
     mean, square = (lanes[name][braked].mean(axis=0) / judged for name in ("slip", "slip_squared"))
     reference = slip_reference_of(controller)
     about = math.nan if reference is None else reference
-    full = np.array([plant.vehicle.brake.max_pressure * braked.sum() for plant, _ in cases])
+    full = np.array([plant.vehicle.brake.max_pressure * valved.sum() for plant, _ in cases])
     axles = 1 if cases[0][0].alike else cases[0][0].axles
     by_axle = (lanes[name] for name in ("longest_lock", "judged_lock_time", "sliding_work"))
     ideal = _ideal_distances(cases, runs)
@@ -200,10 +201,10 @@ def _figures(plan: Plan, cases: Cases, first: int) -> dict[str, Any]:
         ),
         "slip_rms": np.sqrt(np.maximum(square - 2.0 * about * mean + about**2, 0.0)),
         "lock_time_s": lanes["lock_time"].max(axis=0),
-        "valve_switches_per_s": lanes["valve_switches"][braked].mean(axis=0) / lasted,
-        "vented_air": lanes["vented_pressure"][braked].sum(axis=0) / full,
+        "valve_switches_per_s": lanes["valve_switches"][valved].mean(axis=0) / lasted,
+        "vented_air": lanes["vented_pressure"][valved].sum(axis=0) / full,
         **_of_brakes(
-            cases, lanes["filled_pressure"][braked].sum(axis=0), lanes["watchdog"][braked].sum(axis=0)
+            cases, lanes["filled_pressure"][valved].sum(axis=0), lanes["watchdog"][valved].sum(axis=0)
         ),
         **{
             f"{name}_{axle + 1}": values[axle]

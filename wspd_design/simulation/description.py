@@ -2,9 +2,20 @@
 
 from wspd_design.simulation.records import Scenario
 
+_FEW = 3  # changes of rail that are told one by one
+
 
 def rails_of(stop: Scenario) -> str:
-    """Say on which rails a stop runs."""
+    """Say on which rails a stop runs, many changes in short."""
+    if len(stop.patches) <= _FEW or stop.axle_rails:
+        return every_rail_of(stop)
+    names = list(dict.fromkeys((stop.rail.name, *(patch.rail.name for patch in stop.patches))))
+    listed = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    return f"{1 + len(stop.patches)} stretches of {listed}"
+
+
+def every_rail_of(stop: Scenario) -> str:
+    """Say on which rails a stop runs, change by change."""
     names = "/".join(rail.name for rail in stop.axle_rails) if stop.axle_rails else stop.rail.name
     return ", ".join((names, *(f"{patch.rail.name} from {patch.start:g} m" for patch in stop.patches)))
 

@@ -100,10 +100,7 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
         raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
-    if (
-        plant.alike
-        and len(set(zip(plant.vehicle.brake_shares, plant.vehicle.dynamic_shares, strict=True))) > 1
-    ):
+    if plant.alike and not plant.vehicle.brakes_alike:
         raise UserError(
             f"vehicle {plant.vehicle.name} has axles with other brakes than the rest, which need the plant "
             f'"{Planar.name}"'

@@ -94,7 +94,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         if commands
         else math.nan,
         valve_switches=round(totals.valve_switches),
-        vented_air=totals.vented_pressure / vehicle.brake.max_pressure / braked_axles(vehicle),
+        vented_air=totals.vented_pressure / vehicle.brake.max_pressure / valved_axles(vehicle),
         air_used=air_used(vehicle.brake, totals.filled_pressure),
         lowest_reservoir=lowest_reservoir(vehicle.brake, totals.filled_pressure),
         watchdog_fills=totals.watchdog_fills if vehicle.brake.longest_release else None,
@@ -123,8 +123,8 @@ def lowest_reservoir(brake: Brake, filled: Number) -> Number:
     return brake.supply_pressure - brake.cylinder_volume / brake.reservoir_volume * filled
 
 
-def braked_axles(vehicle: Vehicle) -> int:
-    """Return the number of wheelsets with a brake."""
+def valved_axles(vehicle: Vehicle) -> int:
+    """Return the number of wheelsets with a friction brake and its valves."""
     return sum(share > 0.0 for share in vehicle.brake_shares)
 
 
@@ -141,9 +141,7 @@ def adhesion_utilization(run: Run, vehicle: Vehicle, scenario: Scenario) -> floa
         return math.nan
     loads, rails = static_shares(vehicle), scenario.axle_rails or (scenario.rail,) * vehicle.wheelsets
     axles = [
-        pair
-        for pair, brake in zip(zip(rails, loads, strict=True), vehicle.brake_shares, strict=True)
-        if brake
+        pair for pair, brakes in zip(zip(rails, loads, strict=True), vehicle.braked, strict=True) if brakes
     ]
     alike = axles[:1] if len(set(axles)) == 1 else axles
     peak = np.mean(

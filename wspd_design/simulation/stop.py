@@ -121,7 +121,7 @@ def _run_record(
     axles, magnets = plant.axles, plant.vehicle.track_brake
     columns = 1 if plant.alike else axles
     lane, stop = output.lane_totals, {name: float(x[0]) for name, x in output.stop_totals.items()}
-    braked = np.array(plant.vehicle.brake_shares) > 0.0
+    braked, valved = np.array(plant.vehicle.braked), np.array(plant.vehicle.brake_shares) > 0.0
     start = _first_row(plant, scenario, output)
     trace = np.vstack([start, output.trace])
     wheel, slip, passed, load, _, dynamic, *warmth = (
@@ -147,7 +147,7 @@ def _run_record(
         torque=passed,
         wheel_load=load,
         axle_samples=tuple(
-            _samples(output.samples[:, 0], by_axle[:, :, axle], states) if braked[axle] else ()
+            _samples(output.samples[:, 0], by_axle[:, :, axle], states) if valved[axle] else ()
             for axle in range(columns)
         ),
         totals=Totals(
@@ -163,10 +163,10 @@ def _run_record(
             judged_time=stop["judged_time"],
             slip=float(lane["slip"][braked].mean()),
             slip_squared=float(lane["slip_squared"][braked].mean()),
-            vented_pressure=float(lane["vented_pressure"][braked].sum()),
-            valve_switches=float(lane["valve_switches"][braked].mean()),
-            filled_pressure=float(lane["filled_pressure"][braked].sum()),
-            watchdog_fills=round(float(lane["watchdog"][braked].sum())),
+            vented_pressure=float(lane["vented_pressure"][valved].sum()),
+            valve_switches=float(lane["valve_switches"][valved].mean()),
+            filled_pressure=float(lane["filled_pressure"][valved].sum()),
+            watchdog_fills=round(float(lane["watchdog"][valved].sum())),
         ),
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),

@@ -6,17 +6,18 @@ What neither an answer nor a rule gives is taken from a shipped vehicle of the s
 import math
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from typing import get_args
 
 from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.model.hertz import contact_from_radii
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants, load_entries, load_vehicle, vehicle_of
 from wspd_design.parameters.records import Entry, ParameterSet, Vehicle
-from wspd_design.parameters.units import KMH, factor, to_si
+from wspd_design.parameters.schema import BuildUp
+from wspd_design.parameters.units import KMH
+from wspd_design.studies.new_vehicle_numbers import ANSWER, ruled, stated, taken
 
-RULE, ANSWER = "wspd new vehicle", "own answer"
-"""Sources of the numbers: a rule of this module, or what the user wrote."""
-
+PIPE, ELECTRIC = get_args(BuildUp)
 FULL = 0.95
 """Share of the full pressure at which a brake counts as built up."""
 
@@ -29,34 +30,10 @@ RATED_SPEEDS = {
 }
 """From which the deceleration of a shipped vehicle is stated [m/s]; of the others it is 120 km/h."""
 
+_ANSWERS = ("laden.", "brake.build_up", "brake.supply_rate")
+"""Beginnings of the numbers that are there only if the answers ask for them."""
+
 _YOUNG, _POISSON, _RAIL_CROWN = 210e9, 0.25, 0.3  # Pa, -, m: as for the contact of the ER24PC
-_DIGITS = 4
-_SPREAD = {
-    "mass": (0.97, 1.03),
-    "wheel_radius": (0.925, 1.0),
-    "wheelset_inertia": (0.85, 1.15),
-    "resistance_constant": (0.5, 1.5),
-    "resistance_linear": (0.5, 1.5),
-    "resistance_quadratic": (0.5, 2.0),
-    "body_height": (0.9, 1.1),
-    "bogie_height": (0.8, 1.2),
-    "traction_rod_height": (0.8, 1.2),
-    "body_pitch_frequency": (0.7, 1.3),
-    "bogie_pitch_frequency": (0.7, 1.3),
-    "pitch_damping_ratio": (0.3, 2.0),
-    "brake.max_torque": (0.85, 1.15),
-    "brake.supply_rate": (0.7, 1.3),
-    "brake.build_up_delay": (0.7, 1.3),
-    "brake.build_up_ramp": (0.7, 1.3),
-    "brake.fill_time": (0.75, 1.25),
-    "brake.vent_time": (0.75, 1.25),
-    "contact.semi_axis_rolling": (0.9, 1.3),
-    "contact.semi_axis_lateral": (0.9, 1.3),
-    "laden.mass": (0.97, 1.03),
-    "laden.body_height": (0.9, 1.1),
-    "laden.max_torque": (0.85, 1.15),
-}
-"""Bounds of the numbers over their values: worn wheels, pads within 15 %, contacts of other profiles, and estimates."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +51,9 @@ class Wanted:
     rotating_mass: float  # kg, of the whole vehicle
     speed: float  # m/s, from which the deceleration holds
     deceleration: float  # m/s2, mean of the fully developed brake
-    build_up_time: float  # s, until 95 % of the pressure
+    build_up: str  # main-pipe or electro-pneumatic
+    build_up_delay: float  # s, of an electro-pneumatic brake
+    build_up_time: float  # s, until 95 % of the pressure, or of the ramp of an electro-pneumatic brake
     fill_time: float  # s
     vent_time: float  # s
     answered: frozenset[str] = frozenset()  # what the user said; the rest is as of the kind
@@ -98,7 +77,11 @@ def wanted_like(kind: str) -> Wanted:
         rotating_mass=vehicle.wheelsets * vehicle.wheelset_inertia / vehicle.wheel_radius**2,
         speed=speed,
         deceleration=full_adhesion_stop(vehicle, speed).deceleration,
-        build_up_time=-math.log(1.0 - FULL) / vehicle.brake.supply_rate,
+        build_up=vehicle.brake.build_up,
+        build_up_delay=vehicle.brake.build_up_delay,
+        build_up_time=vehicle.brake.build_up_ramp
+        if vehicle.brake.build_up == ELECTRIC
+        else -math.log(1.0 - FULL) / vehicle.brake.supply_rate,
         fill_time=vehicle.brake.fill_time,
         vent_time=vehicle.brake.vent_time,
     )
@@ -133,40 +116,46 @@ def derived_entries(wanted: Wanted) -> tuple[Entry, ...]:
     }
     found |= _torques(wanted, base, found)
     return tuple(
-        found[name] if name in found else _taken(entry, wanted.kind)
+        found[name] if name in found else taken(entry, wanted.kind)
         for name, entry in base.entries.items()
-        if name in found or not name.startswith("laden.")
+        if name in found or not name.startswith(_ANSWERS)
     ) + tuple(entry for name, entry in found.items() if name not in base.entries)
 
 
 def _answered(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:
     radius = wanted.wheel_diameter / 2.0
-    stated = partial(_stated, wanted)
+    said = partial(_said, wanted)
     answers = [
-        stated("mass", "mass", wanted.mass, "kg"),
-        stated("wheelsets", "wheelsets", float(wanted.wheelsets), "-"),
-        stated("wheel_radius", "wheel_diameter", radius, "mm"),
-        stated("bogie_spacing", "bogie_spacing", wanted.bogie_spacing, "m"),
-        stated("brake.fill_time", "fill_time", wanted.fill_time, "s"),
-        stated("brake.vent_time", "vent_time", wanted.vent_time, "s"),
-        _ruled(
+        said("mass", "mass", wanted.mass, "kg"),
+        said("wheelsets", "wheelsets", float(wanted.wheelsets), "-"),
+        said("wheel_radius", "wheel_diameter", radius, "mm"),
+        said("bogie_spacing", "bogie_spacing", wanted.bogie_spacing, "m"),
+        said("brake.fill_time", "fill_time", wanted.fill_time, "s"),
+        said("brake.vent_time", "vent_time", wanted.vent_time, "s"),
+        ruled(
             "wheelset_inertia",
             wanted.rotating_mass / wanted.wheelsets * radius**2,
             "kg m^2",
             f"rotating mass {wanted.rotating_mass:.4g} kg over {wanted.wheelsets} wheelsets, times radius^2",
         ),
-        _ruled(
-            "brake.supply_rate",
-            -math.log(1.0 - FULL) / wanted.build_up_time,
-            "1/s",
-            f"ln(20) over {wanted.build_up_time:g} s, in which the supply reaches 95 %",
-        ),
+        *_build_up(wanted),
     ]
     if "wheelbase" in base.entries:
-        answers.append(stated("wheelbase", "wheelbase", wanted.wheelbase, "m"))
+        answers.append(said("wheelbase", "wheelbase", wanted.wheelbase, "m"))
     if wanted.laden_mass:
-        answers.append(stated("laden.mass", "laden_mass", wanted.laden_mass, "kg"))
+        answers.append(said("laden.mass", "laden_mass", wanted.laden_mass, "kg"))
     return {entry.name: entry for entry in answers}
+
+
+def _build_up(wanted: Wanted) -> list[Entry]:
+    if wanted.build_up == ELECTRIC:
+        return [
+            replace(_said(wanted, "brake.build_up", "build_up", 0.0, "-"), value=ELECTRIC),
+            _said(wanted, "brake.build_up_delay", "build_up_delay", wanted.build_up_delay, "s"),
+            _said(wanted, "brake.build_up_ramp", "build_up_time", wanted.build_up_time, "s"),
+        ]
+    rule = f"ln(20) over {wanted.build_up_time:g} s, in which the supply reaches 95 %"
+    return [ruled("brake.supply_rate", -math.log(1.0 - FULL) / wanted.build_up_time, "1/s", rule)]
 
 
 def _running_gear(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:
@@ -186,19 +175,19 @@ def _running_gear(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:
     scale = wanted.wheel_diameter / (2.0 * like.wheel_radius)
     what = "single axles" if axles == 1 else "bogies"
     found = [
-        _ruled(
+        ruled(
             "bogie_mass",
             bogie,
             "kg",
             f"{what} are {100.0 * share:.1f} % of the empty mass, as of {wanted.kind}",
         ),
-        _ruled(
+        ruled(
             "body_mass", wanted.mass - supports * bogie, "kg", f"empty mass less {supports} times bogie_mass"
         ),
     ]
     for name in ("bogie_height", "traction_rod_height"):
         rule = f"{base.number(name):.3g} m of {wanted.kind}, in proportion to the wheel radius"
-        found.append(_ruled(name, base.number(name) * scale, "m", rule))
+        found.append(ruled(name, base.number(name) * scale, "m", rule))
     return {entry.name: entry for entry in found}
 
 
@@ -206,19 +195,19 @@ def _resistance(wanted: Wanted, base: ParameterSet) -> dict[str, Entry]:
     """FCalc's modern Davis equation; the drag area is that of the kind."""
     tonnes, drag = wanted.mass / 1e3, base.number("resistance_quadratic")
     found = [
-        _ruled(
+        ruled(
             "resistance_constant",
             6.3743 * tonnes + 128.998 * wanted.wheelsets,
             "N",
             f"FCalc: 6.3743 N/t times {tonnes:.4g} t and 128.998 N for each of {wanted.wheelsets} axles",
         ),
-        _ruled(
+        ruled(
             "resistance_linear",
             0.32905 * tonnes,
             "N s/m",
             f"FCalc: 0.32905 N s/m per tonne times {tonnes:.4g} t",
         ),
-        _ruled(
+        ruled(
             "resistance_quadratic",
             drag,
             "N s^2/m^2",
@@ -239,16 +228,16 @@ def _contact(wanted: Wanted) -> dict[str, Entry]:
         f"Hertz: wheel of {radius:.4g} m on a crown of {1e3 * _RAIL_CROWN:g} mm, {load / 1e3:.4g} kN, steel"
     )
     found = [
-        _ruled("contact.shear_modulus", contact.shear_modulus, "GPa", "E / (2 (1 + nu)), 210 GPa and 0.25"),
-        _ruled("contact.semi_axis_rolling", contact.semi_axis_rolling, "mm", hertz),
-        _ruled("contact.semi_axis_lateral", contact.semi_axis_lateral, "mm", hertz),
-        _ruled(
+        ruled("contact.shear_modulus", contact.shear_modulus, "GPa", "E / (2 (1 + nu)), 210 GPa and 0.25"),
+        ruled("contact.semi_axis_rolling", contact.semi_axis_rolling, "mm", hertz),
+        ruled("contact.semi_axis_lateral", contact.semi_axis_lateral, "mm", hertz),
+        ruled(
             "contact.kalker_c11",
             contact.kalker_c11,
             "-",
             "Kalker's table at this ratio of the axes, nu = 0.25",
         ),
-        _ruled("contact.reference_load", load, "N", "empty mass times gravity over all wheels"),
+        ruled("contact.reference_load", load, "N", "empty mass times gravity over all wheels"),
     ]
     return {entry.name: entry for entry in found}
 
@@ -297,45 +286,19 @@ def _torque(wanted: Wanted, mass: float, braked: float, found: dict[str, Entry],
         f"{(mass + wanted.rotating_mass) / 1e3:.4g} t with rotating mass, less {running / 1e3:.3g} kN of resistance, "
         f"times the wheel radius over {braked:g} braked axles"
     )
-    return _ruled(name, force * wanted.wheel_diameter / 2.0 / braked, "kN m", rule)
+    return ruled(name, force * wanted.wheel_diameter / 2.0 / braked, "kN m", rule)
 
 
 def _laden_height(wanted: Wanted, base: ParameterSet) -> Entry:
     empty = base.number("body_height")
     known = "laden.body_height" in base.entries
     height = base.number("laden.body_height") if known else empty
-    return _ruled("laden.body_height", height, "m", f"as of {wanted.kind}{', laden' * known}")
+    return ruled("laden.body_height", height, "m", f"as of {wanted.kind}{', laden' * known}")
 
 
-def _stated(wanted: Wanted, name: str, question: str, value: float, unit: str) -> Entry:
+def _said(wanted: Wanted, name: str, question: str, value: float, unit: str) -> Entry:
     """Return a number as the user said it, or as the kind has it."""
     if question in wanted.answered:
         at = "half of the diameter that was asked for" if question == "wheel_diameter" else "as asked"
-        return _entry(name, value, unit, ANSWER, at, "assumed")
-    return _entry(name, value, unit, f"vehicle {wanted.kind}", f"as of {wanted.kind}", "assumed")
-
-
-def _ruled(name: str, value: float, unit: str, rule: str) -> Entry:
-    return _entry(name, _rounded(value, unit), unit, RULE, rule, "derived")
-
-
-def _taken(entry: Entry, kind: str) -> Entry:
-    """Return a number of the shipped vehicle, which is an assumption about this one."""
-    return replace(
-        entry, source=f"vehicle {kind}", at=f"as of {kind}, there {entry.status}", status="assumed", note=""
-    )
-
-
-def _entry(name: str, value: float, unit: str, source: str, at: str, status: str) -> Entry:
-    spread = _SPREAD.get(name)
-    bounds = spread and (_rounded(spread[0] * value, unit), _rounded(spread[1] * value, unit))
-    return Entry(
-        name=name, value=value, unit=unit, bounds=bounds, source=source, at=at, status=status, note=""
-    )
-
-
-def _rounded(value: float, unit: str) -> float:
-    """Round to four digits in the unit, masses to kilograms."""
-    if unit == "kg":
-        return float(round(value))
-    return to_si(float(f"{value / factor(unit):.{_DIGITS}g}"), unit)
+        return stated(name, value, unit, ANSWER, at, "assumed")
+    return stated(name, value, unit, f"vehicle {wanted.kind}", f"as of {wanted.kind}", "assumed")

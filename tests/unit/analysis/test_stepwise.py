@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from wspd_design.analysis.stepwise import march, rolling_stop
-from wspd_design.analysis.stopping import FrictionBrake, full_adhesion_stop
+from wspd_design.analysis.stopping import FrictionBrake, demanded_adhesion, full_adhesion_stop, rim_force
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
@@ -119,3 +119,15 @@ def test_fading_pads_stop_later():
     vehicle = load_vehicle("er24pc-service")
     faded = replace(vehicle, **PARTS["pads"])
     assert full_adhesion_stop(faded, 40.0).distance > 1.03 * full_adhesion_stop(vehicle, 40.0).distance
+
+
+def test_the_brake_asks_for_most_where_its_force_is_largest():
+    vehicle = load_vehicle("er24pc-service")
+    usual = demanded_adhesion(vehicle)
+    faded = replace(vehicle, **PARTS["pads"])  # 1.2 times as much at standstill
+    assert rim_force(faded) == pytest.approx(1.2 * rim_force(vehicle), rel=0.005)
+    assert demanded_adhesion(faded) == pytest.approx(1.2 * usual, rel=0.005)
+    blended = replace(vehicle, **PARTS["electrodynamic brake"])
+    assert demanded_adhesion(blended) == pytest.approx(usual, rel=1e-6)  # friction supplies the rest, no more
+    strong = replace(blended, dynamic=replace(blended.dynamic, torque=30e3, power=1e6))
+    assert demanded_adhesion(strong) == pytest.approx(2.0 * usual, rel=1e-3)

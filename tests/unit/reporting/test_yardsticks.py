@@ -8,6 +8,7 @@ import pytest
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
 from wspd_design.certificates.records import Point, Status
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import DISTANCE, STOP_BOUND
+from wspd_design.parameters.loading import load_rail
 from wspd_design.reporting.numbering import parts
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.limits import limits
@@ -16,7 +17,7 @@ from wspd_design.reporting.sections.summary import summary
 from wspd_design.reporting.text import plain
 from wspd_design.reporting.yardsticks import proved_bound
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
-from wspd_design.simulation.records import Ending, Sensing
+from wspd_design.simulation.records import Ending, Patch, Sensing
 
 
 def proof(status=Status.PROVED):
@@ -86,3 +87,8 @@ def test_limits_name_the_disturbances_of_the_stops():
     (told,) = (item for item in disturbed if "disturbed" in item)
     assert "grade 5 permille, speed noise 0.05 m/s rms, dead time 40 ms" in told
     assert "the checks know nothing of it" in told
+    patched = said(patches=(Patch(start=50.0, rail=load_rail("very-low")),))
+    assert not any("in one condition" in item for item in patched)
+    (told,) = (item for item in patched if "checks speak about one rail" in item)
+    assert "very-low from 50 m" in told
+    assert not any("checks speak about one rail" in item for item in calm)

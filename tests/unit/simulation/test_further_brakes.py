@@ -52,10 +52,9 @@ def with_parts():
     return made
 
 
-@pytest.mark.parametrize("plant", ["planar", "quarter"])
 @pytest.mark.parametrize("rail", ["polach-dry", "low-adhesion"])
 @pytest.mark.parametrize("name", ["none", "trenitalia"])
-@pytest.mark.parametrize("parts", PARTS)
+@pytest.mark.parametrize(("parts", "plant"), [*((parts, "planar") for parts in PARTS), ("all", "quarter")])
 def test_residuals(with_parts, make_controller, parts, name, rail, plant):
     vehicle, scenario = with_parts(parts), Scenario(rail=load_rail(rail), initial_speed=30.0)
     run = simulate(vehicle, make_controller(name, rail), scenario, plant=plant)
@@ -157,6 +156,8 @@ def test_every_valve_lets_the_cylinder_down_to_what_is_asked(with_parts, make_co
     assert run.torque[late, 0] == pytest.approx(vehicle.brake.max_torque, rel=0.02)
     assert abs(momentum_residual(run, vehicle)) < 1e-12
     assert abs(energy_residual(run, vehicle)) < 1e-6
+    if kind != "ramp and orifice":
+        return
     plant = Planar(vehicle)
     given = replace(loop_input([(plant, replace(scenario, rail=LOW))], law), trace_rows=20_000)
     compiled = load_closed_loop(plant, law).run(given, sample_rows=sample_rows(law))

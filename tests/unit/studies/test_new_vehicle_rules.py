@@ -23,6 +23,8 @@ CAR = Wanted(
     rotating_mass=4e3,
     speed=100 / 3.6,
     deceleration=1.0,
+    build_up="main-pipe",
+    build_up_delay=0.0,
     build_up_time=1.2,
     fill_time=0.3,
     vent_time=0.1,
@@ -57,6 +59,19 @@ def test_bounds_hold_their_numbers_and_say_what_is_exact():
     exact = {name for name, entry in entries.items() if entry.bounds is None}
     assert {"wheelsets", "bogie_spacing", "wheelbase", "contact.reference_load"} <= exact
     assert entries["wheel_radius"].bounds == pytest.approx((0.3885, 0.42))
+
+
+def test_a_brake_by_wire_and_one_by_the_main_pipe():
+    """Only the numbers of its own build-up stand in a file, whatever the kind has."""
+    wired = replace(CAR, build_up="electro-pneumatic", build_up_delay=0.3, build_up_time=0.9)
+    for wanted, kind in ((CAR, "metro"), (CAR, "coach"), (wired, "metro"), (wired, "coach")):
+        names = {entry.name for entry in derived_entries(replace(wanted, kind=kind))}
+        by_wire = {"brake.build_up", "brake.build_up_delay", "brake.build_up_ramp"}
+        assert names & (by_wire | {"brake.supply_rate"}) == (
+            by_wire if wanted is wired else {"brake.supply_rate"}
+        )
+    brake = derived_vehicle("car", wired).brake
+    assert (brake.build_up, brake.build_up_delay, brake.build_up_ramp) == ("electro-pneumatic", 0.3, 0.9)
 
 
 def test_a_kind_whose_axles_do_not_fit_is_refused():

@@ -47,10 +47,8 @@ def start_of_stop(problem: Problem) -> Place:
 
 def plants(vehicle: Vehicle) -> tuple[str, ...]:
     """Return the plants that know a vehicle: axles that are not alike have no quarter, one axle moves no load."""
-    alike = len(set(vehicle.brake_shares)) == 1
-    return tuple(
-        name for name, known in ((Planar.name, gear_of(vehicle).supports > 1), (Quarter.name, alike)) if known
-    )
+    known = {Planar.name: gear_of(vehicle).supports > 1, Quarter.name: vehicle.brakes_alike}
+    return tuple(name for name, holds in known.items() if holds)
 
 
 def residual_names(vehicle: Vehicle) -> tuple[str, ...]:

@@ -13,12 +13,13 @@ from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.cli.output import check_output, write_text
 from wspd_design.cli.wizard.draft import ENDING
 from wspd_design.cli.wizard.session import answer_option, answered, target_of
-from wspd_design.cli.wizard.vehicle_steps import NONE, vehicle_steps, wanted_vehicle
+from wspd_design.cli.wizard.vehicle_answers import NONE, wanted_vehicle
+from wspd_design.cli.wizard.vehicle_steps import vehicle_steps
 from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Entry
 from wspd_design.parameters.units import format_quantity
-from wspd_design.studies.new_vehicle import Wanted, derived_entries, derived_vehicle
+from wspd_design.studies.new_vehicle import ELECTRIC, PIPE, Wanted, derived_entries, derived_vehicle
 
 VEHICLE_FILE = "vehicle.toml"
 _COMMENTS = (
@@ -66,8 +67,15 @@ def vehicle(
         str | None,
         answer_option("--deceleration", "DECEL", "Mean of the fully developed brake, after EN 14531."),
     ] = None,
+    build_up: Annotated[
+        str | None, answer_option("--build-up", "WORD", f"Build-up of the brake: {PIPE} or {ELECTRIC}.")
+    ] = None,
+    build_up_delay: Annotated[
+        str | None, answer_option("--build-up-delay", "TIME", f"Dead time of an {ELECTRIC} demand.")
+    ] = None,
     build_up_time: Annotated[
-        str | None, answer_option("--build-up-time", "TIME", "Until the demand reaches 95 % of its pressure.")
+        str | None,
+        answer_option("--build-up-time", "TIME", f"Until 95 % of the pressure; {ELECTRIC}, the ramp."),
     ] = None,
     fill_time: Annotated[str | None, answer_option("--fill-time", "TIME", "T_F of the valve.")] = None,
     vent_time: Annotated[str | None, answer_option("--vent-time", "TIME", "T_V of the valve.")] = None,
@@ -91,6 +99,8 @@ def vehicle(
         "rotating_mass": rotating_mass,
         "speed": speed,
         "deceleration": deceleration,
+        "build_up": build_up,
+        "build_up_delay": build_up_delay,
         "build_up_time": build_up_time,
         "fill_time": fill_time,
         "vent_time": vent_time,

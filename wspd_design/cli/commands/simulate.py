@@ -151,8 +151,13 @@ def traces(run: Run) -> "NDArray[Any]":
         ("slip", run.slip),
         ("torque_Nm", run.torque),
         ("wheel_load_N", run.wheel_load),
+        ("dynamic_torque_Nm", run.dynamic_torque),
+        ("pad_temperature_K", run.pad_temperature),
     ):
-        columns += [(f"{name}_{k + 1}", column) for k, column in enumerate(trace.T)]
+        if trace is not None:
+            columns += [(f"{name}_{k + 1}", column) for k, column in enumerate(trace.T)]
+    if run.track_brake_force is not None:
+        columns.append(("track_brake_force_N", run.track_brake_force))
     table = np.zeros(len(run.time), dtype=[(name, "f8") for name, _ in columns])
     for name, column in columns:
         table[name] = column

@@ -1,28 +1,16 @@
 """The questions that lead to a vehicle file, each with the range that railways have."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import replace
 
 from wspd_design.analysis.stopping import demanded_adhesion
 from wspd_design.cli.wizard.steps import AGAIN, SAVE, Answers, Option, Step
-from wspd_design.parameters.entry import number_of
+from wspd_design.cli.wizard.vehicle_answers import KIND, NO, NONE, READERS, YES, wanted_vehicle
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import gear_of
 from wspd_design.parameters.loading import available, load_entries, load_vehicle
-from wspd_design.parameters.schema import Quantity, schema_of
-from wspd_design.parameters.units import Dimension, format_quantity, split_quantity
-from wspd_design.studies.new_vehicle import Wanted, derived_vehicle, wanted_like
-
-KIND = "coach"
-NONE = "none"
-YES, NO = "yes", "no"
-_SCHEMA = schema_of("vehicle", "")
-_LENGTH = Quantity(dimension="length", low=0.0, low_is_allowed=False, plausible=(0.2, 3.0))
-_SPEED = Quantity(dimension="speed", low=0.0, low_is_allowed=False, plausible=(1.0, 150.0))
-_DECELERATION = Quantity(dimension="acceleration", low=0.0, low_is_allowed=False, plausible=(0.1, 5.0))
-_ROTATING = Quantity(dimension="mass", low=0.0, low_is_allowed=False, plausible=(10.0, 1e5))
-
-Reader = Callable[[str, Answers], float | int | bool]
+from wspd_design.parameters.units import format_quantity
+from wspd_design.studies.new_vehicle import ELECTRIC, PIPE, Wanted, derived_vehicle, wanted_like
 
 
 def vehicle_steps() -> tuple[Step, ...]:
@@ -128,11 +116,34 @@ def vehicle_steps() -> tuple[Step, ...]:
             suggest=_suggested(lambda like: f"{like.deceleration:.3g} m/s^2"),
             check=_echo("deceleration", _torque),
         ),
-        _line(
-            "build_up_time",
-            "Build-up of the brake",
-            "Until the demand reaches 95 % of its pressure. Position P has 3 to 5 s, an electro-pneumatic brake 1 s.",
-            lambda like: f"{like.build_up_time:.4g} s",
+        Step(
+            key="build_up",
+            title="Build-up of the brake",
+            explanation="How the demand for pressure comes to the vehicle.",
+            default=PIPE,
+            options=(
+                Option(value=PIPE, text="by the main pipe, as an exponential"),
+                Option(value=ELECTRIC, text="by wire: a dead time, then an even ramp"),
+            ),
+            suggest=_suggested(lambda like: like.build_up),
+        ),
+        Step(
+            key="build_up_delay",
+            title="Dead time of the demand",
+            explanation="Until the demand begins to rise.",
+            default="0.2 s",
+            suggest=_suggested(lambda like: f"{like.build_up_delay or 0.2:.4g} s"),
+            check=_echo("build_up_delay", lambda wanted: f"{wanted.build_up_delay:.4g} s"),
+            applies=lambda answers: answers.get("build_up") == ELECTRIC,
+        ),
+        Step(
+            key="build_up_time",
+            title="Time of the build-up",
+            explanation="By the main pipe, until 95 % of the pressure: position P has 3 to 5 s. By wire, the time of "
+            "the ramp: about 1 s.",
+            default="4 s",
+            suggest=_time_of_build_up,
+            check=_echo("build_up_time", lambda wanted: f"{wanted.build_up_time:.4g} s"),
         ),
         _line(
             "fill_time",
@@ -159,83 +170,6 @@ def vehicle_steps() -> tuple[Step, ...]:
     )
 
 
-def wanted_vehicle(answers: Answers, said: Collection[str] = ()) -> Wanted:
-    """Return what the answers ask for; what was not asked yet is as of the kind.
-
-    Parameters
-    ----------
-    answers : mapping
-        Texts by the keys of the questions.
-    said : collection of str
-        Questions that the user answered; the other answers are suggestions of the program.
-
-    Raises
-    ------
-    UserError
-        If an answer is not acceptable.
-    """
-    made = wanted_like(answers.get("kind", KIND))
-    for key, read in _READERS.items():
-        if key in answers:
-            field = _FIELDS.get(key, key)
-            answered = {field} if key in said else set()
-            made = replace(made, **{field: read(answers[key], answers)}, answered=made.answered | answered)  # type: ignore[arg-type]
-    if made.laden_mass and made.laden_mass <= made.mass:
-        if "laden_mass" in answers:
-            raise UserError(
-                f'laden_mass = "{answers["laden_mass"]}" must be above the empty mass of {made.mass:g} kg; write '
-                f'"{NONE}" where the load does not count'
-            )
-        made = replace(made, laden_mass=0.0)
-    return made
-
-
-def _read(key: str, quantity: Quantity) -> Reader:
-    def read(text: str, _answers: Answers) -> float:
-        number, unit = split_quantity(text, quantity.dimension, what=key)
-        return number_of(number, quantity, unit, key)
-
-    return read
-
-
-def _laden(text: str, answers: Answers) -> float:
-    return 0.0 if text == NONE else float(_read("laden_mass", _SCHEMA["mass"])(text, answers))
-
-
-def _axles(text: str, _answers: Answers) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= 32:
-        raise UserError(f'axles = "{text}" must be a whole number from 1 to 32')
-    return int(text)
-
-
-def _rotating(text: str, answers: Answers) -> float:
-    share: Dimension = "ratio"
-    if text.rstrip().endswith("%"):
-        number, unit = split_quantity(text, share, what="rotating_mass")
-        limits = Quantity(dimension=share, low=0.0, low_is_allowed=False, plausible=(0.005, 0.5))
-        mass = wanted_vehicle({key: answers[key] for key in ("kind", "mass") if key in answers}).mass
-        return number_of(number, limits, unit, "rotating_mass") * mass
-    return float(_read("rotating_mass", _ROTATING)(text, answers))
-
-
-_FIELDS = {"axles": "wheelsets"}
-_READERS: dict[str, Reader] = {
-    "mass": _read("mass", _SCHEMA["mass"]),
-    "laden_mass": _laden,
-    "weighs": lambda text, _answers: text == YES,
-    "axles": _axles,
-    "bogie_spacing": _read("bogie_spacing", _SCHEMA["bogie_spacing"]),
-    "wheelbase": _read("wheelbase", _SCHEMA["wheelbase"]),
-    "wheel_diameter": _read("wheel_diameter", _LENGTH),
-    "rotating_mass": _rotating,
-    "speed": _read("speed", _SPEED),
-    "deceleration": _read("deceleration", _DECELERATION),
-    "build_up_time": _read("build_up_time", Quantity(dimension="time", low=0.0, plausible=(0.05, 60.0))),
-    "fill_time": _read("fill_time", _SCHEMA["brake.fill_time"]),
-    "vent_time": _read("vent_time", _SCHEMA["brake.vent_time"]),
-}
-
-
 def _suggested(text: Callable[[Wanted], str]) -> Callable[[Answers], str]:
     """Suggest what the kind has, in proportion to the mass where that is another one."""
 
@@ -249,11 +183,18 @@ def _suggested(text: Callable[[Wanted], str]) -> Callable[[Answers], str]:
     return suggest
 
 
+def _time_of_build_up(answers: Answers) -> str:
+    like = wanted_like(answers.get("kind", KIND))
+    if answers.get("build_up", like.build_up) == like.build_up:
+        return f"{like.build_up_time:.4g} s"
+    return "1 s" if like.build_up == PIPE else "4 s"
+
+
 def _echo(key: str, say: Callable[[Wanted], str]) -> Callable[[str, Answers], str]:
     """Say what the program understands of an answer; later answers give way to it."""
 
     def check(text: str, answers: Answers) -> str:
-        earlier = list(_READERS)[: list(_READERS).index(key)]
+        earlier = list(READERS)[: list(READERS).index(key)]
         kept = {each: answers[each] for each in ("kind", *earlier) if each in answers}
         return say(wanted_vehicle(kept | {key: text}))
 
@@ -281,7 +222,6 @@ _UNITS = {
     "mass": "kg",
     "bogie_spacing": "m",
     "speed": "m/s",
-    "build_up_time": "s",
     "fill_time": "s",
     "vent_time": "s",
 }

@@ -22,9 +22,15 @@ def brake(dossier: Dossier) -> tuple[Block, ...]:
 
 def brake_sentence(sheet: BrakeSheet) -> str:
     """Say what force the brake has, and what turning parts add to the mass."""
+    said = (
+        f"Fully applied, the friction brake of {sheet.vehicle} has {numbers.significant(sheet.rim_force / KILO, 4)} kN "
+        f"at the rims; turning parts add {numbers.significant(sheet.rotating_mass / KILO, 3)} t to the mass."
+    )
+    if not sheet.by_steps:
+        return said
     return (
-        f"Fully applied, the brake of {sheet.vehicle} has {numbers.significant(sheet.rim_force / KILO, 4)} kN at the "
-        f"rims; turning parts add {numbers.significant(sheet.rotating_mass / KILO, 3)} t to the mass."
+        f"{said} Its forces change during the stop (pads that fade, an electrodynamic or a magnetic brake): the stops "
+        "below are worked out by steps, and their mean values are those that give the same distance."
     )
 
 

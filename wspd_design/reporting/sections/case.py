@@ -9,9 +9,10 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
 from wspd_design.reporting.brakes import brake_text
 from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.further_brakes import further_brakes
 from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
-from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.description import disturbances_of, every_rail_of
 from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
 
@@ -39,6 +40,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Rotating inertia", f"{_value(vehicle, 'wheelset_inertia')} per wheelset"),
         ("Wheel radius", _value(vehicle, "wheel_radius")),
         ("Brake", brake_text(vehicle, shown)),
+        *further_brakes(vehicle),
         ("Rail", friction),
         (
             "Controller",
@@ -48,7 +50,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),
         ("Sample time", format_quantity(specification.sample_time, "ms")),
         ("Plant of the stops", _plant(dossier.trials[0].run)),
-        ("Rails of the stops", rails_of(dossier.scenario)),
+        ("Rails of the stops", every_rail_of(dossier.scenario)),
         ("Disturbances of the stops", disturbances_of(dossier.scenario) or "none"),
     )
     return (

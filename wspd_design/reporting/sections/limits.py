@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
 from wspd_design.reporting.text import CodeSpan, Text, escape, rich
@@ -11,8 +12,7 @@ from wspd_design.simulation.records import Run, Sensing
 from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (
-    "Friction of the pads is constant; heat, wear and flats are not modeled.",
-    "Stops and checks sit on reconstructed data: the agreement with a real vehicle is unknown.",
+    "Stops and checks sit on numbers whose status the sources tell: the agreement with a real vehicle is unknown.",
     "EN 15595 and other standards are not checked: no statement about conformity is made.",
     "Sampled checks prove nothing between their samples; see the resolution of each.",
 )
@@ -31,7 +31,7 @@ def limits(dossier: Dossier) -> tuple[Block, ...]:
     items: list[Text] = [OF_PLANT[run.plant], *_digits(dossier.trials), *_of_scenario(dossier)]
     return (
         Heading(text="What this report does not show", anchor="limits"),
-        Bullets(items=(*items, *EVERYWHERE)),
+        Bullets(items=(*items, *_of_brakes(dossier.vehicle), *EVERYWHERE)),
     )
 
 
@@ -66,6 +66,25 @@ def _of_scenario(dossier: Dossier) -> list[str]:
             else []
         ),
     ]
+
+
+def _of_brakes(vehicle: ParameterSet) -> list[Text]:
+    """Say what of pads, electrodynamic brake and track brake is left out."""
+    has = {name.partition(".")[0] for name in vehicle.entries}
+    fades = {"pads.speeds", "pads.temperatures"} & set(vehicle.entries)
+    said: list[Text] = [
+        "Wear of the pads, and flats, are not modeled."
+        if fades
+        else "Friction of the pads is constant; heat, wear and flats are not modeled."
+    ]
+    if "dynamic" in has:
+        said.append(
+            "The electrodynamic brake knows the slip exactly, and where it dropped out it stays out to the end of "
+            "the stop: an assumption."
+        )
+    if "track_brake" in has:
+        said.append("The magnets of the track brake do not clean the rail for the wheels behind them.")
+    return said
 
 
 def _of_valves(dossier: Dossier) -> str:
