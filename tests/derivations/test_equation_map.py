@@ -181,8 +181,13 @@ def test_files_functions_and_tests_exist():
         assert f"def {name}(" in (generate.ROOT / path).read_text(), e.test
 
 
+BESIDE_THE_PAPER = {"valve_flow"}  # ISO 6358 and electro-pneumatic build-up, of which the paper prints nothing
+
+
 def test_every_generated_function_is_in_the_map():
-    generated = {f"{name}.{f.name}" for name, module in generate.MODULES.items() for f in module.FUNCTIONS}
+    of_the_paper = {name: module for name, module in generate.MODULES.items() if name not in BESIDE_THE_PAPER}
+    assert len(of_the_paper) == len(generate.MODULES) - len(BESIDE_THE_PAPER)
+    generated = {f"{name}.{f.name}" for name, module in of_the_paper.items() for f in module.FUNCTIONS}
     assert {name for e in EQUATIONS for name in e.functions} == generated
 
 
