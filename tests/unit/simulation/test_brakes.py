@@ -5,17 +5,19 @@ from dataclasses import dataclass, replace
 
 import pytest
 
+from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.codegen import kernels
 from wspd_design.codegen.memory import Memory
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.controllers.protocol import Command
 from wspd_design.model import brake as brake_model
-from wspd_design.model.brake import Valve, braking_torque, pressure_after
+from wspd_design.model.brake import Valve, braking_torque, build_up_delay, pressure_after
 from wspd_design.model.number import where
 from wspd_design.model.valve_flow import ATMOSPHERE
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.campaign_rows import columns, make_plan
+from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Scenario, Sensing
 from wspd_design.simulation.self_check import simulate_checked, slip_difference
@@ -184,6 +186,27 @@ def test_a_stroke_takes_its_normal_litres(braked):
     assert judged.air_used == pytest.approx(4.0 * 3.750, rel=1e-3)  # 3.75 a litre and stroke of 3.8 bar
     assert judged.air_used == pytest.approx(4.0 * 3.8 * BAR / ATMOSPHERE, rel=1e-6)
     assert math.isnan(judged.lowest_reservoir)
+
+
+@pytest.mark.parametrize(
+    ("changes", "least"), [(RAMP, 0.9), (ORIFICE, 1.0 / 0.75), (RAMP | ORIFICE | {"fill_time": 4.0}, 1.4)]
+)
+def test_stops_without_sliding_are_those_of_mean_values(braked, changes, least):
+    vehicle, law = braked(**changes), Unprotected(name="none", sample_time=0.1)
+    found = simulate(vehicle, law, dry(30.0)).totals.distance
+    by_rule = full_adhesion_stop(vehicle, 30.0)
+    assert found == pytest.approx(by_rule.distance, rel=5e-3)  # what mean values leave out
+    # Build-up and filling together are later than the demand alone: the slow orifice by half a second.
+    assert least <= build_up_delay(vehicle.brake) < least + 0.7
+
+
+def test_an_ideal_brake_that_is_there_at_once_knows_no_valves(er24pc):
+    stop = Scenario(rail=load_rail("polach-wet"), initial_speed=10.0)
+    other = replace(er24pc, brake=replace(er24pc.brake, **RAMP | ORIFICE | AIR, dead_time=0.05))
+    plain, same = (ideal_stop(each, stop, instantaneous=True) for each in (er24pc, other))
+    assert same.distance == pytest.approx(plain.distance, rel=1e-5)  # other ends of steps
+    slower = ideal_stop(other, stop)
+    assert slower.distance > 1.2 * plain.distance
 
 
 def test_without_volumes_nothing_is_said_about_air(braked):
