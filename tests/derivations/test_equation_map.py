@@ -181,7 +181,9 @@ def test_files_functions_and_tests_exist():
         assert f"def {name}(" in (generate.ROOT / path).read_text(), e.test
 
 
-BESIDE_THE_PAPER = {"valve_flow"}  # ISO 6358 and electro-pneumatic build-up, of which the paper prints nothing
+BESIDE_THE_PAPER = {
+    "valve_flow"
+}  # ISO 6358 and electro-pneumatic build-up, of which the paper prints nothing
 
 
 def test_every_generated_function_is_in_the_map():
