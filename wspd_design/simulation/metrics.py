@@ -63,18 +63,17 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     -------
     Metrics
         A run that did not come to a standstill gives NaN for lag and plateau; so does one that did not start
-        rolling with empty cylinders, whose ideal stop is not known either.
+        rolling with empty cylinders, or that came to another rail, whose ideal stop is not known either.
     """
     totals, time = run.totals, float(run.time[-1])
     stopped = run.ending is Ending.STOPPED
-    usual = scenario.start == Start()
     judged = totals.judged_time
     mean = totals.slip / judged if judged else math.nan
     square = (
         totals.slip_squared / judged - 2.0 * slip_reference * mean + slip_reference**2 if judged else math.nan
     )
     moved = totals.distance > 0.0  # a start below the stop speed is at rest at once
-    known = usual and not scenario.patches
+    known = scenario.start == Start() and not scenario.patches
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
     ideal_distance = math.nan if ideal is None else ideal.distance
     commands = [(sample.fill, sample.vent) for samples in run.axle_samples for sample in samples]
@@ -82,9 +81,9 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         distance=totals.distance,
         stopping_time=time,
         torque_integral=totals.torque,
-        lag=2.0 * totals.distance / run.initial_speed - time if stopped and usual and moved else math.nan,
+        lag=2.0 * totals.distance / run.initial_speed - time if stopped and known and moved else math.nan,
         plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed))
-        if stopped and usual and moved
+        if stopped and known and moved
         else math.nan,
         slip_mean=mean,
         slip_max=run.slip_max,

@@ -1,5 +1,6 @@
 """Figures: labeled with units, reproducible, and thinned without losing what matters."""
 
+import math
 import re
 from dataclasses import replace
 from itertools import combinations
@@ -15,7 +16,7 @@ from tests.unit.reporting.test_maps import SHOWN
 from wspd_design.certificates.records import Role, Series, Status
 from wspd_design.reporting.blocks import Figure
 from wspd_design.reporting.figure_style import INK, figure_style, new_figure
-from wspd_design.reporting.figures.comparison import distance_bars, slip_of_all
+from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
 from wspd_design.reporting.figures.further_brakes import further_brakes, panels
 from wspd_design.reporting.figures.phase import phase_planes
@@ -101,6 +102,17 @@ def test_distances_show_both_parts_and_the_paper():
     mark, ideal = axes.get_lines()
     assert set(mark.get_xdata()) == {184.63}
     assert set(ideal.get_xdata()) == {174.25}
+
+
+def test_distances_without_parts_are_whole_bars():
+    unknown = [math.nan] * len(DOSSIER.trials)
+    with figure_style():
+        axes = distance_bars(new_figure(height=3.0), DOSSIER.trials, unknown, {}).axes[0]
+    assert [patch.get_width() for patch in axes.patches if patch.get_width()] == pytest.approx(
+        [trial.metrics.distance for trial in DOSSIER.trials]
+    )
+    assert axes.get_legend_handles_labels()[1] == ["ideal stop"]
+    assert "nan" not in distances_alt(DOSSIER.trials, unknown)
 
 
 @pytest.mark.parametrize("count", [2, 8])

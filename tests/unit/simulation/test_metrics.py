@@ -1,7 +1,7 @@
 """Figures of a stop, on runs whose answers are known by hand."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from wspd_design.model.number import where
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.comparison import compare
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Sensing, Totals
+from wspd_design.simulation.records import Ending, Patch, Run, Sample, Scenario, Sensing, Totals
 from wspd_design.simulation.stop import simulate
 
 SCENARIO = Scenario(rail=load_rail("polach-wet"), initial_speed=30.0)
@@ -165,10 +165,12 @@ def test_pulses_that_do_not_open_a_valve_are_no_switches(er24pc, shortest, switc
     assert metrics(run, er24pc, stop, slip_reference=0.14).valve_switches == switches
 
 
-def test_a_run_without_standstill_has_no_lag(er24pc):
-    judged = metrics(made_up(ending=Ending.TIME_LIMIT), er24pc, SCENARIO, slip_reference=0.14)
-    assert math.isnan(judged.lag)
-    assert math.isnan(judged.plateau)
+def test_a_run_without_standstill_or_on_changing_rails_has_no_lag(er24pc):
+    other = replace(SCENARIO, patches=(Patch(start=50.0, rail=load_rail("low-adhesion")),))
+    for run, scenario in ((made_up(ending=Ending.TIME_LIMIT), SCENARIO), (made_up(), other)):
+        judged = metrics(run, er24pc, scenario, slip_reference=0.14)
+        assert math.isnan(judged.lag)
+        assert math.isnan(judged.plateau)
 
 
 @pytest.mark.parametrize("rail", ["table10-dry", "polach-wet"])

@@ -40,7 +40,7 @@ def distance_bars(
     trials : sequence of Trial
         Stops; one without standstill has a bar without parts.
     lag_distances : sequence of float
-        Part of each distance that the build-up costs [m].
+        Part of each distance that the build-up costs [m]; NaN where it cannot be told apart.
     published : mapping of str to PublishedStop
         The paper's stops by controller, marked by a line.
     """
@@ -50,15 +50,18 @@ def distance_bars(
         theirs = published.get(trial.run.controller)
         end = distance if theirs is None else max(distance, theirs.distance_m)
         if trial.run.ending is Ending.STOPPED:
-            axes.barh(row, lag, color=SERIES[1], height=0.6, label=None if row else "lag")
+            parted = not math.isnan(lag)
+            built_up = lag if parted else 0.0
+            names = ("lag", "plateau") if parted and not row else (None, None)
+            axes.barh(row, built_up, color=SERIES[1], height=0.6, label=names[0])
             axes.barh(
                 row,
-                distance - lag,
-                left=lag,
+                distance - built_up,
+                left=built_up,
                 color=SERIES[0],
                 height=0.6,
                 alpha=0.45,
-                label=None if row else "plateau",
+                label=names[1],
             )
             said = f"{numbers.uncertain(distance, trial.check.spread, 1)} m"
             note(axes, said, end, row, xytext=(4, 0), va="center")
@@ -74,7 +77,8 @@ def distance_bars(
         axes.axvline(ideal, color=MUTED, linestyle="--", linewidth=1.0, label="ideal stop")
     axes.set_yticks(range(len(trials)), [trial.run.controller for trial in trials])
     axes.invert_yaxis()
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.0)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.0)
     axes.grid(visible=False, axis="y")
     axes.set(xlabel="distance [m]", xlim=(0.0, 1.15 * max(trial.metrics.distance for trial in trials)))
     return figure
@@ -114,9 +118,14 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
 
 def distances_alt(trials: Sequence[Trial], lag_distances: Sequence[float]) -> str:
     """Say in words what the bars show."""
+
+    def parts(trial: Trial, lag: float) -> str:
+        if trial.run.ending is not Ending.STOPPED:
+            return ", still moving"
+        return "" if math.isnan(lag) else f", {lag:.1f} m of it brake build-up"
+
     said = (
-        f"{trial.run.controller} {trial.metrics.distance:.1f} m"
-        + (f", {lag:.1f} m of it brake build-up" if trial.run.ending is Ending.STOPPED else ", still moving")
+        f"{trial.run.controller} {trial.metrics.distance:.1f} m{parts(trial, lag)}"
         for trial, lag in zip(trials, lag_distances, strict=True)
     )
     return f"Stopping distances: {'; '.join(said)}; ideal stop {ideal_distance(trials[0].metrics)}."

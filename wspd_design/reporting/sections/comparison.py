@@ -42,8 +42,7 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
         Heading(text="Comparison", anchor="comparison"),
         Figure(
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
-            caption="Stopping distances. Dark: initial speed times lag, what the brake build-up costs; "
-            f"light: the rest, at the plateau deceleration. Dashed: the ideal stop, "
+            caption=f"Stopping distances. {_parts(dossier)}Dashed: the ideal stop, "
             f"{ideal_distance(trials[0].metrics)}, a simulation of a brake that holds the best slip.{marked}",
             alt=distances_alt(trials, dossier.lag_distances),
             anchor="distances",
@@ -98,6 +97,16 @@ def _published(dossier: Dossier) -> dict[str, PublishedStop]:
     return table10.on(dossier.trials[0].run.rail) if same_start and plain else {}
 
 
+def _parts(dossier: Dossier) -> str:
+    """Say which part of a bar is which, if they have parts: not where the rail changes along the track."""
+    if dossier.scenario.patches:
+        return ""
+    return (
+        "Dark: initial speed times lag, what the brake build-up costs; light: the rest, at the plateau "
+        "deceleration. "
+    )
+
+
 def _ranking(dossier: Dossier) -> Text:
     """Say what separates the shortest from the longest stop, and what the ranking is worth."""
     stopped = [
@@ -119,6 +128,8 @@ def _ranking(dossier: Dossier) -> Text:
         "deceleration stays about the same; where it falls during the stop, as with wheels locked on "
         "falling friction, the lag comes out too small and the plateau too low. "
     )
+    if dossier.scenario.patches:
+        return "The rail changes along the track: no stop has parts of build-up and of constant deceleration."
     if len(stopped) < 2:
         return meaning + world
     (best, best_lag), (worst, worst_lag) = (
