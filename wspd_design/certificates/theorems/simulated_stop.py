@@ -12,6 +12,7 @@ from wspd_design.certificates.kernel.finding import Place
 from wspd_design.certificates.kernel.obligation import Inequality, Sampled, Special
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.certificates.setting.assumptions import ALL, OF_VALVES
 from wspd_design.certificates.theorems.authority import out_of_reach
 from wspd_design.certificates.theorems.evidence import supported
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothesis
@@ -250,7 +251,7 @@ def _tell_tracking(problem: Problem, findings: Findings) -> Certificate:
         )
         seen += "simulate says how far its steps can be trusted."
     return Certificate(
-        claim="In the simulated stop of the quarter model with nominal parameters, sampling, valves, lag and "
+        claim="In the simulated stop of the quarter model with nominal parameters, sampling, valves and "
         f"wheel lock, the slip error stays below 2 Phi/K_P = {bound:.3g} around the reference {reference:g} of the law "
         f"from {settled * KMH:.3g} km/h, half of the initial speed, down to {problem.speeds[0] * KMH:.3g} km/h on "
         f"{problem.rail.name}.",
@@ -284,4 +285,5 @@ TRACKING = Theorem(
     speaks_about=_with_layer,
     obligations=_tracking_obligations,
     tell=_tell_tracking,
+    assumes=ALL - OF_VALVES,  # the stop has the valves of the vehicle
 )
