@@ -110,6 +110,10 @@ OUTSIDE_CLAIMS: dict[tuple[Record, str], str] = {
     },
     ("brake", "axle_shares"): "claims about brakes speak about vehicles whose brakes are alike",
     **{
+        ("brake", field): "claims speak about a brake that is built up, or whose demand builds up as eq. (8)"
+        for field in ("build_up", "build_up_delay", "build_up_ramp")
+    },
+    **{
         ("laden", field): "the laden vehicle is a vehicle of its own"
         for field in ("mass", "body_height", "max_torque")
     },

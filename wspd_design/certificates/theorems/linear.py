@@ -247,6 +247,8 @@ def _within_the_brake(problem: Problem) -> str:
     if reason:
         return reason
     low, high = problem.speeds
+    if low <= 0.0:
+        return ""  # outside the model, which the obligations say
     speeds = [low * (high / low) ** (k / (SPEEDS - 1)) for k in range(SPEEDS)]
     torque, speed = max((float(holding_torque(problem, each)), each) for each in speeds)
     limit = problem.vehicle.brake.max_torque
