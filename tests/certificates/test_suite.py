@@ -15,19 +15,19 @@ from wspd_design.certificates.suite import CHECKS, NAMES, verify
 from wspd_design.parameters.errors import UserError
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def printed(make_problem, make_controller):
     """The adaptive law as printed, on dry rail."""
     return verify(make_problem(make_controller("afsmc")))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def sliding(make_problem, make_controller):
     """The sliding mode on wet rail."""
     return verify(make_problem(make_controller("smc", "polach-wet"), rail="polach-wet"))
 
 
-@pytest.fixture(scope="module", params=["printed", "sliding"])
+@pytest.fixture(scope="session", params=["printed", "sliding"])
 def certificates(request):
     return request.getfixturevalue(request.param)
 

@@ -21,7 +21,7 @@ from wspd_design.studies.dossier import dossier
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def made():
     vehicle, rail = load_vehicle("er24pc"), load_rail("table10-dry")
     return dossier(
@@ -34,7 +34,7 @@ def made():
     )
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def folder(made, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
@@ -43,12 +43,12 @@ def folder(made, tmp_path_factory):
     return folder
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def html(folder):
     return (folder / "report.html").read_text(encoding="utf-8")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def pdf(folder):
     return pypdf.PdfReader(io.BytesIO((folder / "report.pdf").read_bytes()))
 

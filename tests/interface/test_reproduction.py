@@ -12,7 +12,7 @@ from wspd_design.reporting.reproduction import write_reproduction
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("reproduction") / "paper"
     told = []
@@ -22,7 +22,7 @@ def written(tmp_path_factory):
     return paths, told
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def html(written):
     return written[0][0].read_text(encoding="utf-8")
 

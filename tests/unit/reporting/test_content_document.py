@@ -22,6 +22,8 @@ from wspd_design.reporting.text import Link, plain
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.paper.published import load_table10
 
+pytestmark = pytest.mark.usefixtures("blank_figures")
+
 DATE = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
 
 

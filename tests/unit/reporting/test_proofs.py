@@ -4,12 +4,16 @@ import json
 from dataclasses import replace
 from datetime import UTC, datetime
 
+import pytest
+
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
 from wspd_design.certificates.kernel.finding import Effort, Finding, Stated
 from wspd_design.certificates.records import Status
 from wspd_design.reporting.blocks import Code, Definitions, Table
 from wspd_design.reporting.report import report_document
 from wspd_design.reporting.sections.checks import checks
+
+pytestmark = pytest.mark.usefixtures("blank_figures")
 
 DATE = datetime(2026, 1, 2, tzinfo=UTC)
 PROOF = {"format": "wspd-proof/2", "statement": {"kind": "inequality", "name": "p"}, "tree": "a.."}

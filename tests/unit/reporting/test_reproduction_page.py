@@ -18,6 +18,8 @@ from wspd_design.reporting.text import plain
 from wspd_design.studies.paper.conclusions import conclusions
 from wspd_design.studies.paper.published import load_table10
 
+pytestmark = pytest.mark.usefixtures("blank_figures")
+
 DATE = datetime(2026, 1, 2, 3, 4, tzinfo=UTC)
 
 

@@ -19,6 +19,8 @@ from wspd_design.reporting.yardsticks import proved_bound
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.records import Ending, Patch, Sensing
 
+pytestmark = pytest.mark.usefixtures("blank_figures")
+
 
 def proof(status=Status.PROVED):
     return replace(
