@@ -1,11 +1,13 @@
 """Where output goes: tables on standard output, progress and errors on standard error."""
 
 import json
+import shlex
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from rich import box
@@ -39,6 +41,16 @@ def table(*headers: str, numeric: tuple[str, ...] = ()) -> Table:
 def spaced(shown: Table) -> Padding:
     """Set a table apart from the text around it."""
     return Padding(shown, (1, 0), expand=False)
+
+
+def print_written(path: Path, *commands: tuple[str, Sequence[object]]) -> None:
+    """Say where a file was written and what to do with it; a command is a purpose and its words after ``wspd``."""
+    out = console()
+    out.print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
+    width = max(len(purpose) for purpose, _ in commands) + 2
+    for purpose, words in commands:
+        spelled = shlex.join(["wspd", *map(str, words)])
+        out.print(f"{purpose + ':':<{width}}{spelled}", markup=False, soft_wrap=True)
 
 
 def print_json(value: dict[str, Any]) -> None:

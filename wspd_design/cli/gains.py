@@ -1,11 +1,10 @@
 """The table of a design's gains with their reasons, for the commands that make designs."""
 
-import shlex
 from pathlib import Path
 
 from rich.text import Text
 
-from wspd_design.cli.console import WIDE, console, spaced, table
+from wspd_design.cli.console import WIDE, console, print_written, spaced, table
 from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.records import Design, Gain, GainValue
 from wspd_design.parameters.records import Rail, Vehicle
@@ -31,15 +30,12 @@ def show_design(made: Design, path: Path, vehicle: Vehicle, rail: Rail) -> None:
         else:
             shown.add_row(name.append("\n= ", style="dim").append(value), why)
     out.print(spaced(shown))
-    out.print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
-    page = path.with_suffix(".html")
-    for purpose, command in (
+    print_written(
+        path,
         ("Prove it", ("verify", path)),
         ("Try it", ("simulate", path)),
-        ("Show it", ("report", path, "-o", page)),
-    ):
-        spelled = shlex.join(["wspd", *map(str, command)])
-        out.print(f"{purpose + ':':<10}{spelled}", markup=False, soft_wrap=True)
+        ("Show it", ("report", path, "-o", path.with_suffix(".html"))),
+    )
 
 
 def _quantity(gain: Gain) -> str:

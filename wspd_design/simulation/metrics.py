@@ -76,14 +76,15 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     known = scenario.start == Start() and not scenario.patches
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
     ideal_distance = math.nan if ideal is None else ideal.distance
+    parted = stopped and known and moved
     commands = [(sample.fill, sample.vent) for samples in run.axle_samples for sample in samples]
     return Metrics(
         distance=totals.distance,
         stopping_time=time,
         torque_integral=totals.torque,
-        lag=2.0 * totals.distance / run.initial_speed - time if stopped and known and moved else math.nan,
+        lag=2.0 * totals.distance / run.initial_speed - time if parted else math.nan,
         plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed))
-        if stopped and known and moved
+        if parted
         else math.nan,
         slip_mean=mean,
         slip_max=run.slip_max,

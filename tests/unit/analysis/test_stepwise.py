@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from tests.unit.analysis.test_stopping import DISC as EXAMPLE_DISC
 from wspd_design.analysis.stepwise import march, rolling_stop
-from wspd_design.analysis.stopping import FrictionBrake, demanded_adhesion, full_adhesion_stop, rim_force
+from wspd_design.analysis.stopping import demanded_adhesion, full_adhesion_stop, rim_force
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
@@ -13,21 +14,7 @@ from wspd_design.parameters.records import DynamicBrake, Pads, TrackBrake
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
-DISC = FrictionBrake(
-    wheelsets=4,
-    pressure=3.0e5,
-    cylinder_area=324e-4,
-    cylinder_efficiency=0.98,
-    spring_force=500.0,
-    rigging_ratio=5.0,
-    rigging_efficiency=0.95,
-    rigging_force=0.0,
-    pad_friction=0.35,
-    friction_radius=0.27,
-    wheel_radius=0.445,
-    dead_time=0.3,
-    build_up_time=1.0,
-)
+DISC = replace(EXAMPLE_DISC, build_up_time=1.0)
 
 
 def unit(disc_force, step=0.01):

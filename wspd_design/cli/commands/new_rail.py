@@ -1,20 +1,18 @@
 """``wspd new rail``: a rail file from the peak of its adhesion, or fitted to a measured creep curve."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.console import console, spaced, table
-from wspd_design.cli.output import check_output, write_text
+from wspd_design.cli.console import console, print_written, spaced, table
+from wspd_design.cli.output import write_text
 from wspd_design.cli.wizard.draft import ENDING
 from wspd_design.cli.wizard.rail_steps import NONE, rail_steps, wanted_rail
-from wspd_design.cli.wizard.session import answer_option, answered, target_of
+from wspd_design.cli.wizard.session import answer_option, answered_for_file
 from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.contradictions import notice_of_rail
-from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.units import format_quantity
 
 RAIL_FILE = "rail.toml"
@@ -67,18 +65,16 @@ def rail(
         "slip_reduction": slip_reduction,
         "peak": peak,
     }
-    target = target_of(output, resume, RAIL_FILE, remedy="give the name of the rail file, too")
-    if target.suffix != ".toml":
-        raise UserError(f"rail file {target} must end in .toml")
-    check_output(target, force=force)
-    answers, _ = answered(
+    target, answers, _ = answered_for_file(
+        "rail",
         rail_steps(),
-        {key: answer for key, answer in given.items() if answer is not None},
-        target=target,
+        given,
+        output=output,
+        default=RAIL_FILE,
         resume=resume,
         yes=yes,
-        command="wspd new rail",
-        remedy="give all answers as options, or add --yes and the suggestions answer what is left",
+        force=force,
+        by_default="the suggestions answer",
     )
     made, entries, fit = wanted_rail(target.stem, answers)
     kind = f"like {answers['like']}" if fit is None else f"fit to {Path(answers['curve']).name}"
@@ -105,10 +101,8 @@ def rail(
     notice = notice_of_rail(made)
     if notice:
         out.print(f"{notice}.", markup=False)
-    out.print(f"Written: {target}", style="bold", markup=False, soft_wrap=True)
-    file, train = shlex.quote(str(target)), shlex.quote(answers["vehicle"])
-    for purpose, command in (
-        ("See it", f"wspd sources {file}"),
-        ("Stop on it", f"wspd simulate trenitalia --vehicle {train} --rail {file}"),
-    ):
-        out.print(f"{purpose + ':':<12}{command}", markup=False, soft_wrap=True)
+    print_written(
+        target,
+        ("See it", ("sources", target)),
+        ("Stop on it", ("simulate", "trenitalia", "--vehicle", answers["vehicle"], "--rail", target)),
+    )

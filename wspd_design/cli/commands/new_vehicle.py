@@ -1,6 +1,5 @@
 """``wspd new vehicle``: some questions about a train, and a vehicle file with everything else worked out."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
@@ -9,14 +8,13 @@ from rich.text import Text
 
 from wspd_design.analysis.stopping import demanded_adhesion
 from wspd_design.cli import options
-from wspd_design.cli.console import WIDE, console, spaced, table
-from wspd_design.cli.output import check_output, write_text
+from wspd_design.cli.console import WIDE, console, print_written, spaced, table
+from wspd_design.cli.output import write_text
 from wspd_design.cli.wizard.draft import ENDING
-from wspd_design.cli.wizard.session import answer_option, answered, target_of
+from wspd_design.cli.wizard.session import answer_option, answered_for_file
 from wspd_design.cli.wizard.vehicle_answers import NONE, wanted_vehicle
 from wspd_design.cli.wizard.vehicle_steps import vehicle_steps
 from wspd_design.exchange.parameter_file import parameter_file
-from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Entry
 from wspd_design.parameters.units import format_quantity
 from wspd_design.studies.new_vehicle import ELECTRIC, PIPE, Wanted, derived_entries, derived_vehicle
@@ -105,18 +103,16 @@ def vehicle(
         "fill_time": fill_time,
         "vent_time": vent_time,
     }
-    target = target_of(output, resume, VEHICLE_FILE, remedy="give the name of the vehicle file, too")
-    if target.suffix != ".toml":
-        raise UserError(f"vehicle file {target} must end in .toml")
-    check_output(target, force=force)
-    answers, said = answered(
+    target, answers, said = answered_for_file(
+        "vehicle",
         vehicle_steps(),
-        {key: answer for key, answer in given.items() if answer is not None},
-        target=target,
+        given,
+        output=output,
+        default=VEHICLE_FILE,
         resume=resume,
         yes=yes,
-        command="wspd new vehicle",
-        remedy="give all answers as options, or add --yes and the kind answers what is left",
+        force=force,
+        by_default="the kind answers",
     )
     wanted = wanted_vehicle(answers, said)
     entries = derived_entries(wanted)
@@ -144,11 +140,9 @@ def _show(target: Path, entries: tuple[Entry, ...], wanted: Wanted, demand: floa
     taken = [entry.name for entry in entries if entry.source == f"vehicle {wanted.kind}"]
     out.print(f"As of {wanted.kind}, and to be checked: {', '.join(taken)}.", markup=False)
     out.print(f"Fully applied, the brake asks for an adhesion of {demand:.3f}.", markup=False)
-    out.print(f"Written: {target}", style="bold", markup=False, soft_wrap=True)
-    file = shlex.quote(str(target))
-    for purpose, command in (
-        ("See it", f"wspd sources {file}"),
-        ("Check it", f"wspd brake --vehicle {file}"),
-        ("Design", f"wspd design --vehicle {file} --rail low-adhesion -o design.toml"),
-    ):
-        out.print(f"{purpose + ':':<10}{command}", markup=False, soft_wrap=True)
+    print_written(
+        target,
+        ("See it", ("sources", target)),
+        ("Check it", ("brake", "--vehicle", target)),
+        ("Design", ("design", "--vehicle", target, "--rail", "low-adhesion", "-o", "design.toml")),
+    )

@@ -2,7 +2,7 @@
 
 import os
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from rich.text import Text
 
 from wspd_design.cli.console import console, is_interactive, spaced, table
 from wspd_design.cli.exit_codes import INTERRUPTED
+from wspd_design.cli.output import check_output
 from wspd_design.cli.wizard.draft import ENDING, draft_path, read_draft, write_draft
 from wspd_design.cli.wizard.flow import Ask, Back, complete, walk
 from wspd_design.cli.wizard.steps import SAVE, Answers, Step, accept
@@ -76,6 +77,39 @@ def answered(
         )
         raise typer.Exit(INTERRUPTED) from None
     return answers, frozenset(answers)
+
+
+def answered_for_file(
+    kind: str,
+    questions: Sequence[Step],
+    given: Mapping[str, str | None],
+    *,
+    output: Path | None,
+    default: str,
+    resume: Path | None,
+    yes: bool,
+    force: bool,
+    by_default: str,
+) -> tuple[Path, dict[str, str], frozenset[str]]:
+    """Return a parameter file to write, the answers for it, and the questions that the user answered.
+
+    The file is that of a vehicle or a rail, and may be written. Of what the command line may give, None is no answer;
+    ``by_default`` says what ``--yes`` does with the rest, such as "the kind answers".
+    """
+    target = target_of(output, resume, default, remedy=f"give the name of the {kind} file, too")
+    if target.suffix != ".toml":
+        raise UserError(f"{kind} file {target} must end in .toml")
+    check_output(target, force=force)
+    answers, said = answered(
+        questions,
+        {key: answer for key, answer in given.items() if answer is not None},
+        target=target,
+        resume=resume,
+        yes=yes,
+        command=f"wspd new {kind}",
+        remedy=f"give all answers as options, or add --yes and {by_default} what is left",
+    )
+    return target, answers, said
 
 
 def target_of(output: Path | None, resume: Path | None, default: str, *, remedy: str) -> Path:
