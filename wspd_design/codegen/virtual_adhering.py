@@ -1,6 +1,6 @@
 """Exponential steps of wheels that adhere, in CasADi; the formulas are those of ``templates/adhering.c``."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from wspd_design.model.number import where
@@ -28,10 +28,11 @@ class Stage(NamedTuple):
 class Adhering:
     """Exponential steps of wheels that adhere, as in ``adhering.c``."""
 
-    def __init__(self, motion: Any, h: Any, settling: Any, radius: Any) -> None:
+    def __init__(self, motion: Any, h: Any, settling: Any, given: Mapping[str, Any]) -> None:
         import casadi as ca
 
-        self.axles, self.radius, self.motion = radius.size1(), radius, motion
+        self.radius, self.inertia, self.mass = (given[name] for name in ("radius", "inertia", "mass"))
+        self.axles, self.motion, self.step = self.radius.size1(), motion, h
         z = h * settling
         self.fast = z < -FAST
         self.rate = where(self.fast, settling, 0.0)
@@ -70,6 +71,33 @@ class Adhering:
             self.fast, (motion[0] - self.sliding - moved) / self.radius, wheels
         )
         return motion
+
+    def ended(self, stages: Sequence[Stage], reached: Any) -> Any:
+        """The end of the step: the train put right by the impulse of such wheels, and they where they have moved to."""
+        part, turning = self.step / 6.0, self.inertia / (self.radius * self.radius)
+        moved, axles = self.moved(stages), self.axles
+        forced = part * weighted_sum([stage.force for stage in stages])
+        taken = part * weighted_sum(
+            [stage.integrands[:axles] + stage.integrands[axles : 2 * axles] for stage in stages]
+        )
+        impulse = taken / self.radius + turning * (reached[0] - self.motion[0] - moved)
+        more, whole = 0.0, self.mass
+        for axle in range(axles):
+            more += where(self.fast[axle], 2.0 * forced[axle] - impulse[axle], 0.0)
+            whole += where(self.fast[axle], turning[axle], 0.0)
+        reached[0] += more / whole
+        return self.placed(reached, moved)
+
+
+def settling_rates(now: Mapping[str, Any], given: Mapping[str, Any], slope: Any) -> Any:
+    """Rates at which the sliding speeds of wheels settle that adhere and have settled; zero for the others."""
+    radius = given["radius"]
+    axles = radius.size1()
+    rate = slope * (1.0 + axles * given["inertia"] / (given["mass"] * radius * radius))
+    change = now["rates"][0] - radius * now["rates"][1 : 1 + axles]
+    calm = abs(change) < SETTLED * abs(rate * (now["speed"] - radius * now["axle"][:axles]))
+    calm = where(now["locked"] + now["held"], 0.0, calm)
+    return where(calm, where(rate < 0.0, rate, 0.0), 0.0)
 
 
 def weighted_sum(four: list[Any]) -> Any:

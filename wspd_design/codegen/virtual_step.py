@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from wspd_design.codegen.kernels import PARAMETERS, Kernels
-from wspd_design.codegen.virtual_adhering import SETTLED, STEADY, Adhering, Stage, weighted_sum
+from wspd_design.codegen.virtual_adhering import STEADY, Adhering, Stage, settling_rates, weighted_sum
 from wspd_design.codegen.virtual_layout import INTEGRATED, Layout, layout
 from wspd_design.model.number import maximum, minimum, where
 
@@ -92,16 +92,16 @@ class _Step:
             *(now[name] for name in Stage._fields[2:]),
         )
         stages = [present]
-        wheels = Adhering(motion, h, settling, given["radius"])
+        wheels = Adhering(motion, h, settling, given)
         for share, column, time in ((0.5, 0, middle), (0.5, 0, middle), (1.0, 1, following)):
             at = wheels.placed(motion + share * h * stages[-1].rates, wheels.moved(stages))
             stages.append(self._stage(at, time, torque[column], level[column], damping[column], now))
         reached, totals = (
-            h / 6.0 * sum((2.0 * part for part in parts[1:3]), parts[0] + parts[3])
+            h / 6.0 * weighted_sum(parts)
             for parts in ([stage.rates for stage in stages], [stage.integrands for stage in stages])
         )
         reached += motion
-        reached = self._end_exponential(wheels, stages, h, reached)
+        reached = wheels.ended(stages, reached)
         share = self._before_event(stages, reached)
         lane, stop = totals[:integrated], totals[integrated:]
         judged = where(now["speed"] > given["judging_speed"], 1.0, 0.0)
@@ -181,7 +181,7 @@ class _Step:
         rolling = later / given["radius"]
         slope = self._slopes(speed, now["axle"])
         bound = allowed < minimum(span, given["longest_step"])
-        settling = where(bound, self._settling(slope), 0.0)
+        settling = where(bound, settling_rates(now, given, slope), 0.0)
         steep = abs(slope)
         moved = wheels + self._limited(steep) * now["rates"][1 : 1 + axles]
         side = where(speed > given["radius"] * wheels, 1.0, -1.0)
@@ -198,33 +198,6 @@ class _Step:
         for axle in range(axles):
             least = minimum(least, limits[axle])
         return where(bound, maximum(least, allowed), allowed), settling
-
-    def _settling(self, slope: Any) -> Any:
-        """Rates at which the sliding speeds of wheels settle that adhere and have settled."""
-        now, given, axles = self.state, self.given, self.axles
-        radius, wheels = given["radius"], now["axle"][:axles]
-        rate = slope * (1.0 + axles * given["inertia"] / (given["mass"] * radius * radius))
-        change = now["rates"][0] - radius * now["rates"][1 : 1 + axles]
-        calm = abs(change) < SETTLED * abs(rate * (now["speed"] - radius * wheels))
-        calm = where(now["locked"] + now["held"], 0.0, calm)
-        return where(calm, where(rate < 0.0, rate, 0.0), 0.0)
-
-    def _end_exponential(self, wheels: Adhering, stages: list[Stage], h: Any, reached: Any) -> Any:
-        """Put right the train by the impulse of such wheels, and the wheels where they have moved to."""
-        given, axles = self.given, self.axles
-        radius, turning = given["radius"], given["inertia"] / (given["radius"] * given["radius"])
-        moved, part = wheels.moved(stages), h / 6.0
-        forced = part * weighted_sum([stage.force for stage in stages])
-        taken = part * weighted_sum(
-            [stage.integrands[:axles] + stage.integrands[axles : 2 * axles] for stage in stages]
-        )
-        impulse = taken / radius + turning * (reached[0] - stages[0].motion[0] - moved)
-        more, whole = 0.0, given["mass"]
-        for axle in range(axles):
-            more += where(wheels.fast[axle], 2.0 * forced[axle] - impulse[axle], 0.0)
-            whole += where(wheels.fast[axle], turning[axle], 0.0)
-        reached[0] += more / whole
-        return wheels.placed(reached, moved)
 
     def _limited(self, steep: Any) -> Any:
         limit, longest = self.given["slope_limit"], self.given["longest_step"]
