@@ -50,9 +50,9 @@ TORQUE_FEEDBACK_RANGES = {
     "sliding_gain": _factor(0.05, 5.0, "the rule is for the slowest valve, so that lower gains count more"),
     "torque_gain": SearchRange(
         low=0.0,
-        high=8.0,
+        high=30.0,
         log=False,
-        why="from no feedback of the torque to a pole nine times that of the valve",
+        why="from no feedback of the torque to a pole 31 times that of the valve",
     ),
 }
 ADAPTIVE_RANGES = {

@@ -220,13 +220,13 @@ def check_keys(
 
 def texts(value: object, name: str, where: str, *, empty: bool = False) -> tuple[str, ...]:
     """Read a list of texts, each once."""
-    good = isinstance(value, list) and all(isinstance(each, str) for each in value)
-    if not good or (not value and not empty) or len(set(value)) < len(value):  # type: ignore[arg-type]
+    listed = [each for each in value if isinstance(each, str)] if isinstance(value, list) else None
+    if listed is None or listed != value or (not listed and not empty) or len(set(listed)) < len(listed):
         example = f'["{uniform_rails()[0]}"]'
         raise UserError(
             f"{name} = {value!r} in {where} must be a list of texts, each once, such as {example}"
         )
-    return tuple(value)  # type: ignore[arg-type]
+    return tuple(listed)
 
 
 def whole(value: object, name: str, where: str, *, least: int, most: int) -> int:

@@ -120,15 +120,18 @@ def _task(document: dict[str, Any], where: str) -> Task:
 
 
 def _options(document: dict[str, Any], where: str) -> CaseOptions:
-    given = {key: _text(document[key], key, where) for key in _OF_THE_DESIGN if key in document}
+    slip, tolerance, sample_time = (
+        _text(document[key], key, where) if key in document else None for key in _OF_THE_DESIGN
+    )
     speeds = document.get("speeds")
-    if speeds is None:
-        return CaseOptions(**given)
-    if not isinstance(speeds, list) or len(speeds) != 2 or not all(isinstance(each, str) for each in speeds):
-        raise UserError(
-            f'speeds = {speeds!r} in {where} must be two speeds with their units, such as ["10 km/h", "120 km/h"]'
-        )
-    return CaseOptions(**given, speeds=(speeds[0], speeds[1]))
+    pair = None
+    if speeds is not None:
+        if not isinstance(speeds, list) or len(speeds) != 2 or not all(isinstance(x, str) for x in speeds):
+            raise UserError(
+                f'speeds = {speeds!r} in {where} must be two speeds with units, such as ["10 km/h", "120 km/h"]'
+            )
+        pair = speeds[0], speeds[1]
+    return CaseOptions(slip=slip, tolerance=tolerance, sample_time=sample_time, speeds=pair)
 
 
 def _effort(table: dict[str, Any], where: str) -> Effort:

@@ -45,10 +45,6 @@ class Journal:
                 "same command goes on from there"
             ) from None
 
-    def remove(self) -> None:
-        """Remove the file, once its content stands in the record of the search."""
-        self.path.unlink(missing_ok=True)
-
     def _read(self) -> dict[Point, Score]:
         """Read the whole lines of this search, and leave a file of just these."""
         try:
@@ -62,10 +58,11 @@ class Journal:
         whole = [] if self.replaced else lines[1:]
         found: dict[Point, Score] = {}
         for line in whole:
+            if not line.endswith("\n"):
+                break
             try:
-                entry = json.loads(line) if line.endswith("\n") else None
-                point = tuple(map(float, entry["point"]))
-                found[point] = Score(
+                entry = json.loads(line)
+                found[tuple(map(float, entry["point"]))] = Score(
                     objective=float(entry["objective"]),
                     unstopped=float(entry["unstopped"]),
                     reached={str(name): float(value) for name, value in entry["reached"].items()},
