@@ -1,6 +1,6 @@
 """The file of a campaign: laws, vehicle, rails, stop and what each stop draws, as TOML with units."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from difflib import get_close_matches
 from pathlib import Path
@@ -13,45 +13,12 @@ from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.options import CONTROLLER, PLANT
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, load_case
+from wspd_design.design.draw_table import read_draws
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries, read_toml
-from wspd_design.parameters.schema import schema_of
-from wspd_design.parameters.units import Dimension, parse_quantity
 from wspd_design.simulation.campaign import CHECK_EVERY
 from wspd_design.simulation.description import rails_of
-from wspd_design.simulation.draws import (
-    FILE_KINDS,
-    Choice,
-    Distribution,
-    Draw,
-    Normal,
-    Uniform,
-    within_bounds,
-)
-
-STOP_DIMENSIONS: Mapping[str, Dimension] = {
-    "stop.initial_speed": "speed",
-    "stop.grade": "ratio",
-    "stop.pad_vibration": "ratio",
-    "stop.start.slip": "ratio",
-    "stop.start.torque": "torque",
-    "stop.start.braking_time": "time",
-    "stop.sensing.speed_noise": "speed",
-    "stop.sensing.pulses_per_turn": "ratio",
-    "stop.sensing.period_timing": "ratio",
-    "stop.sensing.reference_error": "ratio",
-    "stop.sensing.reference_drift": "acceleration",
-    "stop.sensing.reference_noise": "speed",
-    "stop.sensing.torque_error": "ratio",
-    "stop.sensing.dead_time": "time",
-    "stop.sensing.shortest_pulse": "time",
-}
-"""What the numbers of a stop are measured in; a test holds that every one of them stands here."""
-
-_FORMS = (
-    '{ uniform = ["LOW", "HIGH"] }, { normal = ["MEAN", "DEVIATION"], within = ["LOW", "HIGH"] } and '
-    '{ choice = ["ONE", "OTHER"] }'
-)
+from wspd_design.simulation.draws import FILE_KINDS, within_bounds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,7 +76,7 @@ def read_campaign(path: Path) -> CampaignFile:
                 f'within_bounds in {where} names "{kind}"; it may name {" and ".join(FILE_KINDS)}'
             )
     given = _disturbances(words.disturbances, where)
-    drawn = tuple(_draw(name, spread, where) for name, spread in _flat(words.draw, ""))
+    drawn = read_draws(words.draw, where)
     series = []
     for law in words.controllers:
         for rail in words.rails:
@@ -202,68 +169,6 @@ def _disturbances(table: dict[str, Any], where: str) -> StopOptions:
         _known(key, [each.name for each in fields(StopOptions)], f"key of [disturbances] in {where}")
         _check_type(key, value, hints[key], where)
     return StopOptions(**table)
-
-
-def _flat(table: dict[str, Any], above: str) -> list[tuple[str, dict[str, Any]]]:
-    """Names and spreads of [draw], whether their dots stand in quotes or not."""
-    found = []
-    for key, value in table.items():
-        name = f"{above}{key}"
-        if isinstance(value, dict) and not set(value) & {*_SPREADS}:
-            found += _flat(value, f"{name}.")
-        else:
-            found.append((name, value))
-    return found
-
-
-def _draw(name: str, spread: Any, where: str) -> Draw:
-    dimension = _dimension(name)
-    place = f"{name} of [draw] in {where}"
-    kinds = [kind for kind in _SPREADS if isinstance(spread, dict) and kind in spread]
-    if len(kinds) != 1:
-        raise UserError(f"{place} must be one of {_FORMS}")
-    unknown = set(spread) - {kinds[0], *(("within",) if kinds[0] == "normal" else ())}
-    if unknown:
-        raise UserError(f'{place} has an unknown key "{min(unknown)}" beside {kinds[0]}; leave it out')
-
-    def numbers(key: str, count: int | None) -> list[float]:
-        listed = spread.get(key)
-        if not isinstance(listed, list) or not listed or (count is not None and len(listed) != count):
-            wanted = "one or more" if count is None else str(count)
-            raise UserError(f"{key} of {place} must be a list of {wanted} quantities with their units")
-        return [_number(each, dimension, place) for each in listed]
-
-    return Draw(name=name, distribution=_SPREADS[kinds[0]](numbers))
-
-
-_SPREADS: dict[str, Callable[[Callable[[str, int | None], list[float]]], Distribution]] = {
-    "uniform": lambda numbers: Uniform(**dict(zip(("low", "high"), numbers("uniform", 2), strict=True))),
-    "normal": lambda numbers: Normal(
-        **dict(
-            zip(
-                ("mean", "deviation", "low", "high"), numbers("normal", 2) + numbers("within", 2), strict=True
-            )
-        )
-    ),
-    "choice": lambda numbers: Choice(values=tuple(numbers("choice", None))),
-}
-
-
-def _number(given: Any, dimension: Dimension | None, place: str) -> float:
-    if isinstance(given, int | float) and not isinstance(given, bool) and dimension in ("ratio", None):
-        return float(given)
-    if not isinstance(given, str):
-        raise UserError(f'{given!r} of {place} must be text with its unit, such as "1 m/s"')
-    return parse_quantity(given, dimension or "ratio", what=place)
-
-
-def _dimension(name: str) -> Dimension | None:
-    """What a number is measured in; None where there is no such number, which the drawing says."""
-    root, _, rest = name.partition(".")
-    if root in FILE_KINDS:
-        quantity = schema_of(FILE_KINDS[root], "").get(rest)
-        return None if quantity is None else quantity.dimension
-    return STOP_DIMENSIONS.get(name)
 
 
 def _known(key: str, names: list[str], what: str) -> None:

@@ -52,7 +52,9 @@ class Sensing:
     reference_error: float = 0.0  # -, relative error of the train speed that the controller knows
     reference_drift: float = 0.0  # m/s2, by which that speed moves away from the true one
     reference_noise: float = 0.0  # m/s rms of that speed, independent at each sample
-    torque_error: float = 0.0  # -, relative error of the torque that the controller computes from the pressure, and of that pressure
+    torque_error: float = (
+        0.0  # -, relative error of cylinder pressures, and of the torques computed from them
+    )
     accelerometer_bias: float = 0.0  # m/s2
     accelerometer_noise: float = 0.0  # m/s2 rms, independent at each sample
     radius_errors: tuple[float, ...] = ()  # -, of the speed read from each wheel, front first; empty: none

@@ -2,7 +2,8 @@
 
 import pytest
 
-from wspd_design.cli.campaign_file import STOP_DIMENSIONS, read_campaign
+from wspd_design.cli.campaign_file import read_campaign
+from wspd_design.design.draw_table import STOP_DIMENSIONS
 from wspd_design.design.file import design_text
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller
