@@ -29,7 +29,7 @@ USUAL = SearchRange(
 """Range of a number without one of its own."""
 
 _SLIP = SearchRange(
-    low=0.04,
+    low=0.025,
     high=0.3,
     why="from the creep of a braking wheel that adheres to slips beyond the peak of every rail but the very low ones",
 )
