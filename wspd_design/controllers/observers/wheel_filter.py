@@ -23,6 +23,9 @@ class WheelFilterNumbers:
     torque_noise: float = 0.05
     force_noise: float = 0.03
     gate: float = 3.0
+    fall: float = 0.1
+    bound: float = 2.0
+    surprise: float = 1.0
     rate_bandwidth: float = 15.0
     quiet: float = 1.0
     quiet_time: float = 0.06
@@ -34,7 +37,9 @@ class WheelFilterNumbers:
     low_torque: float = 800.0
     low_time: float = 0.5
     creep_stiffness: float = 4.2e6
-    creep_share: float = 0.7
+    creep_share: float = 1.0
+    sure: float = 0.1
+    lapse: float = 0.5
     creep_time: float = 0.5
     slowest: float = 3.0
     usual_time: float = 1.0
@@ -117,6 +122,7 @@ class WheelFilter:
         theta = exp(-n.rate_bandwidth * h)
         new = {k: [] for k in ("rolls", "rim", "rate", "rise", "quiet", "released", "held", "free")}
         lam = total(slip_references) / N
+        rolling_before = total(rolls)
         usual = peak + (1 - exp(-h / n.usual_time)) * (torque / N - peak)
         quiet_rate = clip(n.quiet_share * usual * self.wheel_radius / self.inertia, n.least_quiet, n.quiet)
         for i in W:
@@ -132,21 +138,30 @@ class WheelFilter:
             s = minimum(friction_torques[i] / (2 * self.wheel_radius * n.creep_stiffness), 0.03)
             unknown = (n.creep_share * s * v) ** 2
             near = n.rim_noise ** 2 + unknown
-            var = near + unknown * (n.creep_time / h)
             spun = rise_i > n.rise * lam * v
             lookq = (released[i] > 0.5) * ((spun * (q_i >= n.quiet_time - 1e-9) + (clock >= n.long_release) * (q_i >= 2 * n.quiet_time)) > 0)
             free_i = where((friction_torques[i] < n.low_torque) * (abs(delta) < quiet_rate), free0[i] + h, 0.0)
             free = free_i >= n.low_time
             found = (lookq + free) > 0
-            was = where(found, 1.0, rolls[i]) * healthy[i]
             row = [1.0 - s] + [0.0] * (m - 1)
             r = u - (1 - s) * v
-            S = (1 - s) ** 2 * belief.covariance[0] + near
-            ok = where(found, 1.0, where(r > -n.gate * sqrt(S), 1.0, 0.0))
+            P = (1 - s) ** 2 * belief.covariance[0]
+            sure = sqrt(P) < n.sure * lam * v
+            alike = sure * (abs(r) < minimum(2 * sqrt(P + near), 0.3 * lam * v)) * (q_i >= n.low_time)
+            lapsed = (friction_torques[i] > n.lapse * usual) * (rolling_before < count - 0.5)
+            was = where((found + alike) > 0, 1.0, where(lapsed, 0.0, rolls[i])) * healthy[i]
+            ok = where(found, 1.0, where(r > -(n.gate * sqrt(near) + minimum(n.gate * sqrt(P), n.fall * lam * v)), 1.0, 0.0))
             roll_i = was * ok
-            bound = (r > 2 * sqrt(near)) * healthy[i]
-            use = where((roll_i + bound) > 0.5, 1.0, 0.0)
-            belief = corrected(belief, row, r, var, use)
+            # bound
+            shift = healthy[i] * maximum(u - v - n.bound * n.rim_noise, 0.0)
+            learnt = minimum(shift, 2 * sqrt(belief.covariance[0])) / belief.covariance[0]
+            belief = Belief((v + shift, *[x + c * learnt for x, c in zip(belief.mean[1:], belief.covariance[1:m])]), (belief.covariance[0] + n.surprise * shift * shift, *belief.covariance[1:]))
+            # measurement
+            r = u - (1 - s) * belief.mean[0]
+            var = n.rim_noise ** 2 + unknown * (1 + n.creep_time / h) * maximum(rolling_before, 1.0)
+            extra = where(found, 1.0, 0.0) * roll_i * maximum(r * r / (1 - s) ** 2 - 4 * (belief.covariance[0] + var), 0.0)
+            belief = Belief(belief.mean, (belief.covariance[0] + extra, *belief.covariance[1:]))
+            belief = corrected(belief, row, r, var, roll_i)
             held_i = where((released[i] > 0.5) * (roll_i > 0.5), n.hold_time, maximum(held[i] - h, 0.0))
             rel_i = where((roll_i > 0.5) + (clock > n.give_up) > 0, 0.0, released[i])
             for k, x in zip(new, (roll_i, rim_i, rate_i, rise_i, q_i, rel_i, held_i, free_i)):
