@@ -20,11 +20,14 @@ from derivations import (
     adaptive_fuzzy,
     adhesion,
     brake_actuator,
+    friction_observer,
     motion,
     sliding_surface,
     slip_equation,
+    slip_tracking,
     track,
     valve_flow,
+    valve_inversion,
 )
 from derivations.equation_map import equations
 from derivations.map_files import equations_toml, nomenclature, readme, theory
@@ -40,11 +43,14 @@ MODULES: dict[str, ModuleType] = {
     "adaptive_fuzzy": adaptive_fuzzy,
     "adhesion": adhesion,
     "brake": brake_actuator,
+    "friction_observer": friction_observer,
     "motion": motion,
     "slip": slip_equation,
     "sliding_surface": sliding_surface,
+    "slip_tracking": slip_tracking,
     "track": track,
     "valve_flow": valve_flow,
+    "valve_inversion": valve_inversion,
 }
 _ELEMENTARY = ("atan", "exp", "log", "sin", "tan")
 
