@@ -162,7 +162,9 @@ def compute_rows(plan: Plan, first: int, count: int) -> "NDArray[Any]":
     cases = deck.cases(whole, made)
     for group in groups:
         rows = slice(group - whole, group - whole + STOPS_SIDE_BY_SIDE)
-        for name, figures in _figures(plan, cases[rows], group).items():
+        runs = f"runs {group} to {group + STOPS_SIDE_BY_SIDE - 1}"
+        ideal = ideal_distances(cases[rows], runs)
+        for name, figures in figures_of(cases[rows], plan.controller, ideal, runs).items():
             table[name][rows] = figures
     kept = table[first - whole : first - whole + count]
     for row, case in zip(kept, cases[first - whole :], strict=False):
@@ -170,12 +172,22 @@ def compute_rows(plan: Plan, first: int, count: int) -> "NDArray[Any]":
     return kept
 
 
-def _figures(plan: Plan, cases: Cases, first: int) -> dict[str, Any]:
-    """Columns of one group."""
+def figures_of(cases: Cases, controller: Controller, ideal: "Array", runs: str) -> dict[str, Any]:
+    """Simulate a group of stops and return its figures, one array over the stops for each.
+
+    Parameters
+    ----------
+    cases : sequence of (Plant, Scenario)
+        The stops.
+    controller : Controller
+        Law of every wheelset.
+    ideal : array
+        Distances of their ideal stops [m].
+    runs : str
+        Names the stops in the sentence about a bad command.
+    """
     import numpy as np
 
-    controller = plan.controller
-    runs = f"runs {first} to {first + len(cases) - 1}"
     batch = run_batch(cases, controller, lambda some: loop_input(some, controller), what=runs)
     lanes, stops = batch.lanes, batch.stops
     judged = np.where(stops["judged_time"] > 0.0, stops["judged_time"], np.nan)
@@ -187,7 +199,6 @@ def _figures(plan: Plan, cases: Cases, first: int) -> dict[str, Any]:
     full = np.array([plant.vehicle.brake.max_pressure * valved.sum() for plant, _ in cases])
     axles = 1 if cases[0][0].alike else cases[0][0].axles
     by_axle = (lanes[name] for name in ("longest_lock", "judged_lock_time", "sliding_work"))
-    ideal = _ideal_distances(cases, runs)
     moved = np.where(stops["distance"] > 0.0, stops["distance"], np.nan)  # not of a train that is at rest
     lasted = np.where(stops["time"] > 0.0, stops["time"], np.nan)
     return {
@@ -226,8 +237,8 @@ def _of_brakes(cases: Cases, filled: "Array", watchdog: "Array") -> dict[str, An
     return {name: columns[name] for name in _brake_figures(brakes[0])}
 
 
-def _ideal_distances(cases: Cases, runs: str) -> "Array":
-    """Distances of the ideal stops [m], NaN where there is none; what a law measures does not touch them."""
+def ideal_distances(cases: Cases, runs: str) -> "Array":
+    """Return the distances of the ideal stops [m], NaN where there is none; what a law measures does not count."""
     import numpy as np
 
     if any(scenario.patches or scenario.start != Start() for _, scenario in cases):
