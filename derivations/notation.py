@@ -138,7 +138,9 @@ def _table() -> dict[str, Quantity]:
             "rad/s2", "angular acceleration of the desired wheel speed", "ω_r'", "dot(omega)_r"
         ),
         "speed_error": q("rad/s", "wheel speed minus the desired one", "e_ω", "e_omega"),
-        "speed_error_rate": q("rad/s2", "time derivative of the error of the wheel speed", "e_ω'", "dot(e)_omega"),
+        "speed_error_rate": q(
+            "rad/s2", "time derivative of the error of the wheel speed", "e_ω'", "dot(e)_omega"
+        ),
         "ahead": q("-", "share of a sample by which the error is predicted", "a", "a", positive),
         "approach_rate": q("1/s", "rate at which the error of the wheel speed falls", "k", "k", positive),
         "slew": q("rad/s3", "rate at which the valve can change the pull", "s", "s", positive),

@@ -53,7 +53,9 @@ _valve = sp.Symbol("u", real=True)
 _filling = (sp.Symbol("T_in") - T) / sp.Symbol("T_F")
 _second = -_filling * _valve / J  # of e, the part that the valve makes
 degree_residual = sp.simplify(sp.diff(error_rate, _valve)) ** 2  # e' does not know the valve
-surface_rate_residual = sp.simplify(sp.diff(_second + k * error_rate, _valve) + _filling / J)  # e'' + k e' does
+surface_rate_residual = sp.simplify(
+    sp.diff(_second + k * error_rate, _valve) + _filling / J
+)  # e'' + k e' does
 
 # --- braking curve ----------------------------------------------------------------------------------------------
 curve_square = 2 * s * (e - s / (2 * k**2))

@@ -1,7 +1,7 @@
 """Inversion of the valve: the pulses that bring the braking torque to a wanted value within a sample, and its mean.
 
 A sample of length h fills for the share a, then vents for the share b, and holds for the rest. In torques, T_in being
-that of the pressure which the demand allows, (9) gives T_a = T_in - (T_in - T) exp(-a h/T_F) and T+ = T_a exp(-b h/T_V).
+that of the demanded pressure, (9) gives T_a = T_in - (T_in - T) exp(-a h/T_F) and T+ = T_a exp(-b h/T_V).
 
 Claims: the shares a = (T_F/h) ln((T_in - T)/(T_in - T*)) and b = (T_V/h) ln(T/T*) reach T* at the end of their pulse;
 the mean over the sample is exact. Shares that were worked out with other times than those of the valve leave
@@ -31,7 +31,9 @@ mean = (
     + after_filling * T_V * (1 - sp.exp(-vent * h / T_V)) / h
     + (1 - fill - vent) * after
 )
-mean_residual = sp.simplify(sp.expand(h * mean - _area_filling - _area_venting - (1 - fill - vent) * h * after))
+mean_residual = sp.simplify(
+    sp.expand(h * mean - _area_filling - _area_venting - (1 - fill - vent) * h * after)
+)
 
 # --- inversion ------------------------------------------------------------------------------------------------
 fill_share = T_F / h * sp.log((T_in - T) / (T_in - T_star))
@@ -60,7 +62,7 @@ FUNCTIONS = (
         name="torque_after",
         arguments=(T, T_in, fill, vent, h, T_F, T_V),
         value=(after, mean),
-        summary="Braking torque after a sample that fills, then vents, then holds, and its mean over the sample",
+        summary="Braking torque after a sample of filling, venting and holding, and its mean",
         returns="Torque at the end and mean torque [N m]",
         equation="solution of eq. (9)",
         meanings={"fill": "Share of the sample that fills [-]", "vent": "Share of it that vents [-]"},

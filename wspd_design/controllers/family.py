@@ -7,7 +7,7 @@ A new law needs its class and its record of gains, a row here, and the rule that
 from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.controllers.baselines.knorr_bremse import KnorrBremse
@@ -15,29 +15,23 @@ from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
 from wspd_design.controllers.baselines.trenitalia import Trenitalia
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.controllers.gains import GainForm, gain_forms
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.given import Given
+from wspd_design.controllers.observer_smc import ObserverSmc, ObserverSmcGains
+from wspd_design.controllers.protected import protection
+from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.protocol import Law
+from wspd_design.controllers.references import ReferenceKind
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
+from wspd_design.controllers.tracking import tracking
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_knorr_bremse, load_mitsubishi, load_trenitalia
-from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS, Preset
 
 INDUSTRY = "law of the industry"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Given:
-    """What the controller of one wheelset is built from."""
-
-    name: str
-    sample_time: float  # s
-    vehicle: Vehicle
-    rail: Rail  # design rail
-    numbers: Any  # record of the gains, or the table of a law of the industry
-
-
-Builder: TypeAlias = Callable[[Given], Controller]
+Builder: TypeAlias = Callable[[Given], Law]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +45,7 @@ class Family:
     build: Builder
     gains: type | None = None  # record of the gains; None for a law that is not designed
     tables: Callable[[Preset], object] | None = None  # of a law whose numbers come in presets
+    reference: ReferenceKind | None = None  # of a law of a vehicle where its specification states none
     equations: tuple[
         str, ...
     ] = ()  # numbers of the paper's equations that it rests on, besides those of the plant
@@ -87,7 +82,7 @@ def _with_table(law: type) -> Builder:
     )
 
 
-def _adaptive_fuzzy(given: Given) -> Controller:
+def _adaptive_fuzzy(given: Given) -> Law:
     return AdaptiveFuzzy(
         name=given.name,
         sample_time=given.sample_time,
@@ -97,8 +92,18 @@ def _adaptive_fuzzy(given: Given) -> Controller:
     )
 
 
-def _unprotected(given: Given) -> Controller:
+def _unprotected(given: Given) -> Law:
     return Unprotected(name=given.name, sample_time=given.sample_time)
+
+
+def _observer_smc(given: Given) -> Law:
+    return protection(
+        given,
+        lambda valve: ObserverSmc(
+            tracking=tracking(given.numbers, valve, given.vehicle.wheelset_inertia),
+            torque_slew=given.numbers.torque_slew,
+        ),
+    )
 
 
 _SLIDING_MODE_EQUATIONS = ("20", *(str(number) for number in range(22, 29)))
@@ -131,6 +136,15 @@ FAMILIES: dict[str, Family] = {
             law=TorqueFeedback,
             gains=TorqueFeedbackGains,
             build=_with_model(TorqueFeedback),
+        ),
+        Family(
+            name="observer-smc",
+            title="sliding mode through the observed friction and the valve",
+            origin="not in the paper",
+            law=Protection,
+            gains=ObserverSmcGains,
+            build=_observer_smc,
+            reference="falling",
         ),
         Family(
             name="trenitalia",

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wspd_design.controllers.offers import slip_reference_of
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Controller, Law
 from wspd_design.design.catalog import controller as build_controller
 from wspd_design.design.catalog import controller_of, is_design_file
 from wspd_design.design.file import read_design
@@ -34,7 +34,7 @@ class Case:
 
     vehicle: Vehicle
     rail: Rail
-    controller: Controller
+    controller: Law
     specification: Specification
     design: Design | None
     vehicle_name: str
@@ -85,6 +85,8 @@ def specification(options: CaseOptions, base: Specification | None = None) -> Sp
             if options.sample_time is None
             else parse_quantity(options.sample_time, "time", what="sample time")
         ),
+        reference=base.reference,
+        sensors=base.sensors,
     )
 
 

@@ -9,6 +9,7 @@ from wspd_design.design.printed_gains import printed_gains
 from wspd_design.design.records import Design, Gain, Specification, rail_hash, vehicle_hash
 from wspd_design.design.sliding_gains import adaptive_gains, sliding_mode_gains
 from wspd_design.design.torque_feedback_gains import torque_feedback_gains
+from wspd_design.design.tracking_gains import observer_smc_gains
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -27,6 +28,7 @@ RULES: dict[str, GainRules] = {
     "afsmc": GainRules(choose=adaptive_gains, printed=printed_gains),
     "smc": GainRules(choose=sliding_mode_gains),
     "torque-feedback": GainRules(choose=torque_feedback_gains),
+    "observer-smc": GainRules(choose=observer_smc_gains),
 }
 """Rules by the family of laws."""
 

@@ -12,7 +12,7 @@ def torque_after(
     fill_time: Number,
     vent_time: Number,
 ) -> tuple[Number, Number]:
-    """Braking torque after a sample that fills, then vents, then holds, and its mean over the sample, solution of eq. (9).
+    """Braking torque after a sample of filling, venting and holding, and its mean, solution of eq. (9).
 
     Parameters
     ----------
