@@ -144,6 +144,13 @@ def _table() -> dict[str, Quantity]:
         "ahead": q("-", "share of a sample by which the error is predicted", "a", "a", positive),
         "approach_rate": q("1/s", "rate at which the error of the wheel speed falls", "k", "k", positive),
         "slew": q("rad/s3", "rate at which the valve can change the pull", "s", "s", positive),
+        "rim_error": q("m/s", "rim speed above the desired one", "e_v", "e_v"),
+        "rim_error_rate": q("m/s2", "its time derivative", "e_v'", "dot(e)_v"),
+        "driving_surface": q("m/s2", "surface reduced by its layer", "σ_D", "sigma_D"),
+        "rule_strength": q("-", "normalized strength of a fuzzy rule", "w_r", "w_r", positive),
+        "rule_weight": q("-", "weight of a fuzzy rule, a share of the sample", "b_r", "b_r"),
+        "share_rate": q("s/m", "rate of adaptation", "α", "alpha", positive),
+        "leakage": q("m/s2", "leakage of the adaptation", "κ_b", "kappa_b", positive),
         "pull": q("rad/s2", "rate at which the wheel is asked to approach its reference", "y", "y"),
         # sliding surface, eqs. (21)-(28)
         "slip_reference": q("-", "desired slip ratio", "λ_d", "lambda_d"),

@@ -14,16 +14,20 @@ from wspd_design.controllers.baselines.knorr_bremse import KnorrBremse
 from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
 from wspd_design.controllers.baselines.trenitalia import Trenitalia
 from wspd_design.controllers.baselines.unprotected import Unprotected
+from wspd_design.controllers.fuzzy_surface import FuzzySurface, FuzzySurfaceGains
 from wspd_design.controllers.gains import GainForm, gain_forms
 from wspd_design.controllers.given import Given
+from wspd_design.controllers.integral_smc import IntegralSmc, IntegralSmcGains
 from wspd_design.controllers.observer_smc import ObserverSmc, ObserverSmcGains
 from wspd_design.controllers.protected import protection
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import Law
 from wspd_design.controllers.references import ReferenceKind
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.controllers.super_twisting import SuperTwisting, SuperTwistingGains
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
-from wspd_design.controllers.tracking import tracking
+from wspd_design.controllers.tracking import Tracking, tracking
+from wspd_design.controllers.wheel_law import WheelLaw
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_knorr_bremse, load_mitsubishi, load_trenitalia
 from wspd_design.parameters.schema import PRESETS, Preset
@@ -96,14 +100,46 @@ def _unprotected(given: Given) -> Law:
     return Unprotected(name=given.name, sample_time=given.sample_time)
 
 
-def _observer_smc(given: Given) -> Law:
+def _tracking(given: Given, law: Callable[[Tracking], WheelLaw]) -> Law:
+    """Build the protection of a law that asks for a torque."""
+    gains, inertia = given.numbers, given.vehicle.wheelset_inertia
     return protection(
         given,
-        lambda valve: ObserverSmc(
-            tracking=tracking(given.numbers, valve, given.vehicle.wheelset_inertia),
-            torque_slew=given.numbers.torque_slew,
+        lambda valve: law(tracking(gains, valve, inertia)),
+        time_share=gains.valve_time_share,
+    )
+
+
+def _observer_smc(given: Given) -> Law:
+    gains = given.numbers
+    return _tracking(given, lambda tracking: ObserverSmc(tracking=tracking, torque_slew=gains.torque_slew))
+
+
+def _super_twisting(given: Given) -> Law:
+    gains, radius = given.numbers, given.vehicle.wheel_radius
+    return _tracking(
+        given,
+        lambda tracking: SuperTwisting(
+            tracking=tracking, integral_rate=gains.integral_rate, layer=gains.layer / radius
         ),
     )
+
+
+def _integral_smc(given: Given) -> Law:
+    gains, radius = given.numbers, given.vehicle.wheel_radius
+    return _tracking(
+        given,
+        lambda tracking: IntegralSmc(
+            tracking=tracking, switching_gain=gains.switching_gain / radius, layer=gains.layer / radius
+        ),
+    )
+
+
+def _fuzzy_surface(given: Given) -> Law:
+    law = FuzzySurface(
+        sample_time=given.sample_time, wheel_radius=given.vehicle.wheel_radius, gains=given.numbers
+    )
+    return protection(given, lambda _: law)
 
 
 _SLIDING_MODE_EQUATIONS = ("20", *(str(number) for number in range(22, 29)))
@@ -144,6 +180,33 @@ FAMILIES: dict[str, Family] = {
             law=Protection,
             gains=ObserverSmcGains,
             build=_observer_smc,
+            reference="falling",
+        ),
+        Family(
+            name="super-twisting",
+            title="super-twisting through the observed friction and the valve",
+            origin="not in the paper",
+            law=Protection,
+            gains=SuperTwistingGains,
+            build=_super_twisting,
+            reference="falling",
+        ),
+        Family(
+            name="integral-smc",
+            title="integral sliding mode through the observed friction and the valve",
+            origin="not in the paper",
+            law=Protection,
+            gains=IntegralSmcGains,
+            build=_integral_smc,
+            reference="falling",
+        ),
+        Family(
+            name="afsmc-mended",
+            title="adaptive fuzzy sliding mode on a surface that the valve moves at once",
+            origin="eqs. (29) to (42) on another surface",
+            law=Protection,
+            gains=FuzzySurfaceGains,
+            build=_fuzzy_surface,
             reference="falling",
         ),
         Family(

@@ -19,7 +19,9 @@ _SPEED = 10.0  # m/s, at which a controller is asked how much it remembers
 _SLIP = 0.14  # the paper's, of controllers that do not say which slip they hold
 
 
-def protection(given: Given, core: Callable[[ValveInversion], WheelLaw]) -> Protection:
+def protection(
+    given: Given, core: Callable[[ValveInversion], WheelLaw], *, time_share: float = 1.0
+) -> Protection:
     """Put the protection of a law of a vehicle together.
 
     Parameters
@@ -28,12 +30,14 @@ def protection(given: Given, core: Callable[[ValveInversion], WheelLaw]) -> Prot
         Vehicle, sensors, reference and gains.
     core : callable
         Makes the law of one wheelset from the model of its valve.
+    time_share : float
+        Of the nominal valve times, that the law inverts the valve with.
     """
     vehicle, gains = given.vehicle, given.numbers
     valve = ValveInversion(
         brake=vehicle.brake,
         sample_time=given.sample_time,
-        time_share=gains.valve_time_share,
+        time_share=time_share,
         least_pulse=gains.least_pulse,
     )
     return Protection(

@@ -33,7 +33,6 @@ class ProtectionGains:
     peak_speeds: Annotated[tuple[float, ...], Quantity(dimension="speed")] = ()  # of the table of the peak
     peak_slips: tuple[float, ...] = ()  # -
     observer_rate: Annotated[float, Quantity(dimension="rate", divisor=True)]  # of the friction torque
-    valve_time_share: Annotated[float, Quantity(dimension="ratio", divisor=True)]  # of the nominal times
     least_pulse: Annotated[float, Quantity(dimension="time")]  # shorter ones are not commanded
     cut_out_speed: Annotated[float, Quantity(dimension="speed")]  # below it the valves hold
 

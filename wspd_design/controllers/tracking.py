@@ -18,6 +18,7 @@ class TrackingGains(ProtectionGains):
 
     approach_rate: Annotated[float, Quantity(dimension="rate", divisor=True)]  # k of the pull k e
     ahead: float  # -, of a sample: the error is that of so much later
+    valve_time_share: Annotated[float, Quantity(dimension="ratio", divisor=True)]  # of the nominal times
     dead_band: Annotated[float, Quantity(dimension="torque")]  # about the torque that is wanted
     dead_band_slip: float  # -, error of the slip that the dead band may cause
 

@@ -4,12 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from wspd_design.controllers.family import Family, designed_family
+from wspd_design.design.fuzzy_surface_gains import fuzzy_surface_gains
 from wspd_design.design.industry import PRINTED, named_with, usual_table
 from wspd_design.design.printed_gains import printed_gains
 from wspd_design.design.records import Design, Gain, Specification, rail_hash, vehicle_hash
 from wspd_design.design.sliding_gains import adaptive_gains, sliding_mode_gains
 from wspd_design.design.torque_feedback_gains import torque_feedback_gains
-from wspd_design.design.tracking_gains import observer_smc_gains
+from wspd_design.design.tracking_gains import integral_smc_gains, observer_smc_gains, super_twisting_gains
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -29,6 +30,9 @@ RULES: dict[str, GainRules] = {
     "smc": GainRules(choose=sliding_mode_gains),
     "torque-feedback": GainRules(choose=torque_feedback_gains),
     "observer-smc": GainRules(choose=observer_smc_gains),
+    "super-twisting": GainRules(choose=super_twisting_gains),
+    "integral-smc": GainRules(choose=integral_smc_gains),
+    "afsmc-mended": GainRules(choose=fuzzy_surface_gains),
 }
 """Rules by the family of laws."""
 

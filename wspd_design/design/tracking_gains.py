@@ -1,31 +1,25 @@
 """Gains of the laws of a vehicle that ask for a braking torque, by stated rules.
 
-What limits such a law: a sample and the lag of the valve for the rate of approach, the noise of wheel speeds for the
-observer, the torque that venting lets out for the braking curve. The slip that it holds decides most: a reference that
-falls as 1/sqrt(v) runs beside the peaks of the rails that are known here.
+What limits such a law: a sample and the lag of the valve for the rate of approach, the torque that venting lets out for
+the braking curve.
 """
 
 from wspd_design.analysis.stopping import demanded_adhesion
-from wspd_design.controllers.protected import OBSERVER_RATE
+from wspd_design.design.protection_gains import PEAK_POINTS, protection_gains
 from wspd_design.design.records import Gain, Specification
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.parameters.units import KMH
 from wspd_design.simulation.peak import peak_adhesion
 
 LAG_PART = 6.0  # part of the lag of the valve that the approach takes longer than a sample
-UNKNOWN_RAIL = (
-    0.16  # -, slip at 1 m/s between the peaks of the rails known here, on the side of the small slips
-)
-LARGEST_SLIP = 0.35  # -
 AHEAD = 0.5  # -, a command acts in the middle of its sample
 TIME_SHARE = (
     0.6  # of the nominal valve times: the fastest valve that full inversion does not drive beyond its target
 )
 DEAD_BAND_SHARE = 0.01  # of the full torque
 DEAD_BAND_SLIP = 0.01  # -
-CUT_OUT = 5.0 / KMH  # m/s
-PEAK_POINTS = 12  # of the table of the peak
+INTEGRAL_SHARE = 0.5
+SURFACE_SHARE = 0.6
 
 
 def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
@@ -34,7 +28,7 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
     Parameters
     ----------
     vehicle : Vehicle
-        The vehicle, nominal values; the bounds of its valves count.
+        The vehicle, nominal values.
     rail : Rail
         Design rail, for the table of the peak.
     specification : Specification
@@ -48,48 +42,14 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
     brake, period = vehicle.brake, specification.sample_time
     lag = max(brake.fill_time, brake.vent_time)
     rate = 1.0 / (period + lag / LAG_PART)
-    gains = [
-        Gain(
-            name="falling_slip",
-            value=UNKNOWN_RAIL,
-            unit="-",
-            why=f"c of c/sqrt(v) with v in m/s: the peaks of the known rails lie at c = 0.1 to 0.32; {UNKNOWN_RAIL:g} "
-            "loses least over all of them, since beyond a peak friction falls and below it nothing is lost but slip",
-        ),
-        Gain(
-            name="largest_slip",
-            value=LARGEST_SLIP,
-            unit="-",
-            why="limit of c/sqrt(v), which has none at standstill",
-        ),
-        *(_peak(vehicle, rail, specification) if specification.reference == "peak" else ()),
-        Gain(
-            name="observer_rate",
-            value=OBSERVER_RATE,
-            unit="1/s",
-            why=f"w_o = {OBSERVER_RATE:g} 1/s: friction is followed within {1e3 / OBSERVER_RATE:.0f} ms, faster than "
-            "the approach; a faster observer passes on the noise of the wheel speed",
-        ),
+    return (
+        *protection_gains(vehicle, rail, specification),
         Gain(
             name="valve_time_share",
             value=TIME_SHARE,
             unit="-",
             why=f"the inversion takes {TIME_SHARE:g} of the nominal valve times: a valve that is faster than the "
             "nominal one by so much does not go beyond the wanted torque",
-        ),
-        Gain(
-            name="least_pulse",
-            value=brake.shortest_pulse,
-            unit="s",
-            why="the shortest pulse that opens the valve"
-            if brake.shortest_pulse
-            else "the vehicle states no shortest pulse",
-        ),
-        Gain(
-            name="cut_out_speed",
-            value=CUT_OUT,
-            unit="m/s",
-            why=f"below {CUT_OUT * KMH:g} km/h the valves hold: slip poles are faster than any sample there",
         ),
         Gain(
             name="approach_rate",
@@ -117,8 +77,7 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
             why="a dead band of J k e is an error of the slip that grows as 1/v: at low speed it is narrowed to this "
             "slip",
         ),
-    ]
-    return tuple(gains)
+    )
 
 
 def torque_slew(vehicle: Vehicle, rail: Rail, specification: Specification) -> Gain:
@@ -147,14 +106,63 @@ def observer_smc_gains(vehicle: Vehicle, rail: Rail, specification: Specificatio
     )
 
 
-def _peak(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, Gain]:
-    """Table of the slip at the peak of the design rail."""
-    import numpy as np
-
-    speeds = np.geomspace(CUT_OUT, specification.speeds[1], PEAK_POINTS)
-    slips, _ = peak_adhesion(vehicle, rail, speeds)
-    why = f"the adhesion of {rail.name} peaks there, under the static load"
+def super_twisting_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
+    """Choose the gains of super-twisting; parameters as :func:`tracking_gains`."""
+    common = tracking_gains(vehicle, rail, specification)
+    rate = _rate(common)
     return (
-        Gain(name="peak_speeds", value=tuple(map(float, speeds)), unit="m/s", why=why),
-        Gain(name="peak_slips", value=tuple(map(float, slips)), unit="-", why=why),
+        *common,
+        Gain(
+            name="integral_rate",
+            value=INTEGRAL_SHARE * rate,
+            unit="1/s",
+            why=f"{INTEGRAL_SHARE:g} k: within the layer the poles are those of q^2 + k q + (k/2)^2, equal",
+        ),
+        _layer(vehicle, rail, specification, rate),
+    )
+
+
+def integral_smc_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
+    """Choose the gains of the integral sliding mode; parameters as :func:`tracking_gains`."""
+    common = tracking_gains(vehicle, rail, specification)
+    whole = _rate(common)
+    rate = SURFACE_SHARE * whole
+    layer = _layer(vehicle, rail, specification, whole)
+    assert isinstance(layer.value, float)
+    return (
+        *(each for each in common if each.name != "approach_rate"),
+        Gain(
+            name="approach_rate",
+            value=rate,
+            unit="1/s",
+            why=f"{SURFACE_SHARE:g} of the rate that sample and valve allow, {whole:.3g} 1/s; the switching adds the rest",
+        ),
+        Gain(
+            name="switching_gain",
+            value=(whole - rate) * layer.value,
+            unit="m/s^2",
+            why="W = k_W Phi: within the layer the switching pulls at the rest of the rate, k_W = "
+            f"{whole - rate:.3g} 1/s",
+        ),
+        layer,
+    )
+
+
+def _rate(gains: tuple[Gain, ...]) -> float:
+    value = next(gain.value for gain in gains if gain.name == "approach_rate")
+    assert isinstance(value, float)
+    return value
+
+
+def _layer(vehicle: Vehicle, rail: Rail, specification: Specification, rate: float) -> Gain:
+    """Width of the layer: the error from which the braking curve of the valve begins, s/k^2."""
+    slew = torque_slew(vehicle, rail, specification)
+    assert isinstance(slew.value, float)
+    value = slew.value / vehicle.wheelset_inertia / rate**2 * vehicle.wheel_radius
+    return Gain(
+        name="layer",
+        value=value,
+        unit="m/s",
+        why=f"Phi = R s/k^2: beyond it the valve cannot let the pull fall as fast as k e would; s = "
+        f"{slew.value / 1e3:.3g} kN m/s over the inertia: {slew.why}",
     )
