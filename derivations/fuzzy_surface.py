@@ -1,9 +1,9 @@
 """Mended adaptive fuzzy law: a surface that the valve moves at once, and an adaptation that stays bounded.
 
 On sigma = e' + k e, e the rim speed above the desired one, the valve acts in the first derivative: filling for the
-share u of the time changes the torque by T' = u (T_in - T)/T_F, so that sigma' = g (u* - u) with g = R (T_in - T)/(J T_F)
-and u* the command that keeps sigma. The law is u = sum b_r w_r + psi sat(sigma/Phi), its weights adapt with
-b_r' = alpha (sigma_D w_r - leakage b_r), sigma_D = sigma - Phi sat(sigma/Phi).
+share u of the time changes the torque by T' = u (T_in - T)/T_F, so that sigma' = g (u* - u) with
+g = R (T_in - T)/(J T_F) and u* the command that keeps sigma. The law is u = sum b_r w_r + psi sat(sigma/Phi), its
+weights adapt with b_r' = alpha (sigma_D w_r - leakage b_r), sigma_D = sigma - Phi sat(sigma/Phi).
 
 Claims: outside the layer V = sigma_D^2/(2 g) + sum (b_r - b*_r)^2/(2 alpha) has, for weights b* that make u* up to an
 error below psi, no term of sigma_D and b_r - b*_r together, so that V' <= -leakage sum b_r (b_r - b*_r); that is
@@ -28,7 +28,7 @@ _error_acceleration = rest - R / J * T_rate
 surface_rate = (_error_acceleration + k * e_rate).subs(T_rate, _torque_rate)
 degree_residual = sp.simplify(sp.diff(surface_rate, u) + R * (T_in - T) / (J * T_F))
 
-# --- Lyapunov function outside the layer, sigma > Phi, for one rule ----------------------------------------------------
+# --- Lyapunov function outside the layer, sigma > Phi, for one rule ------------------------------------------------
 _command = b * strength + psi  # sat = 1
 _needed = ideal * strength + xi  # u*, with an error xi that no weights make
 _V_rate = sigma * (_needed - _command) + (b - ideal) * weight_rate / alpha  # sigma_D sigma'/g + ...

@@ -111,6 +111,7 @@ def load_case(name: str, options: CaseOptions, base: Specification | None = None
         return case_of(read_design(name), options, where=name)
     vehicle, rail = _vehicle(options.vehicle or VEHICLE), _rail(options.rail or RAIL)
     wanted = specification(options, base)
+    controller: Law
     if is_own_controller(name):
         controller = _own_controller(name, vehicle, rail, wanted, options)
         wanted = _specification_of(controller, options, base)

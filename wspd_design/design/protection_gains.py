@@ -1,7 +1,7 @@
 """Gains that every law of a vehicle has, by stated rules.
 
-The slip that is held decides most: a reference that falls as 1/sqrt(v) runs beside the peaks of the rails that are known
-here.
+The slip that is held decides most: a reference that falls as 1/sqrt(v) runs beside the peaks of the rails that are
+known here.
 """
 
 from wspd_design.controllers.protected import OBSERVER_RATE

@@ -3,13 +3,15 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from wspd_design.controllers.family import Family, designed_family
+from wspd_design.controllers.family import Family, tunable_family
 from wspd_design.controllers.gains import SLIP_REFERENCE, GainForm
 from wspd_design.controllers.given import Given
 from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.controllers.protected import protected
 from wspd_design.controllers.protocol import Law, acts_on_vehicle
 from wspd_design.controllers.references import REFERENCE_KINDS, ReferenceKind
+from wspd_design.design.industry import usual_table
+from wspd_design.design.requirements import Requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.loading import constants
@@ -98,6 +100,7 @@ class Design:
     gains: tuple[Gain, ...]
     vehicle_file: str = ""  # of a vehicle of one's own, as seen from the folder of the design file
     rail_file: str = ""
+    requirements: Requirements | None = None  # that it was searched for; rails of one's own as seen from here
 
     def gain(self, name: str) -> GainValue:
         """Return the value of a gain by its name, in the unit of the gain."""
@@ -140,8 +143,7 @@ class Design:
                 f"design {self.name} was made on another rail {rail.name}: its numbers are not those of this one; "
                 "give the rail file of the design with --rail, or re-run wspd design"
             )
-        family = designed_family(self.law)
-        assert family.gains is not None
+        family = tunable_family(self.law)
         given = {gain.name: gain for gain in self.gains}
         unit = given.get("torque_unit")
         counted = float(unit.value) * factor(unit.unit) if unit and isinstance(unit.value, float) else 1.0
@@ -156,12 +158,21 @@ class Design:
                 sample_time=self.specification.sample_time,
                 vehicle=vehicle,
                 rail=rail,
-                numbers=family.gains(**{SLIP_REFERENCE: self.specification.slip}, **numbers),
+                numbers=self._record(family, numbers, vehicle),
                 sensors=self.specification.sensors,
                 reference=self.specification.reference_of(family),
             )
         )
         return seen_by(self.specification.sensors, law, vehicle)
+
+    def _record(self, family: Family, numbers: dict[str, GainValue], vehicle: Vehicle) -> object:
+        """Return the record of the gains, or the table of a law of the industry with its factors."""
+        if family.gains is not None:
+            return family.gains(**{SLIP_REFERENCE: self.specification.slip}, **numbers)
+        assert family.tables is not None
+        assert family.scales is not None
+        assert family.scaled is not None
+        return family.scaled(family.tables(usual_table(vehicle)), family.scales(**numbers))
 
 
 def seen_by(sensors: Sensors, law: Law, vehicle: Vehicle) -> Law:
@@ -169,7 +180,9 @@ def seen_by(sensors: Sensors, law: Law, vehicle: Vehicle) -> Law:
 
     Without a word about sensors it is told the train speed and the torque as they are.
     """
-    return law if acts_on_vehicle(law) or sensors == TOLD else protected(law, vehicle, sensors)
+    if acts_on_vehicle(law) or sensors == TOLD:
+        return law
+    return protected(law, vehicle, sensors)
 
 
 def in_the_law(gain: Gain, form: GainForm, torque_unit: float) -> GainValue:

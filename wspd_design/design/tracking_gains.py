@@ -135,7 +135,7 @@ def integral_smc_gains(vehicle: Vehicle, rail: Rail, specification: Specificatio
             name="approach_rate",
             value=rate,
             unit="1/s",
-            why=f"{SURFACE_SHARE:g} of the rate that sample and valve allow, {whole:.3g} 1/s; the switching adds the rest",
+            why=f"{SURFACE_SHARE:g} of the rate that sample and valve allow, {whole:.3g} 1/s; switching adds the rest",
         ),
         Gain(
             name="switching_gain",

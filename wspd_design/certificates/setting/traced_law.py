@@ -7,7 +7,7 @@ to be the same function, whatever its class or its attributes say.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 from wspd_design.certificates.kernel.checker import PRIME, element
 from wspd_design.certificates.records import Problem
@@ -17,7 +17,7 @@ from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.laws import law_constants
 from wspd_design.controllers import offers
 from wspd_design.controllers.family import FAMILIES
-from wspd_design.controllers.protocol import Controller, Law, Measurement, acts_on_vehicle
+from wspd_design.controllers.protocol import Law, Measurement, acts_on_vehicle
 from wspd_design.parameters.fingerprint import fingerprint
 
 POINTS = 3  # of the field at which two graphs are compared
@@ -76,7 +76,7 @@ def trace(law: Law) -> TracedLaw | str:
     if acts_on_vehicle(law):
         return f"{law.name} {OF_VEHICLE}"
     try:
-        made = law_constants(cast(Controller, law))
+        made = law_constants(law)
     except UntraceableError as reason:
         return f"the step of {law.name} cannot be traced ({reason})"
     x, m, none = ca.SX.sym("x", made.states), ca.SX.sym("m", len(Measurement._fields)), ca.SX(0, 1)
