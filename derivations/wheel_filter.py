@@ -7,19 +7,17 @@ v+ = v - h (kappa a_F + d + g i), z = -(kappa a_F + d) + b, with a_F = (sum tau)
 not explain, e per sample, enters both v+ and z. A wheel that adheres shows R omega = (1 - s) v, and Kalker's slope of
 Polach's creep force, eqs. (5), (6), gives its slip s from its own friction torque.
 
-Claims: the prediction is the motion of the train of eq. (1) over a sample of constant forces; the micro-slip carries the
-friction torque in the linear range; the correction that is used is the textbook one, its gain has the least variance
-also where process and measurement share a noise, and it keeps the covariance positive; the speed of a rim is tracked
-with the double pole theta.
+Claims: the prediction is the motion of the train of eq. (1) over a sample of constant forces; the micro-slip carries
+the friction torque in the linear range; the correction that is used is the textbook one, its gain has the least
+variance also where process and measurement share a noise, and it keeps the covariance positive; the speed of a rim is
+tracked with the double pole theta.
 """
 
 import sympy as sp
 
 from derivations.notation import Generated, symbols
 
-v, m, R, C, k_A, k_S, h, f_d = symbols(
-    "speed mass wheel_radius contact_stiffness adhesion_reduction slip_reduction sample_time resistance"
-)
+m, R, C, k_AS, h, f_d = symbols("mass wheel_radius contact_stiffness creep_factor sample_time resistance")
 kappa, tau, torques, theta, rim, rate, shown = symbols(
     "torque_scale friction_torque friction_torques observer_pole rim_speed rim_rate shown_speed"
 )
@@ -32,12 +30,12 @@ _all = {torques: count * 2 * R * force, kappa: 1}
 motion_residual = sp.simplify(-(slowing.subs(_all) + grade) + (2 * count * force + f_d) / m + grade)
 
 # --- micro-slip ---------------------------------------------------------------------------------------------------
-micro_slip = tau / (2 * R) / (2 * C / sp.pi * (k_A + k_S))
-_s, _mu, _Q = sp.symbols("s mu Q", positive=True)
+micro_slip = tau / (2 * R) / (2 * C / sp.pi * k_AS)
+_s, _mu, _Q, k_A, k_S = sp.symbols("s mu Q k_A k_S", positive=True)
 _gradient = C * _s / (_mu * _Q)
 _polach = 2 * _mu * _Q / sp.pi * (k_A * _gradient / (1 + (k_A * _gradient) ** 2) + sp.atan(k_S * _gradient))
 _slope = sp.limit(sp.diff(_polach, _s), _s, 0)
-micro_slip_residual = sp.simplify(2 * R * _slope * micro_slip - tau)
+micro_slip_residual = sp.simplify(2 * R * _slope * micro_slip.subs(k_AS, k_A + k_S) - tau)
 
 # --- one measurement: x+ = x + K r, S = H P H' + 2 H c + V, K = (P H' + c)/S, P+ = P - K (P H' + c)' -------------
 _P = sp.Matrix(2, 2, sp.symbols("p_11 p_12 p_12 p_22", real=True))
@@ -52,7 +50,9 @@ _gain = (_P * _H.T + _c) / _S
 _best = {_K[0]: _gain[0], _K[1]: _gain[1]}
 gain_residual = sp.simplify(sum(sp.diff(_joseph.trace(), each).subs(_best) ** 2 for each in _K))
 _short = _P - _gain * (_P * _H.T + _c).T
-short_form_residual = sp.simplify(sum((entry**2 for entry in sp.expand(_joseph.subs(_best) - _short)), sp.S.Zero))
+short_form_residual = sp.simplify(
+    sum((entry**2 for entry in sp.expand(_joseph.subs(_best) - _short)), sp.S.Zero)
+)
 _without = {_c[0]: 0, _c[1]: 0}
 positive_residual = sp.simplify((_short.det() - _P.det() * _V / _S).subs(_without))
 
@@ -83,7 +83,7 @@ FUNCTIONS = (
     ),
     Generated(
         name="micro_slip",
-        arguments=(tau, R, C, k_A, k_S),
+        arguments=(tau, R, C, k_AS),
         value=micro_slip,
         summary="Slip of a wheelset that adheres, by the linear theory",
         returns="Slip [-]",
