@@ -30,6 +30,8 @@ from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
+from wspd_design.studies.faults import Robustness, robustness
+from wspd_design.studies.judgment import Judgment
 
 POLE_SPEEDS = 60  # points of the pole map
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
@@ -82,6 +84,8 @@ class Dossier:
     trials: tuple[Trial, ...]  # the design's own stop first
     lag_distances: tuple[float, ...]  # m, of each trial: the part of the distance that the build-up costs
     phase_plane: PhasePlane | None  # of laws with a sliding surface
+    judgment: Judgment | None  # of a design with requirements
+    robustness: Robustness | None  # where wheelsets differ
     scenario: Scenario  # of the stops
     provenance: Provenance
 
@@ -159,6 +163,8 @@ def dossier(
         trials=trials,
         lag_distances=tuple(scenario.initial_speed * each.metrics.lag for each in trials),
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
+        judgment=None,
+        robustness=robustness(vehicle, own, scenario, plant=plant, progress=progress),
         scenario=scenario,
         provenance=Provenance(
             command=command,

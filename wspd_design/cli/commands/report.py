@@ -10,7 +10,8 @@ import typer
 from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.console import console, progress
-from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
@@ -21,7 +22,7 @@ from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
 
 
-@takes_stop_options
+@takes_records
 def report(
     *,
     name: options.ControllerArgument = None,
@@ -32,6 +33,7 @@ def report(
     speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     output: Annotated[
