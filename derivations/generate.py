@@ -23,6 +23,7 @@ from derivations import (
     motion,
     sliding_surface,
     slip_equation,
+    slip_loop,
     track,
     valve_flow,
 )
@@ -42,6 +43,7 @@ MODULES: dict[str, ModuleType] = {
     "brake": brake_actuator,
     "motion": motion,
     "slip": slip_equation,
+    "slip_loop": slip_loop,
     "sliding_surface": sliding_surface,
     "track": track,
     "valve_flow": valve_flow,

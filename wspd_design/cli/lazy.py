@@ -44,8 +44,13 @@ COMMANDS = {
     ),
     "design": Entry(
         DESIGNING,
-        "Choose the gains of a slip controller by rules, say why, and write a design file.",
-        'Example: wspd design --law smc --slip "14 %" -o design.toml',
+        "Choose the gains of a slip controller by rules, or by search for a specification, and write a design file.",
+        'Examples: wspd design --law smc --slip "14 %" -o design.toml; wspd design er24pc-20ms -o design.toml',
+    ),
+    "tune": Entry(
+        DESIGNING,
+        "Tune the numbers of any law with the stops and the effort of a specification, for fair comparisons.",
+        "Example: wspd tune knorr-bremse er24pc-20ms -o knorr.toml",
     ),
     "verify": Entry(
         JUDGING,

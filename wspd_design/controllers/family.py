@@ -12,6 +12,14 @@ from typing import Any, TypeAlias
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.controllers.baselines.knorr_bremse import KnorrBremse
 from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
+from wspd_design.controllers.baselines.scales import (
+    KnorrBremseScales,
+    MitsubishiScales,
+    TrenitaliaScales,
+    scaled_knorr_bremse,
+    scaled_mitsubishi,
+    scaled_trenitalia,
+)
 from wspd_design.controllers.baselines.trenitalia import Trenitalia
 from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.controllers.gains import GainForm, gain_forms
@@ -51,6 +59,8 @@ class Family:
     build: Builder
     gains: type | None = None  # record of the gains; None for a law that is not designed
     tables: Callable[[Preset], object] | None = None  # of a law whose numbers come in presets
+    scales: type | None = None  # record of the factors by which such a table is tuned
+    scaled: Callable[[Any, Any], object] | None = None  # table with its factors
     equations: tuple[
         str, ...
     ] = ()  # numbers of the paper's equations that it rests on, besides those of the plant
@@ -62,8 +72,9 @@ class Family:
 
     @property
     def forms(self) -> tuple[GainForm, ...]:
-        """Gains of a design, in the order of its file."""
-        return () if self.gains is None else gain_forms(self.gains)
+        """Gains of a design, in the order of its file; of a law that decides by a table, the factors on it."""
+        record = self.gains or self.scales
+        return () if record is None else gain_forms(record)
 
 
 def _with_model(law: type) -> Builder:
@@ -138,6 +149,8 @@ FAMILIES: dict[str, Family] = {
             origin=f"{INDUSTRY}, eq. (16)",
             law=Trenitalia,
             tables=load_trenitalia,
+            scales=TrenitaliaScales,
+            scaled=scaled_trenitalia,
             build=_with_table(Trenitalia),
         ),
         Family(
@@ -146,6 +159,8 @@ FAMILIES: dict[str, Family] = {
             origin=f"{INDUSTRY}, eqs. (17), (18)",
             law=KnorrBremse,
             tables=load_knorr_bremse,
+            scales=KnorrBremseScales,
+            scaled=scaled_knorr_bremse,
             build=_with_table(KnorrBremse),
         ),
         Family(
@@ -154,6 +169,8 @@ FAMILIES: dict[str, Family] = {
             origin=f"{INDUSTRY}, Table 5",
             law=Mitsubishi,
             tables=load_mitsubishi,
+            scales=MitsubishiScales,
+            scaled=scaled_mitsubishi,
             build=_with_table(Mitsubishi),
         ),
         Family(
@@ -173,6 +190,11 @@ def designed() -> tuple[Family, ...]:
     return tuple(family for family in FAMILIES.values() if family.gains is not None)
 
 
+def with_numbers() -> tuple[Family, ...]:
+    """Return the families that a design file can hold: those that are designed, and tables with factors."""
+    return tuple(family for family in FAMILIES.values() if family.forms)
+
+
 def with_presets() -> tuple[Family, ...]:
     """Return the families whose tables come in presets."""
     return tuple(family for family in FAMILIES.values() if family.tables is not None)
@@ -189,10 +211,28 @@ def designed_family(name: str) -> Family:
     family = FAMILIES.get(name)
     if family is not None and family.gains is not None:
         return family
-    names = [each.name for each in designed()]
+    raise _no_such_law(name, "designed", designed())
+
+
+def tunable_family(name: str) -> Family:
+    """Return a family whose numbers can be tuned.
+
+    Raises
+    ------
+    UserError
+        If there is none of that name.
+    """
+    family = FAMILIES.get(name)
+    if family is not None and family.forms:
+        return family
+    raise _no_such_law(name, "tuned", with_numbers())
+
+
+def _no_such_law(name: str, what: str, families: tuple[Family, ...]) -> UserError:
+    names = [each.name for each in families]
     near = get_close_matches(name, names, n=1)
     offer = f' (did you mean "{near[0]}"?)' if near else ""
-    raise UserError(f'law "{name}" cannot be designed{offer}; choose {" or ".join(names)}')
+    return UserError(f'law "{name}" cannot be {what}{offer}; choose {" or ".join(names)}')
 
 
 def preset_of(family: Family, name: str) -> Preset:

@@ -7,9 +7,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from wspd_design.controllers.family import designed, designed_family
+from wspd_design.controllers.family import tunable_family, with_numbers
 from wspd_design.controllers.gains import GainForm
 from wspd_design.design.records import Design, Gain, GainValue, Specification, in_the_law
+from wspd_design.design.requirements import read_requirements, requirements_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
 from wspd_design.parameters.laden import LADEN
@@ -18,6 +19,7 @@ from wspd_design.parameters.writing import write_whole
 SCHEMA = "wspd-design/2"
 _HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail", "rail_hash")
 _OPTIONAL = ("vehicle_file", "rail_file")  # of vehicles and rails that do not ship with the program
+_REQUIREMENTS = "requirements"
 _FORMS = {float: "one number", bool: "true or false", tuple[float, ...]: "a list of numbers"}
 _SPECIFICATION = {"slip": "-", "speeds": "m/s", "slips": "-", "slip_tolerance": "-", "sample_time": "s"}
 
@@ -32,6 +34,8 @@ def design_text(design: Design) -> str:
     for gain in design.gains:
         lines += ["", f"[gains.{gain.name}]", f"value = {_toml(gain.value)}"]
         lines += [f"unit = {_toml(gain.unit)}", f"why = {_toml(gain.why)}"]
+    if design.requirements is not None:
+        lines += ["", requirements_text(design.requirements).rstrip()]
     return "\n".join(lines) + "\n"
 
 
@@ -70,14 +74,15 @@ def read_design(path: str | Path) -> Design:
             f'{where} is not a design of this version: schema = "{document.get("schema", "")}" '
             f'must be "{SCHEMA}"; re-run wspd design'
         )
-    _check_keys(document, (*_HEAD, "specification", "gains"), where, "", optional=_OPTIONAL)
+    optional = (*_OPTIONAL, _REQUIREMENTS)
+    _check_keys(document, (*_HEAD, "specification", "gains"), where, "", optional=optional)
     stated = [*_HEAD[1:], *(key for key in _OPTIONAL if key in document)]
     head = {key: _string(document[key], f"{key} in {where}") for key in stated}
     law = head["law"]
-    if law not in [family.name for family in designed()]:
-        choice = ", ".join(family.name for family in designed())
+    if law not in [family.name for family in with_numbers()]:
+        choice = ", ".join(family.name for family in with_numbers())
         raise UserError(f'law = "{law}" in {where} must be one of {choice}')
-    forms = designed_family(law).forms
+    forms = tunable_family(law).forms
     table = _table(document["specification"], "specification", where)
     _check_keys(table, tuple(_SPECIFICATION), where, "specification.")
     values = {key: _value(table[key], f"specification.{key} in {where}") for key in _SPECIFICATION}
@@ -96,7 +101,13 @@ def read_design(path: str | Path) -> Design:
             f"{', '.join(f'gains.{name}' for name in per_rule)} in {where} must have the same length: "
             "one number for each fuzzy rule"
         )
-    return Design(**head, specification=Specification(**values), gains=read)
+    wanted = document.get(_REQUIREMENTS)
+    return Design(
+        **head,
+        specification=Specification(**values),
+        gains=read,
+        requirements=None if wanted is None else read_requirements(wanted, where),
+    )
 
 
 def _gain(form: GainForm, table: object, where: str) -> Gain:

@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from wspd_design.controllers.family import Given, designed_family
+from wspd_design.controllers.family import Family, Given, tunable_family
 from wspd_design.controllers.gains import SLIP_REFERENCE, GainForm
 from wspd_design.controllers.protocol import Controller
+from wspd_design.design.industry import usual_table
+from wspd_design.design.requirements import Requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.loading import constants
@@ -72,6 +74,7 @@ class Design:
     gains: tuple[Gain, ...]
     vehicle_file: str = ""  # of a vehicle of one's own, as seen from the folder of the design file
     rail_file: str = ""
+    requirements: Requirements | None = None  # that it was searched for; rails of one's own as seen from here
 
     def gain(self, name: str) -> GainValue:
         """Return the value of a gain by its name, in the unit of the gain."""
@@ -114,8 +117,7 @@ class Design:
                 f"design {self.name} was made on another rail {rail.name}: its numbers are not those of this one; "
                 "give the rail file of the design with --rail, or re-run wspd design"
             )
-        family = designed_family(self.law)
-        assert family.gains is not None
+        family = tunable_family(self.law)
         given = {gain.name: gain for gain in self.gains}
         unit = given.get("torque_unit")
         counted = float(unit.value) * factor(unit.unit) if unit and isinstance(unit.value, float) else 1.0
@@ -126,9 +128,18 @@ class Design:
                 sample_time=self.specification.sample_time,
                 vehicle=vehicle,
                 rail=rail,
-                numbers=family.gains(**{SLIP_REFERENCE: self.specification.slip}, **numbers),
+                numbers=self._record(family, numbers, vehicle),
             )
         )
+
+    def _record(self, family: Family, numbers: dict[str, GainValue], vehicle: Vehicle) -> object:
+        """Return the record of the gains, or the table of a law of the industry with its factors."""
+        if family.gains is not None:
+            return family.gains(**{SLIP_REFERENCE: self.specification.slip}, **numbers)
+        assert family.tables is not None
+        assert family.scales is not None
+        assert family.scaled is not None
+        return family.scaled(family.tables(usual_table(vehicle)), family.scales(**numbers))
 
 
 def in_the_law(gain: Gain, form: GainForm, torque_unit: float) -> GainValue:

@@ -1,11 +1,18 @@
 """Designs of the laws: for each the rule that chooses its gains, in one table."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
-from wspd_design.controllers.family import Family, designed_family
+from wspd_design.controllers.family import Family, designed_family, tunable_family
 from wspd_design.design.industry import PRINTED, named_with, usual_table
 from wspd_design.design.printed_gains import printed_gains
+from wspd_design.design.ranges import (
+    ADAPTIVE_RANGES,
+    SLIDING_MODE_RANGES,
+    TABLE_RANGES,
+    TORQUE_FEEDBACK_RANGES,
+    SearchRange,
+)
 from wspd_design.design.records import Design, Gain, Specification, rail_hash, vehicle_hash
 from wspd_design.design.sliding_gains import adaptive_gains, sliding_mode_gains
 from wspd_design.design.torque_feedback_gains import torque_feedback_gains
@@ -21,12 +28,15 @@ class GainRules:
     printed: Callable[[], tuple[Gain, ...]] | None = (
         None  # in the paper, which the name of the law stands for
     )
+    ranges: Mapping[str, SearchRange] = field(
+        default_factory=dict
+    )  # where a search looks, by gain; empty: about every rule
 
 
 RULES: dict[str, GainRules] = {
-    "afsmc": GainRules(choose=adaptive_gains, printed=printed_gains),
-    "smc": GainRules(choose=sliding_mode_gains),
-    "torque-feedback": GainRules(choose=torque_feedback_gains),
+    "afsmc": GainRules(choose=adaptive_gains, printed=printed_gains, ranges=ADAPTIVE_RANGES),
+    "smc": GainRules(choose=sliding_mode_gains, ranges=SLIDING_MODE_RANGES),
+    "torque-feedback": GainRules(choose=torque_feedback_gains, ranges=TORQUE_FEEDBACK_RANGES),
 }
 """Rules by the family of laws."""
 
@@ -61,6 +71,25 @@ def design_controller(
     family = designed_family(law)
     gains = _rules(family).choose(vehicle, rail, specification)
     return _design(f"{law}-{vehicle.name}-{rail.name}", family, vehicle, rail, specification, gains)
+
+
+def shipped_design(law: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:
+    """Return what a law is before anybody tuned it: the design behind its name, or its table with all factors 1."""
+    family = tunable_family(law)
+    if family.gains is not None:
+        return named_design(law, vehicle, rail, specification)
+    table = usual_table(vehicle)
+    gains = tuple(
+        Gain(name=form.name, value=1.0, unit="-", why=f"the {table} table as it is") for form in family.forms
+    )
+    return _design(law, family, vehicle, rail, specification, gains)
+
+
+def search_ranges(law: str) -> Mapping[str, SearchRange]:
+    """Return where a search looks for the numbers of a law; empty where nothing is stated."""
+    if law in RULES:
+        return RULES[law].ranges
+    return TABLE_RANGES.get(law, {})
 
 
 def named_design(law: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:

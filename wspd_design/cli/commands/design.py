@@ -1,4 +1,4 @@
-"""``wspd design``: gains that meet a specification, with their reasons."""
+"""``wspd design``: gains by rules, or by a search that a specification asks for, with their reasons."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,15 +10,27 @@ from wspd_design.cli import options
 from wspd_design.cli.console import progress
 from wspd_design.cli.gains import show_design
 from wspd_design.cli.output import check_output
+from wspd_design.cli.searching import SPECIFICATIONS, search_and_write
 from wspd_design.controllers.family import designed_family
 from wspd_design.design import selection
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.design.file import seen_from, write_design
+from wspd_design.design.specification_file import read_task
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 
 def design(
-    law: Annotated[str, typer.Option("--law", metavar="LAW", help=f"{options.LAWS}.")] = options.LAW,
+    wanted: Annotated[
+        str | None,
+        typer.Argument(metavar="SPEC", help=f"What must be reached: {SPECIFICATIONS}.", show_default=False),
+    ] = None,
+    law: Annotated[
+        str | None,
+        typer.Option(
+            "--law", metavar="LAW", help=f"{options.LAWS}. Default: {options.LAW}.", show_default=False
+        ),
+    ] = None,
     vehicle: options.VehicleOption = None,
     rail: options.RailOption = None,
     slip: options.SlipOption = None,
@@ -33,16 +45,45 @@ def design(
     ] = Path(options.DESIGN_FILE),
     force: options.ForceOption = False,
 ) -> None:
-    """Choose the gains of a slip controller by rules, say why, and write a design file."""
+    """Choose the gains of a slip controller by rules, or by search for a specification, and write a design file.
+
+    A search tries many gains on the same drawn vehicles, rails and disturbances, and looks once at sets that it has not
+    seen. What is finished stays in a journal beside the output, and the same command goes on from there.
+    """
     check_output(output, force=force)
-    wanted = specification(
-        CaseOptions(slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time)
-    )
-    chosen = designed_family(law).name
+    given = {
+        "--law": law,
+        "--vehicle": vehicle,
+        "--rail": rail,
+        "--slip": slip,
+        "--tolerance": tolerance,
+        "--speeds": speeds,
+        "--sample-time": sample_time,
+    }
+    if wanted is not None:
+        extra = next((flag for flag, value in given.items() if value is not None), None)
+        if extra is not None:
+            raise UserError(
+                f"{extra} is stated by the specification {wanted}; leave it out, or change the file"
+            )
+        _search(wanted, output, force=force)
+        return
+    asked = specification(CaseOptions(slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time))
+    chosen = designed_family(law or options.LAW).name
     braked, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
     with progress() as tell:
         tell("choosing the gains")
-        made = selection.design_controller(braked, friction, wanted, law=chosen)
+        made = selection.design_controller(braked, friction, asked, law=chosen)
     made = replace(made, vehicle_file=seen_from(output, vehicle), rail_file=seen_from(output, rail))
     write_design(made, output)
     show_design(made, output, braked, friction)
+
+
+def _search(wanted: str, output: Path, *, force: bool) -> None:
+    task = read_task(wanted)
+    braked, friction = load_vehicle(task.vehicle), load_rail(task.design_rail)
+    with progress() as tell:
+        tell("choosing the gains to start from")
+        start = selection.design_controller(braked, friction, task.specification, law=task.law)
+    name = f"{task.law}-{task.name}"
+    search_and_write(task, start, name, output, limits=task.requirements.limits, force=force)

@@ -1,0 +1,189 @@
+"""Sampled loop of observer, surface and valve: in deviations from the torque that holds the slip reference.
+
+With q the secant of the friction over the wheel speed, tau(w) - tau(w_r) = q I (w - w_r), g = (T/T_seen) I^/I, where
+T_seen and I^ are torque and inertia as the law has them, and y = T_seen/I^ - t0, t0 = (tau(w_r)/I - w_r')/g the torque
+that holds the reference, the wheel obeys e' = q e - g y, e = w - w_r. The observer and the surface know friction,
+pads and inertia through t0 alone; in N = h (tau^/I^ - t0 - w_r') and Y = h y constant errors of them drop out.
+
+Claims: between samples e is phi e - g psi y for a constant y. For every course of q between two bounds, (phi, psi) lies
+in a convex set whose edges are courses that change once between the bounds; its edges are concave above and convex
+below, so that tangents enclose it. The observer takes (e, p, N) to (p+, N+) as below, whatever the wheel did. A valve
+that is inverted with wrong times goes the part rho of the wanted way, rho between c = (assumed over true time) and
+its value at the longest pulse. The share of the sample that sees the old torque is at most that of a steady rise.
+"""
+
+import sympy as sp
+
+from derivations.notation import Generated, time
+
+h, g, rho, late, seen, phi, psi = sp.symbols("h g rho late seen phi psi", positive=True)
+e, p, N, Y, k, a, theta = sp.symbols(
+    "error observer_error friction torque gain ahead observer_pole", real=True
+)
+accel, asked, rise, held, turn, turned = sp.symbols(
+    "acceleration_error command_error torque_drift mean_torque_drift reference_drift mean_reference_drift",
+    real=True,
+)
+
+# --- between samples: e' = q e - g y --------------------------------------------------------------------------------
+q, q1, q2, s, y = sp.symbols("q q_1 q_2 s y", real=True, nonzero=True)
+_grown = sp.exp(q * time)
+_psi = (_grown - 1) / q
+between_residual = sp.simplify(
+    sp.diff(_grown * e - g * _psi * y, time) - (q * (_grown * e - g * _psi * y) - g * y)
+)
+
+# --- one change of q, at the time s before the end: q_1 first, q_2 for s --------------------------------------------
+last, first = sp.symbols("last_secant first_secant", real=True, nonzero=True)
+span = sp.Symbol("span", positive=True)  # of the last secant, as a share of h
+_phi = sp.exp(last * span * h + first * (1 - span) * h)
+_psi_per_h = (
+    (sp.exp(last * span * h) - 1) / last
+    + sp.exp(last * span * h) * (sp.exp(first * (1 - span) * h) - 1) / first
+) / h
+slope = (1 - sp.exp(-first * (1 - span) * h)) / (first * h)  # of psi/h over phi along the edge
+slope_residual = sp.simplify(sp.diff(_psi_per_h, span) - slope * sp.diff(_phi, span))
+# The slope falls while the share of the last secant grows: with the larger secant last phi rises, the edge is concave;
+# with the smaller one last phi falls, it is convex.
+bend_residual = sp.simplify(sp.diff(slope, span) + sp.exp(-first * (1 - span) * h))
+run_residual = sp.simplify(sp.diff(_phi, span) - (last - first) * h * _phi)
+
+# --- observer and surface, in numbers of the law --------------------------------------------------------------------
+J, w_r, w_r1, rate, T_h, tau_h, T_m, w = sp.symbols(
+    "J w_r w_r1 rate T_h tau_h T_m w", real=True
+)  # rate: w_r'
+_t0 = sp.Symbol("t_0", real=True)
+_e1 = sp.Symbol("e_1", real=True)  # error at the next sample, whatever made it
+_observed = w_r + e + p  # what the observer has for w
+_friction = J * (N / h + _t0 + rate)
+_torque = J * (Y / h + _t0)
+_known_rate = rate - accel / h  # what the law has for w_r'
+_ahead = e + a * h * ((_friction - _torque) / J - _known_rate)
+_wanted = _friction - J * (_known_rate - k / h * _ahead)
+wanted = N + k * (e + a * (N - Y + accel)) + accel  # Y*
+wanted_residual = sp.expand(h * (_wanted / J - _t0) - wanted)
+
+way = sp.Symbol("way", real=True)  # Y* - Y
+_mean = J * ((Y + seen * way) / h + _t0)  # of the torque over the sample, as the law works it out
+_expected = _observed + h / J * (_friction - _mean)
+_measured = w_r1 + _e1
+_r = _measured - _expected
+innovation = _e1 - e - p - N + Y + seen * way + turned
+_reference = {w_r1: w_r + h * rate + turned}
+innovation_residual = sp.expand((_r - innovation).subs(_reference))
+_observer_next = _expected + (1 - theta**2) * _r - _measured
+_friction_next = h * ((_friction + (1 - theta) ** 2 * J / h * _r) / J - (_t0 + rise / h) - (rate + turn / h))
+observer_next = -(theta**2) * innovation
+friction_next = N + (1 - theta) ** 2 * innovation - rise - turn
+observer_residual = sp.expand((_observer_next - observer_next).subs(_reference))
+friction_residual = sp.expand((_friction_next - friction_next).subs(_reference))
+
+# --- the valve: T goes the part rho of the way to T* -----------------------------------------------------------------
+_step = rho * (way + asked)
+torque_next = Y + _step - rise
+error_next = phi * e - g * psi * (Y + (1 - late) * _step - held)
+x, c, u = sp.symbols("x c u", positive=True)
+part = (1 - x**c) / (1 - x)  # with x = (T_in - T*)/(T_in - T), or T*/T
+longest = sp.Symbol("longest", positive=True)
+part_of_pulse = part.subs(x, sp.exp(-longest))  # x at the end of a pulse, its length over the assumed time
+part_residual = sp.simplify(sp.integrate(c * u ** (c - 1), (u, x, 1), conds="none") - part * (1 - x))
+
+# --- the share of a steady rise that is still to come, weighted by exp(q (h - t)) ------------------------------------
+m = sp.Symbol("m", real=True, nonzero=True)  # q h
+_weight = sp.exp(m * (1 - u))
+lateness = 1 / (1 - sp.exp(-m)) - 1 / m
+lateness_residual = sp.simplify(
+    sp.integrate((1 - u) * _weight, (u, 0, 1)) - lateness * sp.integrate(_weight, (u, 0, 1))
+)
+
+_STATE = {
+    "error": "Deviation e of the wheel speed from its reference [rad/s]",
+    "observer_error": "Observed wheel speed minus the true one, p [rad/s]",
+    "friction": "Deviation N of the observed friction torque, times h over the inertia of the law [rad/s]",
+    "torque": "Deviation Y of the torque that the law sees, times h over the inertia of the law [rad/s]",
+    "gain": "Gain k of the surface times h [-]",
+    "ahead": "Share of a sample by which the error is predicted [-]",
+    "acceleration_error": "Error of the acceleration of the reference that the law has, times h [rad/s]",
+    "phi": "What becomes of an error within the sample without torque [-]",
+    "psi": "What a torque contributes within the sample, over h [-]",
+    "g": "True over assumed effect of the torque, (T/T_seen) (assumed/true inertia) [-]",
+    "rho": "Part of the wanted way that the valve goes [-]",
+    "late": "Share of the sample that sees the torque before the pulse [-]",
+    "seen": "Share of the wanted way in the mean torque that the law works out [-]",
+    "observer_pole": "Pole theta of the observer [-]",
+    "way": "Y* - Y, the change of the torque that is wanted [rad/s]",
+    "command_error": "What dead band and shortest pulse add to the wanted change [rad/s]",
+    "torque_drift": "Change of h t0 over the sample [rad/s]",
+    "mean_torque_drift": "Its weighted mean over the sample [rad/s]",
+    "reference_drift": "Change of h w_r' over the sample [rad/s]",
+    "mean_reference_drift": "Change of w_r over the sample beyond h w_r' [rad/s]",
+    "last_secant": "Secant in the last part of the sample, not 0 [1/s]",
+    "first_secant": "Secant in the first part, not 0 [1/s]",
+    "span": "Share of the sample that is the last part [-]",
+    "h": "Sample time [s]",
+    "c": "Assumed over true time of the valve [-]",
+    "longest": "Longest pulse over the assumed time of the valve [-]",
+    "m": "Secant times sample time, not 0 [-]",
+}
+
+
+def _function(
+    name: str,
+    arguments: tuple[sp.Symbol, ...],
+    value: sp.Expr | tuple[sp.Expr, ...],
+    summary: str,
+    returns: str,
+) -> Generated:
+    return Generated(
+        name=name,
+        arguments=arguments,
+        value=value,
+        summary=summary,
+        returns=returns,
+        equation="docs/theory.md#band",
+        meanings={each.name: _STATE[each.name] for each in arguments},
+    )
+
+
+FUNCTIONS = (
+    _function(
+        "wanted_torque",
+        (e, N, Y, k, a, accel),
+        wanted,
+        "Deviation Y* of the torque that the law wants",
+        "Y* [rad/s]",
+    ),
+    _function(
+        "next_sample",
+        (e, p, N, Y, way, phi, psi, g, rho, late, seen, theta, asked, rise, held, turn, turned),
+        (
+            error_next,
+            observer_next.subs(_e1, error_next),
+            friction_next.subs(_e1, error_next),
+            torque_next,
+        ),
+        "State of the loop one sample later",
+        "e, p, N and Y [rad/s]",
+    ),
+    _function(
+        "switched_slide",
+        (last, first, span, h),
+        (_phi, _psi_per_h, slope),
+        "Numbers of a sample in which the secant changes once",
+        "phi, psi/h, and the slope of psi/h over phi along the edge that such samples form",
+    ),
+    _function(
+        "part_of_way",
+        (c, longest),
+        part_of_pulse,
+        "Part of the wanted way that the valve goes with the longest pulse; with the shortest it is c",
+        "Part [-]",
+    ),
+    _function(
+        "lateness",
+        (m,),
+        lateness,
+        "Largest share of the sample that can see the torque before the pulse",
+        "Share [-]",
+    ),
+)

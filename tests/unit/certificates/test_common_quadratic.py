@@ -1,0 +1,40 @@
+"""Common quadratic functions of a sampled loop: found where they exist, and never where a corner is unstable."""
+
+import math
+
+import numpy as np
+import pytest
+
+from wspd_design.certificates.search.common_quadratic import contraction
+from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, LoopRanges, corners
+
+STEADY = LoopRanges(secants=(-3.0, 1.0), effects=(0.8, 0.8), parts=(0.55, 0.65), seen=(0.3, 0.62))
+
+
+def law(gain):
+    return LoopLaw(sample_time=0.02, gain=gain, ahead=0.5, pole=math.exp(-0.6))
+
+
+def test_factor_is_one_by_which_products_of_the_corners_fall():
+    maps = [np.array(each)[:, :STATES] for each in corners(law(0.16), STEADY)]
+    factor = contraction(corners(law(0.16), STEADY))
+    assert factor is not None
+    assert factor < 1.0
+    random, steps = np.random.default_rng(5), 400
+    product = np.eye(STATES)
+    for number in random.integers(len(maps), size=steps):
+        product = maps[number] @ product
+    assert np.linalg.norm(product, 2) < 1e3 * factor**steps
+
+
+@pytest.mark.parametrize("gain", [0.16, 3.0])
+def test_no_function_is_found_where_a_corner_grows(gain):
+    grows = any(
+        max(abs(np.linalg.eigvals(np.array(each)[:, :STATES]))) > 1.0 for each in corners(law(gain), STEADY)
+    )
+    assert grows == (gain == 3.0)
+    assert (contraction(corners(law(gain), STEADY)) is None) == grows
+
+
+def test_same_factor_each_time():
+    assert len({contraction(corners(law(0.16), STEADY)) for _ in range(3)}) == 1

@@ -1,0 +1,204 @@
+"""From a task to a design: search, choice, sensitivities, and one look at the held-out sets."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from wspd_design.certificates.records import Status
+from wspd_design.design.judging import held_out, threads
+from wspd_design.design.problem import stability_problem
+from wspd_design.design.records import Design
+from wspd_design.design.requirements import Judged, Limit, judged_by
+from wspd_design.design.search.journal import Journal
+from wspd_design.design.search.run import Aim, Evaluation, Space, best, front, search
+from wspd_design.design.search.score import Score, violation
+from wspd_design.design.search.sensitivity import Sensitivity, sensitivities
+from wspd_design.design.search.sets import draw_sets
+from wspd_design.design.search.variables import Variable, variables_of
+from wspd_design.design.selection import search_ranges
+from wspd_design.design.specification_file import Task
+from wspd_design.parameters.fingerprint import fingerprint
+from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.simulation.campaign_rows import program_fingerprint
+
+_KEY_FORMAT = 1
+PROOF_TRIALS = 5  # points, the best first, of which certificates are asked for
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Found:
+    """A search with its result."""
+
+    task: Task
+    design: Design
+    start: Design
+    variables: tuple[Variable, ...]
+    limits: tuple[Limit, ...]  # that the search had to keep
+    tried: tuple[Evaluation, ...]  # the first is the start
+    chosen: Evaluation
+    reason: str  # of the choice
+    front: tuple[Evaluation, ...]
+    sensitivities: tuple[Sensitivity, ...]
+    held_out_start: Score
+    held_out: Score
+    judged: tuple[Judged, ...]  # on the held-out sets
+    unproved: tuple[str, ...]  # certificates that must hold, and do not
+
+
+def find(
+    task: Task,
+    start: Design,
+    name: str,
+    *,
+    limits: tuple[Limit, ...],
+    journal: Path,
+    progress: Callable[[int], object] = abs,
+    told: Callable[[str], object] = str,
+) -> Found:
+    """Search a design.
+
+    Parameters
+    ----------
+    task : Task
+        Requirements, stops and effort.
+    start : Design
+        Design that the search starts from, whose vehicle and design rail are those of the task.
+    name : str
+        Of the design that is found.
+    limits : tuple of Limit
+        That points must keep before their distance counts; those of the task, or none for a law that is only tuned.
+    journal : Path
+        File for what is finished, from which the same search goes on.
+    progress : callable
+        Told the number of evaluations that are done.
+    told : callable
+        Told a sentence when an older journal has to give way.
+
+    Returns
+    -------
+    Found
+        The design has the requirements of the task in it. The held-out sets are drawn once, after the search.
+    """
+    vehicle, rail = load_vehicle(task.vehicle), load_rail(task.design_rail)
+    space = Space(
+        base=start,
+        variables=variables_of(start, search_ranges(start.law)),
+        build=lambda design: design.build(vehicle, rail),
+    )
+    aim, effort = Aim(limits=limits), task.effort
+    notes = Journal(journal, _key(task, space, vehicle, rail))
+    if notes.replaced:
+        told(f"{journal} belongs to another search or program and was begun anew")
+    with threads() as pool:
+        sets = draw_sets(task.requirements, vehicle, task.vehicle, effort.sets, pool)
+        tried = search(
+            space,
+            aim,
+            sets,
+            method=effort.method,
+            evaluations=effort.evaluations,
+            seed=effort.sets.seed,
+            journal=notes,
+            pool=pool,
+            progress=progress,
+        )
+        chosen, unproved = _chosen(tried, aim, space, task, vehicle, rail)
+        steps = sensitivities(space, chosen.point, sets, pool)
+        made = _explained(space, chosen, task, name)
+        at_start, reached = _once([start, made], rail, task, pool)
+    return Found(
+        task=task,
+        design=made,
+        start=start,
+        variables=space.variables,
+        limits=limits,
+        tried=tuple(tried),
+        chosen=chosen,
+        reason=_reason(tried, chosen, aim),
+        front=tuple(front(tried)),
+        sensitivities=steps,
+        held_out_start=at_start,
+        held_out=reached,
+        judged=judged_by(task.requirements.limits, reached.reached),
+        unproved=unproved,
+    )
+
+
+def _key(task: Task, space: Space, vehicle: Vehicle, rail: Rail) -> str:
+    """Content key of the scores: all that they depend on beside the point."""
+    stops = replace(task.requirements, limits=(), certificates=(), held_out=task.effort.sets)
+    rails = tuple(load_rail(each) for each in stops.rails)
+    return fingerprint(
+        _KEY_FORMAT, space.base, space.variables, stops, vehicle, rail, rails, program_fingerprint()
+    )
+
+
+def _once(designs: list[Design], rail: Rail, task: Task, pool: Executor) -> list[Score]:
+    """Look at the held-out sets."""
+    return held_out(designs, rail, task.requirements, task.vehicle, pool)
+
+
+def _chosen(
+    tried: list[Evaluation], aim: Aim, space: Space, task: Task, vehicle: Vehicle, rail: Rail
+) -> tuple[Evaluation, tuple[str, ...]]:
+    """Return the best point whose certificates hold; the best of all if none of the first does."""
+    first = best(tried, aim)
+    wanted = task.requirements.certificates
+    if not wanted:
+        return first, ()
+    for each in sorted(tried, key=aim.rank)[:PROOF_TRIALS]:
+        if not _unproved(space.design(each.point), wanted, vehicle, rail):
+            return each, ()
+    return first, _unproved(space.design(first.point), wanted, vehicle, rail)
+
+
+def _unproved(design: Design, names: tuple[str, ...], vehicle: Vehicle, rail: Rail) -> tuple[str, ...]:
+    """Return the certificates that are not proved for a design."""
+    from wspd_design.certificates.suite import verify
+
+    problem = stability_problem(vehicle, rail, design.build(vehicle, rail), design.specification)
+    found = verify(problem, only=names, figures=False)
+    return tuple(each.name for each in found if each.status is not Status.PROVED)
+
+
+def _explained(space: Space, chosen: Evaluation, task: Task, name: str) -> Design:
+    """Return the chosen design with the reasons of its numbers."""
+    made, effort = space.design(chosen.point), task.effort
+    searched = {variable.name: variable for variable in space.variables}
+    gains = []
+    for gain, before in zip(made.gains, space.base.gains, strict=True):
+        variable = searched.get(gain.name)
+        if variable is None:
+            gains.append(gain)
+            continue
+        where = f"{'a factor of ' if variable.factor else ''}{variable.low:g} to {variable.high:g} {variable.unit}"
+        why = (
+            f"searched from {where.removesuffix(' -')}: {variable.why}; best of {effort.evaluations} evaluations on "
+            f"{effort.sets.sets} sets of seed {effort.sets.seed} ({effort.method}); before: {_told(before.value)}, "
+            f"{before.why}"
+        )
+        gains.append(replace(gain, why=why))
+    return replace(made, name=name, gains=tuple(gains), requirements=task.requirements)
+
+
+def _told(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else f"{value}"
+
+
+def _reason(tried: list[Evaluation], chosen: Evaluation, aim: Aim) -> str:
+    holding = sum(aim.holds(each) for each in tried)
+    start = tried[0]
+    compared = f"objective {chosen.score.objective:.4f} against {start.score.objective:.4f} at the start"
+    if not aim.limits:
+        return f"smallest objective of {len(tried)} points, without limits: {compared}"
+    if aim.holds(chosen):
+        return (
+            f"smallest objective of the {holding} points among {len(tried)} that keep all limits: {compared}"
+        )
+    missed = violation(chosen.score, aim.limits)
+    return (
+        f"none of {len(tried)} points keeps all limits; this one misses them least, by {missed:.2f} in the scales of "
+        f"the criteria: {compared}"
+    )

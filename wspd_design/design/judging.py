@@ -1,0 +1,76 @@
+"""Judge a design by the requirements that it was made for, on the sets that its search never saw."""
+
+import os
+from collections.abc import Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from wspd_design.design.records import Design
+from wspd_design.design.requirements import Judged, Requirements, judged_by
+from wspd_design.design.search.evaluation import evaluate
+from wspd_design.design.search.score import Score, score
+from wspd_design.design.search.sets import draw_sets
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import beside
+from wspd_design.parameters.loading import load_vehicle
+from wspd_design.parameters.records import Rail
+
+
+def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged, ...]:
+    """Compute the figures of a design on its held-out sets again and compare them with its limits.
+
+    Parameters
+    ----------
+    design : Design
+        With requirements.
+    rail : Rail
+        The design rail.
+    folder : Path
+        Of the design file, from which its own files are seen.
+
+    Returns
+    -------
+    tuple of Judged
+        In the order of the criteria: those with a limit, and those that are told without one.
+
+    Raises
+    ------
+    UserError
+        If the design states no requirements, or its files are not there.
+    """
+    if design.requirements is None:
+        raise UserError(
+            f"design {design.name} states no requirements; make it from a specification: wspd design SPEC"
+        )
+    wanted = seen_from_here(design.requirements, folder)
+    name = beside(design.vehicle_file, folder) if design.vehicle_file else design.vehicle
+    with threads() as pool:
+        (reached,) = held_out([design], rail, wanted, name, pool)
+    return judged_by(wanted.limits, reached.reached)
+
+
+def held_out(
+    designs: list[Design], rail: Rail, requirements: Requirements, vehicle_name: str, pool: Executor
+) -> list[Score]:
+    """Return what designs for one vehicle reach on the held-out sets."""
+    vehicle = load_vehicle(vehicle_name)
+    sets = draw_sets(requirements, vehicle, vehicle_name, requirements.held_out, pool)
+    laws = [design.build(vehicle, rail) for design in designs]
+    return [score(figures) for figures in evaluate(laws, sets, pool)]
+
+
+def seen_from_here(requirements: Requirements, folder: Path) -> Requirements:
+    """Return requirements of a file in a folder with the paths of rails as they are seen from here."""
+    return replace(requirements, rails=tuple(beside(name, folder) for name in requirements.rails))
+
+
+@contextmanager
+def threads() -> Iterator[Executor]:
+    """Threads on all cores, which the compiled loop keeps busy; an error leaves no work behind."""
+    pool = ThreadPoolExecutor(max_workers=os.cpu_count())
+    try:
+        yield pool
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)

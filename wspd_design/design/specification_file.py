@@ -1,0 +1,161 @@
+"""The file of a specification: law, vehicle, rails, requirements and effort, as TOML with units."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from wspd_design.controllers.family import tunable_family
+from wspd_design.design.case import RAIL, CaseOptions, specification
+from wspd_design.design.records import Specification
+from wspd_design.design.requirements import (
+    DrawnSets,
+    Requirements,
+    check_keys,
+    read_requirements,
+    read_sets,
+    table_of,
+    whole,
+)
+from wspd_design.design.search.methods import METHODS
+from wspd_design.design.search.sets import disjoint
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import beside, data_file, read_toml
+from wspd_design.parameters.words import did_you_mean
+
+SCHEMA = "wspd-specification/1"
+_FOLDER = "specifications"
+_OF_THE_DESIGN = ("slip", "tolerance", "sample_time")
+_KEYS = (
+    "schema",
+    "name",
+    "law",
+    "vehicle",
+    "design_rail",
+    *_OF_THE_DESIGN,
+    "speeds",
+    "requirements",
+    "search",
+)
+_MOST_EVALUATIONS = 1_000_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effort:
+    """How a search is made."""
+
+    method: str
+    evaluations: int
+    sets: DrawnSets
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Task:
+    """A design that is asked for; names of files are as seen from here."""
+
+    name: str
+    law: str
+    vehicle: str
+    design_rail: str
+    specification: Specification
+    requirements: Requirements
+    effort: Effort
+
+
+def shipped_specifications() -> list[str]:
+    """Return the names of the specifications that ship with the program, sorted."""
+    return sorted(entry.name.removesuffix(".toml") for entry in data_file(_FOLDER).iterdir())
+
+
+def read_task(name_or_path: str) -> Task:
+    """Read a specification.
+
+    Parameters
+    ----------
+    name_or_path : str
+        Name of a shipped one, or the path of a ``.toml`` file; files that it names are looked up beside it.
+
+    Raises
+    ------
+    UserError
+        If there is none, a key is unknown or missing, or a value impossible.
+    """
+    if name_or_path.endswith(".toml"):
+        path = Path(name_or_path)
+        return _beside(_task(read_toml(path, str(path)), str(path)), path.parent)
+    names = shipped_specifications()
+    if name_or_path not in names:
+        raise UserError(
+            f'unknown specification "{name_or_path}"{did_you_mean(name_or_path, names)}; available: '
+            f"{', '.join(names)}, or the path of a .toml file"
+        )
+    file = f"{name_or_path}.toml"
+    return _task(read_toml(data_file(_FOLDER, file), file), file)
+
+
+def _task(document: dict[str, Any], where: str) -> Task:
+    if document.get("schema") != SCHEMA:
+        raise UserError(
+            f'{where} is not a specification of this version: schema = "{document.get("schema", "")}" must be '
+            f'"{SCHEMA}"'
+        )
+    check_keys(document, _KEYS, "", where, needed=("name", "law", "vehicle", "requirements", "search"))
+    words = {key: _text(document[key], key, where) for key in _KEYS[:5] if key in document}
+    law = tunable_family(words["law"]).name
+    requirements = read_requirements(document["requirements"], where)
+    effort = _effort(table_of(document["search"], "search", where), where)
+    if not disjoint(effort.sets, requirements.held_out):
+        raise UserError(
+            f"search.seed = {effort.sets.seed} and requirements.held_out.seed = {requirements.held_out.seed} in "
+            f"{where} share stops; keep the seeds farther apart than the numbers of sets, such as 1000 and 900000"
+        )
+    return Task(
+        name=words["name"],
+        law=law,
+        vehicle=words["vehicle"],
+        design_rail=words.get("design_rail", RAIL),
+        specification=specification(_options(document, where)),
+        requirements=requirements,
+        effort=effort,
+    )
+
+
+def _options(document: dict[str, Any], where: str) -> CaseOptions:
+    slip, tolerance, sample_time = (
+        _text(document[key], key, where) if key in document else None for key in _OF_THE_DESIGN
+    )
+    speeds = document.get("speeds")
+    pair = None
+    if speeds is not None:
+        if not isinstance(speeds, list) or len(speeds) != 2 or not all(isinstance(x, str) for x in speeds):
+            raise UserError(
+                f'speeds = {speeds!r} in {where} must be two speeds with units, such as ["10 km/h", "120 km/h"]'
+            )
+        pair = speeds[0], speeds[1]
+    return CaseOptions(slip=slip, tolerance=tolerance, sample_time=sample_time, speeds=pair)
+
+
+def _effort(table: dict[str, Any], where: str) -> Effort:
+    known = ("method", "evaluations", "sets", "seed")
+    check_keys(table, known, "search.", where, needed=("evaluations", "sets", "seed"))
+    method = table.get("method", "cma")
+    if method not in METHODS:
+        raise UserError(f"search.method = {method!r} in {where} must be one of {', '.join(METHODS)}")
+    evaluations = whole(table["evaluations"], "search.evaluations", where, least=1, most=_MOST_EVALUATIONS)
+    drawn = read_sets({key: table[key] for key in ("sets", "seed")}, "search", where)
+    return Effort(method=method, evaluations=evaluations, sets=drawn)
+
+
+def _beside(task: Task, folder: Path) -> Task:
+    rails = tuple(beside(name, folder) for name in task.requirements.rails)
+    return replace(
+        task,
+        vehicle=beside(task.vehicle, folder),
+        design_rail=beside(task.design_rail, folder),
+        requirements=replace(task.requirements, rails=rails),
+    )
+
+
+def _text(value: object, key: str, where: str) -> str:
+    if not isinstance(value, str):
+        raise UserError(f"{key} = {value!r} in {where} must be text in quotes, with its unit if it has one")
+    return value

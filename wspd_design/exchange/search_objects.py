@@ -1,0 +1,39 @@
+"""A search as plain data, in the form of the vocabulary."""
+
+from dataclasses import asdict
+from typing import Any
+
+from wspd_design.design.finding import Found
+from wspd_design.design.search.score import plain_score
+from wspd_design.exchange.search_forms import SEARCH
+from wspd_design.exchange.version import program_version
+
+
+def search_object(found: Found) -> dict[str, Any]:
+    """Return what was varied, tried, chosen and reached."""
+    task, tried = found.task, list(found.tried)
+    return {
+        "schema": SEARCH.schema,
+        "design": found.design.name,
+        "law": found.design.law,
+        "vehicle": found.design.vehicle,
+        "rail": found.design.rail,
+        "sample_time_s": found.design.specification.sample_time,
+        "rails": list(task.requirements.rails),
+        "method": task.effort.method,
+        "evaluations": len(tried),
+        "search_sets": asdict(task.effort.sets),
+        "variables": [asdict(variable) for variable in found.variables],
+        "limits": {limit.criterion: limit.value for limit in found.limits},
+        "points": [{"values": list(each.values), "score": plain_score(each.score)} for each in tried],
+        "chosen": tried.index(found.chosen),
+        "reason": found.reason,
+        "front": [tried.index(each) for each in found.front],
+        "sensitivities": [asdict(each) for each in found.sensitivities],
+        "held_out_sets": asdict(task.requirements.held_out),
+        "held_out_start": plain_score(found.held_out_start),
+        "held_out": plain_score(found.held_out),
+        "requirements": [asdict(each) for each in found.judged],
+        "unproved": list(found.unproved),
+        "version": program_version(),
+    }
