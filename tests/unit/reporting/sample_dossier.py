@@ -159,7 +159,6 @@ def judgment(**reached: float) -> Judgment:
             draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
         ),
         judged=judged_by(limits, numbers),
-        effort="The gains were found by hand.",
     )
 
 

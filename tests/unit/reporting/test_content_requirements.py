@@ -47,7 +47,6 @@ def test_the_stops_are_named_with_their_seed_and_what_is_drawn():
         "200 stops that no search has seen, seed 77",
         "polach-wet and polach-dry in turn",
         "all numbers with bounds of the rail and stop.sensing.dead_time",
-        "The gains were found by hand.",
     ):
         assert words in said
 

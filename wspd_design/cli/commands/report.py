@@ -16,6 +16,7 @@ from wspd_design.cli.output import check_output
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
+from wspd_design.design.catalog import is_design_file
 from wspd_design.design.certification import stored_beside
 from wspd_design.design.records import Design
 from wspd_design.design.selection import named_design
@@ -68,6 +69,7 @@ def report(
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
             stored=stored_beside(chosen_name),
+            folder=Path(chosen_name).parent if is_design_file(chosen_name) else Path(),
             progress=tell,
         )
         tell("typesetting")

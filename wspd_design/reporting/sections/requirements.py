@@ -5,6 +5,7 @@ from wspd_design.design.requirements import Judged
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Heading, Paragraph, Status
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.judgment import Judgment
 
@@ -31,7 +32,7 @@ def requirements(dossier: Dossier) -> tuple[Block, ...]:
         return ()
     return (
         Heading(text="Requirements", anchor=REQUIREMENTS),
-        Paragraph(text=_stops(judgment)),
+        Paragraph(text=rich(_stops(judgment))),
         build(
             judgment.judged,
             (
@@ -81,11 +82,11 @@ def _stops(judgment: Judgment) -> str:
     drawn = [draw.name for draw in wanted.draws]
     spread = [
         *(f"all numbers with bounds of the {kind}" for kind in wanted.within_bounds),
-        *([", ".join(drawn)] if drawn else []),
+        *(escape(name) for name in drawn),
     ]
     differ = f"They differ in {numbers.listing(spread)}. " if spread else ""
     return (
         f"The design is judged on {stops_of(judgment)}: vehicle, rail and disturbances are drawn anew for each stop, on "
-        f"{numbers.listing(wanted.rails)} in turn. {differ}Efficiency is the ideal stop of the same draw over the "
-        f"distance. {judgment.effort}".rstrip()
+        f"{escape(numbers.listing(wanted.rails))} in turn. {differ}Efficiency is the ideal stop of the same draw over the "
+        "distance. How the gains were found stands beside each of them in [](#design)."
     )
