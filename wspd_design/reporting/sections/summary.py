@@ -14,7 +14,7 @@ from wspd_design.reporting.sections.checks import check_anchor, is_bad_news, sta
 from wspd_design.reporting.sections.requirements import REQUIREMENTS, stops_of
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
-from wspd_design.reporting.yardsticks import ideal_distance, ideal_sentence, proved_bound
+from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
 from wspd_design.simulation.description import held_slip, rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import Metrics
@@ -145,7 +145,8 @@ def _stop(dossier: Dossier) -> tuple[str, bool]:
         return f"{start} does not end: {run.ending.value}.", False
     takes = f"{start} takes {numbers.uncertain(figures.distance, own.check.spread, 1)} m"
     if dossier.judgment is not None:
-        return f"{takes}; {ideal_sentence(figures)[0].lower()}{ideal_sentence(figures)[1:]}", True
+        known = figures.ideal_ending is Ending.STOPPED
+        return f"{takes}{f', the ideal stop {ideal_distance(figures)}' if known else ''}.", True
     inside = figures.slip_rms <= specification.slip_tolerance
     side = "within" if inside else "beyond"
     said = (
