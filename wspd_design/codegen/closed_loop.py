@@ -13,11 +13,22 @@ from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
 from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, kinds_of, plant_kernels
 from wspd_design.codegen.law_library import LoadedLaw, load_law, pointer
-from wspd_design.codegen.loop_numbers import DOUBLES, LANE_TOTALS, STOP_TOTALS, Head, LoopInput, LoopOutput
+from wspd_design.codegen.loop_numbers import (
+    DISTANCE_TOLERANCE,
+    DOUBLES,
+    ERROR_SPEED,
+    LANE_SEEN,
+    LANE_TOTALS,
+    STOP_SEEN,
+    STOP_TOTALS,
+    Head,
+    LoopInput,
+    LoopOutput,
+)
 from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.prebuilt import prebuilt_library
-from wspd_design.codegen.sampled import drive
-from wspd_design.controllers.protocol import Command, Controller, Measurement
+from wspd_design.codegen.sampled import drive, measurement_of
+from wspd_design.controllers.protocol import Command, Law, VehicleMeasurement
 from wspd_design.model.further_brakes import LEAST_SHARE
 from wspd_design.plants.protocol import Plant
 
@@ -52,12 +63,13 @@ class ClosedLoop:
         law = self._law
         assert law is not None, "a loop without a law is driven by run_with"
         buffer, trace, keep = self._begin(given)
-        samples = np.zeros((sample_rows, 1 + (law.states + 5) * self.axles * self.stops))
+        width = law.states + (2 + LANE_SEEN) * self.axles + STOP_SEEN
+        samples = np.zeros((sample_rows, 1 + width * self.stops))
         result = law.run(self._library, buffer, pointer(samples) if sample_rows else None, sample_rows)
         del keep
         return self._output(buffer, result, trace, samples)
 
-    def run_with(self, given: LoopInput, controller: Controller, *, sample_rows: int) -> LoopOutput:
+    def run_with(self, given: LoopInput, controller: Law, *, sample_rows: int) -> LoopOutput:
         """Run a single stop with a controller that stays in Python."""
         buffer, trace, keep = self._begin(given)
         result, samples = drive(_Plant(self._library, buffer, self.axles), controller, sample_rows)
@@ -74,6 +86,7 @@ class ClosedLoop:
         head.trace_rows, head.queue_rows = given.trace_rows, given.waiting_commands
         arrays = {
             "disturbance": given.disturbances,
+            "fault": given.faults,
             "queue": np.empty((given.waiting_commands, 2 * self.axles * self.stops)),
             "patch_start": given.patch_starts,
             "patch_rail": given.patch_rails,
@@ -136,20 +149,28 @@ class _Plant:
     def running(self) -> bool:
         return bool(self._library.wspd_running(self._buffer))
 
-    def measure(self) -> list[Measurement]:
-        axles = self._axles
-        seen = (ctypes.c_double * (3 * axles))()
-        self._library.wspd_measure(self._buffer, seen)
-        return [Measurement(*(seen[row * axles + axle] for row in range(3))) for axle in range(axles)]
+    @property
+    def wheelsets(self) -> int:
+        return self._axles
 
-    def advance(self, commands: list[Command]) -> int:
+    def measure(self) -> VehicleMeasurement:
+        seen = (ctypes.c_double * (LANE_SEEN * self._axles + STOP_SEEN))()
+        self._library.wspd_measure(self._buffer, seen)
+        return measurement_of(list(seen), self._axles)
+
+    def judge(self, speed: float | None, references: tuple[float, ...]) -> None:
+        one = None if speed is None else (ctypes.c_double * 1)(speed)
+        held = (ctypes.c_double * self._axles)(*references) if references else None
+        self._library.wspd_judge(self._buffer, one, held)
+
+    def advance(self, commands: tuple[Command, ...]) -> int:
         fill = (ctypes.c_double * self._axles)(*(command.fill for command in commands))
         vent = (ctypes.c_double * self._axles)(*(command.vent for command in commands))
         return int(self._library.wspd_sample(self._buffer, fill, vent))
 
 
 def load_closed_loop(
-    plant: Plant, controller: Controller | None, *, stops: int = 1, disturbed: bool = False
+    plant: Plant, controller: Law | None, *, stops: int = 1, disturbed: bool = False
 ) -> ClosedLoop:
     """Load the loop of a controller with its present numbers; what was not compiled before is compiled.
 
@@ -157,8 +178,8 @@ def load_closed_loop(
     ----------
     plant : Plant
         Of the kind to be simulated; its numbers are inputs of the loop.
-    controller : Controller or None
-        Law of every wheelset; None for a loop that is driven from Python.
+    controller : Law or None
+        Law of every wheelset or of the vehicle; None for a loop that is driven from Python.
     stops : int
         Stops side by side.
     disturbed : bool
@@ -204,6 +225,12 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
         "INERTIA": PARAMETERS.index(("vehicle", "wheelset_inertia")),
         "MASS": PARAMETERS.index(("vehicle", "mass")),
         "OFFSET": PARAMETERS.index(("surroundings", "axle_offset")),
+        "GRADE_FORCE": PARAMETERS.index(("surroundings", "grade_force")),
+        "LANE_SEEN": LANE_SEEN,
+        "STOP_SEEN": STOP_SEEN,
+        "ERROR_SPEED": ERROR_SPEED,
+        "FREE_DISTANCE": DISTANCE_TOLERANCE[0],
+        "DISTANCE_SHARE": DISTANCE_TOLERANCE[1],
         "DRAIN": PARAMETERS.index(("surroundings", "reservoir_drain")),
         "FIRST_RAIL": next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail"),
     }
@@ -215,7 +242,7 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
     parts += [folder.joinpath(name).read_text() for name in ("elementary.h", "random.h")]
     lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
     groups = {
-        "STOPS": (kernels.stop_constants, kernels.loads, kernels.train),
+        "STOPS": (kernels.stop_constants, kernels.loads, kernels.train, kernels.demand),
         lanes: (kernels.lane_constants, kernels.contact, kernels.axle, kernels.slope),
         twice: (kernels.window_constants, kernels.actuator, *((kernels.kinks,) if places["KINKS"] else ())),
     }

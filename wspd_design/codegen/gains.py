@@ -62,6 +62,18 @@ class Gain:
         """Sine."""
         return self._applied(math.sin, "OP_SIN")
 
+    def tan(self) -> "Gain":
+        """Tangent."""
+        return self._applied(math.tan, "OP_TAN")
+
+    def log(self) -> "Gain":
+        """Natural logarithm."""
+        return self._applied(math.log, "OP_LOG")
+
+    def sqrt(self) -> "Gain":
+        """Square root."""
+        return self._applied(math.sqrt, "OP_SQRT")
+
     def __neg__(self) -> "Gain":
         return self._applied(operator.neg, "OP_NEG")
 

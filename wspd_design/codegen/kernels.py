@@ -97,7 +97,7 @@ of the friction brake, and the level of the electrodynamic brake, there and wher
 class Kernels(NamedTuple):
     """CasADi functions of dense vectors; the first inputs of a kernel are the constants made for it."""
 
-    stop_constants: Any  # (p) -> constants of loads and train
+    stop_constants: Any  # (p) -> constants of loads, train and demand
     lane_constants: Any  # (p) -> constants of contact and axle
     window_constants: Any  # (p, window) -> constants of actuator
     kinks: Any  # (p, window) -> times at which the rate of the pressure jumps; most brakes have none
@@ -111,6 +111,7 @@ class Kernels(NamedTuple):
     #              torque of the electrodynamic brake
     slope: Any  # (constants, speed, axle states, load, contact, damping) -> slope of the wheel's acceleration
     actuator: Any  # (constants, time) -> pressure, torque, pressure without venting, damping, level
+    demand: Any  # (constants, time) -> pressure that the build-up demands over the largest one
 
     @property
     def axles(self) -> int:
@@ -171,7 +172,7 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
     rail: dict[str, Any] = {field.name: None for field in fields(Rail)}
     track = Rail(**{**rail, **symbols["rail"]})
     functions = _functions(blank.on(vehicle), track, p, Surroundings(**symbols["surroundings"]), disturbed)
-    stop_constants, (loads, train) = hoist(functions[:2], 1, "stop_constants")
+    stop_constants, (loads, train, demand) = hoist((*functions[:2], functions[7]), 1, "stop_constants")
     lane_constants, (contact, axle, slope) = hoist(functions[2:5], 1, "lane_constants")
     window_constants, (actuator,) = hoist(functions[5:6], 2, "window_constants")
     return Kernels(
@@ -185,6 +186,7 @@ def _traced(blank: Plant, disturbed: bool) -> Kernels:
         axle=axle,
         slope=slope,
         actuator=actuator,
+        demand=demand,
     )
 
 
@@ -241,6 +243,7 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
         else build_up(time - pattern[0], start_level, goal, dynamic.build_up_time)
     )
     torque = brake_model.braking_torque(brake, pressures[0])
+    asked = brake_model.demanded_pressure(brake, braking_time) / brake.max_pressure
     if disturbed:
         torque *= 1.0 + brake_model.torque_disturbance(brake, braking_time)
     return [
@@ -268,6 +271,7 @@ def _functions(plant: Plant, track: Rail, p: Any, surroundings: Surroundings, di
             "actuator_kernel", [p, window, time], [pressures[0], torque, pressures[1], damping, there]
         ),
         ca.Function("kinks_kernel", [p, window], [ca.vertcat(ca.SX(0, 1), *kinks)]),
+        ca.Function("demand_kernel", [p, time], [asked]),
     ]
 
 

@@ -8,11 +8,11 @@ from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.compiler import COMPILER_INSTALLATION, NoCompilerError, load_library
 from wspd_design.codegen.emitter import emit
 from wspd_design.codegen.laws import LawKernels, immutable, law_kernels
-from wspd_design.codegen.loop_numbers import DOUBLES
+from wspd_design.codegen.loop_numbers import DOUBLES, LANE_SEEN, STOP_SEEN
 from wspd_design.codegen.memory import Memory
 from wspd_design.codegen.notices import tell_once
 from wspd_design.codegen.sampled import GOOD
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,6 +34,8 @@ class _Law(ctypes.Structure):
         ("step", ctypes.c_void_p),
         ("gains", DOUBLES),
         ("states", ctypes.c_long),
+        ("speed", ctypes.c_long),
+        ("reference", ctypes.c_long),
         ("seen", DOUBLES),
         ("state", DOUBLES),
         ("next", DOUBLES),
@@ -41,19 +43,23 @@ class _Law(ctypes.Structure):
 
 
 class VirtualLaw(NamedTuple):
-    """The law of all lanes as CasADi functions of vectors, element ``k`` of lane ``l`` at ``k * lanes + l``."""
+    """The law of all stops as CasADi functions of vectors, element ``k`` of stop ``s`` at ``k * stops + s``."""
 
     start: Any  # (seen, gains) -> states
     step: Any  # (states, seen, gains) -> states, fill, vent
 
 
 class LoadedLaw:
-    """A law with its present numbers, ready to be called on a number of lanes."""
+    """A law with its present numbers, ready to be called on a number of stops."""
 
-    def __init__(self, kernels: LawKernels, lanes: int, engine: "ctypes.CDLL | VirtualLaw") -> None:
+    def __init__(
+        self, kernels: LawKernels, engine: "ctypes.CDLL | VirtualLaw", *, axles: int, stops: int
+    ) -> None:
         import numpy as np
 
-        self.states, self._lanes, self._engine = kernels.states, lanes, engine
+        self._axles, self._stops, self._engine = axles, stops, engine
+        self.states = kernels.states_of_stop(axles)
+        self._told = kernels.speed, kernels.reference
         self._gains = np.array(kernels.gains)
 
     @property
@@ -66,7 +72,7 @@ class LoadedLaw:
         import numpy as np
 
         rows = ctypes.c_long(sample_rows)
-        seen = np.zeros(3 * self._lanes)
+        seen = np.zeros((LANE_SEEN * self._axles + STOP_SEEN) * self._stops)
         if isinstance(self._engine, VirtualLaw):
             start = Bound(self._engine.start, seen, self._gains)
             step = Bound(self._engine.step, start.outputs[0], seen, self._gains)
@@ -78,7 +84,8 @@ class LoadedLaw:
                 step.call()
                 result = plant.wspd_answer(loop, law, samples, rows)
             return result
-        state, ahead = (np.zeros(count * self._lanes) for count in (self.states, self.states + 2))
+        decided = self.states + 2 * self._axles
+        state, ahead = (np.zeros(count * self._stops) for count in (self.states, decided))
         structure = self._structure(seen, state, ahead)
         structure.start, structure.step = (
             ctypes.cast(function, ctypes.c_void_p).value
@@ -88,10 +95,10 @@ class LoadedLaw:
 
     def _structure(self, seen: "Array", state: "Array", ahead: "Array") -> _Law:
         gains, *memory = map(pointer, (self._gains, seen, state, ahead))
-        return _Law(None, None, gains, self.states, *memory)
+        return _Law(None, None, gains, self.states, *self._told, *memory)
 
 
-def load_law(controller: Controller, *, axles: int, stops: int) -> LoadedLaw:
+def load_law(controller: Law, *, axles: int, stops: int) -> LoadedLaw:
     """Trace a law as it is now, and load its library: one for all laws with the same kernels.
 
     Raises
@@ -106,7 +113,7 @@ def load_law(controller: Controller, *, axles: int, stops: int) -> LoadedLaw:
         content, kinds = known
         kernels = _traces.get(content, kinds, lambda: law_kernels(controller))
     engine = _engines.get((kernels, axles, stops), (), lambda: _engine(kernels, axles, stops))
-    return LoadedLaw(kernels, axles * stops, engine)
+    return LoadedLaw(kernels, engine, axles=axles, stops=stops)
 
 
 _traces: "Memory[LawKernels]" = Memory(64)
@@ -118,13 +125,14 @@ def _engine(kernels: LawKernels, axles: int, stops: int) -> ctypes.CDLL | Virtua
         return load_library(law_source(kernels, axles=axles, stops=stops))
     except NoCompilerError as error:
         tell_once(str(error), _SLOWER)
-        return virtual_law(kernels, axles * stops)
+        return virtual_law(kernels, axles=axles, stops=stops)
 
 
 def law_source(law: LawKernels, *, axles: int, stops: int) -> str:
-    """Return the C source of a law on all lanes."""
+    """Return the C source of a law on all stops."""
     folder = files("wspd_design").joinpath("codegen", "templates")
-    kernels = (emit(kernel, str(axles * stops), shared=kernel.n_in() - 1) for kernel in (law.start, law.step))
+    lanes = str(law.lanes(axles, stops))
+    kernels = (emit(kernel, lanes, shared=kernel.n_in() - 1) for kernel in (law.start, law.step))
     return "".join(
         [
             f"#define STOPS {stops}\n",
@@ -135,20 +143,26 @@ def law_source(law: LawKernels, *, axles: int, stops: int) -> str:
     )
 
 
-def virtual_law(law: LawKernels, lanes: int) -> VirtualLaw:
-    """Write the law out for all lanes, so that one call serves them."""
+def virtual_law(law: LawKernels, *, axles: int, stops: int) -> VirtualLaw:
+    """Write the law out for all stops, so that one call serves them."""
     import casadi as ca
 
+    lanes = law.lanes(axles, stops)
     seen, state, gains = (
         ca.SX.sym(name, size)
-        for name, size in (("seen", 3 * lanes), ("state", law.states * lanes), ("gains", len(law.gains)))
+        for name, size in (
+            ("seen", (LANE_SEEN * axles + STOP_SEEN) * stops),
+            ("state", law.states_of_stop(axles) * stops),
+            ("gains", len(law.gains)),
+        )
     )
+    width = law.step.size1_in(1) * lanes
 
     def by_element(columns: list[Any]) -> Any:
         return ca.cse(ca.reshape(ca.horzcat(*columns).T, -1, 1))
 
-    starts = [law.start(seen[lane::lanes], gains) for lane in range(lanes)]
-    steps = [law.step(state[lane::lanes], seen[lane::lanes], gains) for lane in range(lanes)]
+    starts = [law.start(seen[lane:width:lanes], gains) for lane in range(lanes)]
+    steps = [law.step(state[lane::lanes], seen[lane:width:lanes], gains) for lane in range(lanes)]
     return VirtualLaw(
         start=ca.Function("start", [seen, gains], [by_element(starts)]),
         step=ca.Function("step", [state, seen, gains], [by_element(steps)]),

@@ -12,7 +12,9 @@ from typing import Any
 
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.gains import Gain, with_gains
-from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.codegen.loop_numbers import LANE_SEEN, STOP_SEEN
+from wspd_design.codegen.sampled import measurement_of, places_told
+from wspd_design.controllers.protocol import Law, Measurement, acts_on_vehicle
 
 _PACKAGE = "wspd_design."
 
@@ -21,14 +23,25 @@ _PACKAGE = "wspd_design."
 class LawKernels:
     """CasADi functions of dense vectors, and the numbers that they are called with; compared by the functions."""
 
-    start: Any = field(compare=False)  # ([speed, wheel speed, torque], gains) -> state
-    step: Any = field(compare=False)  # (state, [speed, wheel speed, torque], gains) -> [state, fill, vent]
-    states: int  # length of the controller state
+    start: Any = field(compare=False)  # (seen, gains) -> state
+    step: Any = field(compare=False)  # (state, seen, gains) -> [state, fill, vent]
+    states: int  # length of the state
+    wheelsets: int | None  # that a law of a vehicle acts on; it sees and commands all of them
+    speed: int  # place in the state of the train speed that the law goes by, -1 for none
+    reference: int  # places from there on of the slips that it holds, likewise
     gains: tuple[float, ...] = field(compare=False)
     content: str  # the functions written out
 
+    def lanes(self, axles: int, stops: int) -> int:
+        """How often the functions are called at a sample: for each wheelset of each stop, or for each stop."""
+        return stops if self.wheelsets else axles * stops
 
-def law_kernels(law: Controller) -> LawKernels:
+    def states_of_stop(self, axles: int) -> int:
+        """Numbers that the law remembers for all wheelsets of a stop."""
+        return self.states if self.wheelsets else self.states * axles
+
+
+def law_kernels(law: Law) -> LawKernels:
     """Trace a law with its floats as inputs, or as constants where it does not take them.
 
     Raises
@@ -54,7 +67,7 @@ def law_kernels(law: Controller) -> LawKernels:
     return law_constants(law)
 
 
-def law_constants(law: Controller) -> LawKernels:
+def law_constants(law: Law) -> LawKernels:
     """Trace a law with its numbers as constants of the functions.
 
     Raises
@@ -67,26 +80,44 @@ def law_constants(law: Controller) -> LawKernels:
     return _functions(law, ca.SX(0, 1), ())
 
 
-def _functions(law: Controller, symbols: Any, values: tuple[float, ...]) -> LawKernels:
+def _functions(law: Law, symbols: Any, values: tuple[float, ...]) -> LawKernels:
     import casadi as ca
 
-    m = ca.SX.sym("m", 3)
-    measurement = Measurement(speed=m[0], wheel_speed=m[1], torque=m[2])
+    wheelsets = law.wheelsets if acts_on_vehicle(law) else None
+    m = ca.SX.sym("m", LANE_SEEN * wheelsets + STOP_SEEN if wheelsets else len(Measurement._fields))
+    told = speed, reference = places_told(law)
     try:
-        initial = law.start(measurement)
-        state = ca.SX.sym("state", len(initial))
-        following, command = law.step(tuple(state[i] for i in range(len(initial))), measurement)
+        if acts_on_vehicle(law):
+            seen = measurement_of(m.elements(), law.wheelsets)
+            initial = law.start(seen)
+            state = ca.SX.sym("state", len(initial))
+            following, commands = law.step(tuple(state.elements()), seen)
+        else:
+            initial = law.start(Measurement._make(m.elements()))
+            state = ca.SX.sym("state", len(initial))
+            following, command = law.step(tuple(state.elements()), Measurement._make(m.elements()))
+            commands = (command,)
         start = ca.Function("start_kernel", [m, symbols], [_vector(*initial)])
-        step = ca.Function(
-            "step_kernel", [state, m, symbols], [_vector(*following, command.fill, command.vent)]
-        )
+        decided = (*(each.fill for each in commands), *(each.vent for each in commands))
+        step = ca.Function("step_kernel", [state, m, symbols], [_vector(*following, *decided)])
     except Exception as error:  # the user's code may fail on symbols in any way
         reason = re.sub(r"\S*\.[ch]pp:\d+: ", "", str(error))  # without CasADi's places in its own source
         raise UntraceableError(f"{law.name}: {reason}") from error
     if len(following) != len(initial):
         raise UntraceableError(f"{law.name}: step returns {len(following)} states, start {len(initial)}")
-    content = start.serialize() + step.serialize()
-    return LawKernels(start=start, step=step, states=len(initial), gains=values, content=content)
+    if len(commands) != (wheelsets or 1):
+        raise UntraceableError(f"{law.name}: step returns {len(commands)} commands for {wheelsets} wheelsets")
+    content = f"{told}" + start.serialize() + step.serialize()
+    return LawKernels(
+        start=start,
+        step=step,
+        states=len(initial),
+        wheelsets=wheelsets,
+        speed=speed,
+        reference=reference,
+        gains=values,
+        content=content,
+    )
 
 
 def _vector(*elements: Any) -> Any:
@@ -95,7 +126,7 @@ def _vector(*elements: Any) -> Any:
     return ca.vertcat(ca.SX(0, 1), *elements)
 
 
-def immutable(law: Controller) -> tuple[Any, tuple[type, ...]] | None:
+def immutable(law: Law) -> tuple[Any, tuple[type, ...]] | None:
     """Key of a law of this package by all that it holds, and the classes of that.
 
     None for a law that may change without being replaced.

@@ -31,8 +31,18 @@ LANE_TOTALS = (
     "valve_switches",
     "filled_pressure",
     "watchdog",
+    "slip_band",  # -1 before the first sample beyond the reference, and for laws that do not tell it
 )
-STOP_TOTALS = ("distance", "resistance_impulse", "resistance_work", "judged_time", "time", "end_speed")
+STOP_TOTALS = (
+    "distance",
+    "resistance_impulse",
+    "resistance_work",
+    "judged_time",
+    "time",
+    "end_speed",
+    "speed_error",  # of laws that tell the train speed which they go by
+    "distance_error",  # likewise
+)
 DISTURBANCES = (
     "reference_factor",  # of the train speed that a law is told
     "reference_drift",  # m/s2
@@ -45,8 +55,26 @@ DISTURBANCES = (
     "shortest_pulse",  # s
     "longest_release",  # s, 0 without a watchdog
     "reservoir_pressure",  # Pa, at the start
+    "accelerometer_bias",  # m/s2
+    "accelerometer_noise",  # m/s2 rms
 )
 """What disturbs measurement and valves of a stop; in C in the same order."""
+FAULTS = (
+    "wheel_factor",  # of the wheel speed that a law is told
+    "sensor_lost",  # s, from when on the speed sensor gives nothing
+    "stuck",  # valves that follow no command: 0 none, then as STUCK_VALVES
+    "stuck_since",  # s
+)
+"""What a wheelset of a stop has of its own; in C in the same order."""
+STUCK_VALVES = ("holds", "vents", "fills")
+LANE_SEEN = 5
+"""What a law sees of each wheelset: train speed, wheel speed, torque, whether the speed sensor works, pressure."""
+STOP_SEEN = 3
+"""And of the vehicle: acceleration, demand, reservoir."""
+ERROR_SPEED = 20.0 / 3.6
+"""Above it the error of the train speed counts that a law goes by [m/s]."""
+DISTANCE_TOLERANCE = (5.0, 0.05)
+"""Error of a distance that train control allows: metres, and share of the distance (ETCS, subset 041)."""
 RAIL_NUMBERS = 5
 DOUBLES = ctypes.POINTER(ctypes.c_double)
 
@@ -76,6 +104,7 @@ class Head(ctypes.Structure):
     _fields_ = (
         ("set", Settings),
         ("disturbance", DOUBLES),
+        ("fault", DOUBLES),
         ("seed", ctypes.POINTER(ctypes.c_uint64)),
         ("queue", DOUBLES),
         ("queue_rows", ctypes.c_long),
@@ -106,6 +135,7 @@ class LoopInput:
     pressures: "Array"  # (lanes,), of the cylinders, initial [Pa]
     settings: Settings
     disturbances: "Array"  # (DISTURBANCES, stops)
+    faults: "Array"  # (FAULTS, lanes)
     seeds: "NDArray[np.uint64]"  # (stops,)
     patch_starts: "Array | None" = None  # (patches, stops) [m], inf where a stop has fewer
     patch_rails: "Array | None" = None  # (patches, stops, RAIL_NUMBERS)
@@ -120,6 +150,11 @@ class LoopInput:
         """Most commands that wait for their dead time at once."""
         longest = min(float(self.disturbance("dead_time").max()), float(self.settings.time_limit))
         return math.floor(longest / float(self.settings.sample_time)) + 2
+
+    def fault(self, name: str) -> "Array":
+        """One of the faults of every lane."""
+        row: Array = self.faults[FAULTS.index(name)]
+        return row
 
     def disturbance(self, name: str) -> "Array":
         """One of the disturbances of every stop."""
@@ -137,6 +172,6 @@ class LoopOutput:
     stop_totals: dict[str, "Array"]  # (stops,) each
     wheel_speeds: "Array"  # (lanes,)
     trace: "Array"  # (rows, 3 + (5 + states of an axle) axles), of the first stop
-    samples: "Array"  # (samples, 1 + (states + 5) lanes): time, states, fill, vent, measurement
+    samples: "Array"  # time, then by stop: state of the law, fill and vent of each wheelset, what it saw
     bad_command: tuple[float, float, float]  # time, fill, vent
     steps: int

@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Any
 from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, plant_kernels
+from wspd_design.codegen.law_library import virtual_law
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
-from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive
+from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive, flat
+from wspd_design.codegen.virtual_judgment import VirtualJudgment
 from wspd_design.codegen.virtual_sensors import VirtualSensors
 from wspd_design.codegen.virtual_step import INERTIA, MASS, RADIUS, StepFunctions, step_functions
 from wspd_design.codegen.virtual_valves import START, VirtualValves
-from wspd_design.controllers.protocol import Command, Controller, Measurement, State
+from wspd_design.controllers.protocol import Command, Law, State, VehicleMeasurement
 from wspd_design.model.further_brakes import friction_share
 from wspd_design.plants.protocol import Plant
 
@@ -31,6 +33,7 @@ _SHORTEST = 1e-9  # s: edges closer together than this are one
 _BATCHES = (64, 16, 8, 4, 2)
 _OFFSET = PARAMETERS.index(("surroundings", "axle_offset"))
 _MAX_TORQUE = PARAMETERS.index(("brake", "max_torque"))
+_GRADE = PARAMETERS.index(("surroundings", "grade_force"))
 _DROP_SLIP = PARAMETERS.index(("dynamic", "drop_slip"))
 _BLENDED = WINDOW.index("share")
 _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "rail")
@@ -38,7 +41,7 @@ _FIRST_RAIL = next(k for k, (record, _) in enumerate(PARAMETERS) if record == "r
 
 def run_virtual(
     plant: Plant,
-    controller: Controller,
+    controller: Law,
     given: LoopInput,
     *,
     sample_rows: int,
@@ -49,12 +52,12 @@ def run_virtual(
 
     kernels = plant_kernels(plant, disturbed=disturbed)
     driven = _VirtualPlant(kernels, _functions(kernels, given.held_slips is not None), given)
-    result, samples = drive(driven, _traced(controller), sample_rows)
-    valves = driven.valves
+    result, samples = drive(driven, _traced(controller, plant.axles), sample_rows)
+    valves, judgment = driven.valves, driven.judgment
     valves.end(driven.part("filled"))
-    counted = (valves.vented, valves.switches, valves.filled, valves.watchdog)
+    counted = (valves.vented, valves.switches, valves.filled, valves.watchdog, judgment.slip_band)
     lane = np.vstack([driven.part("lane").reshape(-1, plant.axles), *counted])
-    stop = [*driven.part("stop"), driven.part("speed")[0]]
+    stop = [*driven.part("stop"), driven.part("speed")[0], judgment.speed_error, judgment.distance_error]
     stop_totals = {name: np.array([value]) for name, value in zip(STOP_TOTALS, stop, strict=True)}
     return LoopOutput(
         result=result,
@@ -91,7 +94,8 @@ class _VirtualPlant:
         self.edges: tuple[float, ...] = ()
         self.valves = VirtualValves(given)
         self.sensors = VirtualSensors(given, self.parameters[RADIUS])
-        self.waiting: deque[tuple[float, list[Command]]] = deque()
+        self.judgment = VirtualJudgment(axles, given.settings)
+        self.waiting: deque[tuple[float, tuple[Command, ...]]] = deque()
         self.dropped = np.zeros(axles, dtype=bool)  # electrodynamic brakes
         self.recorded = -1.0
         self.sample = self.steps = 0
@@ -135,8 +139,8 @@ class _VirtualPlant:
         self._give("radius", self.parameters[RADIUS])
         self._give("inertia", self.parameters[INERTIA])
         self._give("mass", self.parameters[MASS, 0])
-        constants = self.kernels.stop_constants(self.given.stop_parameters[:, 0])
-        self._give("stop_constants", _flat(constants))
+        self._stop_constants = self.kernels.stop_constants(self.given.stop_parameters[:, 0])
+        self._give("stop_constants", _flat(self._stop_constants))
         self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
 
     def running(self) -> bool:
@@ -148,16 +152,35 @@ class _VirtualPlant:
         angles: Array = self.part("lane").reshape(-1, self.layout.axles)[LANE_TOTALS.index("angle")]
         return angles
 
-    def measure(self) -> list[Measurement]:
+    @property
+    def wheelsets(self) -> int:
+        return self.layout.axles
+
+    def measure(self) -> VehicleMeasurement:
+        time = float(self.part("time")[0])
         return self.sensors.measure(
-            time=float(self.part("time")[0]),
+            time=time,
             speed=float(self.part("speed")[0]),
+            acceleration=float(self.part("rates")[0])
+            + float(self.parameters[_GRADE, 0] / self.parameters[MASS, 0]),
             wheels=self.wheels,
             angles=self.angles,
             torques=self.part("torque") + self.part("dynamic"),
+            pressures=self.part("pressure"),
+            demand=float(self.kernels.demand(self._stop_constants, time)),
+            reservoir=self.valves.reservoir,
         )
 
-    def advance(self, commands: list[Command]) -> int:
+    def judge(self, speed: float | None, references: tuple[float, ...]) -> None:
+        self.judgment.judge(
+            speed,
+            references,
+            true_speed=float(self.part("speed")[0]),
+            distance=float(self.part("distance")[0]),
+            slips=self.part("slip"),
+        )
+
+    def advance(self, commands: tuple[Command, ...]) -> int:
         h, dead_time = self.set.sample_time, float(self.given.disturbance("dead_time")[0])
         start = self.sample * h
         for fill, vent in commands:
@@ -353,28 +376,39 @@ class _VirtualPlant:
 
 
 class _Traced:
-    """A controller whose step runs in the virtual machine."""
+    """A law of a vehicle whose functions run in the virtual machine."""
 
-    def __init__(self, controller: Controller) -> None:
+    def __init__(self, controller: Law, wheelsets: int) -> None:
         import numpy as np
 
-        self.name, self.sample_time, self.start = controller.name, controller.sample_time, controller.start
-        law = law_kernels(controller)
-        self._state, self._seen, self._gains = np.zeros(law.states), np.zeros(3), np.array(law.gains)
-        self._bound = Bound(law.step, self._state, self._seen, self._gains)
+        self.name, self.sample_time, self.wheelsets = controller.name, controller.sample_time, wheelsets
+        self.memory = getattr(controller, "memory", ())
+        kernels = law_kernels(controller)
+        law, self._states = virtual_law(kernels, axles=wheelsets, stops=1), kernels.states_of_stop(wheelsets)
+        self._state, self._gains = np.zeros(self._states), np.array(kernels.gains)
+        self._seen = np.zeros(law.start.size1_in(0))
+        self._start = Bound(law.start, self._seen, self._gains)
+        self._step = Bound(law.step, self._state, self._seen, self._gains)
 
-    def step(self, state: State, measurement: Measurement) -> tuple[State, Command]:
+    def start(self, measurement: VehicleMeasurement) -> State:
+        self._seen[:] = flat(measurement)
+        self._start.call()
+        return tuple(self._start.outputs[0].ravel().tolist())
+
+    def step(self, state: State, measurement: VehicleMeasurement) -> tuple[State, tuple[Command, ...]]:
         self._state[:] = state
-        self._seen[:] = measurement
-        self._bound.call()
-        *following, fill, vent = self._bound.outputs[0][0].tolist()
-        return tuple(following), Command(fill=fill, vent=vent)
+        self._seen[:] = flat(measurement)
+        self._step.call()
+        decided = self._step.outputs[0].ravel().tolist()
+        following, fill = decided[: self._states], decided[self._states : self._states + self.wheelsets]
+        vent = decided[self._states + self.wheelsets :]
+        return tuple(following), tuple(map(Command, fill, vent))
 
 
-def _traced(controller: Controller) -> Controller:
-    """The controller in the virtual machine, or as it is where that cannot be."""
+def _traced(controller: Law, wheelsets: int) -> Law:
+    """The law in the virtual machine, or as it is where that cannot be."""
     try:
-        return _Traced(controller)
+        return _Traced(controller, wheelsets)
     except UntraceableError:
         return controller
 

@@ -4,7 +4,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.codegen.loop_numbers import DISTURBANCES, LoopInput
-from wspd_design.controllers.protocol import Measurement
+from wspd_design.controllers.protocol import VehicleMeasurement
 
 if TYPE_CHECKING:
     import numpy as np
@@ -51,6 +51,7 @@ class VirtualSensors:
         import numpy as np
 
         self._numbers = {name: float(given.disturbance(name)[0]) for name in DISTURBANCES}
+        self._factors, self._lost = given.fault("wheel_factor"), given.fault("sensor_lost")
         self._seed, self._sample_time, self._radius = int(given.seeds[0]), given.settings.sample_time, radius
         self._sample, angle, speeds = 0, self._numbers["pulse_angle"], given.wheel_speeds
         self.timed = bool(self._numbers["timed"])
@@ -68,24 +69,40 @@ class VirtualSensors:
         self._now = (0.0, np.zeros(len(speeds)), speeds)
 
     def measure(
-        self, *, time: float, speed: float, wheels: "Array", angles: "Array", torques: "Array"
-    ) -> list[Measurement]:
-        """What the controllers see at the present sample."""
+        self,
+        *,
+        time: float,
+        speed: float,
+        acceleration: float,
+        wheels: "Array",
+        angles: "Array",
+        torques: "Array",
+        pressures: "Array",
+        demand: float,
+        reservoir: float,
+    ) -> VehicleMeasurement:
+        """What the law sees at the present sample; the acceleration is that of the rails and brakes alone."""
         known = self._numbers
         told = speed * known["reference_factor"] + time * known["reference_drift"]
         told += self._noise(_TRAIN, known["reference_noise"])
+        lost = [time >= since for since in self._lost.tolist()]
         measured = [
-            float(wheel) + self._noise(1 + axle, known["speed_noise"] / float(self._radius[axle]))
-            for axle, wheel in enumerate(self._turning(time, wheels, angles))
-        ]
-        return [
-            Measurement(
-                speed=max(told, 0.0),
-                wheel_speed=max(wheel, 0.0),
-                torque=float(torque) * known["torque_factor"],
+            float(wheel) * factor + self._noise(1 + axle, known["speed_noise"] / float(self._radius[axle]))
+            for axle, (wheel, factor) in enumerate(
+                zip(self._turning(time, wheels, angles), self._factors.tolist(), strict=True)
             )
-            for wheel, torque in zip(measured, torques, strict=True)
         ]
+        felt = acceleration + known["accelerometer_bias"]
+        return VehicleMeasurement(
+            speed=max(told, 0.0),
+            wheel_speeds=tuple(0.0 if gone else max(w, 0.0) for w, gone in zip(measured, lost, strict=True)),
+            torques=tuple((torques * known["torque_factor"]).tolist()),
+            healthy=tuple(0.0 if gone else 1.0 for gone in lost),
+            pressures=tuple((pressures * known["torque_factor"]).tolist()),
+            acceleration=felt + self._noise(1 + len(measured), known["accelerometer_noise"]),
+            demand=demand,
+            reservoir=reservoir,
+        )
 
     def decided(self, angles: "Array") -> None:
         """Go on to the next sample."""

@@ -8,7 +8,7 @@ is a statement of the law about itself; whether ``step`` keeps it is decided by
 from collections.abc import Mapping
 from typing import NamedTuple, Protocol, runtime_checkable
 
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Controller, Law
 from wspd_design.model.number import Number
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -122,7 +122,7 @@ class LinearSurface(Surface, Linear, Protocol):
     """A law with a sliding surface that is linear near its reference."""
 
 
-def slip_reference_of(law: Controller) -> float | None:
+def slip_reference_of(law: Law) -> float | None:
     """Slip that a law holds, None if it does not say [-].
 
     A law of a user may say it by the attribute ``slip``, the name under which it can ask for the option.

@@ -7,9 +7,12 @@ be traced into compiled code.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, TypeAlias, TypeGuard
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
 
 from wspd_design.model.number import Number
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
 
 State: TypeAlias = tuple[Number, ...]
 """All that a controller remembers from one sample to the next."""
@@ -94,7 +97,7 @@ Law: TypeAlias = Controller | VehicleController
 """A controller of one wheelset or of a vehicle."""
 
 
-def acts_on_vehicle(law: Law) -> TypeGuard[VehicleController]:
+def acts_on_vehicle(law: Law) -> "TypeIs[VehicleController]":
     """Tell whether a law acts on all wheelsets of a vehicle."""
     return hasattr(law, "wheelsets")
 

@@ -9,7 +9,7 @@ from wspd_design.codegen.compiler import NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
 from wspd_design.codegen.sampled import GOOD
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.errors import UserError
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import Scenario
@@ -33,17 +33,15 @@ class Batch:
     stops: "dict[str, NDArray[np.float64]]"
 
 
-def run_batch(
-    cases: Cases, controller: Controller, numbers: Callable[[Cases], LoopInput], *, what: str
-) -> Batch:
+def run_batch(cases: Cases, controller: Law, numbers: Callable[[Cases], LoopInput], *, what: str) -> Batch:
     """Run stops with one controller.
 
     Parameters
     ----------
     cases : sequence of (Plant, Scenario)
         Plants of one kind; ``STOPS_SIDE_BY_SIDE`` of them run in one loop, any other number one after another.
-    controller : Controller
-        Law of every wheelset.
+    controller : Law
+        Law of every wheelset, or of the vehicle.
     numbers : callable
         Makes the input of the loop.
     what : str
@@ -65,9 +63,7 @@ def run_batch(
     return _together(outputs, cases[0][0].axles)
 
 
-def _side_by_side(
-    cases: Cases, controller: Controller, numbers: Callable[[Cases], LoopInput]
-) -> list[LoopOutput]:
+def _side_by_side(cases: Cases, controller: Law, numbers: Callable[[Cases], LoopInput]) -> list[LoopOutput]:
     """Run all stops in one compiled loop; empty where their number or this machine does not allow it."""
     if len(cases) != STOPS_SIDE_BY_SIDE:
         return []

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
@@ -51,7 +51,7 @@ class Campaign:
 
 def simulate_many(
     vehicle: Vehicle,
-    controller: Controller,
+    controller: Law,
     scenario: Scenario,
     *,
     count: int,
@@ -72,7 +72,7 @@ def simulate_many(
     ----------
     vehicle : Vehicle
         Nominal vehicle.
-    controller : Controller
+    controller : Law
         Law of every wheelset, the same for all stops.
     scenario : Scenario
         Nominal stop; its seed is that of run 0 and of the drawing.
@@ -181,7 +181,7 @@ def _store(folder: Path, plan: Plan) -> Store:
     return Store(folder, plan_key(plan))
 
 
-def _check_executor(executor: Executor | None, controller: Controller) -> None:
+def _check_executor(executor: Executor | None, controller: Law) -> None:
     """Refuse to send a law to another process that it could not be loaded in."""
     module = type(controller).__module__
     if isinstance(executor, ThreadPoolExecutor | None) or not module.startswith(

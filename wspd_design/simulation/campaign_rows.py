@@ -12,8 +12,9 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from typing import TYPE_CHECKING, Any
 
+from wspd_design.codegen.sampled import places_told
 from wspd_design.controllers.offers import slip_reference_of
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.records import Brake, Vehicle
@@ -48,6 +49,8 @@ FIGURES = (
 """Of each stop, beside those of its axles."""
 AIR_FIGURES = ("air_used_Nl", "lowest_reservoir_Pa")
 """Of each stop of a vehicle whose cylinders and reservoir have a volume."""
+TOLD_FIGURES = ("speed_error", "distance_error", "slip_band")
+"""Of each stop of a law that tells the train speed which it goes by, and the slips that it holds."""
 AXLE_FIGURES = ("longest_lock_s", "total_lock_s", "sliding_work_J")
 """Of each axle, front axle first; locks count above 10 km/h, to one integration step."""
 CHECKED = ("step_distance_change", "step_slip_change")
@@ -61,7 +64,7 @@ class Plan:
     """All that the rows of a campaign depend on, beside their index."""
 
     vehicle: Vehicle
-    controller: Controller
+    controller: Law
     scenario: Scenario
     plant: str
     draws: tuple[Draw, ...]
@@ -71,7 +74,7 @@ class Plan:
 
 def make_plan(
     vehicle: Vehicle,
-    controller: Controller,
+    controller: Law,
     scenario: Scenario,
     *,
     plant: str,
@@ -130,6 +133,7 @@ def columns(plan: Plan) -> list[tuple[str, str]]:
     numbers += [
         *FIGURES,
         *_brake_figures(plan.vehicle.brake),
+        *_told_figures(plan.controller),
         *(f"{name}_{axle + 1}" for name in AXLE_FIGURES for axle in range(axles)),
         *CHECKED,
     ]
@@ -140,6 +144,12 @@ def _brake_figures(brake: Brake) -> list[str]:
     """Figures that only some brakes have."""
     known = (brake.cylinder_volume, brake.reservoir_volume, brake.longest_release)
     return [name for name, number in zip((*AIR_FIGURES, "watchdog_fills"), known, strict=True) if number]
+
+
+def _told_figures(controller: Law) -> tuple[str, ...]:
+    """Figures that only some laws have."""
+    speed, reference = places_told(controller)
+    return (*TOLD_FIGURES[: 2 * (speed >= 0)], *TOLD_FIGURES[2 : 2 + (reference >= 0)])
 
 
 def compute_rows(plan: Plan, first: int, count: int) -> "NDArray[Any]":
@@ -172,14 +182,14 @@ def compute_rows(plan: Plan, first: int, count: int) -> "NDArray[Any]":
     return kept
 
 
-def figures_of(cases: Cases, controller: Controller, ideal: "Array", runs: str) -> dict[str, Any]:
+def figures_of(cases: Cases, controller: Law, ideal: "Array", runs: str) -> dict[str, Any]:
     """Simulate a group of stops and return its figures, one array over the stops for each.
 
     Parameters
     ----------
     cases : sequence of (Plant, Scenario)
         The stops.
-    controller : Controller
+    controller : Law
         Law of every wheelset.
     ideal : array
         Distances of their ideal stops [m].
@@ -199,6 +209,11 @@ def figures_of(cases: Cases, controller: Controller, ideal: "Array", runs: str) 
     full = np.array([plant.vehicle.brake.max_pressure * valved.sum() for plant, _ in cases])
     axles = 1 if cases[0][0].alike else cases[0][0].axles
     by_axle = (lanes[name] for name in ("longest_lock", "judged_lock_time", "sliding_work"))
+    band = lanes["slip_band"].max(axis=0)
+    told = {
+        **{name: stops[name] for name in TOLD_FIGURES[:2]},
+        "slip_band": np.where(band >= 0.0, band, np.nan),  # of those that never reached their reference
+    }
     moved = np.where(stops["distance"] > 0.0, stops["distance"], np.nan)  # not of a train that is at rest
     lasted = np.where(stops["time"] > 0.0, stops["time"], np.nan)
     return {
@@ -217,6 +232,7 @@ def figures_of(cases: Cases, controller: Controller, ideal: "Array", runs: str) 
         **_of_brakes(
             cases, lanes["filled_pressure"][valved].sum(axis=0), lanes["watchdog"][valved].sum(axis=0)
         ),
+        **{name: told[name] for name in _told_figures(controller)},
         **{
             f"{name}_{axle + 1}": values[axle]
             for name, values in zip(AXLE_FIGURES, by_axle, strict=True)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from wspd_design.controllers.offers import slip_reference_of
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.metrics import Metrics, metrics
@@ -23,7 +23,7 @@ class Trial:
 
 def trial(
     vehicle: Vehicle,
-    controller: Controller,
+    controller: Law,
     scenario: Scenario,
     *,
     slip_reference: float,
@@ -36,7 +36,7 @@ def trial(
 
 def compare(
     vehicle: Vehicle,
-    controllers: Sequence[Controller],
+    controllers: Sequence[Law],
     scenario: Scenario,
     *,
     slip_reference: float,
@@ -49,7 +49,7 @@ def compare(
     ----------
     vehicle : Vehicle
         The vehicle.
-    controllers : sequence of Controller
+    controllers : sequence of Law
         Laws to compare.
     scenario : Scenario
         Rail and initial speed.

@@ -146,7 +146,10 @@ def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None =
         held = np.array([found[lane] for lane in lanes])
     else:
         held = np.full((len(lanes), len(speeds)), slip)
-    staying = [(plant.on(_without_drop_out(plant.vehicle)), scenario) for plant, scenario in cases]
+    staying = [
+        (plant.on(_without_drop_out(plant.vehicle)), replace(scenario, faults=()))
+        for plant, scenario in cases
+    ]
     numbers = loop_input(staying, FILLING, longest_step=_LONGEST_STEP)
     return replace(numbers, held_slips=held, held_speeds=(float(speeds[0]), float(speeds[1])))
 

@@ -6,8 +6,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from wspd_design.codegen.kernels import Surroundings, parameter_values
-from wspd_design.codegen.loop_numbers import DISTURBANCES, RAIL_NUMBERS, LoopInput, Settings
-from wspd_design.controllers.protocol import Controller
+from wspd_design.codegen.loop_numbers import (
+    DISTURBANCES,
+    FAULTS,
+    RAIL_NUMBERS,
+    STUCK_VALVES,
+    LoopInput,
+    Settings,
+)
+from wspd_design.controllers.protocol import Law, acts_on_vehicle
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Rail, Vehicle
@@ -33,7 +40,7 @@ JUDGING_SPEED = 10.0 / 3.6  # m/s, slip statistics count above it
 
 def loop_input(
     cases: Sequence[tuple[Plant, Scenario]],
-    controller: Controller,
+    controller: Law,
     *,
     refinement: int = 1,
     longest_step: float | None = None,
@@ -63,6 +70,7 @@ def loop_input(
         pressures=np.tile([_pressure(p.vehicle.brake, each.start) for p, each in cases], axles),
         settings=_settings(cases, controller, refinement, longest_step or LONGEST_STEP),
         disturbances=np.array([_disturbances(p.vehicle.brake, each.sensing) for p, each in cases]).T,
+        faults=np.array([column for rows in zip(*map(_faults, cases), strict=True) for column in rows]).T,
         seeds=np.array([each.seed for each in scenarios], dtype=np.uint64),
         patch_starts=starts,
         patch_rails=rails,
@@ -71,7 +79,7 @@ def loop_input(
     )
 
 
-def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
+def _check(scenario: Scenario, controller: Law, plant: Plant) -> None:
     if not 1e-3 <= controller.sample_time <= 10.0:
         raise UserError(
             f"sample time = {controller.sample_time:g} s of controller {controller.name} must lie between 1 ms and 10 s"
@@ -81,6 +89,23 @@ def _check(scenario: Scenario, controller: Controller, plant: Plant) -> None:
         raise UserError(
             f"shortest pulse = {shortest:g} s must not exceed the sample time of "
             f"{controller.sample_time:g} s of controller {controller.name}, whose valves would never open"
+        )
+    if acts_on_vehicle(controller) and controller.wheelsets != plant.axles:
+        raise UserError(
+            f"controller {controller.name} acts on {controller.wheelsets} wheelsets and vehicle "
+            f'{plant.vehicle.name} has {plant.axles} on plant "{plant.name}"; make the controller for this vehicle'
+        )
+    for fault in scenario.faults:
+        if fault.axle > plant.axles:
+            raise UserError(
+                f"fault {fault.kind} of axle {fault.axle}: vehicle {plant.vehicle.name} has "
+                f'{plant.axles} on plant "{plant.name}"; name one of them'
+            )
+    errors = scenario.sensing.radius_errors
+    if errors and len(errors) != plant.axles:
+        raise UserError(
+            f"radius errors: the stop names {len(errors)}; name {plant.axles}, one for each wheelset of vehicle "
+            f"{plant.vehicle.name}, front axle first"
         )
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
@@ -130,7 +155,7 @@ def _rails(scenario: Scenario, plant: Plant) -> tuple[Rail, ...]:
 
 
 def _settings(
-    cases: Sequence[tuple[Plant, Scenario]], controller: Controller, refinement: int, longest_step: float
+    cases: Sequence[tuple[Plant, Scenario]], controller: Law, refinement: int, longest_step: float
 ) -> Settings:
     steepest = max(
         plant.creep_rate(rail, 1.0)
@@ -202,8 +227,32 @@ def _disturbances(brake: Brake, sensing: Sensing) -> list[float]:
         "shortest_pulse": sensing.shortest_pulse_of(brake),
         "longest_release": brake.longest_release,
         "reservoir_pressure": brake.supply_pressure,
+        "accelerometer_bias": sensing.accelerometer_bias,
+        "accelerometer_noise": sensing.accelerometer_noise,
     }
     return [numbers[name] for name in DISTURBANCES]
+
+
+def _faults(case: tuple[Plant, Scenario]) -> list[list[float]]:
+    """What each wheelset of a stop has of its own."""
+    plant, scenario = case
+    errors = scenario.sensing.radius_errors or (0.0,) * plant.axles
+    rows = []
+    for axle, error in enumerate(errors, start=1):
+        numbers = {
+            "wheel_factor": 1.0 + error,
+            "sensor_lost": math.inf,
+            "stuck": 0.0,
+            "stuck_since": math.inf,
+        }
+        for fault in (each for each in scenario.faults if each.axle == axle):
+            kind = fault.kind.removeprefix("valve-")
+            if kind in STUCK_VALVES:
+                numbers |= {"stuck": 1.0 + STUCK_VALVES.index(kind), "stuck_since": fault.since}
+            else:
+                numbers["sensor_lost"] = fault.since
+        rows.append([numbers[name] for name in FAULTS])
+    return rows
 
 
 def _patches(scenarios: Sequence[Scenario]) -> "tuple[Array, Array] | tuple[None, None]":
@@ -242,6 +291,6 @@ def _load_factors(scenarios: Sequence[Scenario], axles: int) -> "tuple[Array, Ar
     return table.reshape(axles * len(given), points), np.array([each.spacing for each in given])
 
 
-def sample_rows(controller: Controller) -> int:
+def sample_rows(controller: Law) -> int:
     """Most samples that a run can take."""
     return math.ceil(constants().time_limit / controller.sample_time) + 2

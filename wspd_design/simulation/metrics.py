@@ -17,7 +17,10 @@ from wspd_design.simulation.released import released_below
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Metrics:
-    """Figures of one stop. Slip figures count above 10 km/h, means are those of the wheelsets with a brake."""
+    """Figures of one stop. Slip figures count above 10 km/h, means are those of the wheelsets with a brake.
+
+    What a law does not tell, the speed that it goes by and the slip that it holds, is NaN.
+    """
 
     distance: float  # m
     stopping_time: float  # s
@@ -28,6 +31,12 @@ class Metrics:
     slip_max: float  # -
     slip_rms: float  # -, about the reference
     lock_time: float  # s
+    judged_lock: float  # s, longest lock of a wheelset without a break, above 10 km/h
+    slip_band: (
+        float  # -, largest distance of the slip from the law's own reference at samples, once it was reached
+    )
+    speed_error: float  # -, largest relative error above 20 km/h of the train speed that the law goes by
+    distance_error: float  # -, largest error of that speed's integral over 5 m + 5 %
     saturated_share: float  # -, samples that fill or vent for the whole sample time
     valve_switches: int  # changes of the valve state
     vented_air: float  # -, full brake cylinders let out, mean of the wheelsets
@@ -90,6 +99,10 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         slip_max=run.slip_max,
         slip_rms=math.sqrt(max(square, 0.0)),
         lock_time=totals.lock_time,
+        judged_lock=totals.judged_lock,
+        slip_band=totals.slip_band,
+        speed_error=totals.speed_error,
+        distance_error=totals.distance_error,
         saturated_share=sum(max(command) == 1.0 for command in commands) / len(commands)
         if commands
         else math.nan,

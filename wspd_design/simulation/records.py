@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, get_args
 
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
@@ -53,8 +53,11 @@ class Sensing:
     reference_drift: float = 0.0  # m/s2, by which that speed moves away from the true one
     reference_noise: float = 0.0  # m/s rms of that speed, independent at each sample
     torque_error: float = (
-        0.0  # -, relative error of the torque that the controller computes from the pressure
+        0.0  # -, relative error of cylinder pressures, and of the torques computed from them
     )
+    accelerometer_bias: float = 0.0  # m/s2
+    accelerometer_noise: float = 0.0  # m/s2 rms, independent at each sample
+    radius_errors: tuple[float, ...] = ()  # -, of the speed read from each wheel, front first; empty: none
     dead_time: float | None = None  # s, from the command to the valve; None: that of the vehicle
     shortest_pulse: float | None = None  # s, that opens a valve; at most one sample time; None: the vehicle's
 
@@ -63,6 +66,7 @@ class Sensing:
         for name, value, unit in (
             ("speed noise", self.speed_noise, "m/s"),
             ("reference noise", self.reference_noise, "m/s"),
+            ("accelerometer noise", self.accelerometer_noise, "m/s2"),
             ("dead time", self.dead_time or 0.0, "s"),
             ("shortest pulse", self.shortest_pulse or 0.0, "s"),
         ):
@@ -76,6 +80,15 @@ class Sensing:
                 raise UserError(
                     f"{name} = {value:g} must lie between -1 and 1, -100 % and 100 %; positive is {positive} too high"
                 )
+        for error in self.radius_errors:
+            if not -0.5 < error < 0.5:
+                raise UserError(
+                    f"radius error = {error:g} must lie between -0.5 and 0.5; for half a percent write 0.005"
+                )
+        if not math.isfinite(self.accelerometer_bias):
+            raise UserError(
+                f"accelerometer bias = {self.accelerometer_bias:g} m/s2 must be finite; 0 is none"
+            )
         if not math.isfinite(self.reference_drift):
             raise UserError(f"reference drift = {self.reference_drift:g} m/s2 must be finite; 0 is none")
         if self.pulses_per_turn < 0 or self.pulses_per_turn != int(self.pulses_per_turn):
@@ -93,6 +106,32 @@ class Sensing:
     def shortest_pulse_of(self, brake: Brake) -> float:
         """Shortest pulse that opens a valve in a stop [s], likewise."""
         return brake.shortest_pulse if self.shortest_pulse is None else self.shortest_pulse
+
+
+FaultKind: TypeAlias = Literal["sensor-lost", "valve-holds", "valve-vents", "valve-fills"]
+FAULT_KINDS: tuple[FaultKind, ...] = get_args(FaultKind)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fault:
+    """What fails at one wheelset for the rest of a stop.
+
+    A lost speed sensor reads 0 and its monitoring says so. A stuck valve holds, vents or fills from the first command
+    after it fails, whatever law and watchdog ask for.
+    """
+
+    axle: int  # from 1 at the front
+    kind: FaultKind
+    since: float = 0.0  # s, from the start of the stop
+
+    def __post_init__(self) -> None:
+        """Refuse what is no fault."""
+        if self.axle < 1:
+            raise UserError(f"axle = {self.axle} of a fault must be 1, the front axle, or more")
+        if self.kind not in FAULT_KINDS:
+            raise UserError(f'fault = "{self.kind}" must be one of {", ".join(FAULT_KINDS)}')
+        if not 0.0 <= self.since < math.inf:
+            raise UserError(f"start = {self.since:g} s of a fault must be finite and not negative")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,6 +200,7 @@ class Scenario:
     pad_vibration: bool = False  # T_d of Section 7
     sensing: Sensing = Sensing()
     load_irregularity: LoadIrregularity | None = None
+    faults: tuple[Fault, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what is not a stop."""
@@ -198,12 +238,12 @@ class Ending(Enum):
 
 
 class Sample(NamedTuple):
-    """What one controller did at one sampling instant."""
+    """What a law saw of one wheelset and did with it at one sampling instant."""
 
     time: float  # s
     fill: float  # share of the sample time
     vent: float
-    state: tuple[float, ...]
+    state: tuple[float, ...]  # after it; of a law of the vehicle that of all wheelsets
     seen: Measurement
 
 
@@ -229,6 +269,10 @@ class Totals:
     )
     filled_pressure: float  # Pa, sum over all fillings of all wheelsets with a brake of the pressure let in
     watchdog_fills: int  # times that the watchdog of a wheelset with a brake filled
+    judged_lock: float  # s, longest lock of a wheelset without a break, above the judging speed
+    slip_band: float  # -, as of Metrics; NaN as well
+    speed_error: float
+    distance_error: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -259,6 +303,7 @@ class Run:
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
+    memory: tuple[str, ...] = ()  # names of the states in the samples, as far as the law tells them
     dynamic_torque: "Trace | None" = None  # N m, per wheelset, of an electrodynamic brake, within ``torque``
     pad_temperature: "Trace | None" = (
         None  # K above that before the stop, per wheelset, where friction depends on it

@@ -9,7 +9,7 @@ neighbours end elsewhere, so that it gives the spread over them in place of a di
 import math
 from dataclasses import dataclass, replace
 
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant
@@ -43,7 +43,7 @@ class StepCheck:
 
 
 def simulate_checked(
-    vehicle: Vehicle, controller: Controller, scenario: Scenario, *, plant: str = DEFAULT_PLANT
+    vehicle: Vehicle, controller: Law, scenario: Scenario, *, plant: str = DEFAULT_PLANT
 ) -> tuple[Run, StepCheck]:
     """Simulate a stop with steps that are short enough, as far as that is possible.
 
@@ -77,7 +77,7 @@ def simulate_checked(
     return run, check
 
 
-def perturbed_spread(plant: Plant, controller: Controller, scenario: Scenario, run: Run) -> float:
+def perturbed_spread(plant: Plant, controller: Law, scenario: Scenario, run: Run) -> float:
     """Range of the distance over slightly different initial speeds [m]; 0 where a neighbour stays near the run."""
 
     def neighbour(number: int) -> Run:

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from wspd_design.codegen.closed_loop import load_closed_loop
 from wspd_design.codegen.compiler import COMPILER_INSTALLATION, NoCompilerError
 from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
+from wspd_design.codegen.loop_numbers import LANE_SEEN, STOP_SEEN, LoopInput, LoopOutput
 from wspd_design.codegen.notices import tell_once
-from wspd_design.codegen.sampled import BAD_COMMAND
-from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.codegen.sampled import BAD_COMMAND, places_told
+from wspd_design.controllers.protocol import Law, Measurement, acts_on_vehicle
 from wspd_design.model.further_brakes import track_brake_force
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 def simulate(
     vehicle: Vehicle,
-    controller: Controller,
+    controller: Law,
     scenario: Scenario,
     *,
     plant: str = DEFAULT_PLANT,
@@ -46,8 +46,8 @@ def simulate(
     ----------
     vehicle : Vehicle
         The vehicle.
-    controller : Controller
-        Law of every wheelset.
+    controller : Law
+        Law of every wheelset, or of the vehicle.
     scenario : Scenario
         Rails, initial speed and disturbances.
     plant : {"planar", "quarter"}
@@ -69,7 +69,7 @@ def simulate(
     return simulate_on(plant_of(plant, vehicle), controller, scenario, refinement=refinement)
 
 
-def simulate_on(plant: Plant, controller: Controller, scenario: Scenario, *, refinement: int = 1) -> Run:
+def simulate_on(plant: Plant, controller: Law, scenario: Scenario, *, refinement: int = 1) -> Run:
     """Brake a plant from the initial speed to standstill; otherwise as :func:`simulate`."""
     given = loop_input([(plant, scenario)], controller, refinement=refinement)
     given = replace(given, trace_rows=math.ceil(1.1 * constants().time_limit / RECORD_INTERVAL))
@@ -83,9 +83,7 @@ def simulate_on(plant: Plant, controller: Controller, scenario: Scenario, *, ref
     return _run_record(plant, controller, scenario, output, engine)
 
 
-def run_loop(
-    plant: Plant, controller: Controller, scenario: Scenario, given: LoopInput
-) -> tuple[LoopOutput, str]:
+def run_loop(plant: Plant, controller: Law, scenario: Scenario, given: LoopInput) -> tuple[LoopOutput, str]:
     """Run a single stop on the fastest engine that can; returns also its name."""
     rows = sample_rows(controller)
     disturbed = scenario.pad_vibration
@@ -113,9 +111,7 @@ def run_loop(
         return output, "CasADi virtual machine"
 
 
-def _run_record(
-    plant: Plant, controller: Controller, scenario: Scenario, output: LoopOutput, engine: str
-) -> Run:
+def _run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOutput, engine: str) -> Run:
     import numpy as np
 
     axles, magnets = plant.axles, plant.vehicle.track_brake
@@ -127,8 +123,8 @@ def _run_record(
     wheel, slip, passed, load, _, dynamic, *warmth = (
         trace[:, begin : begin + columns] for begin in range(3, trace.shape[1], axles)
     )
-    states = (output.samples.shape[1] - 1) // axles - 5
-    by_axle = output.samples[:, 1:].reshape(len(output.samples), states + 5, axles)
+    band = lane["slip_band"][lane["slip_band"] >= 0.0]
+    told_speed, _ = places_told(controller)
     return Run(
         controller=controller.name,
         vehicle=plant.vehicle.name,
@@ -147,7 +143,9 @@ def _run_record(
         torque=passed,
         wheel_load=load,
         axle_samples=tuple(
-            _samples(output.samples[:, 0], by_axle[:, :, axle], states) if valved[axle] else ()
+            _samples(output.samples, axle, axles=axles, vehicle=acts_on_vehicle(controller))
+            if valved[axle]
+            else ()
             for axle in range(columns)
         ),
         totals=Totals(
@@ -167,10 +165,15 @@ def _run_record(
             valve_switches=float(lane["valve_switches"][valved].mean()),
             filled_pressure=float(lane["filled_pressure"][valved].sum()),
             watchdog_fills=round(float(lane["watchdog"][valved].sum())),
+            judged_lock=float(lane["longest_lock"].max()),
+            slip_band=float(band.max()) if band.size else math.nan,
+            speed_error=math.nan if told_speed < 0 else stop["speed_error"],
+            distance_error=math.nan if told_speed < 0 else stop["distance_error"],
         ),
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),
         engine=engine,
+        memory=tuple(getattr(controller, "memory", ())),
         dynamic_torque=None if plant.vehicle.dynamic is None else dynamic,
         pad_temperature=warmth[0] if plant.vehicle.pads is not None and warmth else None,
         track_brake_force=None
@@ -190,14 +193,17 @@ def _ending(plant: Plant, scenario: Scenario, output: LoopOutput) -> Ending:
     return Ending.RUNAWAY if runs_away(plant.vehicle, scenario) else Ending.TIME_LIMIT
 
 
-def _samples(times: "NDArray[np.float64]", rows: "NDArray[np.float64]", states: int) -> tuple[Sample, ...]:
-    """Samples of one wheelset from rows of its states, fill, vent and what it saw."""
+def _samples(rows: "NDArray[np.float64]", axle: int, *, axles: int, vehicle: bool) -> tuple[Sample, ...]:
+    """Samples of one wheelset; a law of the vehicle has one state for all of them."""
+    states = rows.shape[1] - 1 - (2 + LANE_SEEN) * axles - STOP_SEEN
+    decided = 1 + states
+    seen = decided + 2 * axles
     columns = (
-        times.tolist(),
-        rows[:, states].tolist(),
-        rows[:, states + 1].tolist(),
-        map(tuple, rows[:, :states].tolist()),
-        map(Measurement._make, rows[:, states + 2 :].tolist()),
+        rows[:, 0].tolist(),
+        rows[:, decided + axle].tolist(),
+        rows[:, decided + axles + axle].tolist(),
+        map(tuple, (rows[:, 1:decided] if vehicle else rows[:, 1 + axle : decided : axles]).tolist()),
+        map(Measurement._make, rows[:, seen + axle : seen + 3 * axles : axles].tolist()),
     )
     return tuple(map(Sample._make, zip(*columns, strict=True)))
 
@@ -219,6 +225,12 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     torques = (
         scenario.start.torque * np.array(plant.vehicle.brake_shares)
         if at_rest
-        else output.samples[0, -axles:] / factor
+        else output.samples[0, _told_torques(axles)] / factor
     )
     return np.concatenate([(0.0, speed, 0.0), np.repeat(alike, axles), torques, loads, torques, others])
+
+
+def _told_torques(axles: int) -> slice:
+    """Columns of the samples with the torques that the law was told."""
+    first = (2 - LANE_SEEN) * axles - STOP_SEEN
+    return slice(first, first + axles)

@@ -108,7 +108,7 @@ def test_samples_of_stops_side_by_side(er24pc, law, scenario):
     beside = loop.run(loop_input(several, law), sample_rows=rows).samples
     for stop, case in enumerate(several):
         single = load_closed_loop(Planar(er24pc), law).run(loop_input([case], law), sample_rows=rows)
-        mine = beside[: len(single.samples), 1:].reshape(len(single.samples), -1, 4, 2)[:, :, :, stop]
+        mine = beside[: len(single.samples), 1:].reshape(len(single.samples), -1, 2)[:, :, stop]
         np.testing.assert_array_equal(mine.reshape(len(mine), -1), single.samples[:, 1:])
 
 
@@ -143,7 +143,7 @@ def test_compiler_options_do_not_change_a_bit(er24pc, make_controller, scenario,
     monkeypatch.setattr(compiler, "FLAGS", (*flags, *kept))
     plant = load_library(closed_loop_source(plant_kernels(Planar(er24pc), disturbed=False), stops=1))
     traced = law_kernels(law)
-    loaded = LoadedLaw(traced, 4, load_library(law_source(traced, axles=4, stops=1)))
+    loaded = LoadedLaw(traced, load_library(law_source(traced, axles=4, stops=1)), axles=4, stops=1)
     other = ClosedLoop(plant, loaded, axles=4, stops=1).run(given)
     assert other.steps == usual.steps
     np.testing.assert_array_equal(results(other), results(usual))

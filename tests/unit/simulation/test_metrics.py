@@ -21,7 +21,8 @@ ZERO = dict.fromkeys(
 ) | dict.fromkeys(
     (
         *("damping_work", "lock_time", "judged_time", "slip", "slip_squared", "vented_pressure"),
-        *("valve_switches", "filled_pressure", "watchdog_fills"),
+        *("valve_switches", "filled_pressure", "watchdog_fills", "judged_lock"),
+        *("slip_band", "speed_error", "distance_error"),
     ),
     0.0,
 )

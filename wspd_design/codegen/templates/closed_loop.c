@@ -1,4 +1,4 @@
-/* Closed loop of vehicles with one sampled controller per wheelset: steps, their ends, samples, results. */
+/* Closed loop of vehicles with a sampled law: steps, their ends, samples, results. */
 
 #define ROW (3 + (5 + AXLE_STATES) * AXLES) /* of the trace */
 
@@ -121,14 +121,6 @@ static void set_windows(Loop *loop)
     #endif
 }
 
-/* Pressure of the reservoir after all that was counted: air keeps its temperature, and none comes in. */
-static double reservoir_of(const Loop *loop, int s)
-{
-    double pressure = DISTURBANCE(RESERVOIR_PRESSURE, s);
-    for (int l = s; l < LANES; l += STOPS) pressure -= loop->lp[DRAIN * LANES + l] * loop->lane[FILLED * LANES + l];
-    return pressure;
-}
-
 /* When the watchdog of a wheelset fills. */
 static double watch_time(const Loop *loop, int l)
 {
@@ -185,6 +177,14 @@ static void begin_pattern(Loop *loop, int l, double present, double fill_end, do
     blend(loop, l);
 }
 
+/* What the valves of a wheelset do that no longer follow commands: hold, vent or fill. */
+static int stuck(const Loop *loop, int l, double *fill, double *vent)
+{
+    int how = loop->time[l % STOPS] >= FAULT(STUCK_SINCE, l) ? (int)FAULT(STUCK, l) : 0;
+    if (how) *fill = how == 3 ? 1.0 : 0.0, *vent = how == 2 ? 1.0 : 0.0;
+    return how;
+}
+
 /* Let a wheelset follow its command. A pulse that is too short to open its valve is left out, unless the valve is open
    already. A wheelset whose watchdog has filled does so until its command fills. */
 static void follow_command(Loop *loop, int l, double a, double b)
@@ -197,6 +197,7 @@ static void follow_command(Loop *loop, int l, double a, double b)
     if (b * h < least && !(venting && a == 0.0)) b = 0.0;
     if (a > 0.0) loop->last_filled[l] = present + a * h, loop->watched[l] = 0.0;
     else if (loop->watched[l] != 0.0) a = 1.0, b = 0.0;
+    stuck(loop, l, &a, &b);
     loop->fill[l] = a, loop->vent[l] = b;
     double fill_end = present + a * h;
     begin_pattern(loop, l, present, fill_end, 1.0 - a - b < 1e-12 ? present + h : fill_end + b * h);
@@ -209,8 +210,10 @@ static void watch(Loop *loop, int s)
         if (watch_time(loop, l) > loop->time[s] + SHORTEST) continue;
         loop->watched[l] = 1.0;
         loop->lane[WATCHED * LANES + l] += 1.0;
-        loop->fill[l] = 1.0, loop->vent[l] = 0.0;
-        begin_pattern(loop, l, loop->time[s], 1e300, 1e300);
+        double fill = 1.0, vent = 0.0, now = loop->time[s];
+        stuck(loop, l, &fill, &vent);
+        loop->fill[l] = fill, loop->vent[l] = vent;
+        begin_pattern(loop, l, now, fill > 0.0 ? 1e300 : now, fill > 0.0 || vent > 0.0 ? 1e300 : now);
         loop->reservoir[l] = reservoir_of(loop, s);
     }
 }
@@ -304,6 +307,7 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     for (int s = 0; s < STOPS; s++) loop->active[s] = 1.0, loop->now.speed[s] = speed[s];
     for (int l = 0; l < LANES; l++) loop->now.wheel[l] = wheel[l], loop->start_pressure[l] = pressure[l];
     for (int l = 0; l < LANES; l++) loop->reservoir[l] = DISTURBANCE(RESERVOIR_PRESSURE, l % STOPS);
+    for (int l = 0; l < LANES; l++) loop->lane[SLIP_BAND * LANES + l] = -1.0;
     start_pulses(loop);
     set_windows(loop);
     actuator_kernel(loop->window_fixed, present, pressures, torques, filled, damping, level);
@@ -337,13 +341,40 @@ int wspd_sample(Loop *loop, const double *fill, const double *vent)
     return result == GOOD ? to_next_decision(loop) : result;
 }
 
-/* A law: functions on all lanes, its numbers, and memory for what they take and give. */
+/* Judge the train speed that a law goes by, and the slips that it holds, against the truth at a sample of the stops that
+   wait for it; null for what the law does not tell. A number that is none is an error without end. */
+void wspd_judge(Loop *loop, const double *speed, const double *reference)
+{
+    double h = loop->set.sample_time;
+    for (int s = 0; s < STOPS; s++) {
+        if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
+        double now = loop->now.speed[s];
+        if (speed) {
+            double *worst = loop->stop + SPEED_ERROR * STOPS + s, *apart = loop->stop + DISTANCE_ERROR * STOPS + s;
+            double passed = loop->stop[DISTANCE * STOPS + s], error = fabs(speed[s] / now - 1.0);
+            if (loop->sample[s] > 0) loop->travelled[s] += 0.5 * h * (loop->estimated[s] + speed[s]);
+            loop->estimated[s] = speed[s];
+            double away = fabs(loop->travelled[s] - passed) / (FREE_DISTANCE + DISTANCE_SHARE * passed);
+            if (now > ERROR_SPEED && !(error <= *worst)) *worst = isnan(error) ? INFINITY : error;
+            if (!(away <= *apart)) *apart = isnan(away) ? INFINITY : away;
+        }
+        for (int l = s; reference && now > loop->set.judging_speed && l < LANES; l += STOPS) {
+            double *band = loop->lane + SLIP_BAND * LANES + l, over = loop->present.slip[l] - reference[l];
+            if (*band < 0.0 && !(over < 0.0)) *band = 0.0;
+            if (*band >= 0.0 && !(fabs(over) <= *band)) *band = isnan(over) ? INFINITY : fabs(over);
+        }
+    }
+}
+
+/* A law: functions of all that it sees, its numbers, and memory for what they take and give. Element k of stop s stands
+   at k * STOPS + s; what belongs to wheelsets comes front axle first. */
 typedef struct {
     void (*start)(const double *seen, const double *gains, double *state);
     void (*step)(const double *state, const double *seen, const double *gains, double *next);
     const double *gains;
-    long states;
-    double *seen, *state, *next; /* next: the states to be, then fill and vent */
+    long states;                 /* numbers that it remembers, of one stop */
+    long speed, reference;       /* places in them of the train speed and of the slips that it holds; -1 for none */
+    double *seen, *state, *next; /* next: the states to be, then fill and vent of every wheelset */
 } Law;
 
 /* Let the law see the present; 0 when all stops have ended. */
@@ -354,27 +385,27 @@ int wspd_ask(Loop *loop, const Law *law)
     return running;
 }
 
-/* Keep what the controllers of a stop saw, decided and remember. */
+/* Keep what the law of a stop saw, decided and remembers. */
 static void write_sample(const Loop *loop, const Law *law, int stop, double *samples)
 {
-    double *row = samples + loop->sample[stop] * (1 + (law->states + 5) * LANES);
+    long decided = law->states + 2 * AXLES, seen = LANE_SEEN * AXLES + STOP_SEEN;
+    double *row = samples + loop->sample[stop] * (1 + (decided + seen) * STOPS);
     *row++ = loop->sample[stop] * loop->set.sample_time;
-    for (int l = stop; l < LANES; l += STOPS) {
-        for (long k = 0; k < law->states + 2; k++) row[k * LANES + l] = law->next[k * LANES + l];
-        for (int k = 0; k < 3; k++) row[(law->states + 2 + k) * LANES + l] = law->seen[k * LANES + l];
-    }
+    for (long k = 0; k < decided; k++) row[k * STOPS + stop] = law->next[k * STOPS + stop];
+    for (long k = 0; k < seen; k++) row[(decided + k) * STOPS + stop] = law->seen[k * STOPS + stop];
 }
 
 /* Take what the law decided for the waiting stops, and run to the next decision. ``samples`` may be null. */
 int wspd_answer(Loop *loop, const Law *law, double *samples, long sample_rows)
 {
-    const double *command = law->next + law->states * LANES;
+    const double *command = law->next + law->states * STOPS;
     if (samples && wspd_samples(loop) == sample_rows) return BUFFER_FULL;
+    wspd_judge(loop, law->speed < 0 ? 0 : law->next + law->speed * STOPS,
+               law->reference < 0 ? 0 : law->next + law->reference * STOPS);
     for (int s = 0; s < STOPS; s++) {
         if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
         if (samples) write_sample(loop, law, s, samples);
-        for (long k = 0; k < law->states; k++)
-            for (int l = s; l < LANES; l += STOPS) law->state[k * LANES + l] = law->next[k * LANES + l];
+        for (long k = 0; k < law->states; k++) law->state[k * STOPS + s] = law->next[k * STOPS + s];
     }
     return wspd_sample(loop, command, command + LANES);
 }

@@ -20,8 +20,8 @@
 #define EACH_LANE _Pragma("omp simd") for (int l = 0; l < LANES; l++)
 
 enum { TORQUE, DAMPING, BRAKE_WORK, SLIDING_WORK, DAMPING_WORK, SLIP, SLIP_SQUARED, ANGLE, LOCK_TIME, SLIP_MAX, JUDGED_LOCK,
-       LONGEST_LOCK, VENTED, SWITCHES, FILLED, WATCHED, LANE_TOTALS };
-enum { DISTANCE, RESISTANCE, RESISTANCE_WORK, JUDGED, TIME, END_SPEED, STOP_TOTALS };
+       LONGEST_LOCK, VENTED, SWITCHES, FILLED, WATCHED, SLIP_BAND, LANE_TOTALS };
+enum { DISTANCE, RESISTANCE, RESISTANCE_WORK, JUDGED, TIME, END_SPEED, SPEED_ERROR, DISTANCE_ERROR, STOP_TOTALS };
 enum { GOOD, BUFFER_FULL, BAD_COMMAND };
 enum { DECIDE, ACT, WATCH, DONE }; /* what a stop does when it reaches its goal */
 
@@ -59,6 +59,7 @@ typedef struct {                /* a step of one wheelset within which a pulse o
 typedef struct {
     Settings set;
     const double *disturbance;  /* DISTURBANCES numbers per stop */
+    const double *fault;        /* FAULTS numbers per lane */
     const uint64_t *seed;       /* of the random numbers, per stop */
     double *queue;              /* commands that wait for the dead time: fill, then vent of every lane */
     long queue_rows;
@@ -107,6 +108,8 @@ typedef struct {
     WIDE double filled[LANES];   /* pressure without the venting since the last command */
     WIDE double fill[LANES];     /* command that the valves follow */
     WIDE double vent[LANES];
+    WIDE double estimated[STOPS]; /* train speed that the law went by at the last sample, and its integral */
+    WIDE double travelled[STOPS];
     WIDE double time[STOPS];
     WIDE double goal[STOPS];
     WIDE double step[STOPS];

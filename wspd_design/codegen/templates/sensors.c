@@ -6,10 +6,13 @@
    a wheel that turned faster would have given another pulse. Before the stop the wheel turned at its first speed, and
    the angle at which it starts is drawn. */
 enum { REFERENCE_FACTOR, REFERENCE_DRIFT, REFERENCE_NOISE, SPEED_NOISE, PULSE_ANGLE, TIMED, TORQUE_FACTOR, DEAD_TIME,
-       SHORTEST_PULSE, LONGEST_RELEASE, RESERVOIR_PRESSURE, DISTURBANCES };
+       SHORTEST_PULSE, LONGEST_RELEASE, RESERVOIR_PRESSURE, ACCELEROMETER_BIAS, ACCELEROMETER_NOISE, DISTURBANCES };
+enum { WHEEL_FACTOR, SENSOR_LOST, STUCK, STUCK_SINCE, FAULTS }; /* of a wheelset; the second and the last are times */
 enum { NOISE, PHASE }; /* what is drawn */
 #define TRAIN 0 /* whose; wheelset a is 1 + a */
+#define ACCELEROMETER (1 + AXLES)
 #define DISTURBANCE(name, s) loop->disturbance[(name) * STOPS + (s)]
+#define FAULT(name, l) loop->fault[(name) * LANES + (l)]
 
 /* Words that belong to a sample of a stop. */
 static void draw(const Loop *loop, int stop, uint64_t sample, int whose, int what, uint64_t word[4])
@@ -98,18 +101,40 @@ static double measured_wheel(const Loop *loop, int l)
     return angle / (since > period ? since : period);
 }
 
-/* Speed, wheel speed and torque of every lane as the controllers of the stops that wait for them see them. */
+/* Pressure of the reservoir after all that was counted: air keeps its temperature, and none comes in. */
+static double reservoir_of(const Loop *loop, int s)
+{
+    double pressure = DISTURBANCE(RESERVOIR_PRESSURE, s);
+    for (int l = s; l < LANES; l += STOPS) pressure -= loop->lp[DRAIN * LANES + l] * loop->lane[FILLED * LANES + l];
+    return pressure;
+}
+
+/* What the law of the stops that wait for it sees: train speed, wheel speed, torque, whether the speed sensor works, and
+   cylinder pressure of every lane; then acceleration, demand and reservoir of every stop. */
 void wspd_measure(const Loop *loop, double *restrict out)
 {
+    double *of_stop = out + LANE_SEEN * LANES;
+    WIDE double demand[STOPS];
+    demand_kernel(loop->stop_fixed, loop->time, demand);
     for (int l = 0; l < LANES; l++) {
-        int s = l % STOPS;
+        int s = l % STOPS, lost = loop->time[s] >= FAULT(SENSOR_LOST, l);
         if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
         double rms = DISTURBANCE(SPEED_NOISE, s) / loop->lp[RADIUS * LANES + l];
-        double wheel = measured_wheel(loop, l) + noise(loop, s, 1 + l / STOPS, rms);
+        double wheel = measured_wheel(loop, l) * FAULT(WHEEL_FACTOR, l) + noise(loop, s, 1 + l / STOPS, rms);
         double speed = loop->now.speed[s] * DISTURBANCE(REFERENCE_FACTOR, s)
             + loop->time[s] * DISTURBANCE(REFERENCE_DRIFT, s) + noise(loop, s, TRAIN, DISTURBANCE(REFERENCE_NOISE, s));
         out[l] = speed > 0.0 ? speed : 0.0;
-        out[LANES + l] = wheel > 0.0 ? wheel : 0.0;
+        out[LANES + l] = wheel > 0.0 && !lost ? wheel : 0.0;
         out[2 * LANES + l] = (loop->torque[l] + loop->present.dynamic[l]) * DISTURBANCE(TORQUE_FACTOR, s);
+        out[3 * LANES + l] = lost ? 0.0 : 1.0;
+        out[4 * LANES + l] = loop->pressure[l] * DISTURBANCE(TORQUE_FACTOR, s);
+    }
+    for (int s = 0; s < STOPS; s++) {
+        if (loop->phase[s] != DECIDE || loop->time[s] < loop->goal[s]) continue;
+        double along = loop->lp[GRADE_FORCE * LANES + s] / loop->lp[MASS * LANES + s];
+        of_stop[s] = loop->present.acceleration[s] + along + DISTURBANCE(ACCELEROMETER_BIAS, s)
+            + noise(loop, s, ACCELEROMETER, DISTURBANCE(ACCELEROMETER_NOISE, s));
+        of_stop[STOPS + s] = demand[s];
+        of_stop[2 * STOPS + s] = reservoir_of(loop, s);
     }
 }
