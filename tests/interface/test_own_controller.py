@@ -82,7 +82,10 @@ FAULTS_OF_WHOLE = {
         ("tuple(self.command(speed, each) for each in seen.wheel_speeds)", "self.command(speed, 40.0)"),
         "must return (state, (Command(fill=..., vent=...), ...))",
     ),
-    "commands too few": (("in seen.wheel_speeds)", "in seen.wheel_speeds[1:])"), "3 commands; it must return 4"),
+    "commands too few": (
+        ("in seen.wheel_speeds)", "in seen.wheel_speeds[1:])"),
+        "3 commands; it must return 4",
+    ),
     "names too much": (('("train_speed",)', '("train_speed", "distance")'), "names 2 elements"),
     "fails": (("seen.wheel_speeds[1:]", "seen.wheel_speed[1:]"), "AttributeError"),
 }
@@ -131,8 +134,9 @@ def own(tmp_path):
 
 @pytest.fixture
 def page_file(tmp_path):
-    (text,) = (text for kind, text in BLOCKS if kind == "python")
-    (tmp_path / "slip_band.py").write_text(text)
+    texts = [text for kind, text in BLOCKS if kind == "python"]
+    for name, text in zip(("slip_band.py", "fastest.py"), texts, strict=True):
+        (tmp_path / name).write_text(text)
 
 
 @pytest.mark.usefixtures("page_file")
@@ -144,7 +148,7 @@ def test_the_page_shows_what_comes_out(wspd):
         if kind == "console"
         for part in re.split(r"^\$ wspd ", text, flags=re.MULTILINE)[1:]
     ]
-    assert len(commands) == 3
+    assert len(commands) == 5
     for command, expected in commands:
         outcome = wspd(*shlex.split(command))
         assert (outcome.code, outcome.err) == (0, "")

@@ -21,14 +21,16 @@ def takes_records(command: Callable[..., None]) -> Callable[..., None]:
         if isinstance(annotation, type) and is_dataclass(annotation):
             records[parameter.name] = annotation
             hints = get_type_hints(annotation, include_extras=True)
-            parameters += [_parameter(each.name, hints[each.name], each.default) for each in fields(annotation)]
+            parameters += [
+                _parameter(each.name, hints[each.name], each.default) for each in fields(annotation)
+            ]
         else:
             parameters.append(_parameter(parameter.name, annotation, parameter.default))
 
     @wraps(command)
     def with_options(**given: Any) -> None:
         made = {
-            name: record(**{each.name: given.pop(each.name, each.default) for each in fields(record)})  # type: ignore[arg-type]
+            name: record(**{each.name: given.pop(each.name, each.default) for each in fields(record)})
             for name, record in records.items()
         }
         command(**given, **made)

@@ -95,7 +95,11 @@ def _of_law(figures: Metrics) -> list[tuple[str, str, str]]:
         base, share = DISTANCE_TOLERANCE
         rows.append(("speed of the law, largest error", f"{100.0 * figures.speed_error:.1f}", "%"))
         rows.append(
-            (f"its distance, error over {base:g} m + {100.0 * share:g} %", f"{figures.distance_error:.2f}", "-")
+            (
+                f"its distance, error over {base:g} m + {100.0 * share:g} %",
+                f"{figures.distance_error:.2f}",
+                "-",
+            )
         )
     return rows
 

@@ -15,7 +15,9 @@ from wspd_design.simulation.records import FAULT_KINDS, Fault, LoadIrregularity,
 from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
-_FAULT = re.compile(r"\s*axle\s+(?P<axle>\d+)\s*:\s*(?P<kind>\S+)(?:\s+from\s+(?P<since>\S.*?))?\s*", re.IGNORECASE)
+_FAULT = re.compile(
+    r"\s*axle\s+(?P<axle>\d+)\s*:\s*(?P<kind>\S+)(?:\s+from\s+(?P<since>\S.*?))?\s*", re.IGNORECASE
+)
 _RISE_IN_RUN = re.compile(r"(?P<rise>\S+)\s*(?:in|:)\s*(?P<run>\S+)", re.IGNORECASE)
 MOST_SPREAD = 0.2  # of the wheel loads: five standard deviations are the load
 _GRADE = 'write "5 permille", "0.5 %", "1 in 200" or 0.005, negative downhill'

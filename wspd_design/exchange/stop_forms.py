@@ -222,8 +222,8 @@ STOP = Form(
         ),
         nullable(
             "speed_error",
-            "largest relative error above 20 km/h of the train speed that the law estimates; null for a law that is told "
-            "it",
+            "largest relative error above 20 km/h of the train speed that the law goes by; null for one that does "
+            "not tell it",
         ),
         nullable(
             "distance_error",

@@ -79,7 +79,7 @@ def robustness(
     plant: str,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Robustness | None:
-    """Stop with each fault at each axle that has a brake, and on patches.
+    """Stop with each fault at each axle that has a friction brake, and on patches.
 
     Parameters
     ----------
@@ -117,8 +117,8 @@ def robustness(
         progress(f"faults: {kind}")
         faults = [
             Fault(axle=axle, kind=kind, since=SINCE)
-            for axle, brakes in enumerate(vehicle.braked, start=1)
-            if brakes
+            for axle, share in enumerate(vehicle.brake_shares, start=1)
+            if share > 0.0
         ]
         found.append(_worst([stop(replace(plain, faults=(fault,)), fault) for fault in faults]))
     changes = bool(plain.patches or plain.axle_rails)
@@ -136,9 +136,7 @@ def longest_locks(run: Run) -> tuple[float, ...]:
     import numpy as np
 
     judged = run.speed > JUDGING_SPEED
-    return tuple(
-        _longest(run.time, np.asarray(judged & (column <= 0.0))) for column in run.wheel_speed.T
-    )
+    return tuple(_longest(run.time, np.asarray(judged & (column <= 0.0))) for column in run.wheel_speed.T)
 
 
 def _longest(time: "NDArray[np.float64]", flags: "NDArray[np.bool_]") -> float:
@@ -156,7 +154,9 @@ def _worst(stops: Sequence[FaultedStop]) -> FaultedStop:
 def _on_patches(plain: Scenario) -> Scenario:
     profile = load_rail_profile(PATCHES)
     first, *rest = map(load_rail, profile.rails)
-    patches = tuple(Patch(start=start, rail=rail) for start, rail in zip(profile.starts[1:], rest, strict=True))
+    patches = tuple(
+        Patch(start=start, rail=rail) for start, rail in zip(profile.starts[1:], rest, strict=True)
+    )
     return replace(plain, rail=first, patches=patches)
 
 

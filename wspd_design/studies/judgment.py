@@ -69,7 +69,11 @@ def judgment(
             *judge(design, rail, folder=folder),
             *(
                 Judged(
-                    requirement=name, title=titles.get(name, name), limit=None, reached=None, met=name in proved
+                    requirement=name,
+                    title=titles.get(name, name),
+                    limit=None,
+                    reached=None,
+                    met=name in proved,
                 )
                 for name in wanted.certificates
             ),

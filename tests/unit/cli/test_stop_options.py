@@ -171,7 +171,11 @@ def test_what_is_no_fault(text, said):
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("1 %", "give 4 between commas"), ("1 %,1 %,1 %,2", "between -100 % and 100 %"), ("1 %,,0,0", "radius error")],
+    [
+        ("1 %", "give 4 between commas"),
+        ("1 %,1 %,1 %,2", "between -100 % and 100 %"),
+        ("1 %,,0,0", "radius error"),
+    ],
 )
 def test_what_are_no_radius_errors(text, said):
     with pytest.raises(UserError, match=said):

@@ -131,7 +131,11 @@ def trial(
 
 def estimating(plain: Trial) -> Trial:
     """Return the trial of a law of the vehicle: 5 % too fast, slip references that rise, axle 2 released twice."""
-    names = ("train_speed", *(f"slip_reference_{k}" for k in range(1, 5)), *(f"released_{k}" for k in range(1, 5)))
+    names = (
+        "train_speed",
+        *(f"slip_reference_{k}" for k in range(1, 5)),
+        *(f"released_{k}" for k in range(1, 5)),
+    )
 
     def told(sample: Sample) -> Sample:
         speed = 1.05 * INITIAL_SPEED * (1.0 - sample.time / 10.0)

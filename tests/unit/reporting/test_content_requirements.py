@@ -71,7 +71,11 @@ def test_a_lock_that_the_rail_forces_is_no_fault_of_the_law():
             3,
             Status.FAILS,  # another wheelset, whose valve obeys
         ),
-        ({"faults": (replace(faults().faults[0], locks=(0.0, 0.6, 0.0, 0.0)), *faults().faults[1:])}, 0, Status.FAILS),
+        (
+            {"faults": (replace(faults().faults[0], locks=(0.0, 0.6, 0.0, 0.0)), *faults().faults[1:])},
+            0,
+            Status.FAILS,
+        ),
     ],
 )
 def test_what_a_law_could_prevent_is_bad_news(planted, row, found):

@@ -101,7 +101,9 @@ def test_what_meets_its_requirements_is_accepted_unless_a_check_is_refuted(statu
     assert said.status is (Shown.REFUTED if refuted else Shown.ACCEPTED)
     sentence = plain(said.sentence)
     if not refuted:
-        assert "Accepted: it meets all 2 requirements on 200 stops that no search has seen, seed 77" in sentence
+        assert (
+            "Accepted: it meets all 2 requirements on 200 stops that no search has seen, seed 77" in sentence
+        )
         assert "shown by simulated stops, not proved" in sentence
         assert ("undecided:" in sentence) == (Status.UNDECIDED in statuses)
         assert ("sampled only:" in sentence) == (Status.EVIDENCE in statuses)

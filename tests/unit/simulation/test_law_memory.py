@@ -55,7 +55,8 @@ def test_rms_is_about_the_slips_that_the_law_holds():
     t = np.array([sample.time for sample in TELLING.samples])
     judged = np.interp(t, TELLING.time, TELLING.speed) > 10.0 / 3.6
     off = [
-        np.interp(t, TELLING.time, TELLING.slip[:, axle])[judged] - (0.1 + 0.01 * t[judged]) for axle in range(4)
+        np.interp(t, TELLING.time, TELLING.slip[:, axle])[judged] - (0.1 + 0.01 * t[judged])
+        for axle in range(4)
     ]
     assert rms_about_references(TELLING) == pytest.approx(np.sqrt(np.mean(np.square(off))))
 

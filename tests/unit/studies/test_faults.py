@@ -80,6 +80,6 @@ def test_a_stop_with_changes_of_rail_is_not_put_on_patches():
 
 def test_axles_without_a_brake_have_no_fault():
     shares = (0.0, 1.0, 1.0, 1.0)
-    vehicle = replace(LOCO, brake_shares=shares)
+    vehicle = replace(LOCO, brake=replace(LOCO.brake, axle_shares=shares))
     assert all(each.fault.axle != 1 for each in found("none", vehicle=vehicle).faults)
     assert np.isfinite(found("none", vehicle=vehicle).plain)

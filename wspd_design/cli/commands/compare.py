@@ -6,8 +6,8 @@ from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, initial_speed
 from wspd_design.cli.console import console, print_json, progress, spaced
 from wspd_design.cli.disturbances import StopOptions
-from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.json_objects import comparison_object
+from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.stop_figures import SENSITIVE, UNRESOLVED
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.terminal_tables import terminal_table
@@ -52,7 +52,6 @@ def compare(
     speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
-    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     as_json: options.JsonOption = False,

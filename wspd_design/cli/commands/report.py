@@ -34,7 +34,6 @@ def report(
     speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
-    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     output: Annotated[

@@ -135,7 +135,8 @@ def distances_alt(trials: Sequence[Trial], lag_distances: Sequence[float]) -> st
 def slips_alt(trials: Sequence[Trial], specification: Specification) -> str:
     """Say in words what the slips show."""
     said = (
-        f"{trial.run.controller} rms {trial.metrics.slip_rms:.3f} about {held_slip(trial.run, specification.slip)}, a wheelset locked for "
+        f"{trial.run.controller} rms {trial.metrics.slip_rms:.3f} about {held_slip(trial.run, specification.slip)}, "
+        f"a wheelset locked for "
         f"{trial.metrics.lock_time:.2f} s"
         for trial in trials
     )

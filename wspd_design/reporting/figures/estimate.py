@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE, ERROR_SPEED
 from wspd_design.reporting import numbers
 from wspd_design.reporting.figure_style import INK, MUTED, SERIES
-from wspd_design.reporting.figures.drawing import KMH, MOST_POINTS, curve, look, note, thinned
+from wspd_design.reporting.figures.drawing import KMH, curve, look, note, thinned
 from wspd_design.reporting.figures.stop import intervals, line_of
 from wspd_design.simulation.law_memory import SpeedEstimate, released, releases
 from wspd_design.simulation.records import Run
@@ -91,6 +91,11 @@ def _distances(axes: "Axes", estimate: SpeedEstimate) -> None:
     axes.axhline(0.0, color=INK, linewidth=0.7)
     base, share = DISTANCE_TOLERANCE
     note(
-        axes, f"{base:g} m + {100.0 * share:g} %", float(time[-1]), float(allowed[-1]), ha="right", va="top",
+        axes,
+        f"{base:g} m + {100.0 * share:g} %",
+        float(time[-1]),
+        float(allowed[-1]),
+        ha="right",
+        va="top",
         xytext=(0, -2),
     )

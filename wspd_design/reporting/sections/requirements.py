@@ -86,7 +86,7 @@ def _stops(judgment: Judgment) -> str:
     ]
     differ = f"They differ in {numbers.listing(spread)}. " if spread else ""
     return (
-        f"The design is judged on {stops_of(judgment)}: vehicle, rail and disturbances are drawn anew for each stop, on "
-        f"{escape(numbers.listing(wanted.rails))} in turn. {differ}Efficiency is the ideal stop of the same draw over the "
-        "distance. How the gains were found stands beside each of them in [](#design)."
+        f"The design is judged on {stops_of(judgment)}: vehicle, rail and disturbances are drawn anew for each stop, "
+        f"on {escape(numbers.listing(wanted.rails))} in turn. {differ}Efficiency is the ideal stop of the same draw "
+        "over the distance. How the gains were found stands beside each of them in [](#design)."
     )

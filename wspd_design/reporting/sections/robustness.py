@@ -27,8 +27,8 @@ def robustness(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="Faults and patches", anchor="robustness"),
         Paragraph(
-            text=f"The same design, unchanged, where one wheelset has a fault from {SINCE:g} s on; of the axles the one "
-            f"where it does most harm. Stops on {rails} without a fault take "
+            text=f"The same design, unchanged, where one wheelset has a fault from {SINCE:g} s on; of the axles the "
+            f"one where it does most harm. Stops on {rails} without a fault take "
             f"{numbers.decimals(found.plain, 1)} m. A stop holds if the train stops and no wheel that a law could keep "
             f"turning is locked for more than {LONGEST_LOCK:g} s above {judged} km/h."
         ),
@@ -49,9 +49,7 @@ def _table(found: Robustness, judged: str) -> Table:
                 title="Longer by",
                 unit="%",
                 decimals=1,
-                read=lambda each: (
-                    100.0 * (each.distance / found.plain - 1.0) if each.fault else float("nan")
-                ),
+                read=lambda each: 100.0 * (each.distance / found.plain - 1.0) if each.fault else float("nan"),
             ),
             ColumnOf(
                 title="Lock of this axle",

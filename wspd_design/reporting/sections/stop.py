@@ -47,8 +47,8 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         Figure(
             svg=picture(draw, height=8.6),
             caption=f"The stop over time, {run.train}. Green: tolerance about the reference, "
-            f"{held_slip(run, specification.slip)} (dashed). Gray: below {judged} km/h, where the slip is not judged. Bars at the upper edge of the "
-            "slip mark locked wheels, the front wheelset on top.",
+            f"{held_slip(run, specification.slip)} (dashed). Gray: below {judged} km/h, where the slip is not judged. "
+            "Bars at the upper edge of the slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
         ),
@@ -102,8 +102,8 @@ def _estimate(own: Trial) -> tuple[Block, ...]:
         Figure(
             svg=picture(partial(estimate_panels, run=run, estimate=estimate), height=5.4),
             caption="The train speed as the law has it (dashed) beside the true one, the relative error of the speed, "
-            f"which counts above {fast} km/h, and the error of the distance with the {allowed} of ETCS (green). Bars at "
-            "the upper edge: wheelsets that the law releases to see the speed, the front one on top.",
+            f"which counts above {fast} km/h, and the error of the distance with the {allowed} of ETCS (green). Bars "
+            "at the upper edge: wheelsets that the law releases to see the speed, the front one on top.",
             alt=estimate_alt(run, estimate),
             anchor="stop-estimate",
         ),
