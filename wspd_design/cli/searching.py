@@ -24,7 +24,7 @@ SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (docs/d
 
 def search_and_write(
     task: Task, start: Design, name: str, output: Path, *, limits: tuple[Limit, ...], force: bool
-) -> None:
+) -> bool:
     """Search a design, write it and the record of the search, and show what was reached.
 
     Parameters
@@ -41,6 +41,11 @@ def search_and_write(
         That the search has to keep.
     force : bool
         Whether existing files may be replaced.
+
+    Returns
+    -------
+    bool
+        Whether all requirements are met on the held-out sets.
     """
     from wspd_design.design.finding import find
     from wspd_design.exchange.search_objects import search_object
@@ -94,6 +99,7 @@ def search_and_write(
         ("Show it", ("report", output, "-o", output.with_suffix(".html"))),
     )
     out.print(f"Record of the search: {record}", markup=False, soft_wrap=True)
+    return not found.unproved and all(each.met is not False for each in found.judged)
 
 
 def _show_judged(judged: Sequence[Judged], before: Mapping[str, float]) -> None:

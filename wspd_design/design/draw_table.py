@@ -22,6 +22,8 @@ STOP_DIMENSIONS: Mapping[str, Dimension] = {
     "stop.sensing.reference_drift": "acceleration",
     "stop.sensing.reference_noise": "speed",
     "stop.sensing.torque_error": "ratio",
+    "stop.sensing.accelerometer_bias": "acceleration",
+    "stop.sensing.accelerometer_noise": "acceleration",
     "stop.sensing.dead_time": "time",
     "stop.sensing.shortest_pulse": "time",
 }

@@ -29,7 +29,7 @@ USUAL = SearchRange(
 """Range of a number without one of its own."""
 
 _SLIP = SearchRange(
-    low=0.04,
+    low=0.025,
     high=0.3,
     why="from the creep of a braking wheel that adheres to slips beyond the peak of every rail but the very low ones",
 )
@@ -120,9 +120,12 @@ TABLE_RANGES = {
         "vent_pulse": _PULSES,
     },
     "mitsubishi": {
-        "slide_centres": _factor(0.1, 5.0, "from the slide of a wheel that adheres to five times the table"),
+        "slide_centres": _factor(0.05, 5.0, "from hardly any slide to five times the table"),
         "rate_centres": _factor(0.2, 5.0, "a factor 5 on both sides of the table"),
         "duty_gain": _factor(0.2, 5.0, "a factor 5 on both sides of the table"),
+        "duty_shift": SearchRange(
+            low=-0.5, high=0.5, log=False, why="half a sample to both sides of the table"
+        ),
     },
 }
 """Ranges of the laws that decide by a table, by their families."""

@@ -84,13 +84,14 @@ def design_controller(
 
 
 def shipped_design(law: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Design:
-    """Return what a law is before anybody tuned it: the design behind its name, or its table with all factors 1."""
+    """Return what a law is before anybody tuned it: the design behind its name, or its table as it is."""
     family = tunable_family(law)
     if family.gains is not None:
         return named_design(law, vehicle, rail, specification)
-    table = usual_table(vehicle)
+    assert family.scales is not None
+    why, neutral = f"the {usual_table(vehicle)} table as it is", family.scales()
     gains = tuple(
-        Gain(name=form.name, value=1.0, unit="-", why=f"the {table} table as it is") for form in family.forms
+        Gain(name=form.name, value=getattr(neutral, form.name), unit="-", why=why) for form in family.forms
     )
     return _design(law, family, vehicle, rail, specification, gains)
 

@@ -93,6 +93,13 @@ def read_task(name_or_path: str) -> Task:
 
 
 def _task(document: dict[str, Any], where: str) -> Task:
+    try:
+        return _read(document, where)
+    except UserError as error:  # of a quantity, a distribution or a law, which know no file
+        raise error if where in str(error) else UserError(f"{where}: {error}") from None
+
+
+def _read(document: dict[str, Any], where: str) -> Task:
     if document.get("schema") != SCHEMA:
         raise UserError(
             f'{where} is not a specification of this version: schema = "{document.get("schema", "")}" must be '

@@ -8,6 +8,7 @@ import typer
 
 from wspd_design.cli import options
 from wspd_design.cli.console import progress
+from wspd_design.cli.exit_codes import REFUTED
 from wspd_design.cli.gains import show_design
 from wspd_design.cli.output import check_output
 from wspd_design.cli.searching import SPECIFICATIONS, search_and_write
@@ -48,7 +49,8 @@ def design(
     """Choose the gains of a slip controller by rules, or by search for a specification, and write a design file.
 
     A search tries many gains on the same drawn vehicles, rails and disturbances, and looks once at sets that it has not
-    seen. What is finished stays in a journal beside the output, and the same command goes on from there.
+    seen; the exit code is 1 if a requirement is missed there. What is finished stays in a journal beside the output,
+    and the same command goes on from there.
     """
     check_output(output, force=force)
     given = {
@@ -86,4 +88,5 @@ def _search(wanted: str, output: Path, *, force: bool) -> None:
         tell("choosing the gains to start from")
         start = selection.design_controller(braked, friction, task.specification, law=task.law)
     name = f"{task.law}-{task.name}"
-    search_and_write(task, start, name, output, limits=task.requirements.limits, force=force)
+    if not search_and_write(task, start, name, output, limits=task.requirements.limits, force=force):
+        raise typer.Exit(REFUTED)

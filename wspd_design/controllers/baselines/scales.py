@@ -26,11 +26,12 @@ class TrenitaliaScales:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MitsubishiScales:
-    """Factors on the table of Mitsubishi."""
+    """Factors on the table of Mitsubishi, and a shift."""
 
     slide_centres: float = 1.0
     rate_centres: float = 1.0
     duty_gain: float = 1.0
+    duty_shift: float = 0.0  # is added to the offset of the duty
 
 
 def scaled_knorr_bremse(table: KnorrBremseTable, scales: KnorrBremseScales) -> KnorrBremseTable:
@@ -65,6 +66,7 @@ def scaled_mitsubishi(table: MitsubishiTable, scales: MitsubishiScales) -> Mitsu
         slide_centres=_times(scales.slide_centres, table.slide_centres),
         rate_centres=_times(scales.rate_centres, table.rate_centres),
         duty_gain=scales.duty_gain * table.duty_gain,
+        duty_offset=table.duty_offset + scales.duty_shift,
     )
 
 

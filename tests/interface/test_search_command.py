@@ -1,0 +1,149 @@
+"""``wspd design SPEC`` and ``wspd tune``: what they write, and what a killed search leaves."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from wspd_design.design.file import read_design
+from wspd_design.exchange.files import read_schema
+
+SPEC = """schema = "wspd-specification/1"
+name = "small"
+law = "torque-feedback"
+vehicle = "er24pc"
+sample_time = "100 ms"
+[requirements]
+rails = ["polach-dry"]
+held_out = { sets = 16, seed = 9000 }
+[requirements.limits]
+efficiency_mean = "50 %"
+[requirements.stop]
+initial_speed = "30 km/h"
+[requirements.draw]
+vehicle.brake.max_torque = { uniform = ["45 kN m", "75 kN m"] }
+[search]
+evaluations = 14
+sets = 16
+seed = 1
+"""
+COMMAND = (sys.executable, "-c", "from wspd_design.cli import main; main()")
+
+
+@pytest.fixture
+def spec(tmp_path):
+    path = tmp_path / "spec.toml"
+    path.write_text(SPEC)
+    return path
+
+
+def test_a_design_with_its_record(wspd, spec, tmp_path):
+    outcome = wspd("design", spec.name, "-o", "made.toml")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["made.search.json", "made.toml", "spec.toml"]
+    record = json.loads((tmp_path / "made.search.json").read_text())
+    Draft202012Validator(read_schema("wspd-search/1")).validate(record)
+    assert (record["evaluations"], len(record["points"])) == (14, 14)
+    made = read_design(tmp_path / "made.toml")
+    assert made.requirements.held_out.seed == record["held_out_sets"]["seed"] == 9000
+    assert "met" in outcome.out
+    assert "On 16 held-out sets of seed 9000, looked at once (polach-dry):" in outcome.out
+    again = wspd("simulate", "made.toml", "--speed", "30 km/h", "--json")
+    assert json.loads(again.out)["controller"] == made.name == "torque-feedback-small"
+
+
+def test_a_missed_requirement_is_bad_news(wspd, spec):
+    spec.write_text(SPEC.replace('"50 %"', '"99.9 %"'))
+    outcome = wspd("design", spec.name)
+    assert outcome.code == 1
+    assert "missed" in outcome.out
+
+
+def test_a_tuned_table_is_a_controller_that_says_its_effort(wspd, spec, tmp_path):
+    outcome = wspd("tune", "knorr-bremse", spec.name)
+    assert (outcome.code, outcome.err) == (0, "")
+    file = "knorr-bremse-small-tuned.toml"
+    made = read_design(tmp_path / file)
+    assert (made.law, made.name) == ("knorr-bremse", "knorr-bremse (tuned, 14 evaluations)")
+    compared = wspd("compare", file, "knorr-bremse", "--speed", "30 km/h", "--json")
+    assert [each["controller"] for each in json.loads(compared.out)["stops"]] == [made.name, "knorr-bremse"]
+    distances = [each["distance_m"] for each in json.loads(compared.out)["stops"]]
+    assert distances[0] != distances[1]
+    assert "tuned" in wspd("compare", file, "--speed", "30 km/h").out
+
+
+def test_a_file_in_the_way_is_refused_before_anything_is_computed(wspd, spec, tmp_path):
+    (tmp_path / "made.search.json").write_text("")
+    outcome = wspd("design", spec.name, "-o", "made.toml")
+    assert (outcome.code, outcome.out) == (2, "")
+    assert outcome.err.startswith("wspd: made.search.json exists; ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (
+            ("design", "spec.toml", "--law", "smc"),
+            "--law is stated by the specification spec.toml; leave it out",
+        ),
+        (("design", "er24pc-20m"), 'unknown specification "er24pc-20m"'),
+        (("design", "nothing.toml"), "nothing.toml does not exist"),
+        (("tune", "none", "spec.toml"), 'law "none" cannot be tuned'),
+    ],
+)
+def test_wrong_use_is_one_sentence(wspd, spec, arguments, sentence):
+    assert spec.exists()
+    outcome = wspd(*arguments)
+    assert (outcome.code, outcome.out) == (2, "")
+    assert sentence in outcome.err
+    assert outcome.err.count("\n") == 1
+
+
+def started(folder):
+    return subprocess.Popen(
+        [*COMMAND, "design", "spec.toml", "-o", "made.toml"],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def wait_for_lines(journal, count, process):
+    end = time.monotonic() + 120.0
+    while not journal.exists() or journal.read_bytes().count(b"\n") < count:
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < end
+        time.sleep(0.005)
+
+
+@pytest.mark.slow
+def test_a_killed_search_goes_on_and_ends_as_a_whole_one(wspd, spec, tmp_path):
+    spec.write_text(SPEC.replace("evaluations = 14", "evaluations = 40"))
+    assert wspd("design", spec.name, "-o", "made.toml").code == 0
+    whole = {name: (tmp_path / name).read_bytes() for name in ("made.toml", "made.search.json")}
+    for name in whole:
+        (tmp_path / name).unlink()
+    journal = tmp_path / "made.search.journal"
+    for lines in (3, 12):
+        process = started(tmp_path)
+        wait_for_lines(journal, lines, process)
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+        assert process.returncode == -signal.SIGKILL
+    process = started(tmp_path)
+    wait_for_lines(journal, 20, process)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (130, "")
+    assert err.startswith("wspd: interrupted after ")
+    assert err.endswith(
+        " of 40 evaluations; they are in made.search.journal, and the same command goes on from there.\n"
+    )
+    assert wspd("design", spec.name, "-o", "made.toml").code == 0
+    assert {name: (tmp_path / name).read_bytes() for name in whole} == whole
+    assert not journal.exists()

@@ -1,0 +1,172 @@
+"""From a task to a design: one look at the held-out sets, and a design that says and keeps what was found."""
+
+from dataclasses import replace
+
+import pytest
+
+from wspd_design.certificates.records import Certificate, Status
+from wspd_design.design import finding, judging
+from wspd_design.design.file import read_design, write_design
+from wspd_design.design.finding import find
+from wspd_design.design.judging import judge
+from wspd_design.design.requirements import Limit
+from wspd_design.design.selection import design_controller
+from wspd_design.design.specification_file import read_task
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_rail
+from wspd_design.simulation.campaign_rows import figures_of
+
+
+@pytest.fixture(scope="module")
+def task(tmp_path_factory):
+    path = tmp_path_factory.mktemp("task") / "small.toml"
+    path.write_text(
+        """schema = "wspd-specification/1"
+name = "small"
+law = "torque-feedback"
+vehicle = "er24pc"
+sample_time = "100 ms"
+[requirements]
+rails = ["polach-dry", "polach-wet"]
+held_out = { sets = 20, seed = 9000 }
+[requirements.limits]
+efficiency_mean = "80 %"
+valve_switches = "9 1/s"
+[requirements.stop]
+initial_speed = "30 km/h"
+[requirements.draw]
+vehicle.brake.max_torque = { uniform = ["45 kN m", "75 kN m"] }
+stop.sensing.speed_noise = { choice = ["0.02 m/s", "0.05 m/s"] }
+[search]
+evaluations = 16
+sets = 18
+seed = 1
+"""
+    )
+    return read_task(str(path))
+
+
+@pytest.fixture(scope="module")
+def start(er24pc, task):
+    return design_controller(er24pc, load_rail("polach-wet"), task.specification, law=task.law)
+
+
+@pytest.fixture
+def finds(task, start, tmp_path):
+    def finding_one(limits=task.requirements.limits, **changes):
+        return find(replace(task, **changes), start, "made", limits=limits, journal=tmp_path / "journal")
+
+    return finding_one
+
+
+def test_the_held_out_sets_are_looked_at_once_and_last(finds, monkeypatch):
+    """Two laws on the held-out sets, the start and the chosen one, after everything else; the search saw none."""
+    seeds = []
+
+    def counted(cases, controller, ideal, runs):
+        seeds.append((controller.name, {scenario.seed for _, scenario in cases}))
+        return figures_of(cases, controller, ideal, runs)
+
+    monkeypatch.setattr("wspd_design.design.search.evaluation.figures_of", counted)
+    drawn = []
+    for module in (finding, judging):
+        draw_sets = module.draw_sets
+
+        def told(requirements, vehicle, name, wanted, pool, draw_sets=draw_sets):
+            drawn.append((wanted.seed, len(seeds)))
+            return draw_sets(requirements, vehicle, name, wanted, pool)
+
+        monkeypatch.setattr(module, "draw_sets", told)
+    found = finds()
+    assert [seed for seed, _ in drawn] == [1, 9000]
+    before = drawn[1][1]
+    assert before == len(seeds) - 2 * 2  # two laws, two groups
+    assert all(max(seen) < 9000 for _, seen in seeds[:before])
+    assert all(min(seen) >= 9000 for _, seen in seeds[before:])
+    assert {name for name, _ in seeds[before:]} == {found.start.name, "made"}
+
+
+def test_the_design_says_what_was_found(finds, task, start, tmp_path):
+    found = finds()
+    made = found.design
+    assert made.requirements == task.requirements
+    assert (made.name, made.law, made.vehicle) == ("made", "torque-feedback", "er24pc")
+    values = dict(zip((each.name for each in found.variables), found.chosen.values, strict=True))
+    assert made.specification.slip == values["slip_reference"]
+    assert made.gain("torque_gain") == values["torque_gain"]
+    assert made.gain("sliding_gain") == pytest.approx(values["sliding_gain"] * start.gain("sliding_gain"))
+    for gain in made.gains:
+        assert "best of 16 evaluations on 18 sets of seed 1 (cma)" in gain.why
+        assert next(each.why for each in start.gains if each.name == gain.name) in gain.why
+    assert found.tried[0].values[1:] == pytest.approx((1.0, start.gain("torque_gain")))
+    assert {each.name for each in found.sensitivities} == set(values)
+    path = tmp_path / "made.toml"
+    write_design(made, path)
+    assert read_design(path) == made
+
+
+def test_the_reason_says_how_many_points_kept_the_limits(finds):
+    """The first generation is the same with and without limits, so that some point is sure to keep this one."""
+    free = finds(limits=())
+    limit = Limit(
+        criterion="vented_air", value=max(each.score.reached["vented_air"] for each in free.tried[:8])
+    )
+    bound = finds(limits=(limit,))
+    assert bound.tried[:8] == free.tried[:8]
+    holding = sum(each.score.reached["vented_air"] <= limit.value for each in bound.tried)
+    assert bound.reason.startswith(
+        f"smallest objective of the {holding} points among 16 that keep all limits: "
+    )
+    assert free.reason.startswith("smallest objective of 16 points, without limits: ")
+
+
+def test_a_limit_that_cannot_be_kept_is_missed_least(finds, task):
+    impossible = (Limit(criterion="efficiency_mean", value=0.999),)
+    found = finds(limits=impossible, requirements=replace(task.requirements, limits=impossible))
+    assert "none of 16 points keeps all limits" in found.reason
+    (judged,) = (each for each in found.judged if each.limit is not None)
+    assert judged.met is False
+    best = max(each.score.reached["efficiency_mean"] for each in found.tried)
+    assert found.chosen.score.reached["efficiency_mean"] == best
+
+
+def test_anybody_can_judge_the_design_again(finds, tmp_path):
+    found = finds()
+    again = judge(found.design, load_rail("polach-wet"))
+    assert again == found.judged
+    reached = {each.requirement: each.reached for each in again}
+    assert reached == dict(found.held_out.reached)
+    assert judge(found.design, load_rail("polach-wet"), folder=tmp_path) == again
+
+
+def test_a_design_without_requirements_cannot_be_judged(start):
+    with pytest.raises(
+        UserError, match="states no requirements; make it from a specification: wspd design SPEC"
+    ):
+        judge(start, load_rail("polach-wet"))
+
+
+def test_certificates_that_must_hold_choose_among_the_best(finds, task, monkeypatch):
+    """Planted verdicts: only laws with a torque gain below that of the free optimum are proved."""
+    wanted = replace(task.requirements, certificates=("open_loop_pole",))
+    free = finds(limits=())
+    edge = free.design.gain("torque_gain")
+
+    def verdict(problem, *, only, figures):
+        assert (only, figures) == (("open_loop_pole",), False)
+        proved = problem.controller.gains.torque_gain < edge
+        status = Status.PROVED if proved else Status.UNDECIDED
+        return (
+            Certificate(name="open_loop_pole", title="", claim="", status=status, explanation="", method=""),
+        )
+
+    monkeypatch.setattr("wspd_design.certificates.suite.verify", verdict)
+    found = finds(limits=(), requirements=wanted)
+    ranked = sorted(free.tried, key=lambda each: each.score.objective)[: finding.PROOF_TRIALS]
+    proved = [each for each in ranked if each.values[-1] < edge]
+    if proved:
+        assert (found.chosen.values, found.unproved) == (proved[0].values, ())
+    else:
+        assert (found.chosen.values, found.unproved) == (ranked[0].values, ("open_loop_pole",))
+    edge = -1.0
+    assert finds(limits=(), requirements=wanted).unproved == ("open_loop_pole",)
