@@ -120,7 +120,9 @@ def _source(sensors: Sensors) -> str:
         case "told":
             return "The law is told the train speed, and scales it so that wheels that roll have no slip."
         case "fastest-axle":
-            return "The law takes the fastest wheelset for the train, and bounds how fast that speed may fall."
+            return (
+                "The law takes the fastest wheelset for the train, and bounds how fast that speed may fall."
+            )
         case "wheels":
             beside = " and an accelerometer" if sensors.accelerometer else ""
             return f"The law estimates the train speed from its wheels{beside}."
