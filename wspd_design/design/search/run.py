@@ -34,7 +34,7 @@ class Evaluation:
     point: Point
     values: tuple[float, ...]  # of the variables
     score: Score
-    unproved: float  # scales, by which claims fail
+    unproved: float  # scales, by which claims fail; they are asked of points alone that keep all limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,6 +73,12 @@ class Aim:
     def holds(self, tried: Evaluation) -> bool:
         """Tell whether a point stops every train, meets all limits and has all claims."""
         return self.rank(tried)[:2] == (0.0, 0.0)
+
+    def unproved(self, design: Design, reached: Score) -> float:
+        """Return by how much claims fail about a design that keeps all limits [scales]."""
+        if not self.claims or rank(reached, self.limits)[:2] != (0.0, 0.0):
+            return 0.0
+        return sum(claim(design) for claim in self.claims)
 
 
 def search(
@@ -162,14 +168,10 @@ def _tried(
         scores[k] = score(figures)
         journal.add(points[k], scores[k])
         tell()
+    unproved = pool.map(aim.unproved, designs, [scores[k] for k in range(len(points))])
     return [
-        Evaluation(
-            point=point,
-            values=space.values(point),
-            score=scores[k],
-            unproved=sum(claim(designs[k]) for claim in aim.claims),
-        )
-        for k, point in enumerate(points)
+        Evaluation(point=point, values=space.values(point), score=scores[k], unproved=missed)
+        for k, (point, missed) in enumerate(zip(points, unproved, strict=True))
     ]
 
 

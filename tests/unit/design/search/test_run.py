@@ -119,6 +119,20 @@ def test_a_claim_that_must_hold_is_kept(bowl, tmp_path):
     assert 0.35 < chosen.values[0] <= 0.4  # without the claim it is 0.5
 
 
+def test_claims_are_asked_of_points_alone_that_keep_all_limits(bowl, tmp_path):
+    """A proof takes longer than all stops of a point."""
+    limits = (Limit(criterion="valve_switches", value=7.0),)
+    asked = []
+
+    def claim(design):
+        asked.append(design)
+        return 0.0
+
+    tried = bowl(tmp_path / "journal", limits=limits, claims=(claim,))
+    keeping = [each for each in tried if each.score.reached["valve_switches"] <= 7.0]
+    assert 0 < len(asked) == len(keeping) < len(tried)
+
+
 def test_not_a_number_is_never_chosen(bowl, tmp_path, monkeypatch):
     healthy = run.evaluate
 
