@@ -8,13 +8,15 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from wspd_design.controllers.protocol import Command, Controller, Measurement
+from wspd_design.controllers.protocol import Command, Law, Measurement, VehicleMeasurement, acts_on_vehicle
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
 _MODULE_PREFIX = "wspd_own_controller."
+_ATTRIBUTES = ("name", "sample_time", "start", "step")
 _PROBES = tuple(Measurement(speed, speed * ratio, 2e4) for speed in (30.0, 10.0) for ratio in (1.8, 1.2, 0.1))
+_PRESSURES = 2e5, 6e5  # Pa, of a brake cylinder and of the reservoir while it is probed
 _HOW = "see docs/own-controller.md"
 
 
@@ -30,8 +32,8 @@ def load_controller(
     rail: Rail,
     slip: float | None = None,
     sample_time: float | None = None,
-) -> Controller:
-    """Load a controller from a Python file.
+) -> Law:
+    """Load a controller of a wheelset or of a vehicle from a Python file.
 
     A class or function that makes the controller is given what it has parameters for, by these names.
 
@@ -54,7 +56,13 @@ def load_controller(
         If the file fails or what it gives is not a controller.
     """
     paper = Specification()
-    wanted = {"vehicle": vehicle, "rail": rail, "slip": slip, "sample_time": sample_time}
+    wanted = {
+        "vehicle": vehicle,
+        "rail": rail,
+        "wheelsets": vehicle.wheelsets,
+        "slip": slip,
+        "sample_time": sample_time,
+    }
     written = {key: value for key, value in wanted.items() if value is not None}
     options = {"slip": paper.slip, "sample_time": paper.sample_time} | written
     file, _, attribute = name.rpartition(":")
@@ -68,7 +76,7 @@ def load_controller(
         raise UserError(f'{file} has no "{attribute}"; it defines {", ".join(own) or "nothing"}; {_HOW}')
     found = getattr(module, attribute)
     made: Any = found if _is_controller(found) else _make(found, name, options, written)
-    _check(made, name)
+    _check(made, name, vehicle)
     return made  # type: ignore[no-any-return]
 
 
@@ -105,9 +113,7 @@ def _run(path: Path) -> ModuleType:
 
 
 def _is_controller(found: Any) -> bool:
-    return not isinstance(found, type) and all(
-        hasattr(found, key) for key in ("name", "sample_time", "start", "step")
-    )
+    return not isinstance(found, type) and all(hasattr(found, key) for key in _ATTRIBUTES)
 
 
 def _make(found: Any, name: str, options: Mapping[str, object], written: Mapping[str, object]) -> object:
@@ -132,26 +138,46 @@ def _make(found: Any, name: str, options: Mapping[str, object], written: Mapping
     return _guarded(lambda: found(**given), name)
 
 
-def _check(made: Any, name: str) -> None:
+def _check(made: Any, name: str, vehicle: Vehicle) -> None:
     """Look at the attributes, and at what ``start`` and ``step`` do with numbers."""
-    missing = [key for key in ("name", "sample_time", "start", "step") if not hasattr(made, key)]
+    missing = [key for key in _ATTRIBUTES if not hasattr(made, key)]
     if missing:
         raise UserError(f"{name} does not make a controller: it lacks {', '.join(missing)}; {_HOW}")
     sampling = made.sample_time
     if not isinstance(sampling, int | float) or not 1e-3 <= sampling <= 1.0:
         raise UserError(f"sample_time = {sampling!r} of {name} must be a number between 0.001 and 1 s")
+    whole = acts_on_vehicle(made)
+    if whole and made.wheelsets != vehicle.wheelsets:
+        raise UserError(
+            f"wheelsets = {made.wheelsets!r} of {name} must be {vehicle.wheelsets}, as vehicle {vehicle.name} has; "
+            "let it take wheelsets"
+        )
     before = repr(getattr(made, "__dict__", None))
-    results = _guarded(lambda: [_probe(made, seen) for seen in _PROBES * 2], name)
-    for states, following, command in results:
-        if not isinstance(command, Command):
-            raise UserError(f"step of {name} must return (state, Command(fill=..., vent=...)); {_HOW}")
+    seen = tuple(_of_vehicle(each, vehicle.wheelsets) for each in _PROBES) if whole else _PROBES
+    results = _guarded(lambda: [_probe(made, each) for each in seen * 2], name)
+    for states, following, commanded in results:
+        commands = commanded if whole else (commanded,)
+        if not isinstance(commands, tuple) or not all(isinstance(each, Command) for each in commands):
+            wanted = "(Command(fill=..., vent=...), ...)" if whole else "Command(fill=..., vent=...)"
+            raise UserError(f"step of {name} must return (state, {wanted}); {_HOW}")
+        if whole and len(commands) != made.wheelsets:
+            raise UserError(
+                f"step of {name} returns {len(commands)} commands; it must return {made.wheelsets}, one for each "
+                "wheelset, front first"
+            )
         if len(states) != len(following):
             raise UserError(
                 f"start of {name} returns {len(states)} states and step {len(following)}; both must return "
                 "all that the controller remembers"
             )
-        if not all(math.isfinite(number) for number in (*states, *following, *command)):
-            raise UserError(f"{name} returns a number that is not finite: {command}")
+        named = getattr(made, "memory", None) if whole else None
+        if named is not None and len(named) != len(states):
+            raise UserError(
+                f"memory of {name} names {len(named)} elements of its state, which has {len(states)}; "
+                "name each in its order, or leave memory out"
+            )
+        if not all(math.isfinite(number) for number in (*states, *following, *sum(commands, ()))):
+            raise UserError(f"{name} returns a number that is not finite: {commanded}")
     half = len(_PROBES)
     if results[:half] != results[half:] or repr(getattr(made, "__dict__", None)) != before:
         raise UserError(
@@ -160,7 +186,22 @@ def _check(made: Any, name: str) -> None:
         )
 
 
-def _probe(made: Any, seen: Measurement) -> tuple[Any, Any, Any]:
+def _of_vehicle(seen: Measurement, wheelsets: int) -> VehicleMeasurement:
+    """Return what a controller of a vehicle sees where every wheelset sees the same."""
+    pressure, reservoir = _PRESSURES
+    return VehicleMeasurement(
+        speed=seen.speed,
+        wheel_speeds=(seen.wheel_speed,) * wheelsets,
+        torques=(seen.torque,) * wheelsets,
+        healthy=(1.0,) * wheelsets,
+        pressures=(pressure,) * wheelsets,
+        acceleration=-1.0,
+        demand=1.0,
+        reservoir=reservoir,
+    )
+
+
+def _probe(made: Any, seen: Measurement | VehicleMeasurement) -> tuple[Any, Any, Any]:
     state = made.start(seen)
     following, command = made.step(state, seen)
     return tuple(map(float, state)), tuple(map(float, following)), command

@@ -10,9 +10,10 @@ from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.campaign import Extent, simulate_runs
 from wspd_design.cli.console import console, print_json, progress
-from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
 from wspd_design.cli.json_objects import witness_object
+from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.stop_figures import show_stop
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.tables import check_table, write_table
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 _MANY = "Many stops"
 
 
-@takes_stop_options
+@takes_records
 def simulate(
     *,
     name: options.ControllerArgument = None,
