@@ -5,14 +5,13 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from wspd_design.design.records import Design
 from wspd_design.design.requirements import Limit
 from wspd_design.design.search.evaluation import evaluate
 from wspd_design.design.search.journal import Journal
 from wspd_design.design.search.methods import METHODS, Point
 from wspd_design.design.search.score import Score, rank, score
 from wspd_design.design.search.sets import Sets
-from wspd_design.design.search.variables import Variable, design_at
+from wspd_design.design.search.variables import Variable
 from wspd_design.parameters.errors import UserError
 
 if TYPE_CHECKING:
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-Claim: TypeAlias = Callable[[Design], float]
-"""By how much a claim about a design fails that must hold at every point, in scales; 0 where it holds."""
+Claim: TypeAlias = "Callable[[Law], float]"
+"""By how much a claim about a law fails that must hold at every point, in scales; 0 where it holds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,15 +38,15 @@ class Evaluation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Space:
-    """What is searched: a design, what of it varies, and how a law is built from it."""
+    """What is searched: the numbers that vary, and how a law is built from them."""
 
-    base: Design
+    law: str  # its name, in sentences
     variables: tuple[Variable, ...]
-    build: "Callable[[Design], Law]"
+    build: "Callable[[tuple[float, ...]], Law]"
 
-    def design(self, point: Point) -> Design:
-        """Return the design at a point."""
-        return design_at(self.base, self.variables, self.values(point))
+    def law_at(self, point: Point) -> "Law":
+        """Return the law at a point."""
+        return self.build(self.values(point))
 
     def values(self, point: Point) -> tuple[float, ...]:
         """Return the values of the variables at a point."""
@@ -55,7 +54,7 @@ class Space:
 
     @property
     def start(self) -> Point:
-        """Point of the design that the search starts from."""
+        """Point that the search starts from."""
         return tuple(each.share(each.start) for each in self.variables)
 
 
@@ -74,11 +73,11 @@ class Aim:
         """Tell whether a point stops every train, meets all limits and has all claims."""
         return self.rank(tried)[:2] == (0.0, 0.0)
 
-    def unproved(self, design: Design, reached: Score) -> float:
-        """Return by how much claims fail about a design that keeps all limits [scales]."""
+    def unproved(self, law: "Law", reached: Score) -> float:
+        """Return by how much claims fail about a law that keeps all limits [scales]."""
         if not self.claims or rank(reached, self.limits)[:2] != (0.0, 0.0):
             return 0.0
-        return sum(claim(design) for claim in self.claims)
+        return sum(claim(law) for claim in self.claims)
 
 
 def search(
@@ -93,7 +92,7 @@ def search(
     pool: Executor,
     progress: Callable[[int], object] = abs,
 ) -> list[Evaluation]:
-    """Try points; the first is that of the base design.
+    """Try points; the first is the start.
 
     The result depends on neither the number of threads nor the order in which they finish: a method is told whole
     generations.
@@ -126,7 +125,7 @@ def search(
     """
     if len(space.variables) < 2 and method == "cma":
         raise UserError(
-            f'method "cma" needs two or more variables, and {space.base.law} has {len(space.variables)}; '
+            f'method "cma" needs two or more variables, and {space.law} has {len(space.variables)}; '
             'write method = "random"'
         )
     tried = _tried(space, aim, sets, [space.start], journal, pool, lambda: progress(1))
@@ -158,17 +157,17 @@ def _tried(
     tell: Callable[[], object],
 ) -> list[Evaluation]:
     """Evaluate points that are not in the journal, all at once."""
-    designs = [space.design(point) for point in points]
+    laws = [space.law_at(point) for point in points]
     missing = [k for k, point in enumerate(points) if journal.known(point) is None]
     scores = {k: known for k, point in enumerate(points) if (known := journal.known(point)) is not None}
     for _ in scores:
         tell()
-    laws = [space.build(designs[k]) for k in missing]
-    for k, figures in zip(missing, evaluate(laws, sets, pool), strict=True):
+    found = evaluate([laws[k] for k in missing], sets, pool)
+    for k, figures in zip(missing, found, strict=True):
         scores[k] = score(figures)
         journal.add(points[k], scores[k])
         tell()
-    unproved = pool.map(aim.unproved, designs, [scores[k] for k in range(len(points))])
+    unproved = pool.map(aim.unproved, laws, [scores[k] for k in range(len(points))])
     return [
         Evaluation(point=point, values=space.values(point), score=scores[k], unproved=missed)
         for k, (point, missed) in enumerate(zip(points, unproved, strict=True))
