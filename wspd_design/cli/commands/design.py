@@ -12,7 +12,7 @@ from wspd_design.cli.exit_codes import REFUTED
 from wspd_design.cli.gains import show_design
 from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
-from wspd_design.cli.searching import SPECIFICATIONS, search_and_write
+from wspd_design.cli.searching import SPECIFICATIONS, search_design
 from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.controllers.family import designed_family
 from wspd_design.design import selection
@@ -98,5 +98,5 @@ def _search(wanted: str, output: Path, *, force: bool) -> None:
         tell("choosing the gains to start from")
         start = selection.design_controller(braked, friction, task.specification, law=task.law)
     name = f"{task.law}-{task.name}"
-    if not search_and_write(task, start, name, output, limits=task.requirements.limits, force=force):
+    if not search_design(task, start, name, output, limits=task.requirements.limits, force=force):
         raise typer.Exit(REFUTED)
