@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.design.file import read_design, write_design
 from wspd_design.design.requirements import DrawnSets, Limit, read_requirements, requirements_text
 from wspd_design.design.selection import shipped_design
@@ -22,6 +23,11 @@ slip = "12 %"
 tolerance = "0.04"
 speeds = ["15 km/h", "100 km/h"]
 sample_time = "50 ms"
+reference = "constant"
+
+[sensors]
+speed = "fastest-axle"
+pressures = false
 
 [requirements]
 rails = ["polach-dry", "polach-wet"]
@@ -73,6 +79,8 @@ def test_everything_that_is_written_counts(read):
     )
     wanted = task.specification
     assert (wanted.slip, wanted.slip_tolerance, wanted.sample_time) == (0.12, 0.04, 0.05)
+    assert wanted.reference == "constant"
+    assert wanted.sensors == Sensors(speed="fastest-axle", pressures=False)
     assert wanted.speeds == pytest.approx((15 / 3.6, 100 / 3.6))
     asked = task.requirements
     assert asked.rails == ("polach-dry", "polach-wet")
@@ -162,6 +170,15 @@ def test_shipped_specifications_are_whole(name):
         ('slip = "12 %"', 'slip = "12 m"', "slip .* has a unit of length, not of ratio"),
         ('slip = "12 %"', 'slpi = "12 %"', "unknown key slpi in .*; did you mean slip?"),
         ('speeds = ["15 km/h", "100 km/h"]', 'speeds = ["15 km/h"]', "must be two speeds with units"),
+        (
+            'reference = "constant"',
+            'reference = "best"',
+            'reference = "best" must be one of "constant", "falling"',
+        ),
+        ('reference = "constant"', "reference = 1", "reference in .* = 1 must be text"),
+        ('speed = "fastest-axle"', 'speed = "gps"', 'sensors: speed = "gps" must be one of "told"'),
+        ("pressures = false", "pressures = 0", r"sensors\.pressures = 0 in .* must be true or false"),
+        ("pressures = false", "pressure = false", r"unknown key sensors\.pressure in"),
         ('rails = ["polach-dry", "polach-wet"]', "rails = []", "must be a list of texts, each once"),
         (
             '["polach-dry", "polach-wet"]',
