@@ -18,7 +18,8 @@ class Wheel(NamedTuple):
     rim_rate: Number  # m/s2, as tracked
     risen: Number  # m/s, by which it has spun up since it was released
     quiet: Number  # s, for which it has turned as evenly as the train
-    idle: Number  # s, for which in addition the rail has turned it with little
+    light: Number  # s, for which in addition the rail has turned it with less than usual
+    idle: Number  # s, for which it has turned it with next to nothing
     released: Number  # 1 while it is vented to look
     held: Number  # s, for which it is still held
 
@@ -58,27 +59,40 @@ class Recognition:
         limit = minimum(maximum(limit, numbers.least_quiet), numbers.largest_quiet)
         quiet = abs(against_train) < limit
         light = numbers.lapse_share * around.usual_torque
-        limit = where(wheel.released > _YES, maximum(light, self.idle_torque), self.idle_torque)
         return wheel._replace(
             risen=where(wheel.released > _YES, wheel.risen + h * against_train, 0.0),
             quiet=where(quiet, wheel.quiet + h, 0.0),
-            idle=where(quiet * (friction_torque < limit), wheel.idle + h, 0.0),
+            light=where(quiet * (friction_torque < light), wheel.light + h, 0.0),
+            idle=where(quiet * (friction_torque < self.idle_torque), wheel.idle + h, 0.0),
         )
 
-    def found(self, wheel: Wheel, around: Around) -> Number:
+    def found(self, wheel: Wheel, innovation: Number, spread: Number, around: Around) -> Number:
         """Tell whether a wheel that was released, or is idle, adheres now.
 
         A released wheel that spun up and is quiet has reached the train; so has one that is quiet while the rail turns
-        it with little. A wheel at the slip that the law holds is quiet as well, but it is neither released nor idle,
-        and one whose valve sticks is not light.
+        it with little and that has not fallen behind, as it does where the rail gets worse. Both are believed as far as
+        the train speed can be wrong. A wheel at the slip that the law holds is quiet as well, but neither released nor
+        idle; one whose valve sticks is not light.
+
+        Parameters
+        ----------
+        wheel : Wheel
+            After :meth:`timed`.
+        innovation : number
+            Rim speed less what is expected of a wheel that adheres [m/s].
+        spread : number
+            Variance of that expectation [m2/s2].
+        around : Around
+            What counts for every wheelset.
         """
         numbers = self.numbers
         late = 0.5 * self.sample_time  # times are sums of samples
         spun_up = (wheel.risen > numbers.rise_share * around.slip_speed) * (
             wheel.quiet > numbers.quiet_time - late
         )
-        light = wheel.idle > numbers.light_time - late
-        shows = (wheel.released > _YES) * ((spun_up + light) > 0)
+        light = (wheel.light > numbers.light_time - late) * (wheel.risen > -numbers.rim_noise)
+        possible = innovation > -numbers.surprise_gate * sqrt(spread + numbers.rim_noise * numbers.rim_noise)
+        shows = (wheel.released > _YES) * possible * ((spun_up + light) > 0)
         return (shows + (wheel.idle > numbers.idle_time - late)) > 0
 
     def adheres(

@@ -78,7 +78,7 @@ class WheelFilter:
         zero = 0.0 * speed
         rolling = where(seen.demand <= RELEASED_DEMAND, 1.0, 0.0)
         wheels = [
-            Wheel(healthy * rolling, self.vehicle.wheel_radius * wheel_speed, *(zero,) * 6)
+            Wheel(healthy * rolling, self.vehicle.wheel_radius * wheel_speed, *(zero,) * 7)
             for healthy, wheel_speed in zip(seen.healthy, seen.wheel_speeds, strict=True)
         ]
         whole = _Whole(zero, zero, zero, zero, seen.acceleration)
@@ -176,11 +176,12 @@ class WheelFilter:
         recognition = Recognition(sample_time=h, idle_torque=idle_torque, numbers=numbers)
         wheel = recognition.tracked(wheel, rim)
         wheel = recognition.timed(wheel, friction_torque, around)
-        found = recognition.found(wheel, around)
+        innovation = rim - (1.0 - creep) * belief.mean[0]
+        found = recognition.found(wheel, innovation, belief.spread, around)
         rolls = healthy * recognition.adheres(
             wheel,
             found,
-            innovation=rim - (1.0 - creep) * belief.mean[0],
+            innovation=innovation,
             spread=belief.spread,
             creep_variance=creep_variance,
             friction_torque=friction_torque,
