@@ -78,7 +78,7 @@ def steps() -> tuple[Step, ...]:
             title="Control law",
             explanation="The adaptive fuzzy law is the paper's, with the repaired proof; it needs no "
             "friction model. The other two laws of one wheelset use the friction of the design rail; torque feedback "
-            "also needs the cylinder pressure. The laws of the whole vehicle observe the friction and command the valve "
+            "also needs the cylinder pressure. The laws of the whole vehicle observe friction and command the valve "
             "through its lag; with a sample time of 20 ms or less they hold the slip best.",
             default=options.LAW,
             options=tuple(Option(value=family.name, text=family.title) for family in designed()),
