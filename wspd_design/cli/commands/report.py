@@ -88,8 +88,8 @@ def report(
         if judged.status.tone == "bad"
         else "bold"
     )
-    first, stop, _ = plain(judged.sentence).partition(". ")
-    console().print(f"{judged.status.sign} {first}{stop}".rstrip(), style=style, markup=False)
+    first, period, _ = plain(judged.sentence).partition(". ")
+    console().print(f"{judged.status.sign} {first}{period}".rstrip(), style=style, markup=False)
     for path in paths:
         console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
 
