@@ -104,6 +104,19 @@ def test_every_criterion_has_both_sides_of_its_limit(name):
     assert judged_by((), {name: worse})[0].met is None
 
 
+@pytest.mark.parametrize(
+    ("criterion", "limit", "kept"),
+    [
+        ("efficiency_mean", 0.9, 0.905),
+        ("valve_switches", 15.0, 14.5),
+        ("longest_lock", 0.5, 0.45),
+        ("longest_lock", 0.0, 0.0),
+    ],
+)
+def test_a_search_keeps_a_reserve(criterion, limit, kept):
+    assert Limit(criterion=criterion, value=limit).with_reserve().value == pytest.approx(kept)
+
+
 def test_each_rail_has_its_sets():
     """Sets 0 and 2 are those of the first rail, set 1 that of the second; a third one has none."""
     found = score_by_rail(figures(), ("a", "b"))
