@@ -11,6 +11,7 @@ from wspd_design.cli.console import progress
 from wspd_design.cli.output import check_output, write_text
 from wspd_design.cli.searching import SPECIFICATIONS, search_and_write, search_design
 from wspd_design.controllers.family import tunable_family, with_numbers
+from wspd_design.design.industry import TUNED, named_with
 from wspd_design.design.own_controller import is_own_controller
 from wspd_design.design.selection import shipped_design
 from wspd_design.design.specification_file import Task, read_task
@@ -85,4 +86,4 @@ def _tune_own(law: str, task: Task, output: Path | None, *, force: bool) -> None
 
 
 def _tuned(law: str, task: Task) -> str:
-    return f"{law} (tuned, {task.effort.evaluations} evaluations)"
+    return named_with(law, f"{TUNED}, {task.effort.evaluations} evaluations")
