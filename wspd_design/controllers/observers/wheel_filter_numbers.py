@@ -67,12 +67,9 @@ def numbers_for(sample_time: float, sensors: Sensors) -> WheelFilterNumbers:
     """
     slow = sample_time > 0.05  # few samples: steadier tracking, longer looks
     # An accelerometer leaves fewer looks to pay for; a long sample makes each of them dearer.
-    if sensors.accelerometer:
-        release_share = 0.35 if slow else 0.3
-    else:
-        release_share = 0.5 if slow else 0.4
+    cheap, dear = (0.3, 0.35) if sensors.accelerometer else (0.4, 0.5)
     return WheelFilterNumbers(
-        release_share=release_share,
+        release_share=dear if slow else cheap,
         rim_rate=8.0 if slow else 15.0,
         hold_time=0.1 if slow else 0.06,
         light_time=max(0.2, 4.0 * sample_time),  # noise of the friction torque alone does not last so long
