@@ -20,12 +20,16 @@ from derivations import (
     adaptive_fuzzy,
     adhesion,
     brake_actuator,
+    friction_observer,
+    fuzzy_surface,
     motion,
     sliding_surface,
     slip_equation,
     slip_loop,
+    slip_tracking,
     track,
     valve_flow,
+    valve_inversion,
 )
 from derivations.equation_map import equations
 from derivations.map_files import equations_toml, nomenclature, readme, theory
@@ -41,12 +45,16 @@ MODULES: dict[str, ModuleType] = {
     "adaptive_fuzzy": adaptive_fuzzy,
     "adhesion": adhesion,
     "brake": brake_actuator,
+    "friction_observer": friction_observer,
+    "fuzzy_surface": fuzzy_surface,
     "motion": motion,
     "slip": slip_equation,
     "slip_loop": slip_loop,
     "sliding_surface": sliding_surface,
+    "slip_tracking": slip_tracking,
     "track": track,
     "valve_flow": valve_flow,
+    "valve_inversion": valve_inversion,
 }
 _ELEMENTARY = ("atan", "exp", "log", "sin", "tan")
 

@@ -118,6 +118,40 @@ def _table() -> dict[str, Quantity]:
             "-", "how far the tangent falls from 0 on, in the time of the progress", "Y", "Y", positive
         ),
         "root": q("-", "square root of |2 b - 1|", "κ", "kappa", positive),
+        # laws that track a wheel speed through the valve
+        "sample_time": q("s", "sample time of a law", "h", "h", positive),
+        "supply_torque": q(
+            "N m", "braking torque of the pressure that the demand allows", "T_in", 'T_"in"', positive
+        ),
+        "target_torque": q("N m", "braking torque that a law asks for", "T*", "T^*", positive),
+        "mean_torque": q("N m", "mean braking torque over a sample", "T_m", "T_m"),
+        "wheelset_inertia": q(
+            "kg m2", "moment of inertia of all that rotates with one wheelset", "J", "J", positive
+        ),
+        "friction_torque": q("N m", "torque of the creep forces on one wheelset, 2 R f", "τ_r", "tau_r"),
+        "observed_speed": q("rad/s", "wheel speed as observed", "ω^", "hat(omega)"),
+        "observed_friction": q("N m", "friction torque as observed", "τ^", "hat(tau)"),
+        "observer_pole": q("-", "double pole of an observer, over one sample", "θ", "theta", positive),
+        "acceleration": q("m/s2", "acceleration of the train, negative when braking", "v'", "dot(v)"),
+        "slip_slope": q("s/m", "derivative of the desired slip in the train speed", "λ_d,v", "lambda_(d,v)"),
+        "reference_acceleration": q(
+            "rad/s2", "angular acceleration of the desired wheel speed", "ω_r'", "dot(omega)_r"
+        ),
+        "speed_error": q("rad/s", "wheel speed minus the desired one", "e_ω", "e_omega"),
+        "speed_error_rate": q(
+            "rad/s2", "time derivative of the error of the wheel speed", "e_ω'", "dot(e)_omega"
+        ),
+        "ahead": q("-", "share of a sample by which the error is predicted", "a", "a", positive),
+        "approach_rate": q("1/s", "rate at which the error of the wheel speed falls", "k", "k", positive),
+        "slew": q("rad/s3", "rate at which the valve can change the pull", "s", "s", positive),
+        "rim_error": q("m/s", "rim speed above the desired one", "e_v", "e_v"),
+        "rim_error_rate": q("m/s2", "its time derivative", "e_v'", "dot(e)_v"),
+        "driving_surface": q("m/s2", "surface reduced by its layer", "σ_D", "sigma_D"),
+        "rule_strength": q("-", "normalized strength of a fuzzy rule", "w_r", "w_r", positive),
+        "rule_weight": q("-", "weight of a fuzzy rule, a share of the sample", "b_r", "b_r"),
+        "share_rate": q("s/m", "rate of adaptation", "α", "alpha", positive),
+        "leakage": q("m/s2", "leakage of the adaptation", "κ_b", "kappa_b", positive),
+        "pull": q("rad/s2", "rate at which the wheel is asked to approach its reference", "y", "y"),
         # sliding surface, eqs. (21)-(28)
         "slip_reference": q("-", "desired slip ratio", "λ_d", "lambda_d"),
         "error": q("-", "slip error", "e", "e"),

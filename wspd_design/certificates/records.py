@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from wspd_design.certificates.quantities import QUANTITIES, STATE
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Controller, Law
 from wspd_design.parameters.bounds import Bounds, Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
@@ -156,7 +156,7 @@ class Problem:
 
     vehicle: Vehicle
     rail: Rail
-    controller: Controller
+    controller: Law
     slip: float  # -, reference
     speeds: tuple[float, float]  # m/s, lowest and highest
     slips: tuple[float, float]  # -, range of slip
@@ -165,6 +165,11 @@ class Problem:
     slip_tolerance: float = 0.05  # -, within which an equilibrium shall lie beside the reference
     seed: int = 0
     contact_grows_with_load: bool = True
+
+    @property
+    def wheelset_law(self) -> Controller:
+        """The controller where it is known to act on one wheelset."""
+        return cast(Controller, self.controller)
 
     def __post_init__(self) -> None:
         """Refuse ranges that are not ranges; a sign that no vehicle has is left to the checks to refute."""

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
 from wspd_design.controllers.gains import Quantity
 from wspd_design.controllers.offers import Feedback, SlipModel
@@ -47,6 +47,18 @@ class AdaptiveFuzzyGains:
     dead_zone: bool
     hold_when_saturated: bool
     scheduled_rates: bool
+
+
+class Memberships(Protocol):
+    """Gains with membership functions."""
+
+    @property
+    def centres(self) -> tuple[float, ...]:
+        """Centres, in the unit of the surface."""
+
+    @property
+    def widths(self) -> tuple[float, ...]:
+        """Widths, likewise."""
 
 
 class Adaptation(NamedTuple):
@@ -162,7 +174,7 @@ def sliding_variable(gains: AdaptiveFuzzyGains, error: Number, integral: Number)
     return sliding_surface.sliding_variable(error, integral, gains.proportional_gain, gains.integral_gain)
 
 
-def firing_strengths(gains: AdaptiveFuzzyGains, surface: Number) -> tuple[Number, ...]:
+def firing_strengths(gains: Memberships, surface: Number) -> tuple[Number, ...]:
     """Normalized rule strengths w of eqs. (29), (31).
 
     All exponents are shifted by the largest one. The shift cancels in (31); without it every membership

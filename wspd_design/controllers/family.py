@@ -22,30 +22,28 @@ from wspd_design.controllers.baselines.scales import (
 )
 from wspd_design.controllers.baselines.trenitalia import Trenitalia
 from wspd_design.controllers.baselines.unprotected import Unprotected
+from wspd_design.controllers.fuzzy_surface import FuzzySurface, FuzzySurfaceGains
 from wspd_design.controllers.gains import GainForm, gain_forms
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.given import Given
+from wspd_design.controllers.integral_smc import IntegralSmc, IntegralSmcGains
+from wspd_design.controllers.observer_smc import ObserverSmc, ObserverSmcGains
+from wspd_design.controllers.protected import protection
+from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.protocol import Law
+from wspd_design.controllers.references import ReferenceKind
 from wspd_design.controllers.sliding_mode import SlidingMode, SlidingModeGains
+from wspd_design.controllers.super_twisting import SuperTwisting, SuperTwistingGains
 from wspd_design.controllers.torque_feedback import TorqueFeedback, TorqueFeedbackGains
+from wspd_design.controllers.tracking import Tracking, tracking
+from wspd_design.controllers.wheel_law import WheelLaw
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_knorr_bremse, load_mitsubishi, load_trenitalia
-from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS, Preset
 
 INDUSTRY = "law of the industry"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Given:
-    """What the controller of one wheelset is built from."""
-
-    name: str
-    sample_time: float  # s
-    vehicle: Vehicle
-    rail: Rail  # design rail
-    numbers: Any  # record of the gains, or the table of a law of the industry
-
-
-Builder: TypeAlias = Callable[[Given], Controller]
+Builder: TypeAlias = Callable[[Given], Law]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,6 +59,7 @@ class Family:
     tables: Callable[[Preset], object] | None = None  # of a law whose numbers come in presets
     scales: type | None = None  # record of the factors by which such a table is tuned
     scaled: Callable[[Any, Any], object] | None = None  # table with its factors
+    reference: ReferenceKind | None = None  # of a law of a vehicle where its specification states none
     equations: tuple[
         str, ...
     ] = ()  # numbers of the paper's equations that it rests on, besides those of the plant
@@ -98,7 +97,7 @@ def _with_table(law: type) -> Builder:
     )
 
 
-def _adaptive_fuzzy(given: Given) -> Controller:
+def _adaptive_fuzzy(given: Given) -> Law:
     return AdaptiveFuzzy(
         name=given.name,
         sample_time=given.sample_time,
@@ -108,8 +107,50 @@ def _adaptive_fuzzy(given: Given) -> Controller:
     )
 
 
-def _unprotected(given: Given) -> Controller:
+def _unprotected(given: Given) -> Law:
     return Unprotected(name=given.name, sample_time=given.sample_time)
+
+
+def _tracking(given: Given, law: Callable[[Tracking], WheelLaw]) -> Law:
+    """Build the protection of a law that asks for a torque."""
+    gains, inertia = given.numbers, given.vehicle.wheelset_inertia
+    return protection(
+        given,
+        lambda valve: law(tracking(gains, valve, inertia)),
+        time_share=gains.valve_time_share,
+    )
+
+
+def _observer_smc(given: Given) -> Law:
+    gains = given.numbers
+    return _tracking(given, lambda tracking: ObserverSmc(tracking=tracking, torque_slew=gains.torque_slew))
+
+
+def _super_twisting(given: Given) -> Law:
+    gains, radius = given.numbers, given.vehicle.wheel_radius
+    return _tracking(
+        given,
+        lambda tracking: SuperTwisting(
+            tracking=tracking, integral_rate=gains.integral_rate, layer=gains.layer / radius
+        ),
+    )
+
+
+def _integral_smc(given: Given) -> Law:
+    gains, radius = given.numbers, given.vehicle.wheel_radius
+    return _tracking(
+        given,
+        lambda tracking: IntegralSmc(
+            tracking=tracking, switching_gain=gains.switching_gain / radius, layer=gains.layer / radius
+        ),
+    )
+
+
+def _fuzzy_surface(given: Given) -> Law:
+    law = FuzzySurface(
+        sample_time=given.sample_time, wheel_radius=given.vehicle.wheel_radius, gains=given.numbers
+    )
+    return protection(given, lambda _: law)
 
 
 _SLIDING_MODE_EQUATIONS = ("20", *(str(number) for number in range(22, 29)))
@@ -142,6 +183,42 @@ FAMILIES: dict[str, Family] = {
             law=TorqueFeedback,
             gains=TorqueFeedbackGains,
             build=_with_model(TorqueFeedback),
+        ),
+        Family(
+            name="observer-smc",
+            title="sliding mode through the observed friction and the valve",
+            origin="not in the paper",
+            law=Protection,
+            gains=ObserverSmcGains,
+            build=_observer_smc,
+            reference="falling",
+        ),
+        Family(
+            name="super-twisting",
+            title="super-twisting through the observed friction and the valve",
+            origin="not in the paper",
+            law=Protection,
+            gains=SuperTwistingGains,
+            build=_super_twisting,
+            reference="falling",
+        ),
+        Family(
+            name="integral-smc",
+            title="integral sliding mode through the observed friction and the valve",
+            origin="not in the paper",
+            law=Protection,
+            gains=IntegralSmcGains,
+            build=_integral_smc,
+            reference="falling",
+        ),
+        Family(
+            name="afsmc-mended",
+            title="adaptive fuzzy sliding mode on a surface that the valve moves at once",
+            origin="eqs. (29) to (42) on another surface",
+            law=Protection,
+            gains=FuzzySurfaceGains,
+            build=_fuzzy_surface,
+            reference="falling",
         ),
         Family(
             name="trenitalia",

@@ -1,6 +1,6 @@
 """What kind of number each gain of a law is, stated once beside the field of its record."""
 
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from wspd_design.parameters.units import Dimension
@@ -25,6 +25,7 @@ class GainForm:
     name: str
     type: Any  # float, bool or tuple[float, ...]
     quantity: Quantity
+    optional: bool = False  # the record has a default for it, which a design need not state
 
 
 SLIP_REFERENCE = "slip_reference"
@@ -47,5 +48,6 @@ def gain_forms(record: type) -> tuple[GainForm, ...]:
         hint = hints[field.name]
         kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
         stated = next((each for each in extras if isinstance(each, Quantity)), Quantity(dimension="ratio"))
-        forms.append(GainForm(name=field.name, type=kind, quantity=stated))
+        optional = field.default is not MISSING
+        forms.append(GainForm(name=field.name, type=kind, quantity=stated, optional=optional))
     return tuple(forms)

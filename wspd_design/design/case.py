@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wspd_design.controllers.offers import slip_reference_of
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Controller, Law
 from wspd_design.design.catalog import controller as build_controller
 from wspd_design.design.catalog import controller_of, is_design_file
 from wspd_design.design.file import read_design
@@ -34,7 +34,7 @@ class Case:
 
     vehicle: Vehicle
     rail: Rail
-    controller: Controller
+    controller: Law
     specification: Specification
     design: Design | None
     vehicle_name: str
@@ -85,6 +85,8 @@ def specification(options: CaseOptions, base: Specification | None = None) -> Sp
             if options.sample_time is None
             else parse_quantity(options.sample_time, "time", what="sample time")
         ),
+        reference=base.reference,
+        sensors=base.sensors,
     )
 
 
@@ -109,6 +111,7 @@ def load_case(name: str, options: CaseOptions, base: Specification | None = None
         return case_of(read_design(name), options, where=name)
     vehicle, rail = _vehicle(options.vehicle or VEHICLE), _rail(options.rail or RAIL)
     wanted = specification(options, base)
+    controller: Law
     if is_own_controller(name):
         controller = _own_controller(name, vehicle, rail, wanted, options)
         wanted = _specification_of(controller, options, base)

@@ -3,8 +3,9 @@
 from difflib import get_close_matches
 from pathlib import Path
 
-from wspd_design.controllers.family import FAMILIES, Given, preset_of
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.family import FAMILIES, preset_of
+from wspd_design.controllers.given import Given
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.file import read_design
 from wspd_design.design.industry import named_with, usual_table
 from wspd_design.design.records import Design, Specification
@@ -15,7 +16,7 @@ from wspd_design.parameters.loading import load_rail
 from wspd_design.parameters.records import Rail, Vehicle
 
 
-def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Controller:
+def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Law:
     """Build a controller from its name or from a design file.
 
     Parameters
@@ -61,7 +62,7 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     )
 
 
-def controller_of(made: Design, vehicle: Vehicle, rail: Rail) -> Controller:
+def controller_of(made: Design, vehicle: Vehicle, rail: Rail) -> Law:
     """Build the controller of a design for a vehicle and a stop on a rail.
 
     The controller keeps the rail of its design. ``rail`` is taken for it only if it is the same one, by name and

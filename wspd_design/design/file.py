@@ -3,12 +3,14 @@
 import json
 import math
 import os
+from dataclasses import fields
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from wspd_design.controllers.family import tunable_family, with_numbers
 from wspd_design.controllers.gains import GainForm
+from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.design.records import Design, Gain, GainValue, Specification, in_the_law
 from wspd_design.design.requirements import read_requirements, requirements_text
 from wspd_design.parameters.errors import UserError
@@ -31,6 +33,12 @@ def design_text(design: Design) -> str:
     lines += ["", "[specification]"]
     for key, unit in _SPECIFICATION.items():
         lines.append(f"{key} = {_toml(getattr(design.specification, key))}  # {unit}")
+    if design.specification.reference is not None:
+        lines.append(f"reference = {_toml(design.specification.reference)}")
+    sensors = design.specification.sensors
+    if sensors != TOLD:
+        lines += ["", "[specification.sensors]"]
+        lines += [f"{each.name} = {_toml(getattr(sensors, each.name))}" for each in fields(Sensors)]
     for gain in design.gains:
         lines += ["", f"[gains.{gain.name}]", f"value = {_toml(gain.value)}"]
         lines += [f"unit = {_toml(gain.unit)}", f"why = {_toml(gain.why)}"]
@@ -84,7 +92,7 @@ def read_design(path: str | Path) -> Design:
         raise UserError(f'law = "{law}" in {where} must be one of {choice}')
     forms = tunable_family(law).forms
     table = _table(document["specification"], "specification", where)
-    _check_keys(table, tuple(_SPECIFICATION), where, "specification.")
+    _check_keys(table, tuple(_SPECIFICATION), where, "specification.", optional=("reference", "sensors"))
     values = {key: _value(table[key], f"specification.{key} in {where}") for key in _SPECIFICATION}
     for key, value in values.items():
         pair = key in ("speeds", "slips")
@@ -93,8 +101,10 @@ def read_design(path: str | Path) -> Design:
                 f"specification.{key} in {where} must be {'two numbers' if pair else 'one number'}"
             )
     gains = _table(document["gains"], "gains", where)
-    _check_keys(gains, tuple(form.name for form in forms), where, "gains.")
-    read = tuple(_gain(form, gains[form.name], where) for form in forms)
+    needed = tuple(form.name for form in forms if not form.optional)
+    free = tuple(form.name for form in forms if form.optional)
+    _check_keys(gains, needed, where, "gains.", optional=free)
+    read = tuple(_gain(form, gains[form.name], where) for form in forms if form.name in gains)
     per_rule = [form.name for form in forms if form.quantity.per_rule]
     if len({len(gain.value) for gain in read if gain.name in per_rule and isinstance(gain.value, tuple)}) > 1:
         raise UserError(
@@ -104,10 +114,29 @@ def read_design(path: str | Path) -> Design:
     wanted = document.get(_REQUIREMENTS)
     return Design(
         **head,
-        specification=Specification(**values),
+        specification=Specification(**values, **_how_seen(table, where)),
         gains=read,
         requirements=None if wanted is None else read_requirements(wanted, where),
     )
+
+
+def _how_seen(table: dict[str, Any], where: str) -> dict[str, Any]:
+    """Read reference and sensors of a specification, as far as it states them."""
+    stated: dict[str, Any] = {}
+    if "reference" in table:
+        stated["reference"] = _string(table["reference"], f"specification.reference in {where}")
+    if "sensors" in table:
+        sensors = _table(table["sensors"], "specification.sensors", where)
+        _check_keys(
+            sensors, (), where, "specification.sensors.", optional=tuple(f.name for f in fields(Sensors))
+        )
+        for each in fields(Sensors):
+            value = sensors.get(each.name, each.default)
+            if type(value) is not type(each.default):
+                kind = "text" if isinstance(each.default, str) else "true or false"
+                raise UserError(f"specification.sensors.{each.name} = {value} in {where} must be {kind}")
+        stated["sensors"] = Sensors(**sensors)
+    return stated
 
 
 def _gain(form: GainForm, table: object, where: str) -> Gain:

@@ -2,7 +2,7 @@
 
 from wspd_design.certificates.quantities import TABLE
 from wspd_design.certificates.records import Problem
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.records import Specification
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
@@ -26,7 +26,7 @@ def stated_bounds(vehicle: Vehicle, rail: Rail) -> Bounds:
 
 
 def stability_problem(
-    vehicle: Vehicle, rail: Rail, controller: Controller, specification: Specification, *, seed: int = 0
+    vehicle: Vehicle, rail: Rail, controller: Law, specification: Specification, *, seed: int = 0
 ) -> Problem:
     """Closed loop and domain of a specification, with the uncertainty from the bounds of the parameters."""
     return Problem(

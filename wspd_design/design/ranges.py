@@ -66,6 +66,46 @@ ADAPTIVE_RANGES = {
     "initial_weights": _factor(0.1, 60.0, "up to the full torque of the brake"),
     "initial_bound": _factor(0.1, 60.0, "up to the full torque of the brake"),
 }
+_REFERENCE_RANGES = {
+    "falling_slip": SearchRange(low=0.1, high=0.32, why="the peaks of the rails known here"),
+}
+_TRACKING_RANGES = {
+    **_REFERENCE_RANGES,
+    "observer_rate": _factor(0.5, 2.0, "a factor 2 on both sides of the rule"),
+    "valve_time_share": SearchRange(
+        low=0.3, high=1.2, log=False, why="from the fastest valve of wide bounds to a slow one"
+    ),
+    "approach_rate": _factor(0.4, 2.5, "a factor 2.5 on both sides of the rule"),
+    "ahead": SearchRange(
+        low=0.0, high=1.2, log=False, why="from the sample to the next one and its dead time"
+    ),
+    "dead_band": _factor(0.1, 4.0, "from valves that hardly rest to those that rest most of the time"),
+}
+_LAYER = _factor(0.2, 5.0, "a factor 5 on both sides of the rule")
+OBSERVER_SMC_RANGES = {
+    **_TRACKING_RANGES,
+    "torque_slew": _factor(0.3, 10.0, "from a slow approach to nearly none of the braking curve"),
+}
+SUPER_TWISTING_RANGES = {
+    **_TRACKING_RANGES,
+    "integral_rate": _factor(0.1, 2.0, "from hardly any integral to an oscillating one"),
+    "layer": _LAYER,
+}
+INTEGRAL_SMC_RANGES = {
+    **_TRACKING_RANGES,
+    "switching_gain": _factor(0.2, 5.0, "a factor 5 on both sides of the rule"),
+    "layer": _LAYER,
+}
+FUZZY_SURFACE_RANGES = {
+    **_REFERENCE_RANGES,
+    "surface_rate": _factor(0.4, 2.5, "a factor 2.5 on both sides of the rule"),
+    "rate_filter": _factor(0.2, 5.0, "from the raw difference to a slow one"),
+    "layer": _LAYER,
+    "weight_rate": _factor(0.05, 20.0, "from hardly any adaptation to that of a second"),
+    "bound_rate": _factor(0.05, 20.0, "as the weights"),
+    "leakage": _factor(0.05, 5.0, "from weights that stay to weights that fade at once"),
+    "least_pulse": _factor(0.2, 4.0, "from pulses that hardly move a valve to long ones"),
+}
 _PULSES = _factor(0.1, 4.0, "from pulses that hardly move a valve to whole samples")
 TABLE_RANGES = {
     "knorr-bremse": {

@@ -3,9 +3,13 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from wspd_design.controllers.family import Family, Given, tunable_family
+from wspd_design.controllers.family import Family, tunable_family
 from wspd_design.controllers.gains import SLIP_REFERENCE, GainForm
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.given import Given
+from wspd_design.controllers.observers.sensors import TOLD, Sensors
+from wspd_design.controllers.protected import protected
+from wspd_design.controllers.protocol import Law, acts_on_vehicle
+from wspd_design.controllers.references import REFERENCE_KINDS, ReferenceKind
 from wspd_design.design.industry import usual_table
 from wspd_design.design.requirements import Requirements
 from wspd_design.parameters.errors import UserError
@@ -26,6 +30,8 @@ class Specification:
     slips: tuple[float, float] = (0.02, 0.6)  # -, range of slip in which the surface shall be reached
     slip_tolerance: float = 0.05  # -, width of the band around the reference
     sample_time: float = 0.1  # s
+    reference: ReferenceKind | None = None  # of a law of a vehicle; None: the one that its family prefers
+    sensors: Sensors = TOLD
 
     def __post_init__(self) -> None:
         """Refuse what no wheel can do, in one sentence each."""
@@ -48,6 +54,26 @@ class Specification:
             )
         if not 1e-3 <= self.sample_time <= 1.0:
             raise UserError(f"sample time = {self.sample_time:g} s must lie between 1 ms and 1 s")
+        if self.reference not in (None, *REFERENCE_KINDS):
+            allowed = ", ".join(f'"{kind}"' for kind in REFERENCE_KINDS)
+            raise UserError(f'reference = "{self.reference}" must be one of {allowed}')
+
+    def reference_of(self, family: Family) -> ReferenceKind:
+        """Return the kind of reference of a law.
+
+        Raises
+        ------
+        UserError
+            If a law of one wheelset is asked for another one than the constant slip that it holds.
+        """
+        if family.reference is not None:
+            return self.reference or family.reference
+        if self.reference in (None, "constant"):
+            return "constant"
+        raise UserError(
+            f'reference = "{self.reference}" goes with a law of a vehicle, such as observer-smc; {family.name} holds '
+            "a constant slip: leave reference out"
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,8 +110,8 @@ class Design:
         """Whether a rail is the design rail: the same name and the same numbers."""
         return rail.name == self.rail and rail_hash(rail) == self.rail_hash
 
-    def build(self, vehicle: Vehicle, rail: Rail) -> Controller:
-        """Build the controller of one wheelset.
+    def build(self, vehicle: Vehicle, rail: Rail) -> Law:
+        """Build the controller, of one wheelset or of the vehicle.
 
         Parameters
         ----------
@@ -121,16 +147,23 @@ class Design:
         given = {gain.name: gain for gain in self.gains}
         unit = given.get("torque_unit")
         counted = float(unit.value) * factor(unit.unit) if unit and isinstance(unit.value, float) else 1.0
-        numbers = {form.name: in_the_law(given[form.name], form, counted) for form in family.forms}
-        return family.build(
+        numbers = {
+            form.name: in_the_law(given[form.name], form, counted)
+            for form in family.forms
+            if form.name in given
+        }
+        law = family.build(
             Given(
                 name=self.name,
                 sample_time=self.specification.sample_time,
                 vehicle=vehicle,
                 rail=rail,
                 numbers=self._record(family, numbers, vehicle),
+                sensors=self.specification.sensors,
+                reference=self.specification.reference_of(family),
             )
         )
+        return seen_by(self.specification.sensors, law, vehicle)
 
     def _record(self, family: Family, numbers: dict[str, GainValue], vehicle: Vehicle) -> object:
         """Return the record of the gains, or the table of a law of the industry with its factors."""
@@ -140,6 +173,16 @@ class Design:
         assert family.scales is not None
         assert family.scaled is not None
         return family.scaled(family.tables(usual_table(vehicle)), family.scales(**numbers))
+
+
+def seen_by(sensors: Sensors, law: Law, vehicle: Vehicle) -> Law:
+    """Give a law of one wheelset what the sensors show, by the protection of a vehicle around it.
+
+    Without a word about sensors it is told the train speed and the torque as they are.
+    """
+    if acts_on_vehicle(law) or sensors == TOLD:
+        return law
+    return protected(law, vehicle, sensors)
 
 
 def in_the_law(gain: Gain, form: GainForm, torque_unit: float) -> GainValue:

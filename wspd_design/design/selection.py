@@ -4,11 +4,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from wspd_design.controllers.family import Family, designed_family, tunable_family
+from wspd_design.design.fuzzy_surface_gains import fuzzy_surface_gains
 from wspd_design.design.industry import PRINTED, named_with, usual_table
 from wspd_design.design.printed_gains import printed_gains
 from wspd_design.design.ranges import (
     ADAPTIVE_RANGES,
+    FUZZY_SURFACE_RANGES,
+    INTEGRAL_SMC_RANGES,
+    OBSERVER_SMC_RANGES,
     SLIDING_MODE_RANGES,
+    SUPER_TWISTING_RANGES,
     TABLE_RANGES,
     TORQUE_FEEDBACK_RANGES,
     SearchRange,
@@ -16,6 +21,7 @@ from wspd_design.design.ranges import (
 from wspd_design.design.records import Design, Gain, Specification, rail_hash, vehicle_hash
 from wspd_design.design.sliding_gains import adaptive_gains, sliding_mode_gains
 from wspd_design.design.torque_feedback_gains import torque_feedback_gains
+from wspd_design.design.tracking_gains import integral_smc_gains, observer_smc_gains, super_twisting_gains
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -37,6 +43,10 @@ RULES: dict[str, GainRules] = {
     "afsmc": GainRules(choose=adaptive_gains, printed=printed_gains, ranges=ADAPTIVE_RANGES),
     "smc": GainRules(choose=sliding_mode_gains, ranges=SLIDING_MODE_RANGES),
     "torque-feedback": GainRules(choose=torque_feedback_gains, ranges=TORQUE_FEEDBACK_RANGES),
+    "observer-smc": GainRules(choose=observer_smc_gains, ranges=OBSERVER_SMC_RANGES),
+    "super-twisting": GainRules(choose=super_twisting_gains, ranges=SUPER_TWISTING_RANGES),
+    "integral-smc": GainRules(choose=integral_smc_gains, ranges=INTEGRAL_SMC_RANGES),
+    "afsmc-mended": GainRules(choose=fuzzy_surface_gains, ranges=FUZZY_SURFACE_RANGES),
 }
 """Rules by the family of laws."""
 

@@ -13,7 +13,7 @@ from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.offers import Surface
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import design_text, read_design
@@ -201,7 +201,7 @@ def phase_plane(run: Run, law: Surface) -> PhasePlane:
 
 def _baseline(
     name: str, vehicle: Vehicle, rail: Rail, specification: Specification
-) -> tuple[Controller, Design | None]:
+) -> tuple[Law, Design | None]:
     """Build a controller to compare with, and return the design behind it if it has one."""
     if is_design_file(name):
         found = read_design(name)

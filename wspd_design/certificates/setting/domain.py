@@ -9,7 +9,7 @@ from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import AXLE, QUANTITIES, STATE
 from wspd_design.certificates.records import Point, Problem
 from wspd_design.certificates.setting import axle
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH as KMH
 
@@ -43,7 +43,7 @@ def span(problem: Problem, name: str) -> Ends:
         If the load transfer has no range in which all wheels stay on the rail.
     """
     if name in AXLE and name not in problem.bounds:
-        return _axle_span(name, replace(problem, controller=cast(Controller, None)))
+        return _axle_span(name, replace(problem, controller=cast(Law, None)))
     return problem.span(name)
 
 

@@ -17,7 +17,7 @@ from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.laws import law_constants
 from wspd_design.controllers import offers
 from wspd_design.controllers.family import FAMILIES
-from wspd_design.controllers.protocol import Controller, Measurement
+from wspd_design.controllers.protocol import Law, Measurement, acts_on_vehicle
 from wspd_design.parameters.fingerprint import fingerprint
 
 POINTS = 3  # of the field at which two graphs are compared
@@ -25,6 +25,7 @@ DOUBLES = 40  # points at which they are compared in doubles
 DIGITS = 1e-9  # relative and absolute difference that rounding may make
 TORQUE = Measurement._fields.index("torque")
 FASTEST, STRONGEST = 40.0, 60e3  # train speed [m/s] and torque [N m] of these points
+OF_VEHICLE = "acts on all wheelsets of a vehicle together, not on one of them"
 LARGEST_RATIO = 2.5  # of wheel speed over train speed [rad/m]
 
 
@@ -62,8 +63,8 @@ class LawMemory:
         return not self.own_dynamics
 
 
-def trace(law: Controller) -> TracedLaw | str:
-    """Run ``start`` and ``step`` of a law on symbols.
+def trace(law: Law) -> TracedLaw | str:
+    """Run ``start`` and ``step`` of a law of one wheelset on symbols.
 
     Returns
     -------
@@ -72,6 +73,8 @@ def trace(law: Controller) -> TracedLaw | str:
     """
     import casadi as ca
 
+    if acts_on_vehicle(law):
+        return f"{law.name} {OF_VEHICLE}"
     try:
         made = law_constants(law)
     except UntraceableError as reason:
@@ -121,6 +124,8 @@ def law_of_theorem(problem: Problem, family: str) -> str | None:
         The reason, a clause without a full stop; None if the step that runs is the written law.
     """
     law = problem.controller
+    if acts_on_vehicle(law):
+        return f"{law.name} {OF_VEHICLE}"
     title = FAMILIES[family].title if family in FAMILIES else family
     if family not in WRITTEN:
         return f"no theorem is written for the {title}"
@@ -138,7 +143,7 @@ def law_of_theorem(problem: Problem, family: str) -> str | None:
     return None
 
 
-def written_law(law: Controller, family: str) -> WrittenLaw | None:
+def written_law(law: Law, family: str) -> WrittenLaw | None:
     """Write out the law of the theorems with the gains of a controller; None if it lacks what the law needs."""
     record = FAMILIES[family].gains
     gains = getattr(law, "gains", None)
@@ -151,7 +156,7 @@ def written_law(law: Controller, family: str) -> WrittenLaw | None:
         return None
 
 
-def memory(law: Controller) -> LawMemory | str:
+def memory(law: Law) -> LawMemory | str:
     """Differentiate the step of a law in its memory, on the graph.
 
     Returns
@@ -239,7 +244,7 @@ def _in_circles(rows: list[list[list[int]]], size: int) -> set[int]:
     return left
 
 
-def _state_names(law: Controller, states: int) -> tuple[str, ...]:
+def _state_names(law: Law, states: int) -> tuple[str, ...]:
     if isinstance(law, offers.Memory) and len(law.memory) == states:
         return tuple(law.memory)
     return tuple(f"element {number} of the state" for number in range(1, states + 1))

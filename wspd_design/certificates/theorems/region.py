@@ -17,13 +17,13 @@ from wspd_design.certificates.setting import creep_slope, domain
 from wspd_design.certificates.setting.assumptions import BUILT_UP
 from wspd_design.certificates.setting.plant import complete, place, plant_forces
 from wspd_design.certificates.setting.pulsed_valve import Sample, Times, may_hold, sample_of
-from wspd_design.certificates.setting.traced_law import law_of_theorem
+from wspd_design.certificates.setting.traced_law import OF_VEHICLE, law_of_theorem
 from wspd_design.certificates.theorems import equilibrium, quadratic
 from wspd_design.certificates.theorems.equilibrium import BRAKE
 from wspd_design.certificates.theorems.invariant_sets import checker as invariance
 from wspd_design.certificates.theorems.quadratic import Matrix, law_of, one_sample
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
-from wspd_design.controllers.protocol import Measurement
+from wspd_design.controllers.protocol import Measurement, acts_on_vehicle
 from wspd_design.parameters.units import KMH
 
 SLOWEST, FASTEST, FUNCTION = "smallest slope", "largest slope", "functions"
@@ -37,7 +37,7 @@ def torque_feedback(problem: Problem) -> str:
     """Say why the theorems do not speak about a law: its step is not the static law with torque feedback."""
     reason = law_of_theorem(problem, "torque-feedback")
     if reason is None:
-        held: float = problem.controller.slip_reference  # type: ignore[attr-defined]
+        held: float = problem.wheelset_law.slip_reference  # type: ignore[attr-defined]
         return "" if held == problem.slip else f"holds slip {held:g}, not {problem.slip:g}"
     return f"is not the static law with torque feedback: {reason}"
 
@@ -229,7 +229,9 @@ VARIED_IN_SETS = ("mass", "wheelset inertia", "mu0")
 
 
 def _memoryless(problem: Problem) -> str:
-    memory = problem.controller.start(Measurement(problem.speeds[1], problem.speeds[1], 0.0))
+    if acts_on_vehicle(problem.controller):
+        return OF_VEHICLE
+    memory = problem.wheelset_law.start(Measurement(problem.speeds[1], problem.speeds[1], 0.0))
     if memory == ():
         return ""
     return (

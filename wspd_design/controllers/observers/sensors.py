@@ -31,3 +31,7 @@ class Sensors:
                     f'sensors: {name} = true goes with speed = "wheels", not with "{self.speed}"; leave it out or '
                     'write speed = "wheels"'
                 )
+
+
+TOLD = Sensors()
+"""A told train speed and pressure sensors: what the paper assumes."""

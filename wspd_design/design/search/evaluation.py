@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.search.sets import Group, Sets, told
 from wspd_design.simulation.campaign_rows import figures_of
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-def evaluate(laws: Sequence[Controller], sets: Sets, pool: Executor) -> "Iterator[Mapping[str, Array]]":
+def evaluate(laws: Sequence[Law], sets: Sets, pool: Executor) -> "Iterator[Mapping[str, Array]]":
     """Simulate laws on all sets and yield the figures of each, in the order of the laws.
 
     Parameters
     ----------
-    laws : sequence of Controller
+    laws : sequence of Controller or VehicleController
         Their numbers are inputs of the compiled loop, so that laws of one kind are compiled once.
     sets : Sets
         The stops.
@@ -44,7 +44,7 @@ def evaluate(laws: Sequence[Controller], sets: Sets, pool: Executor) -> "Iterato
         _cancel(waiting)
 
 
-def _figures(group: Group, law: Controller) -> dict[str, Any]:
+def _figures(group: Group, law: Law) -> dict[str, Any]:
     figures = figures_of(group.cases, law, group.ideal, told(group.numbers))
     return figures | {"excess": figures["distance_m"] / group.ideal - 1.0}
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from wspd_design.controllers.protocol import Controller
+    from wspd_design.controllers.protocol import Law
 
     Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class Space:
 
     base: Design
     variables: tuple[Variable, ...]
-    build: "Callable[[Design], Controller]"
+    build: "Callable[[Design], Law]"
 
     def design(self, point: Point) -> Design:
         """Return the design at a point."""

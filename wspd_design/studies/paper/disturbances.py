@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from wspd_design.controllers.protocol import Controller
+from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.records import TrackSpectrum, Vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.ideal import ideal_stop
@@ -104,7 +104,7 @@ def track_channel(track: TrackSpectrum, channel: str, *, seed: int) -> TrackChan
 
 
 def disturbance(
-    vehicle: Vehicle, controller: Controller, undisturbed: Trial, scenario: Scenario, load: LoadIrregularity
+    vehicle: Vehicle, controller: Law, undisturbed: Trial, scenario: Scenario, load: LoadIrregularity
 ) -> Disturbance:
     """Simulate a stop again with each disturbance alone."""
 

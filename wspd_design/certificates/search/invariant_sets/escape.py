@@ -114,7 +114,7 @@ def _leaves(
         heavy = (np.floor(k * sample / (span * brake.vent_time)) + first) % 2.0
         mass, mu0 = (low + heavy * (high - low) for low, high in (problem.span("mass"), problem.span("mu0")))
         vehicle, rail = plant_with(problem, {"mass": mass, "wheelset inertia": inertia, "mu0": mu0})
-        _, command = problem.controller.step((), Measurement(speed, speed * (1.0 - slip) / radius, torque))
+        _, command = problem.wheelset_law.step((), Measurement(speed, speed * (1.0 - slip) / radius, torque))
         fill, vent = (np.broadcast_to(each, speed.shape) for each in command)
         for part, aim, lag in (
             (fill, full, brake.fill_time),

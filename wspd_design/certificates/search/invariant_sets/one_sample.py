@@ -125,7 +125,7 @@ def commands(problem: Problem, window: Window, slip: Interval, level: Interval) 
     """Enclose the shares of the sample time that the law fills and vents, over cells and the speeds of a window."""
     import ival
 
-    law, radius, full = problem.controller, problem.vehicle.wheel_radius, problem.vehicle.brake.max_torque
+    law, radius, full = problem.wheelset_law, problem.vehicle.wheel_radius, problem.vehicle.brake.max_torque
 
     def command(slip: Any, level: Any, speed: Any) -> tuple[Any, ...]:
         torque = full * (level - window.tilt * (slip - problem.slip))

@@ -100,7 +100,7 @@ def holding_share(problem: Problem, speed: float) -> float:
 def _fill(problem: Problem, speed: float, slip: float, share: float) -> float:
     wheel_speed = speed * (1.0 - slip) / problem.vehicle.wheel_radius
     torque = share * problem.vehicle.brake.max_torque
-    _, command = problem.controller.step((), Measurement(speed, wheel_speed, torque))
+    _, command = problem.wheelset_law.step((), Measurement(speed, wheel_speed, torque))
     return float(command.fill)
 
 

@@ -51,7 +51,7 @@ def decide(problem: Problem, document: Mapping[str, Any], work: Work) -> dict[st
     try:
         with ctx.workprec(64):
             sets = read(problem, document)
-            if problem.controller.start(Measurement(problem.speeds[1], 0.0, 0.0)) != ():
+            if problem.wheelset_law.start(Measurement(problem.speeds[1], 0.0, 0.0)) != ():
                 raise Refused("the law has a memory, which the sets leave out")
             walk = _Walk(BallPlant(problem), work)
             _cover(problem, walk.plant, sets)
@@ -204,7 +204,7 @@ class _Walk:
         self, cells: tuple[int, int, int, int], states: tuple[Ball, Ball], sharp: bool
     ) -> tuple[Ball, Ball]:
         """Enclose what the law commands, by its value at the center and its slopes."""
-        plant, here, law = self.plant, self.here, self.plant.problem.controller
+        plant, here, law = self.plant, self.here, self.plant.problem.wheelset_law
         speed, n = hull(plant.point(here.low), plant.point(here.high)), here.per_unit
 
         def command(slip: Any, level: Any, speed: Any) -> tuple[Any, ...]:

@@ -1,0 +1,30 @@
+"""The source of the train speed that sensors allow."""
+
+from wspd_design.controllers.observers.fastest import FastestAxle
+from wspd_design.controllers.observers.protocol import SpeedSource
+from wspd_design.controllers.observers.sensors import Sensors
+from wspd_design.controllers.observers.told import ToldSpeed
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.records import Vehicle
+
+
+def speed_source(sensors: Sensors, vehicle: Vehicle, sample_time: float) -> SpeedSource:
+    """Return the source of the train speed of a vehicle.
+
+    Parameters
+    ----------
+    sensors : Sensors
+        What the vehicle has.
+    vehicle : Vehicle
+        Nominal values.
+    sample_time : float
+        Of the protection [s].
+    """
+    radius, wheelsets = vehicle.wheel_radius, vehicle.wheelsets
+    match sensors.speed:
+        case "told":
+            return ToldSpeed(sample_time=sample_time, wheel_radius=radius, wheelsets=wheelsets)
+        case "fastest-axle":
+            return FastestAxle(sample_time=sample_time, wheel_radius=radius, wheelsets=wheelsets)
+        case _:
+            raise UserError('sensors: speed = "wheels" is not available; write "told" or "fastest-axle"')

@@ -1,0 +1,83 @@
+"""Gains that every law of a vehicle has, by stated rules.
+
+The slip that is held decides most: a reference that falls as 1/sqrt(v) runs beside the peaks of the rails that are
+known here.
+"""
+
+from wspd_design.controllers.protected import OBSERVER_RATE
+from wspd_design.design.records import Gain, Specification
+from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.units import KMH
+from wspd_design.simulation.peak import peak_adhesion
+
+UNKNOWN_RAIL = (
+    0.16  # -, slip at 1 m/s between the peaks of the rails known here, on the side of the small slips
+)
+LARGEST_SLIP = 0.35  # -
+CUT_OUT = 5.0 / KMH  # m/s
+PEAK_POINTS = 12  # of the table of the peak
+
+
+def protection_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
+    """Choose the gains that every law of a vehicle has.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle, nominal values.
+    rail : Rail
+        Design rail, for the table of the peak.
+    specification : Specification
+        Ranges and reference.
+    """
+    brake = vehicle.brake
+    return (
+        Gain(
+            name="falling_slip",
+            value=UNKNOWN_RAIL,
+            unit="-",
+            why=f"c of c/sqrt(v) with v in m/s: the peaks of the known rails lie at c = 0.1 to 0.32; {UNKNOWN_RAIL:g} "
+            "loses least over all of them, since beyond a peak friction falls and below it nothing is lost but slip",
+        ),
+        Gain(
+            name="largest_slip",
+            value=LARGEST_SLIP,
+            unit="-",
+            why="limit of c/sqrt(v), which has none at standstill",
+        ),
+        *(_peak(vehicle, rail, specification) if specification.reference == "peak" else ()),
+        Gain(
+            name="observer_rate",
+            value=OBSERVER_RATE,
+            unit="1/s",
+            why=f"w_o = {OBSERVER_RATE:g} 1/s: friction is followed within {1e3 / OBSERVER_RATE:.0f} ms, faster than "
+            "the approach; a faster observer passes on the noise of the wheel speed",
+        ),
+        Gain(
+            name="least_pulse",
+            value=brake.shortest_pulse,
+            unit="s",
+            why="the shortest pulse that opens the valve"
+            if brake.shortest_pulse
+            else "the vehicle states no shortest pulse",
+        ),
+        Gain(
+            name="cut_out_speed",
+            value=CUT_OUT,
+            unit="m/s",
+            why=f"below {CUT_OUT * KMH:g} km/h the valves hold: slip poles are faster than any sample there",
+        ),
+    )
+
+
+def _peak(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, Gain]:
+    """Table of the slip at the peak of the design rail."""
+    import numpy as np
+
+    speeds = np.geomspace(CUT_OUT, specification.speeds[1], PEAK_POINTS)
+    slips, _ = peak_adhesion(vehicle, rail, speeds)
+    why = f"the adhesion of {rail.name} peaks there, under the static load"
+    return (
+        Gain(name="peak_speeds", value=tuple(map(float, speeds)), unit="m/s", why=why),
+        Gain(name="peak_slips", value=tuple(map(float, slips)), unit="-", why=why),
+    )

@@ -1,0 +1,168 @@
+"""Gains of the laws of a vehicle that ask for a braking torque, by stated rules.
+
+What limits such a law: a sample and the lag of the valve for the rate of approach, the torque that venting lets out for
+the braking curve.
+"""
+
+from wspd_design.analysis.stopping import demanded_adhesion
+from wspd_design.design.protection_gains import PEAK_POINTS, protection_gains
+from wspd_design.design.records import Gain, Specification
+from wspd_design.model.slip import static_wheel_load
+from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.simulation.peak import peak_adhesion
+
+LAG_PART = 6.0  # part of the lag of the valve that the approach takes longer than a sample
+AHEAD = 0.5  # -, a command acts in the middle of its sample
+TIME_SHARE = (
+    0.6  # of the nominal valve times: the fastest valve that full inversion does not drive beyond its target
+)
+DEAD_BAND_SHARE = 0.01  # of the full torque
+DEAD_BAND_SLIP = 0.01  # -
+INTEGRAL_SHARE = 0.5
+SURFACE_SHARE = 0.6
+
+
+def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
+    """Choose the gains that all laws with a wanted torque have.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle, nominal values.
+    rail : Rail
+        Design rail, for the table of the peak.
+    specification : Specification
+        Ranges, sample time and reference.
+
+    Returns
+    -------
+    tuple of Gain
+        Gains of the protection and of the tracking.
+    """
+    brake, period = vehicle.brake, specification.sample_time
+    lag = max(brake.fill_time, brake.vent_time)
+    rate = 1.0 / (period + lag / LAG_PART)
+    return (
+        *protection_gains(vehicle, rail, specification),
+        Gain(
+            name="valve_time_share",
+            value=TIME_SHARE,
+            unit="-",
+            why=f"the inversion takes {TIME_SHARE:g} of the nominal valve times: a valve that is faster than the "
+            "nominal one by so much does not go beyond the wanted torque",
+        ),
+        Gain(
+            name="approach_rate",
+            value=rate,
+            unit="1/s",
+            why=f"k = 1/(h + tau/{LAG_PART:g}): the error falls by a factor e within a sample, h = {period:g} s, and a "
+            f"sixth of the lag of the valve, tau = {lag:g} s",
+        ),
+        Gain(
+            name="ahead",
+            value=AHEAD,
+            unit="-",
+            why="half a sample: pulses begin at its start, and the torque changes until they end",
+        ),
+        Gain(
+            name="dead_band",
+            value=DEAD_BAND_SHARE * brake.max_torque,
+            unit="N m",
+            why=f"{DEAD_BAND_SHARE:.0%} of the full torque: the valves rest while noise alone moves the wanted torque",
+        ),
+        Gain(
+            name="dead_band_slip",
+            value=DEAD_BAND_SLIP,
+            unit="-",
+            why="a dead band of J k e is an error of the slip that grows as 1/v: at low speed it is narrowed to this "
+            "slip",
+        ),
+    )
+
+
+def torque_slew(vehicle: Vehicle, rail: Rail, specification: Specification) -> Gain:
+    """Choose the slew of the braking curve: what venting lets out at the torque that the rail holds."""
+    import numpy as np
+
+    brake = vehicle.brake
+    slowest = brake.bounds.around("vent_time", brake.vent_time)[1]
+    speeds = np.geomspace(*specification.speeds, PEAK_POINTS)
+    adhesion = min(float(peak_adhesion(vehicle, rail, speeds)[1].min()), demanded_adhesion(vehicle))
+    torque = 2.0 * float(static_wheel_load(vehicle)) * adhesion * vehicle.wheel_radius
+    return Gain(
+        name="torque_slew",
+        value=torque / slowest,
+        unit="N m/s",
+        why=f"T/tau: {rail.name} carries {torque / 1e3:.3g} kN m per wheelset at its worst, and the slowest valve, "
+        f"tau = {slowest:g} s, vents it at this rate; on the braking curve the pull falls no faster",
+    )
+
+
+def observer_smc_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
+    """Choose the gains of the sliding mode through the observed friction; parameters as :func:`tracking_gains`."""
+    return (
+        *tracking_gains(vehicle, rail, specification),
+        torque_slew(vehicle, rail, specification),
+    )
+
+
+def super_twisting_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
+    """Choose the gains of super-twisting; parameters as :func:`tracking_gains`."""
+    common = tracking_gains(vehicle, rail, specification)
+    rate = _rate(common)
+    return (
+        *common,
+        Gain(
+            name="integral_rate",
+            value=INTEGRAL_SHARE * rate,
+            unit="1/s",
+            why=f"{INTEGRAL_SHARE:g} k: within the layer the poles are those of q^2 + k q + (k/2)^2, equal",
+        ),
+        _layer(vehicle, rail, specification, rate),
+    )
+
+
+def integral_smc_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
+    """Choose the gains of the integral sliding mode; parameters as :func:`tracking_gains`."""
+    common = tracking_gains(vehicle, rail, specification)
+    whole = _rate(common)
+    rate = SURFACE_SHARE * whole
+    layer = _layer(vehicle, rail, specification, whole)
+    assert isinstance(layer.value, float)
+    return (
+        *(each for each in common if each.name != "approach_rate"),
+        Gain(
+            name="approach_rate",
+            value=rate,
+            unit="1/s",
+            why=f"{SURFACE_SHARE:g} of the rate that sample and valve allow, {whole:.3g} 1/s; switching adds the rest",
+        ),
+        Gain(
+            name="switching_gain",
+            value=(whole - rate) * layer.value,
+            unit="m/s^2",
+            why="W = k_W Phi: within the layer the switching pulls at the rest of the rate, k_W = "
+            f"{whole - rate:.3g} 1/s",
+        ),
+        layer,
+    )
+
+
+def _rate(gains: tuple[Gain, ...]) -> float:
+    value = next(gain.value for gain in gains if gain.name == "approach_rate")
+    assert isinstance(value, float)
+    return value
+
+
+def _layer(vehicle: Vehicle, rail: Rail, specification: Specification, rate: float) -> Gain:
+    """Width of the layer: the error from which the braking curve of the valve begins, s/k^2."""
+    slew = torque_slew(vehicle, rail, specification)
+    assert isinstance(slew.value, float)
+    value = slew.value / vehicle.wheelset_inertia / rate**2 * vehicle.wheel_radius
+    return Gain(
+        name="layer",
+        value=value,
+        unit="m/s",
+        why=f"Phi = R s/k^2: beyond it the valve cannot let the pull fall as fast as k e would; s = "
+        f"{slew.value / 1e3:.3g} kN m/s over the inertia: {slew.why}",
+    )
