@@ -45,7 +45,7 @@ FUNCTIONS = (
         arguments=(omega, w, tau, T_m, h, J, theta),
         value=(corrected_speed, corrected_friction),
         summary="Wheel speed and friction torque after a measurement",
-        returns="Wheel speed [rad/s] and friction torque [N m] as observed",
+        returns="As observed: wheel speed in rad/s, friction torque in N m",
         equation="observer of eq. (2)",
     ),
 )

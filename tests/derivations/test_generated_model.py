@@ -32,6 +32,8 @@ RANGES = {  # near the working point of a locomotive, and away from singularitie
     "resistance": (1e3, 1e4),
     "supply_rate": (0.6, 0.9),
     "fill_time": (0.4, 0.7),
+    "target_torque": (2.1, 3.0),  # above the torque, below that of the supply
+    "supply_torque": (4.0, 5.0),
 }
 
 

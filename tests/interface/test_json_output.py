@@ -82,7 +82,8 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
         *("--grade", "-5 permille", "--pad-vibration", "--speed-noise", "0.05 m/s", "--pulses", "80"),
         *("--reference-error", "2 %", "--reference-drift", "-0.05 m/s2", "--reference-noise", "0.1 m/s"),
         *("--torque-error", "-10 %", "--dead-time", "140 ms", "--shortest-pulse", "10 ms", "--period-timing"),
-        *("--load-spread", "4 %"),
+        *("--load-spread", "4 %", "--accelerometer-bias", "0.05 m/s2", "--accelerometer-noise", "0.1 m/s2"),
+        *("--radius-errors", "0.5 %,0 %,0 %,-0.5 %", "--fault", "axle 2: valve-holds from 3 s"),
     )
     found = only_object(wspd("simulate", "trenitalia", *SLOW, *options, "--json"))
     assert found["scenario"].pop("load_spread") == pytest.approx(0.04, rel=0.1)
@@ -99,6 +100,10 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
         "reference_drift_m_s2": -0.05,
         "reference_noise_m_s": 0.1,
         "torque_error": -0.1,
+        "accelerometer_bias_m_s2": 0.05,
+        "accelerometer_noise_m_s2": 0.1,
+        "radius_errors": [0.005, 0.0, 0.0, -0.005],
+        "faults": [{"axle": 2, "kind": "valve-holds", "since_s": 3.0}],
         "dead_time_s": 0.14,
         "shortest_pulse_s": 0.01,
     }

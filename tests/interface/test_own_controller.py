@@ -45,6 +45,51 @@ def by_name(name="er24pc"):
 ready = any_options()
 """
 
+WHOLE = """
+from dataclasses import dataclass
+from wspd_design.controllers.protocol import Command
+from wspd_design.model.number import maximum, where
+
+@dataclass(frozen=True)
+class Fastest:
+    vehicle: object
+    wheelsets: int
+    slip: float = 0.2
+    sample_time: float = 0.05
+    name: str = "fastest"
+    memory: tuple = ("train_speed",)
+
+    def start(self, seen):
+        return (self.fastest(seen),)
+
+    def step(self, state, seen):
+        speed = maximum(self.fastest(seen), state[0] - 2.0 * self.sample_time)
+        return (speed,), tuple(self.command(speed, each) for each in seen.wheel_speeds)
+
+    def fastest(self, seen):
+        rim = self.vehicle.wheel_radius * seen.wheel_speeds[0]
+        for each in seen.wheel_speeds[1:]:
+            rim = maximum(rim, self.vehicle.wheel_radius * each)
+        return rim
+
+    def command(self, speed, wheel_speed):
+        vent = where(self.vehicle.wheel_radius * wheel_speed < (1.0 - self.slip) * speed, 1.0, 0.0)
+        return Command(fill=1.0 - vent, vent=vent)
+"""
+
+FAULTS_OF_WHOLE = {
+    "commands one wheelset": (
+        ("tuple(self.command(speed, each) for each in seen.wheel_speeds)", "self.command(speed, 40.0)"),
+        "must return (state, (Command(fill=..., vent=...), ...))",
+    ),
+    "commands too few": (
+        ("in seen.wheel_speeds)", "in seen.wheel_speeds[1:])"),
+        "3 commands; it must return 4",
+    ),
+    "names too much": (('("train_speed",)', '("train_speed", "distance")'), "names 2 elements"),
+    "fails": (("seen.wheel_speeds[1:]", "seen.wheel_speed[1:]"), "AttributeError"),
+}
+
 # What is wrong -> (text in place of another, what the sentence says)
 FAULTS = {
     "no Python": (("def start", "dev start"), "own.py, line 13, is not Python"),
@@ -89,8 +134,9 @@ def own(tmp_path):
 
 @pytest.fixture
 def page_file(tmp_path):
-    (text,) = (text for kind, text in BLOCKS if kind == "python")
-    (tmp_path / "slip_band.py").write_text(text)
+    texts = [text for kind, text in BLOCKS if kind == "python"]
+    for name, text in zip(("slip_band.py", "fastest.py"), texts, strict=True):
+        (tmp_path / name).write_text(text)
 
 
 @pytest.mark.usefixtures("page_file")
@@ -102,7 +148,7 @@ def test_the_page_shows_what_comes_out(wspd):
         if kind == "console"
         for part in re.split(r"^\$ wspd ", text, flags=re.MULTILINE)[1:]
     ]
-    assert len(commands) == 3
+    assert len(commands) == 5
     for command, expected in commands:
         outcome = wspd(*shlex.split(command))
         assert (outcome.code, outcome.err) == (0, "")
@@ -193,3 +239,37 @@ def test_one_sentence_about_a_name(name, words, wspd):
     assert (outcome.code, outcome.out) == (2, "")
     assert words in outcome.err
     assert outcome.err.count("\n") == 1
+
+
+@pytest.fixture
+def whole(tmp_path):
+    path = tmp_path / "whole.py"
+    path.write_text(WHOLE)
+    return path
+
+
+def test_a_law_of_a_whole_vehicle(wspd, whole):
+    found = json.loads(wspd("simulate", f"{whole.name}:Fastest", *FAR, "--json").out)
+    assert found["ending"] == "stopped"
+    assert found["engine"] == "compiled"
+    assert found["speed_error"] > 0.0
+    assert found["distance_error"] > 0.0
+    assert found["slip_band"] is None
+
+
+@pytest.mark.parametrize("fault", FAULTS_OF_WHOLE)
+def test_what_is_no_law_of_a_vehicle(fault, wspd, whole):
+    (old, new), said = FAULTS_OF_WHOLE[fault]
+    assert old in WHOLE
+    whole.write_text(WHOLE.replace(old, new))
+    outcome = wspd("simulate", f"{whole.name}:Fastest", *FAR)
+    assert (outcome.code, outcome.out) == (2, "")
+    assert said in outcome.err
+
+
+def test_wheelsets_of_another_vehicle_are_refused(wspd, whole):
+    whole.write_text(WHOLE + "\nmade = Fastest(vehicle=None, wheelsets=2)\n")
+    outcome = wspd("simulate", f"{whole.name}:made", *FAR)
+    assert outcome.code == 2
+    assert "wheelsets = 2" in outcome.err
+    assert "must be 4, as vehicle er24pc has" in outcome.err

@@ -1,19 +1,13 @@
-"""The options that disturb a stop: one record with their names, help and defaults, for every command that stops.
+"""The options that disturb a stop, for every command that stops."""
 
-A command takes a parameter ``disturbances: StopOptions`` and the decorator :func:`takes_stop_options`, which puts the
-fields of the record into its signature.
-"""
-
-import inspect
-from collections.abc import Callable
-from dataclasses import dataclass, fields
-from functools import wraps
-from typing import Annotated, Any, get_type_hints
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import typer
 
+from wspd_design.simulation.records import FAULT_KINDS
+
 PANEL = "Disturbances, all off by default"
-PARAMETER = "disturbances"
 
 
 def _described(flag: str, metavar: str | None, meaning: str, *, least: int | None = None) -> Any:
@@ -86,6 +80,21 @@ class StopOptions:
         str | None,
         _described("--torque-error", "SHARE", 'Of the torque that it computes from the pressure: "-10 %".'),
     ] = None
+    accelerometer_bias: Annotated[
+        str | None,
+        _described("--accelerometer-bias", "RATE", 'Of the accelerometer of the vehicle: "0.05 m/s2".'),
+    ] = None
+    accelerometer_noise: Annotated[
+        str | None, _described("--accelerometer-noise", "RATE", 'Of the accelerometer, rms: "0.1 m/s2".')
+    ] = None
+    radius_errors: Annotated[
+        str | None,
+        _described(
+            "--radius-errors",
+            "E1,E2,E3,E4",
+            'Of the wheel radii behind the measured speeds, front first: "0.5 %,-0.5 %,0 %,0 %".',
+        ),
+    ] = None
     dead_time: Annotated[
         str | None,
         _described("--dead-time", "TIME", 'From command to valve, in place of that of the vehicle: "60 ms".'),
@@ -98,31 +107,12 @@ class StopOptions:
             'Shorter ones do not open a valve, in place of those of the vehicle: "10 ms".',
         ),
     ] = None
-
-
-def takes_stop_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of :class:`StopOptions` in place of its parameter ``disturbances``."""
-    hints = get_type_hints(StopOptions, include_extras=True)
-    own = get_type_hints(command, include_extras=True)
-    parameters = []
-    for parameter in inspect.signature(command).parameters.values():
-        if parameter.name == PARAMETER:
-            parameters += [
-                _parameter(each.name, hints[each.name], each.default) for each in fields(StopOptions)
-            ]
-        else:
-            parameters.append(_parameter(parameter.name, own[parameter.name], parameter.default))
-
-    @wraps(command)
-    def with_options(**given: Any) -> None:
-        written = {each.name: given.pop(each.name, each.default) for each in fields(StopOptions)}
-        command(**given, **{PARAMETER: StopOptions(**written)})
-
-    del with_options.__wrapped__  # its hints are not those of this signature
-    with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    with_options.__annotations__ = {each.name: each.annotation for each in parameters}
-    return with_options
-
-
-def _parameter(name: str, annotation: Any, default: Any) -> inspect.Parameter:
-    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+    fault: Annotated[
+        list[str] | None,
+        _described(
+            "--fault",
+            '"axle N: KIND"',
+            f"KIND is {' or '.join(FAULT_KINDS)}, with a time if not from the start: "
+            '"axle 2: valve-holds from 3 s". Repeat it for several.',
+        ),
+    ] = None

@@ -5,9 +5,10 @@ import math
 from rich.text import Text
 
 from wspd_design.cli.console import console, spaced, table
+from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE
 from wspd_design.design.industry import table_note
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.description import disturbances_of, held_slip, rails_of
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Scenario
@@ -46,10 +47,13 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
         shown.add_row("deceleration after it", f"{figures.plateau:.3f}", "m/s^2")
     shown.add_row("torque integral, all wheelsets", f"{figures.torque_integral / 1e3:.1f}", "kN m s")
     shown.add_row("adhesion utilization", number(100.0 * figures.adhesion_utilization, ".1f"), "%")
-    shown.add_row(f"slip rms about {reference:g}", number(figures.slip_rms, ".3f"), "-")
+    shown.add_row(f"slip rms about {held_slip(run, reference)}", number(figures.slip_rms, ".3f"), "-")
     shown.add_row("slip mean", number(figures.slip_mean, ".3f"), "-")
     shown.add_row("slip maximum", number(figures.slip_max, ".3f"), "-")
+    for row in _of_law(figures):
+        shown.add_row(*row)
     shown.add_row("wheels locked", f"{figures.lock_time:.2f}", "s")
+    shown.add_row("longest lock above 10 km/h", f"{figures.judged_lock:.2f}", "s")
     shown.add_row("vented air per wheelset", f"{figures.vented_air:.2f}", "cylinders")
     for row in _of_brake(figures):
         shown.add_row(*row)
@@ -66,7 +70,8 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     if released:
         out.print(released, style="yellow", markup=False)
     out.print(_trust(made.check))
-    out.print("Slip figures count above 10 km/h.", style="dim")
+    known = "" if math.isnan(figures.speed_error) else " The speed of the law is judged above 20 km/h."
+    out.print(f"Slip figures count above 10 km/h.{known}", style="dim")
 
 
 def _of_brake(figures: Metrics) -> list[tuple[str, str, str]]:
@@ -78,6 +83,24 @@ def _of_brake(figures: Metrics) -> list[tuple[str, str, str]]:
         rows.append(("lowest reservoir pressure", f"{figures.lowest_reservoir / 1e5:.2f}", "bar"))
     if figures.watchdog_fills is not None:
         rows.append(("fillings by a watchdog", f"{figures.watchdog_fills}", ""))
+    return rows
+
+
+def _of_law(figures: Metrics) -> list[tuple[str, str, str]]:
+    """Rows of what only some laws tell: the slip that they hold, and the train speed that they go by."""
+    rows = []
+    if not math.isnan(figures.slip_band):
+        rows.append(("slip off the law's own reference, once reached", f"{figures.slip_band:.3f}", "-"))
+    if not math.isnan(figures.speed_error):
+        base, share = DISTANCE_TOLERANCE
+        rows.append(("speed of the law, largest error", f"{100.0 * figures.speed_error:.1f}", "%"))
+        rows.append(
+            (
+                f"its distance, error over {base:g} m + {100.0 * share:g} %",
+                f"{figures.distance_error:.2f}",
+                "-",
+            )
+        )
     return rows
 
 

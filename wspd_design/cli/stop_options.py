@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from difflib import get_close_matches
 from pathlib import Path
 
 from wspd_design.cli.disturbances import StopOptions
@@ -10,10 +11,13 @@ from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail, load_rail_profile, load_track_spectrum
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import Dimension, parse_quantity
-from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing
+from wspd_design.simulation.records import FAULT_KINDS, Fault, LoadIrregularity, Patch, Scenario, Sensing
 from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
+_FAULT = re.compile(
+    r"\s*axle\s+(?P<axle>\d+)\s*:\s*(?P<kind>\S+)(?:\s+from\s+(?P<since>\S.*?))?\s*", re.IGNORECASE
+)
 _RISE_IN_RUN = re.compile(r"(?P<rise>\S+)\s*(?:in|:)\s*(?P<run>\S+)", re.IGNORECASE)
 MOST_SPREAD = 0.2  # of the wheel loads: five standard deviations are the load
 _GRADE = 'write "5 permille", "0.5 %", "1 in 200" or 0.005, negative downhill'
@@ -69,7 +73,8 @@ def scenario(
         patches=tuple(map(_patch, disturbances.patch or ())),
         grade=0.0 if disturbances.grade is None else parse_grade(disturbances.grade),
         pad_vibration=disturbances.pad_vibration,
-        sensing=_sensing(disturbances),
+        sensing=_sensing(disturbances, vehicle),
+        faults=tuple(_fault(text, vehicle) for text in disturbances.fault or ()),
         load_irregularity=None
         if disturbances.load_spread is None
         else _loads(disturbances.load_spread, vehicle, seed),
@@ -92,7 +97,7 @@ def _loads(text: str, vehicle: Vehicle, seed: int) -> LoadIrregularity:
     )
 
 
-def _sensing(disturbances: StopOptions) -> Sensing:
+def _sensing(disturbances: StopOptions, vehicle: Vehicle) -> Sensing:
     if disturbances.period_timing and disturbances.pulses is None:
         raise UserError("--period-timing needs a pulse wheel; add --pulses, for example --pulses 100")
     drift = disturbances.reference_drift
@@ -106,9 +111,46 @@ def _sensing(disturbances: StopOptions) -> Sensing:
         else parse_quantity(drift, "acceleration", what="reference drift"),
         reference_noise=_amount(disturbances.reference_noise, "speed", "reference noise"),
         torque_error=_error(disturbances.torque_error, "torque error", "a torque computed"),
+        accelerometer_bias=0.0
+        if disturbances.accelerometer_bias is None
+        else parse_quantity(disturbances.accelerometer_bias, "acceleration", what="accelerometer bias"),
+        accelerometer_noise=_amount(disturbances.accelerometer_noise, "acceleration", "accelerometer noise"),
+        radius_errors=()
+        if disturbances.radius_errors is None
+        else _radius_errors(disturbances.radius_errors, vehicle),
         dead_time=_of_valves(disturbances.dead_time, "dead time"),
         shortest_pulse=_of_valves(disturbances.shortest_pulse, "shortest pulse"),
     )
+
+
+def _radius_errors(text: str, vehicle: Vehicle) -> tuple[float, ...]:
+    """Read a relative error for each wheelset."""
+    parts = text.split(",")
+    if len(parts) != vehicle.wheelsets:
+        raise UserError(
+            f'radius errors "{text}" are {len(parts)}; give {vehicle.wheelsets} between commas, one for each wheelset '
+            f"of vehicle {vehicle.name}, front axle first"
+        )
+    return tuple(_error(part, "radius error", "a radius taken") for part in parts)
+
+
+def _fault(text: str, vehicle: Vehicle) -> Fault:
+    """Read what fails where and when."""
+    found = _FAULT.fullmatch(text)
+    if found is None:
+        raise UserError(
+            f'--fault "{text}" must be an axle and what fails, such as "axle 2: valve-holds from 3 s"'
+        )
+    kind, axle = found["kind"].lower(), int(found["axle"])
+    if kind not in FAULT_KINDS:
+        near = get_close_matches(kind, FAULT_KINDS, n=1)
+        offer = f', did you mean "{near[0]}"?' if near else ""
+        raise UserError(f'--fault "{text}" names no known fault{offer}; it may be {", ".join(FAULT_KINDS)}')
+    if not 1 <= axle <= vehicle.wheelsets:
+        raise UserError(
+            f'--fault "{text}" must name an axle from 1 to {vehicle.wheelsets}, as vehicle {vehicle.name} has'
+        )
+    return Fault(axle=axle, kind=kind, since=_amount(found["since"], "time", "start of the fault"))
 
 
 def _axle_rails(text: str) -> tuple[Rail, ...]:

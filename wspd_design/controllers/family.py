@@ -195,7 +195,7 @@ FAMILIES: dict[str, Family] = {
         ),
         Family(
             name="super-twisting",
-            title="super-twisting through the observed friction and the valve",
+            title="super-twisting sliding mode through the observed friction and the valve",
             origin="not in the paper",
             law=Protection,
             gains=SuperTwistingGains,

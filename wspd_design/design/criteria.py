@@ -27,6 +27,7 @@ class Criterion:
     over_stops: "Callable[[Array], float]"
     at_least: bool = False  # a limit is the least allowed, not the largest
     scale: float  # SI, difference that counts as one when a limit is missed
+    may_lack: bool = False  # a stop need not have the figure, and those without it do not count
 
     def of(self, figures: FiguresOfStops) -> float | None:
         """Return the number over the stops; None for stops that have no such figure.
@@ -38,10 +39,12 @@ class Criterion:
         names = [name for name in figures if name == self.figure or _is_of_axle(name, self.figure)]
         if not names:
             return None
-        values = np.max([figures[name] for name in names], axis=0)
+        values = np.fmax.reduce([figures[name] for name in names], axis=0)
         if self.at_least:
             values = np.where(figures["stopped"], values, 0.0)
-        return float(self.over_stops(values))
+        if self.may_lack:
+            values = values[~np.isnan(values)]
+        return float(self.over_stops(values)) if len(values) else None
 
     def excess(self, reached: float, limit: float) -> float:
         """Return by how much a limit is missed, in scales; 0 where it is met and infinite where nothing was reached."""
@@ -142,6 +145,7 @@ CRITERIA: dict[str, Criterion] = {
             dimension="ratio",
             figure="slip_band",
             over_stops=_largest,
+            may_lack=True,  # of wheels that never reach their reference
             scale=0.01,
         ),
         Criterion(

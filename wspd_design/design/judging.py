@@ -1,12 +1,13 @@
 """Judge a design by the requirements that it was made for, on the sets that its search never saw."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.records import Design
 from wspd_design.design.requirements import Judged, Requirements, judged_by
 from wspd_design.design.search.evaluation import evaluate
@@ -15,7 +16,7 @@ from wspd_design.design.search.sets import draw_sets
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import beside
 from wspd_design.parameters.loading import load_vehicle
-from wspd_design.parameters.records import Rail
+from wspd_design.parameters.records import Rail, Vehicle
 
 
 def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged, ...]:
@@ -46,18 +47,17 @@ def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged,
         )
     wanted = seen_from_here(design.requirements, folder)
     name = beside(design.vehicle_file, folder) if design.vehicle_file else design.vehicle
+    vehicle = load_vehicle(name)
     with threads() as pool:
-        (reached,) = held_out([design], rail, wanted, name, pool)
+        (reached,) = held_out([design.build(vehicle, rail)], wanted, vehicle, name, pool)
     return judged_by(wanted.limits, reached.reached)
 
 
 def held_out(
-    designs: list[Design], rail: Rail, requirements: Requirements, vehicle_name: str, pool: Executor
+    laws: Sequence[Law], requirements: Requirements, vehicle: Vehicle, vehicle_name: str, pool: Executor
 ) -> list[Score]:
-    """Return what designs for one vehicle reach on the held-out sets."""
-    vehicle = load_vehicle(vehicle_name)
+    """Return what laws reach on the held-out sets."""
     sets = draw_sets(requirements, vehicle, vehicle_name, requirements.held_out, pool)
-    laws = [design.build(vehicle, rail) for design in designs]
     return [score(figures) for figures in evaluate(laws, sets, pool)]
 
 

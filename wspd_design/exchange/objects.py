@@ -13,6 +13,7 @@ from wspd_design.exchange.study_forms import BRAKE
 from wspd_design.exchange.version import program_version
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.law_memory import reference_range
 from wspd_design.simulation.records import Scenario
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ def stop_object(
 ) -> dict[str, Any]:
     """Return the figures of one stop; the witness is there if it starts at one."""
     run, figures, check = trial.run, trial.metrics, trial.check
+    held = reference_range(run)
     return {
         "schema": STOP.schema,
         "controller": run.controller,
@@ -49,9 +51,14 @@ def stop_object(
         "lag_distance_m": run.initial_speed * figures.lag,
         "plateau_m_s2": figures.plateau,
         "slip_rms": figures.slip_rms,
+        "slips_held": None if held is None else list(held),
+        "slip_band": figures.slip_band,
+        "speed_error": figures.speed_error,
+        "distance_error": figures.distance_error,
         "slip_mean": figures.slip_mean,
         "slip_max": figures.slip_max,
         "lock_time_s": figures.lock_time,
+        "longest_lock_s": figures.judged_lock,
         "valve_switches": figures.valve_switches,
         "vented_air": figures.vented_air,
         "air_used_Nl": figures.air_used,
@@ -96,6 +103,12 @@ def scenario_object(scenario: Scenario, *, dead_time: float, shortest_pulse: flo
         "reference_drift_m_s2": sensing.reference_drift,
         "reference_noise_m_s": sensing.reference_noise,
         "torque_error": sensing.torque_error,
+        "accelerometer_bias_m_s2": sensing.accelerometer_bias,
+        "accelerometer_noise_m_s2": sensing.accelerometer_noise,
+        "radius_errors": list(sensing.radius_errors),
+        "faults": [
+            {"axle": fault.axle, "kind": fault.kind, "since_s": fault.since} for fault in scenario.faults
+        ],
         "dead_time_s": dead_time,
         "shortest_pulse_s": shortest_pulse,
     }

@@ -12,6 +12,7 @@ from wspd_design.exchange.common_keys import (
     nullable,
 )
 from wspd_design.exchange.forms import Form, Key
+from wspd_design.simulation.records import FAULT_KINDS
 
 START = Form(
     name="start",
@@ -30,6 +31,14 @@ PATCH = Form(
     keys=(
         Key(name="from_m", kind="number", meaning="where the rail changes"),
         Key(name="rail", kind="text", meaning="name of the rail from there on"),
+    ),
+)
+FAULT = Form(
+    name="fault",
+    keys=(
+        Key(name="axle", kind="integer", meaning="from 1 at the front"),
+        Key(name="kind", kind="text", words=FAULT_KINDS, meaning="what fails for the rest of the stop"),
+        Key(name="since_s", kind="number", meaning="from the start of the stop"),
     ),
 )
 SCENARIO = Form(
@@ -78,6 +87,15 @@ SCENARIO = Form(
             kind="number",
             meaning="relative error of the torque that the controller computes from the pressure",
         ),
+        Key(name="accelerometer_bias_m_s2", kind="number", meaning="of the accelerometer of the vehicle"),
+        Key(name="accelerometer_noise_m_s2", kind="number", meaning="rms, of the accelerometer"),
+        Key(
+            name="radius_errors",
+            kind="number",
+            many=ANY,
+            meaning="relative error of the speed read from each wheel, front first; empty for none",
+        ),
+        Key(name="faults", kind=FAULT, many=ANY, meaning="what fails at single wheelsets"),
         Key(name="dead_time_s", kind="number", meaning="from the command to the valve, by option or vehicle"),
         Key(
             name="shortest_pulse_s",
@@ -189,10 +207,36 @@ STOP = Form(
         nullable("lag_s", "2 d/v0 - t: what the build-up of the brake costs"),
         nullable("lag_distance_m", "initial speed times lag"),
         nullable("plateau_m_s2", "v0/(2 (t - d/v0)): deceleration after the build-up"),
-        nullable("slip_rms", "above 10 km/h, about the reference"),
+        nullable("slip_rms", "above 10 km/h, about the reference, or about the slips that the law tells"),
+        Key(
+            name="slips_held",
+            kind="number",
+            many=(2, 2),
+            nullable=True,
+            meaning="least and largest slip that the law held above 10 km/h; null for a law that does not tell",
+        ),
+        nullable(
+            "slip_band",
+            "largest distance of the slip from the one that the law holds, at samples above 10 km/h once it was "
+            "reached; null for a law that does not tell it",
+        ),
+        nullable(
+            "speed_error",
+            "largest relative error above 20 km/h of the train speed that the law goes by; null for one that does "
+            "not tell it",
+        ),
+        nullable(
+            "distance_error",
+            "largest error of the distance that follows from that speed, over 5 m + 5 % of the distance; null likewise",
+        ),
         nullable("slip_mean", "above 10 km/h"),
         nullable("slip_max", "above 10 km/h"),
         Key(name="lock_time_s", kind="number", meaning="of the wheelset that is locked longest"),
+        Key(
+            name="longest_lock_s",
+            kind="number",
+            meaning="longest lock of a wheelset without a break, above 10 km/h",
+        ),
         Key(
             name="valve_switches",
             kind="integer",

@@ -19,13 +19,28 @@ from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
 from wspd_design.reporting.sections.limits import limits, provenance
 from wspd_design.reporting.sections.linearization import linearization
+from wspd_design.reporting.sections.requirements import requirements
+from wspd_design.reporting.sections.robustness import robustness
 from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
 from wspd_design.studies.dossier import Dossier
 
-SECTIONS = (case, brake, slip_equation, design, linearization, checks, stop, comparison, sources, limits)
+SECTIONS = (
+    case,
+    requirements,
+    brake,
+    slip_equation,
+    design,
+    linearization,
+    checks,
+    stop,
+    robustness,
+    comparison,
+    sources,
+    limits,
+)
 
 
 def write_report(dossier: Dossier, *paths: str | Path) -> None:

@@ -1,8 +1,18 @@
 """A scenario in words."""
 
-from wspd_design.simulation.records import Scenario
+from collections.abc import Sequence
+
+from wspd_design.simulation.law_memory import reference_range
+from wspd_design.simulation.records import Fault, Run, Scenario
 
 _FEW = 3  # changes of rail that are told one by one
+
+_FAULTS = {
+    "sensor-lost": "speed sensor of axle {axle} lost",
+    "valve-holds": "valve of axle {axle} stuck holding",
+    "valve-vents": "valve of axle {axle} stuck venting",
+    "valve-fills": "valve of axle {axle} stuck filling",
+}
 
 
 def rails_of(stop: Scenario) -> str:
@@ -37,7 +47,30 @@ def disturbances_of(stop: Scenario) -> str:
         (sensing.reference_drift, f"reference drift {sensing.reference_drift:g} m/s2"),
         (sensing.reference_noise, f"reference noise {sensing.reference_noise:g} m/s rms"),
         (sensing.torque_error, f"torque error {100.0 * sensing.torque_error:g} %"),
+        (sensing.accelerometer_bias, f"accelerometer bias {sensing.accelerometer_bias:g} m/s2"),
+        (sensing.accelerometer_noise, f"accelerometer noise {sensing.accelerometer_noise:g} m/s2 rms"),
+        (any(sensing.radius_errors), f"wheel radii wrong by {_percents(sensing.radius_errors)} %"),
         (sensing.dead_time, f"dead time {1e3 * (sensing.dead_time or 0.0):g} ms"),
         (sensing.shortest_pulse, f"shortest pulse {1e3 * (sensing.shortest_pulse or 0.0):g} ms"),
+        *((True, fault_words(each)) for each in stop.faults),
     )
     return ", ".join(words for present, words in said if present)
+
+
+def fault_words(fault: Fault) -> str:
+    """Say what fails where, and from when on unless from the start."""
+    since = f" from {fault.since:g} s on" if fault.since else ""
+    return _FAULTS[fault.kind].format(axle=fault.axle) + since
+
+
+def held_slip(run: Run, slip: float) -> str:
+    """Say which slip a law holds: one for the whole stop, or a course of its own."""
+    own = reference_range(run)
+    if own is None or own[0] == own[1]:
+        return f"{slip if own is None else own[0]:g}"
+    low, high = (f"{each:.3g}" for each in own)
+    return f"the law's own, {low} to {high}"
+
+
+def _percents(shares: Sequence[float]) -> str:
+    return ", ".join(f"{100.0 * share:g}" for share in shares)

@@ -10,6 +10,7 @@ from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Vehicle
 from wspd_design.simulation.ideal import ideal_stop
+from wspd_design.simulation.law_memory import rms_about_references
 from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario, Start
 from wspd_design.simulation.released import released_below
@@ -29,7 +30,7 @@ class Metrics:
     plateau: float  # m/s2, v0 / (2 (t - d / v0)): deceleration after the build-up
     slip_mean: float  # -
     slip_max: float  # -
-    slip_rms: float  # -, about the reference
+    slip_rms: float  # -, about the reference, or the slips that the law holds
     lock_time: float  # s
     judged_lock: float  # s, longest lock of a wheelset without a break, above 10 km/h
     slip_band: (
@@ -66,7 +67,8 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     scenario : Scenario
         The stop it was.
     slip_reference : float
-        Reference of ``slip_rms`` [-].
+        Reference of ``slip_rms`` [-], unless the law tells the slips that it holds: then the rms is about those, at its
+        samples.
 
     Returns
     -------
@@ -81,6 +83,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     square = (
         totals.slip_squared / judged - 2.0 * slip_reference * mean + slip_reference**2 if judged else math.nan
     )
+    own = rms_about_references(run)
     moved = totals.distance > 0.0  # a start below the stop speed is at rest at once
     known = scenario.start == Start() and not scenario.patches
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
@@ -97,7 +100,7 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         else math.nan,
         slip_mean=mean,
         slip_max=run.slip_max,
-        slip_rms=math.sqrt(max(square, 0.0)),
+        slip_rms=math.sqrt(max(square, 0.0)) if own is None else own,
         lock_time=totals.lock_time,
         judged_lock=totals.judged_lock,
         slip_band=totals.slip_band,

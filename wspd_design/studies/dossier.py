@@ -15,7 +15,7 @@ from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
-from wspd_design.design.catalog import controller, controller_of, is_design_file
+from wspd_design.design.catalog import controller, controller_of, design_rail, is_design_file
 from wspd_design.design.file import design_text, read_design
 from wspd_design.design.industry import usual_table
 from wspd_design.design.problem import stability_problem
@@ -30,6 +30,8 @@ from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
+from wspd_design.studies.faults import Robustness, robustness
+from wspd_design.studies.judgment import Judgment, judgment
 
 POLE_SPEEDS = 60  # points of the pole map
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
@@ -82,6 +84,8 @@ class Dossier:
     trials: tuple[Trial, ...]  # the design's own stop first
     lag_distances: tuple[float, ...]  # m, of each trial: the part of the distance that the build-up costs
     phase_plane: PhasePlane | None  # of laws with a sliding surface
+    judgment: Judgment | None  # of a design with requirements
+    robustness: Robustness | None  # where wheelsets differ
     scenario: Scenario  # of the stops
     provenance: Provenance
 
@@ -96,6 +100,7 @@ def dossier(
     command: str,
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
+    folder: Path = Path(),
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
     """Compute everything about a design.
@@ -116,6 +121,8 @@ def dossier(
         Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
         Folder of certificate files; what the checkers accept of it for this design is not searched again.
+    folder : Path
+        Of the design file, from which the rails of its requirements are seen.
     progress : callable, optional
         Told each stage before it starts.
 
@@ -134,7 +141,8 @@ def dossier(
     linearizations = tuple(linearize(vehicle, rail, slip=specification.slip, speed=float(v)) for v in speeds)
     problem = stability_problem(vehicle, rail, own, specification, seed=scenario.seed)
     certificates = verify(problem, progress=progress, stored=stored)
-    others = [_baseline(name, vehicle, rail, specification) for name in baselines]
+    shared = replace(specification, reference=None)  # which is for the law of the design alone
+    others = [_baseline(name, vehicle, rail, shared) for name in baselines]
     controllers = [own, *(law for law, _ in others)]
     trials = compare(
         vehicle,
@@ -159,6 +167,8 @@ def dossier(
         trials=trials,
         lag_distances=tuple(scenario.initial_speed * each.metrics.lag for each in trials),
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
+        judgment=judgment(made, design_rail(made, rail), certificates, folder=folder, progress=progress),
+        robustness=robustness(vehicle, own, scenario, plant=plant, progress=progress),
         scenario=scenario,
         provenance=Provenance(
             command=command,

@@ -10,7 +10,8 @@ from wspd_design.cli import disturbances
 from wspd_design.cli.commands.compare import compare
 from wspd_design.cli.commands.report import report
 from wspd_design.cli.commands.simulate import simulate
-from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.option_records import takes_records
 
 NAMES = [each.name for each in fields(StopOptions)]
 
@@ -27,13 +28,13 @@ def options_of(command):
 def test_commands_take_all_of_them_and_the_same(command):
     assert list(options_of(command)) == NAMES
     assert options_of(command) == options_of(simulate)
-    assert disturbances.PARAMETER not in inspect.signature(command).parameters
+    assert "disturbances" not in inspect.signature(command).parameters
 
 
 def test_the_record_gets_what_was_written_and_defaults_for_the_rest():
     seen = []
 
-    @takes_stop_options
+    @takes_records
     def command(*, before: int = 1, disturbances: StopOptions, after: bool = False) -> None:
         seen.append((before, disturbances, after))
 

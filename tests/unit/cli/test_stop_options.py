@@ -9,7 +9,7 @@ from wspd_design.cli.stop_options import scenario
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.description import disturbances_of, rails_of
-from wspd_design.simulation.records import Patch, Scenario, Sensing
+from wspd_design.simulation.records import Fault, Patch, Scenario, Sensing
 
 WET, DRY = load_rail("polach-wet"), load_rail("polach-dry")
 
@@ -102,6 +102,9 @@ def test_sensing():
         reference_drift="-0.05 m/s2",
         reference_noise="0.36 km/h",
         torque_error="15 %",
+        accelerometer_bias="-0.05 m/s2",
+        accelerometer_noise="0.1 m/s2",
+        radius_errors="0.5 %,-0.5 %, 0 %,0.001",
         dead_time="40 ms",
         shortest_pulse="10 ms",
     )
@@ -113,10 +116,70 @@ def test_sensing():
         reference_drift=-0.05,
         reference_noise=0.1,
         torque_error=0.15,
+        accelerometer_bias=-0.05,
+        accelerometer_noise=0.1,
+        radius_errors=(0.005, -0.005, 0.0, 0.001),
         dead_time=0.04,
         shortest_pulse=0.01,
     )
-    assert asdict(stop.sensing) == pytest.approx(asdict(right), rel=1e-15)
+    found, wanted = asdict(stop.sensing), asdict(right)
+    assert found.pop("radius_errors") == pytest.approx(wanted.pop("radius_errors"), rel=1e-15)
+    assert found == pytest.approx(wanted, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault", "words"),
+    [
+        (
+            "axle 2: valve-holds from 3 s",
+            Fault(axle=2, kind="valve-holds", since=3.0),
+            "valve of axle 2 stuck holding from 3 s on",
+        ),
+        (" Axle 1 :sensor-lost ", Fault(axle=1, kind="sensor-lost"), "speed sensor of axle 1 lost"),
+        (
+            "axle 4: valve-fills from 250 ms",
+            Fault(axle=4, kind="valve-fills", since=0.25),
+            "valve of axle 4 stuck filling from 0.25 s on",
+        ),
+        ("axle 3: VALVE-VENTS", Fault(axle=3, kind="valve-vents"), "valve of axle 3 stuck venting"),
+    ],
+)
+def test_fault(text, fault, words):
+    stop = made(fault=[text])
+    assert stop.faults == (fault,)
+    assert disturbances_of(stop) == words
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "must be an axle and what fails"),
+        ("axle 2", "must be an axle and what fails"),
+        ("axle two: valve-holds", "must be an axle and what fails"),
+        ("axle 2: valve-hold", 'did you mean "valve-holds"'),
+        ("axle 2: flat", "it may be sensor-lost, valve-holds, valve-vents, valve-fills"),
+        ("axle 5: valve-holds", "from 1 to 4"),
+        ("axle 0: valve-holds", "from 1 to 4"),
+        ("axle 1: valve-holds from 3", "start of the fault"),
+        ("axle 1: valve-holds from -3 s", "must not be negative"),
+    ],
+)
+def test_what_is_no_fault(text, said):
+    with pytest.raises(UserError, match=said):
+        made(fault=[text])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("1 %", "give 4 between commas"),
+        ("1 %,1 %,1 %,2", "between -100 % and 100 %"),
+        ("1 %,,0,0", "radius error"),
+    ],
+)
+def test_what_are_no_radius_errors(text, said):
+    with pytest.raises(UserError, match=said):
+        made(radius_errors=text)
 
 
 def test_all_is_said_to_the_reader():
@@ -131,14 +194,19 @@ def test_all_is_said_to_the_reader():
         reference_drift="-0.05 m/s2",
         reference_noise="0.1 m/s",
         torque_error="-10 %",
+        accelerometer_bias="0.05 m/s2",
+        accelerometer_noise="0.1 m/s2",
+        radius_errors="0.5 %,0 %,0 %,-0.5 %",
         dead_time="40 ms",
         shortest_pulse="10 ms",
+        fault=["axle 1: sensor-lost", "axle 2: valve-vents from 2 s"],
     )
     assert rails_of(stop) == "polach-wet/polach-wet/polach-dry/polach-dry, low-adhesion from 50 m"
     assert disturbances_of(stop) == (
         "grade -5 permille, pad vibration, speed noise 0.05 m/s rms, 80 pulses per turn, counted, "
         "reference error 2 %, reference drift -0.05 m/s2, reference noise 0.1 m/s rms, torque error -10 %, "
-        "dead time 40 ms, shortest pulse 10 ms"
+        "accelerometer bias 0.05 m/s2, accelerometer noise 0.1 m/s2 rms, wheel radii wrong by 0.5, 0, 0, -0.5 %, "
+        "dead time 40 ms, shortest pulse 10 ms, speed sensor of axle 1 lost, valve of axle 2 stuck venting from 2 s on"
     )
     assert "100 pulses per turn, timed" in disturbances_of(made(pulses=100, period_timing=True))
 

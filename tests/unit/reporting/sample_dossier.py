@@ -10,12 +10,16 @@ from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
+from wspd_design.design.requirements import DrawnSets, Limit, Requirements, judged_by
 from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.draws import Choice, Draw
 from wspd_design.simulation.metrics import Metrics
-from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
+from wspd_design.simulation.records import Ending, Fault, Run, Sample, Scenario, Totals
 from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
+from wspd_design.studies.faults import FaultedStop, Robustness
+from wspd_design.studies.judgment import Judgment
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
@@ -103,6 +107,10 @@ def trial(
         slip_max=0.2399,
         slip_rms=0.0707,
         lock_time=0.975,
+        judged_lock=0.5,
+        slip_band=math.nan,
+        speed_error=math.nan,
+        distance_error=math.nan,
         saturated_share=1.0,
         valve_switches=99,
         vented_air=3.21,
@@ -119,6 +127,66 @@ def trial(
     )
     check = StepCheck(distance=2e-9, slip=3e-7, refinement=1, sensitive=spread > 0.0, spread=spread)
     return Trial(run=run, metrics=replace(figures, **changes), check=check)
+
+
+def estimating(plain: Trial) -> Trial:
+    """Return the trial of a law of the vehicle: 5 % too fast, slip references that rise, axle 2 released twice."""
+    names = (
+        "train_speed",
+        *(f"slip_reference_{k}" for k in range(1, 5)),
+        *(f"released_{k}" for k in range(1, 5)),
+    )
+
+    def told(sample: Sample) -> Sample:
+        speed = 1.05 * INITIAL_SPEED * (1.0 - sample.time / 10.0)
+        held = (0.1 + 0.01 * sample.time,) * 4
+        look = (0.0, float(2.0 <= sample.time < 2.5 or 5.0 <= sample.time < 5.5), 0.0, 0.0)
+        return sample._replace(state=(speed, *held, *look))
+
+    samples = tuple(map(told, plain.run.samples))
+    run = replace(plain.run, memory=names, axle_samples=(samples,) * 4)
+    figures = replace(plain.metrics, slip_band=0.091, speed_error=0.05, distance_error=0.65)
+    return replace(plain, run=run, metrics=figures)
+
+
+def judgment(**reached: float) -> Judgment:
+    """Return a judgment by two limits and one number that is only told."""
+    limits = (Limit(criterion="efficiency_mean", value=0.975), Limit(criterion="longest_lock", value=0.1))
+    numbers = {"efficiency_mean": 0.9812, "longest_lock": 0.04, "valve_switches": 12.3} | reached
+    return Judgment(
+        requirements=Requirements(
+            rails=("polach-wet", "polach-dry"),
+            within_bounds=("rail",),
+            held_out=DrawnSets(sets=200, seed=77),
+            limits=limits,
+            stop=(("stop.initial_speed", INITIAL_SPEED),),
+            draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
+        ),
+        judged=judged_by(limits, numbers),
+    )
+
+
+def faults(**changes) -> Robustness:
+    """Return what became of four faults: all hold but for the valve that fills, where the rail forces a lock."""
+
+    def stop(kind: str, distance: float, *locks: float) -> FaultedStop:
+        return FaultedStop(
+            fault=Fault(axle=2, kind=kind, since=3.0), stopped=True, distance=distance, locks=locks
+        )
+
+    plain = Robustness(
+        plain=300.0,
+        faults=(
+            stop("sensor-lost", 306.0, 0.0, 0.1, 0.0, 0.0),
+            stop("valve-holds", 309.0, 0.0, 0.4, 0.0, 0.0),
+            stop("valve-vents", 345.0, 0.0, 0.0, 0.0, 0.0),
+            stop("valve-fills", 300.9, 0.0, 9.0, 0.0, 0.02),
+        ),
+        patches=FaultedStop(fault=None, stopped=True, distance=512.0, locks=(0.0, 0.2, 0.0, 0.0)),
+        full_torque=60e3,
+        most_adhesion=(24e3, 31e3),
+    )
+    return replace(plain, **changes)
 
 
 def linearization(speed: float, pole: float) -> Linearization:
@@ -182,6 +250,8 @@ def sample_dossier(
         phase_plane=PhasePlane(
             integral=(0.0, 0.014, 0.02), error=(0.14, 0.06, -0.05), surface_rate=0.38, layer=0.025
         ),
+        judgment=None,
+        robustness=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
         provenance=Provenance(
             command="wspd report mine.toml",

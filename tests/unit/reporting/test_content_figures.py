@@ -11,13 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.text import Text
 
-from tests.unit.reporting.sample_dossier import certificate, sample_dossier
+from tests.unit.reporting.sample_dossier import certificate, estimating, sample_dossier
 from tests.unit.reporting.test_maps import SHOWN
 from wspd_design.certificates.records import Role, Series, Status
 from wspd_design.reporting.blocks import Figure
 from wspd_design.reporting.figure_style import INK, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
+from wspd_design.reporting.figures.estimate import estimate_alt, estimate_panels
 from wspd_design.reporting.figures.further_brakes import further_brakes, panels
 from wspd_design.reporting.figures.phase import phase_planes
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
@@ -30,6 +31,7 @@ from wspd_design.reporting.figures.series import (
 )
 from wspd_design.reporting.figures.stop import LOCK_BAR, stop_traces
 from wspd_design.reporting.sections.checks import checks
+from wspd_design.simulation.law_memory import speed_estimate
 from wspd_design.studies.paper.published import load_table10
 
 DOSSIER = sample_dossier(rail="table10-dry")
@@ -40,12 +42,14 @@ WITH_FURTHER_BRAKES = replace(
     track_brake_force=np.linspace(3e4, 0.0, len(DOSSIER.trials[0].run.time)),
     pad_temperature=np.abs(DOSSIER.trials[0].run.slip) * 100.0,
 )
+TELLING = estimating(DOSSIER.trials[0]).run
 DRAWN = {
     "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds, (0.6, 0.6)),
     "stop": lambda figure: stop_traces(
         figure, DOSSIER.trials[0], SPECIFICATION, wheel_radius=0.55, max_torque=60e3
     ),
     "further brakes": lambda figure: further_brakes(figure, WITH_FURTHER_BRAKES),
+    "estimate": lambda figure: estimate_panels(figure, TELLING, speed_estimate(TELLING)),
     "phase planes": lambda figure: phase_planes(
         figure, DOSSIER.trials[0].run, DOSSIER.phase_plane, SPECIFICATION
     ),
@@ -53,7 +57,7 @@ DRAWN = {
     "lyapunov": lambda figure: lyapunov_functions(figure, DOSSIER.certificates[:2]),
     "slips": lambda figure: slip_of_all(figure, DOSSIER.trials, SPECIFICATION),
 }
-UNIT = re.compile(r".+ \[(-|[A-Za-z0-9/ ^²]+)\]$")
+UNIT = re.compile(r".+ \[(-|%|[A-Za-z0-9/ ^²]+)\]$")
 
 
 @pytest.fixture(params=DRAWN)
@@ -86,6 +90,36 @@ def test_lines_differ_without_color(figure):
         labeled = [line for line in axes.get_lines() if not line.get_label().startswith("_")]
         looks = {(line.get_linestyle(), line.get_marker()) for line in labeled}
         assert len(looks) == len(labeled)
+
+
+def test_the_estimate_and_its_errors_are_those_of_the_law():
+    estimate = speed_estimate(TELLING)
+    with figure_style():
+        speed, error, distance = estimate_panels(new_figure(height=5.0), TELLING, estimate).axes
+    train, told = speed.get_lines()
+    assert train.get_ydata()[0] == pytest.approx(120.0)
+    assert told.get_ydata()[0] == pytest.approx(126.0)
+    assert np.nanmax(error.get_lines()[0].get_ydata()) == pytest.approx(5.0)
+    assert distance.get_lines()[0].get_ydata()[-1] == pytest.approx(estimate.distance_error[-1])
+    looks = [paths for paths in speed.collections if paths.get_paths()]
+    assert [len(paths.get_paths()) for paths in looks] == [2]  # of the second wheelset alone
+    said = estimate_alt(TELLING, estimate)
+    assert "between 5 and 5 %" in said
+    assert "released 2 times" in said
+
+
+def test_a_moving_reference_is_drawn_as_the_law_holds_it():
+    drawn = []
+    for run in (DOSSIER.trials[0].run, TELLING):
+        told = replace(DOSSIER.trials[0], run=run)
+        with figure_style():
+            axes = stop_traces(
+                new_figure(height=8.0), told, SPECIFICATION, wheel_radius=0.55, max_torque=60e3
+            ).axes[0]
+        drawn.append(next(line for line in axes.get_lines() if line.get_color() == INK))
+    constant, moving = (np.asarray(line.get_ydata()) for line in drawn)
+    assert set(constant) == {SPECIFICATION.slip}
+    assert (moving.min(), moving.max()) == pytest.approx((0.1, 0.199))
 
 
 def test_distances_show_both_parts_and_the_paper():

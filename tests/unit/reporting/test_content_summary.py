@@ -7,7 +7,7 @@ from dataclasses import replace
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
+from tests.unit.reporting.sample_dossier import certificate, judgment, sample_dossier, trial
 from wspd_design.certificates.records import Status
 from wspd_design.reporting.blocks import Cell, KeyNumbers, Table
 from wspd_design.reporting.blocks import Status as Shown
@@ -90,6 +90,45 @@ def test_a_train_that_does_not_stop_is_not_fit():
     assert isinstance(tiles, KeyNumbers)
     assert tiles.numbers[0].label == "Distance, still moving"
     assert "nan" not in str(tiles)
+
+
+@settings(deadline=None)
+@given(STATUSES)
+def test_what_meets_its_requirements_is_accepted_unless_a_check_is_refuted(statuses):
+    dossier = replace(sample_dossier(statuses), judgment=judgment())  # with a slip rms beyond its tolerance
+    said = verdict(dossier)
+    refuted = {Status.REFUTED, Status.LIMITATION} & set(statuses)
+    assert said.status is (Shown.REFUTED if refuted else Shown.ACCEPTED)
+    sentence = plain(said.sentence)
+    if not refuted:
+        assert (
+            "Accepted: it meets all 2 requirements on 200 stops that no search has seen, seed 77" in sentence
+        )
+        assert "shown by simulated stops, not proved" in sentence
+        assert ("undecided:" in sentence) == (Status.UNDECIDED in statuses)
+        assert ("sampled only:" in sentence) == (Status.EVIDENCE in statuses)
+
+
+def test_a_missed_requirement_is_bad_news_whatever_is_proved():
+    dossier = replace(_good(Status.PROVED), judgment=judgment(longest_lock=0.11))
+    said = verdict(dossier)
+    assert said.status is Shown.BAD
+    assert "it misses 1 of 2 requirements (longest lock above 10 km/h)" in plain(said.sentence)
+    tiles, _ = summary(dossier)
+    assert tiles.numbers[2].value == "1 of 2"
+    refuted = replace(_good(Status.REFUTED), judgment=judgment(longest_lock=0.11))
+    assert "It misses 1 of 2 requirements (longest lock" in plain(verdict(refuted).sentence)
+
+
+def test_a_figure_that_the_law_does_not_have_is_missed():
+    dossier = replace(_good(Status.PROVED), judgment=judgment(efficiency_mean=math.nan))
+    assert verdict(dossier).status is Shown.BAD
+
+
+def test_a_train_that_does_not_stop_is_not_accepted():
+    endless = trial("mine", ending=Ending.TIME_LIMIT, lag=math.nan, plateau=math.nan)
+    dossier = replace(sample_dossier((Status.PROVED,), trials=(endless,)), judgment=judgment())
+    assert verdict(dossier).status is Shown.BAD
 
 
 def test_key_numbers_are_those_of_the_records():

@@ -1,20 +1,25 @@
 """``wspd compare``: the same stop with several controllers."""
 
+import math
+
 from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, initial_speed
 from wspd_design.cli.console import console, print_json, progress, spaced
-from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.json_objects import comparison_object
+from wspd_design.cli.option_records import takes_records
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_figures import SENSITIVE, UNRESOLVED
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.terminal_tables import terminal_table
+from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import CaseOptions, load_cases
 from wspd_design.design.industry import table_note
 from wspd_design.exchange.objects import stop_object
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.comparison import Trial, trial
-from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.description import disturbances_of, held_slip, rails_of
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.released import released_sentence
@@ -38,7 +43,7 @@ _MORE_COLUMNS: tuple[ColumnOf[Trial], ...] = (
 )
 
 
-@takes_stop_options
+@takes_records
 def compare(
     *,
     names: options.ControllersArgument = None,
@@ -48,6 +53,7 @@ def compare(
     speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     as_json: options.JsonOption = False,
@@ -59,7 +65,9 @@ def compare(
     """
     check_plant(plant)
     rail, disturbances = along_the_track(rail, disturbances)
-    wanted = CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
+    wanted = CaseOptions(
+        vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words
+    )
     cases = load_cases(names or list(FAMILIES), wanted)
     stop = scenario(
         cases[0].rail,
@@ -110,6 +118,9 @@ def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> N
         f"rms about {_references(trials, references)}; lock: how long the wheels were locked{more}.",
         style="dim",
     )
+    for made in trials:
+        if not math.isnan(made.metrics.speed_error):
+            out.print(_told(made), style="dim", markup=False)
     note = table_note(made.run.controller for made in trials)
     if note:
         out.print(note, style="dim", markup=False)
@@ -133,11 +144,21 @@ def _show(trials: list[Trial], scenario: Scenario, references: list[float]) -> N
         out.print(f"? {UNRESOLVED}.", style="yellow")
 
 
+def _told(made: Trial) -> str:
+    """Say how well a law knows the train speed."""
+    base, share = DISTANCE_TOLERANCE
+    return (
+        f"{made.run.controller} estimates the train speed: wrong by at most {100.0 * made.metrics.speed_error:.1f} % "
+        f"above 20 km/h, its distance by {made.metrics.distance_error:.2f} of {base:g} m + {100.0 * share:g} %."
+    )
+
+
 def _references(trials: list[Trial], references: list[float]) -> str:
     """Say about which slip the rms of each law is: one for all, or the law's own."""
-    if len(set(references)) == 1:
-        return f"{references[0]:g}"
-    own = (f"{made.run.controller} {slip:g}" for made, slip in zip(trials, references, strict=True))
+    held = [held_slip(made.run, slip) for made, slip in zip(trials, references, strict=True)]
+    if len(set(held)) == 1:
+        return held[0]
+    own = (f"{made.run.controller} {slip}" for made, slip in zip(trials, held, strict=True))
     return f"the slip that each law holds ({', '.join(own)})"
 
 

@@ -10,18 +10,21 @@ import typer
 from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.console import console, progress
-from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
+from wspd_design.design.catalog import is_design_file
 from wspd_design.design.certification import stored_beside
 from wspd_design.design.records import Design
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
 
 
-@takes_stop_options
+@takes_records
 def report(
     *,
     name: options.ControllerArgument = None,
@@ -32,6 +35,7 @@ def report(
     speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     output: Annotated[
@@ -52,7 +56,10 @@ def report(
         check_output(path, force=force)
     chosen_name = chosen(name, controller)
     rail, disturbances = along_the_track(rail, disturbances)
-    case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
+    case = load_case(
+        chosen_name,
+        CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words),
+    )
     made = _design(chosen_name, case)
     braked_from = initial_speed(speed, case.specification)
     stop = scenario(case.rail, disturbances, initial_speed=braked_from, seed=seed, vehicle=case.vehicle)
@@ -66,6 +73,7 @@ def report(
             command=shlex.join(["wspd", *sys.argv[1:]]),
             plant=plant,
             stored=stored_beside(chosen_name),
+            folder=Path(chosen_name).parent if is_design_file(chosen_name) else Path(),
             progress=tell,
         )
         tell("typesetting")

@@ -10,9 +10,11 @@ from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.campaign import Extent, simulate_runs
 from wspd_design.cli.console import console, print_json, progress
-from wspd_design.cli.disturbances import StopOptions, takes_stop_options
+from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
 from wspd_design.cli.json_objects import witness_object
+from wspd_design.cli.option_records import takes_records
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_figures import show_stop
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.tables import check_table, write_table
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
 _MANY = "Many stops"
 
 
-@takes_stop_options
+@takes_records
 def simulate(
     *,
     name: options.ControllerArgument = None,
@@ -42,6 +44,7 @@ def simulate(
     from_witness: options.FromWitnessOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     runs: Annotated[
@@ -97,7 +100,8 @@ def simulate(
         witness = read(from_witness)
     rail, disturbances = along_the_track(rail, disturbances)
     case = load_case(
-        chosen(name, controller), CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
+        chosen(name, controller),
+        CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words),
     )
     stop = scenario(
         case.rail,

@@ -34,7 +34,7 @@ def observed(
     Returns
     -------
     tuple[Number, Number]
-        Wheel speed [rad/s] and friction torque [N m] as observed.
+        As observed: wheel speed in rad/s, friction torque in N m.
     """
     x0 = observed_speed + sample_time * (-mean_torque + observed_friction) / wheelset_inertia
     x1 = wheel_speed - x0

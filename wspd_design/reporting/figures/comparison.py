@@ -12,6 +12,7 @@ from wspd_design.reporting.figures.drawing import note
 from wspd_design.reporting.figures.stop import named, slip_panel
 from wspd_design.reporting.yardsticks import ideal_distance
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.description import held_slip
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.paper.published import PublishedStop
 
@@ -134,8 +135,9 @@ def distances_alt(trials: Sequence[Trial], lag_distances: Sequence[float]) -> st
 def slips_alt(trials: Sequence[Trial], specification: Specification) -> str:
     """Say in words what the slips show."""
     said = (
-        f"{trial.run.controller} rms {trial.metrics.slip_rms:.3f}, a wheelset locked for "
+        f"{trial.run.controller} rms {trial.metrics.slip_rms:.3f} about {held_slip(trial.run, specification.slip)}, "
+        f"a wheelset locked for "
         f"{trial.metrics.lock_time:.2f} s"
         for trial in trials
     )
-    return f"Slip over time about the reference {specification.slip:g}: {'; '.join(said)}."
+    return f"Slip over time about the reference: {'; '.join(said)}."

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from wspd_design.design.records import Specification
 from wspd_design.reporting.figure_style import INK, SERIES
 from wspd_design.reporting.figures.drawing import KILO, curve
+from wspd_design.simulation.law_memory import reference_range
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import PhasePlane
@@ -78,7 +79,8 @@ def _law(axes: "Axes", plane: PhasePlane) -> None:
 def _wheel(axes: "Axes", run: Run, specification: Specification) -> None:
     slip, torque = _judged(run)
     curve(axes, slip, torque, 0, linewidth=0.9)
-    axes.axvline(specification.slip, color=INK, linestyle="--", linewidth=0.8)
+    if reference_range(run) is None:  # a moving one is no line here
+        axes.axvline(specification.slip, color=INK, linestyle="--", linewidth=0.8)
     _start_and_end(axes, slip, torque)
     axes.set(xlabel="slip [-]", ylabel="torque [kN m]", title="As the wheel moves")
 

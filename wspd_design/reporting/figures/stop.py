@@ -4,8 +4,10 @@ from typing import TYPE_CHECKING
 
 from wspd_design.design.records import Specification
 from wspd_design.reporting.figure_style import INK, MUTED, SERIES
-from wspd_design.reporting.figures.drawing import KILO, KMH, curve, look, note
+from wspd_design.reporting.figures.drawing import KILO, KMH, curve, look, note, thinned
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.description import held_slip
+from wspd_design.simulation.law_memory import reference_range, slip_references
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
 
@@ -70,17 +72,14 @@ def stop_traces(
 
 def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: float, most: int = MOST) -> None:
     """Draw the slip of all wheelsets with its reference, tolerance band and lock intervals."""
-    reference, tolerance = specification.slip, specification.slip_tolerance
-    band = (reference - tolerance, reference + tolerance)
-    axes.axhspan(*band, color=SERIES[2], alpha=0.15, linewidth=0)
-    axes.axhline(reference, color=INK, linestyle="--", linewidth=0.8)
+    _reference(axes, run, specification)
     wheelsets = run.slip.shape[1]
     bar = min(LOCK_BAR, LOCK_BARS / wheelsets)
     for wheelset in range(wheelsets):
         locked = run.wheel_speed[:, wheelset] <= 0.0
         # Bars at the top edge, front wheelset first: visible when the slip itself has left the picture.
         axes.broken_barh(
-            _intervals(run.time, locked),
+            intervals(run.time, locked),
             (1.0 - bar * (wheelset + 1), 0.8 * bar),
             transform=axes.get_xaxis_transform(),
             color=look(line_of(wheelset))[0],
@@ -100,6 +99,23 @@ def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: flo
         axes.axvspan(below[0], run.time[-1], color=MUTED, alpha=0.12, linewidth=0)
     axes.set(ylim=(0.0, top), ylabel="slip [-]")
     axes.set_xlim(0.0, float(run.time[-1]))
+
+
+def _reference(axes: "Axes", run: Run, specification: Specification) -> None:
+    """Draw the slip that the law holds with the tolerance about it: its own course, or one slip for the whole stop."""
+    import numpy as np
+
+    held, tolerance = slip_references(run), specification.slip_tolerance
+    if held is None:
+        band = (specification.slip - tolerance, specification.slip + tolerance)
+        axes.axhspan(*band, color=SERIES[2], alpha=0.15, linewidth=0)
+        axes.axhline(specification.slip, color=INK, linestyle="--", linewidth=0.8)
+        return
+    times = np.array([sample.time for sample in run.samples])
+    low, high = held.min(axis=1) - tolerance, held.max(axis=1) + tolerance
+    axes.fill_between(times, low, high, color=SERIES[2], alpha=0.15, linewidth=0)
+    for course in np.unique(held, axis=1).T:  # one line where all wheelsets hold the same
+        axes.plot(*thinned(times, course, MOST), color=INK, linestyle="--", linewidth=0.8)
 
 
 def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
@@ -181,7 +197,7 @@ def name(run: Run, wheelset: int) -> str:
     return f"wheelset {wheelset + 1}" + {0: " (front)", last: " (rear)"}.get(wheelset, "")
 
 
-def _intervals(time: "Trace", flags: "NDArray[np.bool_]") -> list[tuple[float, float]]:
+def intervals(time: "Trace", flags: "NDArray[np.bool_]") -> list[tuple[float, float]]:
     """Return start and length of each stretch of time with a flag."""
     import numpy as np
 
@@ -203,7 +219,7 @@ def stop_alt(trial: Trial, specification: Specification) -> str:
     )
     return (
         f"Five panels over {figures.stopping_time:.2f} s. Slip: mean {figures.slip_mean:.3f}, largest "
-        f"{figures.slip_max:.3f}, rms {figures.slip_rms:.3f} about the reference {specification.slip:g}, "
+        f"{figures.slip_max:.3f}, rms {figures.slip_rms:.3f} about the reference {held_slip(run, specification.slip)}, "
         f"whose tolerance band of ±{specification.slip_tolerance:g} is shaded. Speed of train and wheel rims "
         f"from {run.initial_speed * KMH:.4g} km/h to standstill; a wheelset is locked for at most "
         f"{figures.lock_time:.2f} s. Braking torque and load: {slips}. Filling share of each of the "
@@ -213,5 +229,6 @@ def stop_alt(trial: Trial, specification: Specification) -> str:
 
 def _slip_top(trial: Trial, specification: Specification) -> float:
     """Upper end of the slip axis: what happens above the judging speed fits."""
-    wanted = max(1.2 * trial.metrics.slip_max, specification.slip + 2.0 * specification.slip_tolerance)
+    _, highest = reference_range(trial.run) or (0.0, specification.slip)
+    wanted = max(1.2 * trial.metrics.slip_max, highest + 2.0 * specification.slip_tolerance)
     return min(wanted, 1.1)

@@ -3,16 +3,21 @@
 from functools import partial
 
 from wspd_design.certificates.records import Certificate
+from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE, ERROR_SPEED
+from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
+from wspd_design.reporting.figures.estimate import estimate_alt, estimate_panels
 from wspd_design.reporting.figures.further_brakes import further_brakes, height, panels
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.running_gear import axle_shares
 from wspd_design.reporting.yardsticks import ideal_sentence
-from wspd_design.simulation.description import rails_of
+from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.description import held_slip, rails_of
+from wspd_design.simulation.law_memory import reference_range, releases, speed_estimate
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
@@ -42,12 +47,13 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         ),
         Figure(
             svg=picture(draw, height=8.6),
-            caption=f"The stop over time, {run.train}. Green: tolerance about the reference "
-            f"(dashed). Gray: below {judged} km/h, where the slip is not judged. Bars at the upper edge of the "
-            "slip mark locked wheels, the front wheelset on top.",
+            caption=f"The stop over time, {run.train}. Green: tolerance about the reference, "
+            f"{held_slip(run, specification.slip)} (dashed). Gray: below {judged} km/h, where the slip is not judged. "
+            "Bars at the upper edge of the slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
         ),
+        *_estimate(own, specification.sensors),
         *_further_brakes(run),
         Figure(
             svg=picture(
@@ -59,12 +65,67 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             "Right: slip and torque of the wheel; closed loops are a limit cycle of slip and valve."
             if dossier.phase_plane
             else f"Slip and torque of the {wheelset} above {judged} km/h; closed loops are a limit cycle of "
-            "slip and valve. Dashed: the reference.",
+            "slip and valve." + ("" if reference_range(run) else " Dashed: the reference."),
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",
         ),
         *_lyapunov(dossier.certificates),
     )
+
+
+def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
+    """Say where the law has the train speed from, and show an estimate beside the true one."""
+    run, figures = own.run, own.metrics
+    estimate = speed_estimate(run)
+    if estimate is None:
+        return (
+            Paragraph(
+                text="The law is told the train speed and estimates none; a vehicle that has no radar must work it out "
+                "from its wheels, whose slides then go into it."
+            ),
+        )
+    base, share = DISTANCE_TOLERANCE
+    fast, allowed = numbers.significant(ERROR_SPEED * KMH), f"{base:g} m + {100.0 * share:g} %"
+    inside = "inside" if figures.distance_error <= 1.0 else "outside"
+    looks = releases(run)
+    looked = (
+        ""
+        if not looks
+        else f" It released a wheelset {numbers.count(looks, 'time')} to see the speed of the train."
+    )
+    said = Paragraph(
+        text=f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
+        f"{numbers.significant(100.0 * figures.speed_error, 2)} %; the distance that follows from it by at most "
+        f"{numbers.significant(figures.distance_error, 2)} of {allowed}, {inside} what the odometry of train "
+        f"control allows.{looked}"
+    )
+    if sensors.speed == "told":
+        return (said,)
+    return (
+        said,
+        Figure(
+            svg=picture(partial(estimate_panels, run=run, estimate=estimate), height=5.4),
+            caption="The train speed as the law has it (dashed) beside the true one, the relative error of the speed, "
+            f"which counts above {fast} km/h, and the error of the distance with the {allowed} of ETCS (green). Bars "
+            "at the upper edge: wheelsets that the law releases to see the speed, the front one on top.",
+            alt=estimate_alt(run, estimate),
+            anchor="stop-estimate",
+        ),
+    )
+
+
+def _source(sensors: Sensors) -> str:
+    """Say where a law has the train speed from."""
+    match sensors.speed:
+        case "told":
+            return "The law is told the train speed, and scales it so that wheels that roll have no slip."
+        case "fastest-axle":
+            return (
+                "The law takes the fastest wheelset for the train, and bounds how fast that speed may fall."
+            )
+        case "wheels":
+            beside = " and an accelerometer" if sensors.accelerometer else ""
+            return f"The law estimates the train speed from its wheels{beside}."
 
 
 def _further_brakes(run: Run) -> tuple[Block, ...]:

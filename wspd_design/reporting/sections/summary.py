@@ -11,14 +11,16 @@ from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Sta
 from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.sections.checks import check_anchor, is_bad_news, status_of
+from wspd_design.reporting.sections.requirements import REQUIREMENTS, stops_of
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
-from wspd_design.simulation.description import rails_of
+from wspd_design.simulation.description import held_slip, rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
+from wspd_design.studies.judgment import Judgment
 
 COUNTED = {
     Status.REFUTED: "refuted",
@@ -33,8 +35,12 @@ COUNTED = {
 
 
 def verdict(dossier: Dossier) -> Verdict:
-    """Return the judgment of the whole report; the worst finding decides."""
-    certificates = dossier.certificates
+    """Return the judgment of the whole report; the worst finding decides.
+
+    A design with requirements is accepted if it meets them all and nothing is refuted; one without is judged by the
+    tolerance of its slip.
+    """
+    certificates, judgment = dossier.certificates, dossier.judgment
     counts = Counter(map(status_of, certificates))
     total = len(certificates)
     stop, stop_is_good = _stop(dossier)
@@ -46,10 +52,23 @@ def verdict(dossier: Dossier) -> Verdict:
             f"Not fit as it stands: {len(named)} of {total} checks refuted{limits} (",
             *_links(named),
             "). ",
+            *(("It misses ", *_required(judgment), ". ") if judgment is not None and judgment.missed else ()),
         )
+    elif judgment is not None and judgment.missed:
+        status = Status.BAD
+        spoken = ("Not fit as it stands: no check is refuted, but it misses ", *_required(judgment), ". ")
     elif not stop_is_good:
         status = Status.BAD
         spoken = ("Not fit as it stands: no check is refuted, but the simulated stop is not as specified. ",)
+    elif judgment is not None:
+        status = Status.ACCEPTED
+        spoken = (
+            "Accepted: it meets ",
+            *_required(judgment),
+            ", and no check that speaks about it is refuted. That is shown by simulated stops, not proved",
+            *_not_shown(certificates),
+            ". ",
+        )
     elif named := _of(certificates, Status.UNDECIDED):
         status = Status.UNDECIDED
         spoken = (
@@ -75,6 +94,29 @@ def verdict(dossier: Dossier) -> Verdict:
     return Verdict(status=status, sentence=(*spoken, stop, counted if tally else ""))
 
 
+def _required(judgment: Judgment) -> tuple[Inline, ...]:
+    """Say how many requirements are met or missed, and where they are judged."""
+    limited, missed = judgment.limited, judgment.missed
+    number = f"{len(missed)} of {len(limited)}" if missed else f"all {len(limited)}"
+    named = f" ({numbers.listing([each.title for each in missed])})" if missed else ""
+    return (
+        f"{number} ",
+        Link(anchor=REQUIREMENTS, text="requirements"),
+        f"{named} on {stops_of(judgment)}",
+    )
+
+
+def _not_shown(certificates: tuple[Certificate, ...]) -> tuple[Inline, ...]:
+    """Name what an accepted design leaves open."""
+    undecided, sampled = (_of(certificates, each) for each in (Status.UNDECIDED, Status.EVIDENCE))
+    said: list[Inline] = []
+    if undecided:
+        said += ["; undecided: ", *_links(undecided)]
+    if sampled:
+        said += ["; sampled only: ", *_links(sampled)]
+    return tuple(said)
+
+
 def _of(certificates: tuple[Certificate, ...], *found: Status) -> list[Certificate]:
     return [each for each in certificates if status_of(each) in found]
 
@@ -93,7 +135,7 @@ def _lowered(title: str) -> str:
 
 
 def _stop(dossier: Dossier) -> tuple[str, bool]:
-    """Say how the design's own stop went, and whether it kept to the specification."""
+    """Say how the design's own stop went, and whether it kept to the tolerance if that is what it is judged by."""
     own, specification = dossier.trials[0], dossier.design.specification
     run, figures = own.run, own.metrics
     start = (
@@ -102,11 +144,15 @@ def _stop(dossier: Dossier) -> tuple[str, bool]:
     )
     if run.ending is not Ending.STOPPED:
         return f"{start} does not end: {run.ending.value}.", False
+    takes = f"{start} takes {numbers.uncertain(figures.distance, own.check.spread, 1)} m"
+    if dossier.judgment is not None:
+        known = figures.ideal_ending is Ending.STOPPED
+        return f"{takes}{f', the ideal stop {ideal_distance(figures)}' if known else ''}.", True
     inside = figures.slip_rms <= specification.slip_tolerance
     side = "within" if inside else "beyond"
     said = (
-        f"{start} takes {numbers.uncertain(figures.distance, own.check.spread, 1)} m; the slip is off its reference of "
-        f"{specification.slip:g} by {numbers.decimals(figures.slip_rms, 3)} rms, {side} the tolerance of "
+        f"{takes}; the slip is off its reference of "
+        f"{held_slip(run, specification.slip)} by {numbers.decimals(figures.slip_rms, 3)} rms, {side} the tolerance of "
         f"{specification.slip_tolerance:g}."
     )
     return said, inside
@@ -141,11 +187,7 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             unit="%" if math.isfinite(figures.efficiency) else "",
             note=_yardsticks(dossier),
         ),
-        KeyNumber(
-            label=f"Slip rms above {numbers.quantity_in(JUDGING_SPEED, 'km/h')}",
-            value=numbers.decimals(figures.slip_rms, 3),
-            note=f"reference {specification.slip:g}, tolerance {specification.slip_tolerance:g}",
-        ),
+        _slip_or_requirements(dossier),
         KeyNumber(
             label="Largest nominal slip pole",
             value=numbers.decimals(worst.slip_pole, 2),
@@ -153,6 +195,28 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             note=f"at {numbers.significant(worst.speed * KMH, 3)} km/h; 1/τ = "
             f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s{_between_times(dossier.vehicle)}",
         ),
+    )
+
+
+def _slip_or_requirements(dossier: Dossier) -> KeyNumber:
+    """Return what the design is judged by."""
+    judgment, figures, specification = (
+        dossier.judgment,
+        dossier.trials[0].metrics,
+        dossier.design.specification,
+    )
+    if judgment is not None:
+        met = len(judgment.limited) - len(judgment.missed)
+        return KeyNumber(
+            label="Requirements met",
+            value=f"{met} of {len(judgment.limited)}",
+            note=(Link(anchor=REQUIREMENTS, text="on"), f" {stops_of(judgment)}"),
+        )
+    return KeyNumber(
+        label=f"Slip rms above {numbers.quantity_in(JUDGING_SPEED, 'km/h')}",
+        value=numbers.decimals(figures.slip_rms, 3),
+        note=f"reference {held_slip(dossier.trials[0].run, specification.slip)}, tolerance "
+        f"{specification.slip_tolerance:g}",
     )
 
 

@@ -51,6 +51,13 @@ def test_figures_that_only_some_laws_have():
     assert "distance_error" not in found.reached
 
 
+def test_slips_that_never_reach_their_reference_have_no_band():
+    one, none = np.array([0.1, np.nan, 0.05]), np.full(3, np.nan)
+    assert score(figures(slip_band_1=one, slip_band_2=none)).reached["slip_band"] == 0.1
+    assert "slip_band" not in score(figures(slip_band_1=none)).reached
+    assert math.isnan(score(figures(speed_error=one)).reached["speed_error"])  # that one must be there
+
+
 def test_objective_by_hand():
     excess = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1])
     assert objective(excess) == pytest.approx(0.55 + 0.3 * (1.0 + 1.1) / 2)
