@@ -23,6 +23,7 @@ from wspd_design.model.slip import slip_ratio
 
 _YES = 0.5  # flags are above it
 _NEAR = 0.5  # of the slip, within which a wheel holds it
+_CAREFUL = 0.85  # of the least torque of the others: loads and friction differ from wheelset to wheelset
 _FAR = 0.5  # slip beyond which a wheel is let go at low speed, too, before it locks
 
 
@@ -123,7 +124,10 @@ class Protection:
         ]
         decided = [self.core.step(law, view) for law, view in zip(laws, views, strict=True)]
         commands = [command for _, command in decided]
-        commands = [_without_sensor(axle, commands, measurement.healthy) for axle in range(self.wheelsets)]
+        commands = [
+            self._without_sensor(axle, command, measurement, views, wheels)
+            for axle, command in enumerate(commands)
+        ]
         commands = [self._at_low_speed(view, each) for view, each in zip(views, commands, strict=True)]
         commands = [_asked(axle, estimate, command) for axle, command in enumerate(commands)]
         following = [
@@ -203,6 +207,7 @@ class Protection:
             speed=speed,
             acceleration=estimate.acceleration,
             wheel_speed=measurement.wheel_speeds[axle],
+            rolling_speed=speed / self.wheel_radius,
             desired_speed=wheel_speed_at_slip(desired.slip, speed, self.wheel_radius),
             desired_acceleration=slip_tracking.reference_acceleration(
                 speed, estimate.acceleration, desired.slip, desired.slope, self.wheel_radius
@@ -211,6 +216,30 @@ class Protection:
             torque=wheel.torque,
             available=measurement.demand * self._full_torque(axle),
             full_torque=self._full_torque(axle),
+        )
+
+    def _without_sensor(
+        self,
+        axle: int,
+        command: Command,
+        measurement: VehicleMeasurement,
+        views: Sequence[WheelView],
+        wheels: Sequence[_Wheelset],
+    ) -> Command:
+        """Return the command of a wheelset; without its speed sensor it brakes less than all that have theirs.
+
+        Without any sensor it takes the whole brake, as without a protection.
+        """
+        own = views[axle]
+        target = own.available
+        for other, (view, wheel) in enumerate(zip(views, wheels, strict=True)):
+            if other != axle and self.torque_shares[other] > 0.0:
+                seen = where(wheel.released > _YES, False, measurement.healthy[other] > _YES)
+                target = minimum(target, where(seen, _CAREFUL * view.torque, own.available))
+        careful = self.valve.command(own.torque, target, own.available, 0.0, own.full_torque)
+        well = measurement.healthy[axle] > _YES
+        return Command(
+            fill=where(well, command.fill, careful.fill), vent=where(well, command.vent, careful.vent)
         )
 
     def _at_low_speed(self, view: WheelView, command: Command) -> Command:
@@ -228,23 +257,6 @@ class Protection:
         """Work out what the command makes of the torque."""
         torque, mean = self.valve.after(command, wheel.torque, view.available, view.full_torque)
         return wheel._replace(slip_reference=desired.slip, torque=torque, mean_torque=mean, released=released)
-
-
-def _without_sensor(axle: int, commands: Sequence[Command], healthy: tuple[Number, ...]) -> Command:
-    """Return the command of a wheelset; without its speed sensor, the most careful one of its neighbors."""
-    fill: Number = 1.0
-    vent: Number = 0.0
-    for neighbor in (axle - 1, axle + 1):
-        if 0 <= neighbor < len(commands):
-            seen = healthy[neighbor] > _YES
-            fill = minimum(fill, where(seen, commands[neighbor].fill, 1.0))
-            vent = maximum(vent, where(seen, commands[neighbor].vent, 0.0))
-    fill = where(vent > 0.0, 0.0, fill)
-    own = healthy[axle] > _YES
-    return Command(
-        fill=where(own, commands[axle].fill, fill),
-        vent=where(own, commands[axle].vent, vent),
-    )
 
 
 def _asked(axle: int, estimate: SpeedEstimate, command: Command) -> Command:

@@ -15,8 +15,8 @@ UNKNOWN_RAIL = (
 )
 LARGEST_SLIP = 0.35  # -
 CUT_OUT = 5.0 / KMH  # m/s
-SEEKING_AMPLITUDE, SEEKING_GAIN, SEEKING_BIAS = 0.12, 2.5, 0.01
-SEEKING_SAMPLES, SEEKING_SETTLED = 5, 0.3  # -, s
+SEEKING_AMPLITUDE, SEEKING_GAIN, SEEKING_BIAS = 0.1, 3.0, 0.0
+SEEKING_PERIOD = 0.75  # s, half of it
 PEAK_POINTS = 12  # of the table of the peak
 
 
@@ -48,7 +48,7 @@ def protection_gains(vehicle: Vehicle, rail: Rail, specification: Specification)
             why="limit of c/sqrt(v), which has none at standstill",
         ),
         *(_peak(vehicle, rail, specification) if specification.reference == "peak" else ()),
-        *(_seeking(specification) if specification.reference == "seeking" else ()),
+        *(_seeking() if specification.reference == "seeking" else ()),
         Gain(
             name="observer_rate",
             value=OBSERVER_RATE,
@@ -86,9 +86,8 @@ def _peak(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[G
     )
 
 
-def _seeking(specification: Specification) -> tuple[Gain, ...]:
+def _seeking() -> tuple[Gain, ...]:
     """Gains of the search for the peak."""
-    half = SEEKING_SAMPLES * specification.sample_time + SEEKING_SETTLED
     return (
         Gain(
             name="seeking_amplitude",
@@ -98,9 +97,10 @@ def _seeking(specification: Specification) -> tuple[Gain, ...]:
         ),
         Gain(
             name="seeking_period",
-            value=half,
+            value=SEEKING_PERIOD,
             unit="s",
-            why=f"half a period: {SEEKING_SAMPLES:g} samples and {SEEKING_SETTLED:g} s, until the slip has followed",
+            why="half a period: the slip follows its reference within some tenths of a second, and friction is then "
+            "averaged over as long",
         ),
         Gain(
             name="seeking_gain",
@@ -112,6 +112,6 @@ def _seeking(specification: Specification) -> tuple[Gain, ...]:
             name="seeking_bias",
             value=SEEKING_BIAS,
             unit="-",
-            why="slope that is sought: a little below the peak, where the wheel is stable",
+            why="slope of ln(friction) that is sought: that of the peak",
         ),
     )
