@@ -30,6 +30,7 @@ from derivations import (
     track,
     valve_flow,
     valve_inversion,
+    wheel_filter,
 )
 from derivations.equation_map import equations
 from derivations.map_files import equations_toml, nomenclature, readme, theory
@@ -55,6 +56,7 @@ MODULES: dict[str, ModuleType] = {
     "track": track,
     "valve_flow": valve_flow,
     "valve_inversion": valve_inversion,
+    "wheel_filter": wheel_filter,
 }
 _ELEMENTARY = ("atan", "exp", "log", "sin", "tan")
 

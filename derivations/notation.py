@@ -132,6 +132,15 @@ def _table() -> dict[str, Quantity]:
         "observed_speed": q("rad/s", "wheel speed as observed", "ω^", "hat(omega)"),
         "observed_friction": q("N m", "friction torque as observed", "τ^", "hat(tau)"),
         "observer_pole": q("-", "double pole of an observer, over one sample", "θ", "theta", positive),
+        # filter on the wheels
+        "friction_torques": q("N m", "sum of the friction torques of all wheelsets", "Στ", "Sigma tau"),
+        "torque_scale": q(
+            "-", "true over nominal deceleration by the friction torques", "κ", "kappa", positive
+        ),
+        "creep_factor": q("-", "sum of the reduction factors kA and kS", "k", "k", positive),
+        "rim_speed": q("m/s", "speed of a wheel rim as tracked", "u", "u"),
+        "rim_rate": q("m/s2", "acceleration of a wheel rim as tracked", "u'", "u'"),
+        "shown_speed": q("m/s", "speed of a wheel rim as the sensor shows it", "u_m", "u_m"),
         "acceleration": q("m/s2", "acceleration of the train, negative when braking", "v'", "dot(v)"),
         "slip_slope": q("s/m", "derivative of the desired slip in the train speed", "λ_d,v", "lambda_(d,v)"),
         "reference_acceleration": q(

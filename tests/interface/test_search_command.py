@@ -76,6 +76,41 @@ def test_a_tuned_table_is_a_controller_that_says_its_effort(wspd, spec, tmp_path
     assert "tuned" in wspd("compare", file, "--speed", "30 km/h").out
 
 
+def test_a_law_of_ones_own_is_tuned_beside_its_file(wspd, spec, tmp_path):
+    (tmp_path / "band.py").write_text(
+        """from dataclasses import dataclass
+from wspd_design.controllers.protocol import Command
+from wspd_design.model.number import where
+
+@dataclass(frozen=True)
+class Band:
+    vehicle: object
+    slip: float = 0.3
+    width: float = 0.5
+    sample_time: float = 0.1
+    name: str = "band"
+
+    def start(self, measurement):
+        return ()
+
+    def step(self, state, measurement):
+        slide = measurement.speed - self.vehicle.wheel_radius * measurement.wheel_speed
+        vent = where(slide > (1.0 + self.width) * self.slip * measurement.speed, 1.0, 0.0)
+        fill = where(slide < (1.0 - self.width) * self.slip * measurement.speed, 1.0, 0.0)
+        return state, Command(fill=fill, vent=vent)
+"""
+    )
+    outcome = wspd("tune", "band.py:Band", spec.name)
+    assert (outcome.code, outcome.err) == (0, "")
+    assert "wspd simulate band_tuned.py:tuned" in outcome.out
+    compared = wspd("compare", "band_tuned.py:tuned", "band.py:Band", "--speed", "30 km/h", "--json")
+    names = [each["controller"] for each in json.loads(compared.out)["stops"]]
+    assert names == ["band (tuned, 14 evaluations)", "band"]
+    refused = wspd("tune", "band.py:Band", spec.name, "-o", "band.toml")
+    assert (refused.code, refused.out) == (2, "")
+    assert "band.toml must be a .py file beside band.py, from which it imports" in refused.err
+
+
 def test_a_file_in_the_way_is_refused_before_anything_is_computed(wspd, spec, tmp_path):
     (tmp_path / "made.search.json").write_text("")
     outcome = wspd("design", spec.name, "-o", "made.toml")

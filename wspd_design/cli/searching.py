@@ -2,9 +2,10 @@
 
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 
@@ -15,17 +16,29 @@ from wspd_design.design.criteria import CRITERIA
 from wspd_design.design.file import seen_from, write_design
 from wspd_design.design.records import Design
 from wspd_design.design.requirements import Judged, Limit
+from wspd_design.design.search.run import Space
 from wspd_design.design.specification_file import Task, shipped_specifications
 from wspd_design.exchange.plain import finite
+from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.units import units_of
+
+if TYPE_CHECKING:
+    from wspd_design.design.finding import Found
 
 SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (docs/design-to-requirements.md)"
 
+_BY_RAIL = {
+    "mean eff.": "efficiency_mean",
+    "worst eff.": "efficiency_worst",
+    "lock": "longest_lock",
+    "switches": "valve_switches",
+}
 
-def search_and_write(
+
+def search_design(
     task: Task, start: Design, name: str, output: Path, *, limits: tuple[Limit, ...], force: bool
 ) -> bool:
-    """Search a design, write it and the record of the search, and show what was reached.
+    """Search a design and write it.
 
     Parameters
     ----------
@@ -47,6 +60,54 @@ def search_and_write(
     bool
         Whether all requirements are met on the held-out sets.
     """
+    from wspd_design.design.finding import explained, space_of
+
+    def write(found: "Found") -> None:
+        made = explained(found, start, name)
+        rails = tuple(seen_from(output, rail) or rail for rail in task.requirements.rails)
+        made = replace(
+            made,
+            vehicle_file=seen_from(output, task.vehicle),
+            rail_file=seen_from(output, task.design_rail),
+            requirements=replace(task.requirements, rails=rails),
+        )
+        write_design(made, output)
+
+    space = space_of(start, load_vehicle(task.vehicle), load_rail(task.design_rail))
+    return search_and_write(
+        task, space, name, output, write, limits=limits, force=force, controller=str(output)
+    )
+
+
+def search_and_write(
+    task: Task,
+    space: Space,
+    name: str,
+    output: Path,
+    write: "Callable[[Found], object]",
+    *,
+    limits: tuple[Limit, ...],
+    force: bool,
+    controller: str,
+) -> bool:
+    """Search, write the record and what was found, and show what was reached.
+
+    Parameters
+    ----------
+    task, name, output, limits, force
+        As of :func:`search_design`.
+    space : Space
+        What is searched.
+    write : callable
+        Writes the output.
+    controller : str
+        What other commands take it by.
+
+    Returns
+    -------
+    bool
+        Whether all requirements are met on the held-out sets.
+    """
     from wspd_design.design.finding import find
     from wspd_design.exchange.search_objects import search_object
 
@@ -62,44 +123,42 @@ def search_and_write(
     total = task.effort.evaluations
     try:
         with progress_bar(
-            f"{total} evaluations of {start.law} on {task.effort.sets.sets} sets", total
+            f"{total} evaluations of {space.law} on {task.effort.sets.sets} sets", total
         ) as tell:
-            found = find(task, start, name, limits=limits, journal=journal, progress=count, told=_say)
+            found = find(task, space, limits=limits, journal=journal, progress=count, told=_say)
     except KeyboardInterrupt:
         raise interrupted(
             f"{done} of {total} evaluations; they are in {journal}, and the same command goes on from there"
         ) from None
-    made = replace(
-        found.design,
-        vehicle_file=seen_from(output, task.vehicle),
-        rail_file=seen_from(output, task.design_rail),
-        requirements=replace(
-            task.requirements,
-            rails=tuple(seen_from(output, rail) or rail for rail in task.requirements.rails),
-        ),
-    )
-    write_text(record, json.dumps(finite(search_object(found)), ensure_ascii=False) + "\n", force=True)
-    write_design(made, output)
+    write_text(record, json.dumps(finite(search_object(found, name)), ensure_ascii=False) + "\n", force=True)
+    write(found)
     journal.unlink(missing_ok=True)
-    out = console()
-    out.print(made.name, style="bold", markup=False)
+    _show(found, name)
+    print_written(
+        output,
+        ("Try it", ("simulate", controller)),
+        ("Show it", ("report", controller, "-o", output.with_suffix(".html"))),
+    )
+    console().print(f"Record of the search: {record}", markup=False, soft_wrap=True)
+    return not found.unproved and all(each.met is not False for each in found.judged)
+
+
+def _show(found: "Found", name: str) -> None:
+    out, wanted = console(), found.task.requirements
+    out.print(name, style="bold", markup=False)
     out.print(f"Chosen: {found.reason}.", markup=False)
-    held_out = task.requirements.held_out
     out.print(
-        f"On {held_out.sets} held-out sets of seed {held_out.seed}, looked at once "
-        f"({', '.join(task.requirements.rails)}):",
+        f"On {wanted.held_out.sets} held-out sets of seed {wanted.held_out.seed}, looked at once "
+        f"({', '.join(wanted.rails)}):",
         markup=False,
     )
     _show_judged(found.judged, found.held_out_start.reached)
+    by_rail = table("Rail", *_BY_RAIL, numeric=tuple(_BY_RAIL))
+    for rail, each in found.held_out_by_rail.items():
+        by_rail.add_row(Text(rail), *(_told(name, each.reached[name]) for name in _BY_RAIL.values()))
+    out.print(spaced(by_rail))
     for check in found.unproved:
         out.print(f"Not proved: {check}.", style="bold yellow", markup=False)
-    print_written(
-        output,
-        ("Try it", ("simulate", output)),
-        ("Show it", ("report", output, "-o", output.with_suffix(".html"))),
-    )
-    out.print(f"Record of the search: {record}", markup=False, soft_wrap=True)
-    return not found.unproved and all(each.met is not False for each in found.judged)
 
 
 def _show_judged(judged: Sequence[Judged], before: Mapping[str, float]) -> None:
@@ -124,10 +183,10 @@ def _told(criterion: str, value: float | None) -> str:
     if value is None:
         return "-"
     dimension = CRITERIA[criterion].dimension
-    if criterion == "vented_air":
+    if criterion in ("vented_air", "distance_error"):
         return f"{value:.2f}"
     if dimension == "ratio":
-        return f"{100.0 * value:.1f} %" if criterion != "distance_error" else f"{value:.2f}"
+        return f"{100.0 * value:.1f} %"
     return f"{value:.3g} {units_of(dimension)[0]}"
 
 

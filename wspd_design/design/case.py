@@ -1,16 +1,18 @@
 """Cases: a controller on a vehicle and a rail, loaded from what a user writes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
+from wspd_design.controllers.family import tunable_family
+from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.controllers.offers import slip_reference_of
-from wspd_design.controllers.protocol import Controller, Law
+from wspd_design.controllers.protocol import Law, acts_on_vehicle
 from wspd_design.design.catalog import controller as build_controller
 from wspd_design.design.catalog import controller_of, is_design_file
 from wspd_design.design.file import read_design
 from wspd_design.design.own_controller import is_own_controller, load_controller
-from wspd_design.design.records import Design, Specification
+from wspd_design.design.records import Design, Specification, seen_by
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
 from wspd_design.parameters.laden import LADEN
@@ -42,6 +44,20 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SensorWords:
+    """What the user wrote about the sensors and the reference of a law; None where nothing was written."""
+
+    speed: str | None = None
+    accelerometer: bool | None = None
+    pressures: bool | None = None
+    grade: bool | None = None
+    reference: str | None = None
+
+
+UNSAID = SensorWords()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CaseOptions:
     """What the user wrote, each quantity with its unit; None where nothing was written.
 
@@ -54,6 +70,7 @@ class CaseOptions:
     speeds: tuple[str, str] | None = None
     tolerance: str | None = None
     sample_time: str | None = None
+    sensors: SensorWords = UNSAID
 
 
 def specification(options: CaseOptions, base: Specification | None = None) -> Specification:
@@ -85,9 +102,15 @@ def specification(options: CaseOptions, base: Specification | None = None) -> Sp
             if options.sample_time is None
             else parse_quantity(options.sample_time, "time", what="sample time")
         ),
-        reference=base.reference,
-        sensors=base.sensors,
+        reference=base.reference if options.sensors.reference is None else options.sensors.reference,  # type: ignore[arg-type]
+        sensors=_sensors(options.sensors, base.sensors),
     )
+
+
+def _sensors(words: SensorWords, base: Sensors) -> Sensors:
+    """Return the sensors that the user asks for, which refuse what does not go together."""
+    written = {each.name: getattr(words, each.name) for each in fields(Sensors)}
+    return replace(base, **{name: value for name, value in written.items() if value is not None})
 
 
 def load_case(name: str, options: CaseOptions, base: Specification | None = None) -> Case:
@@ -131,8 +154,8 @@ def load_case(name: str, options: CaseOptions, base: Specification | None = None
 def load_cases(names: Sequence[str], options: CaseOptions) -> tuple[Case, ...]:
     """Load several controllers for one comparison.
 
-    Where no option says otherwise, all take vehicle, rail, slip reference and sample time of the first design
-    file among them.
+    Where no option says otherwise, all take vehicle, rail, slip reference, sample time and sensors of the first
+    design file among them.
     """
     path = next(filter(is_design_file, names), None)
     if path is None:
@@ -143,7 +166,8 @@ def load_cases(names: Sequence[str], options: CaseOptions) -> tuple[Case, ...]:
         vehicle=options.vehicle or _stated("vehicle", first.vehicle, first.vehicle_file, path),
         rail=options.rail or _stated("rail", first.rail, first.rail_file, path),
     )
-    return tuple(load_case(name, options, first.specification) for name in names)
+    shared = replace(first.specification, reference=None)  # which is for the law of the design alone
+    return tuple(load_case(name, options, shared) for name in names)
 
 
 def case_of(made: Design, options: CaseOptions, *, where: str) -> Case:
@@ -176,6 +200,7 @@ def case_of(made: Design, options: CaseOptions, *, where: str) -> Case:
                 f"{option} {_text(value)} contradicts {where}, which has {_text(stated)} (SI units); "
                 f"leave {option} out or make another design"
             )
+    _agree_about_sensors(options.sensors, made, where)
     vehicle_given = options.vehicle or _stated("vehicle", made.vehicle, made.vehicle_file, where)
     rail_given = options.rail or _stated("rail", made.rail, made.rail_file, where)
     vehicle, rail = _vehicle(vehicle_given), _rail(rail_given)
@@ -188,6 +213,23 @@ def case_of(made: Design, options: CaseOptions, *, where: str) -> Case:
         vehicle_name=_name(vehicle_given),
         rail_name=_name(rail_given),
     )
+
+
+def _agree_about_sensors(words: SensorWords, made: Design, where: str) -> None:
+    """Refuse sensors or a reference that are not those of the design."""
+    own = made.specification
+    for option, given, stated in (
+        ("--speed-source", words.speed, own.sensors.speed),
+        ("--accelerometer", words.accelerometer, own.sensors.accelerometer),
+        ("--pressure-sensors", words.pressures, own.sensors.pressures),
+        ("--estimate-grade", words.grade, own.sensors.grade),
+        ("--reference", words.reference, own.reference_of(tunable_family(made.law))),
+    ):
+        if given is not None and given != stated:
+            said = "it" if stated is True else "none" if stated is False else stated
+            raise UserError(
+                f"{option} contradicts {where}, which has {said}; leave it out or make another design"
+            )
 
 
 def _vehicle(given: Vehicle | Path | str) -> Vehicle:
@@ -204,7 +246,7 @@ def _name(given: Vehicle | Rail | Path | str) -> str:
 
 def _own_controller(
     name: str, vehicle: Vehicle, rail: Rail, wanted: Specification, options: CaseOptions
-) -> Controller:
+) -> Law:
     """Load a controller from a Python file; it keeps its own slip and sample time unless the user wrote others."""
     made = load_controller(
         name,
@@ -223,10 +265,12 @@ def _own_controller(
         raise UserError(
             f"--slip {wanted.slip:g} contradicts {name}, which holds {held:g}; leave --slip out or let it take slip"
         )
-    return made  # type: ignore[return-value]  # a law of a vehicle as well
+    if options.sensors.reference is not None or (acts_on_vehicle(made) and options.sensors != UNSAID):
+        raise UserError(f"{name} has its own sensors and reference; leave the options about them out")
+    return seen_by(wanted.sensors, made, vehicle)
 
 
-def _specification_of(made: Controller, options: CaseOptions, base: Specification | None) -> Specification:
+def _specification_of(made: Law, options: CaseOptions, base: Specification | None) -> Specification:
     """Return the specification with the slip that a law holds, if it says which, and its sample time."""
     held = slip_reference_of(made)
     slip = options.slip if held is None else repr(held)

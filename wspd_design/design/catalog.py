@@ -8,7 +8,7 @@ from wspd_design.controllers.given import Given
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.file import read_design
 from wspd_design.design.industry import named_with, usual_table
-from wspd_design.design.records import Design, Specification
+from wspd_design.design.records import Design, Specification, seen_by
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
@@ -51,7 +51,8 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
         chosen = preset_of(family, preset) if colon else usual_table(vehicle)
         table = family.tables(chosen)
         name = named_with(base, chosen) if colon or chosen != "calibrated" else base
-    return family.build(
+    specification.reference_of(family)  # refuses one that it cannot hold
+    law = family.build(
         Given(
             name=name,
             sample_time=specification.sample_time,
@@ -60,6 +61,7 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
             numbers=table,
         )
     )
+    return seen_by(specification.sensors, law, vehicle)
 
 
 def controller_of(made: Design, vehicle: Vehicle, rail: Rail) -> Law:

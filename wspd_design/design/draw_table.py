@@ -6,7 +6,7 @@ from typing import Any
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.schema import schema_of
 from wspd_design.parameters.units import Dimension, parse_quantity, units_of
-from wspd_design.simulation.draws import FILE_KINDS, Choice, Distribution, Draw, Normal, Uniform
+from wspd_design.simulation.draws import FILE_KINDS, About, Choice, Distribution, Draw, Normal, Uniform
 
 STOP_DIMENSIONS: Mapping[str, Dimension] = {
     "stop.initial_speed": "speed",
@@ -30,8 +30,8 @@ STOP_DIMENSIONS: Mapping[str, Dimension] = {
 """What the numbers of a stop are measured in; a test holds that every one of them stands here."""
 
 _FORMS = (
-    '{ uniform = ["LOW", "HIGH"] }, { normal = ["MEAN", "DEVIATION"], within = ["LOW", "HIGH"] } and '
-    '{ choice = ["ONE", "OTHER"] }'
+    '{ uniform = ["LOW", "HIGH"] }, { normal = ["MEAN", "DEVIATION"], within = ["LOW", "HIGH"] }, '
+    '{ choice = ["ONE", "OTHER"] } or { about = "SHARE" }, evenly about the nominal number'
 )
 
 
@@ -70,7 +70,7 @@ def quantity_text(value: float, dimension: Dimension) -> str:
     return f'"{value!r}"' if unit == "-" else f'"{value!r} {unit}"'
 
 
-def _spread(distribution: Distribution, dimension: Dimension) -> list[tuple[str, str]]:
+def _spread(distribution: Distribution | About, dimension: Dimension) -> list[tuple[str, str]]:
     def listed(*values: float) -> str:
         return f"[{', '.join(quantity_text(value, dimension) for value in values)}]"
 
@@ -79,6 +79,8 @@ def _spread(distribution: Distribution, dimension: Dimension) -> list[tuple[str,
             return [("normal", listed(mean, deviation)), ("within", listed(low, high))]
         case Choice(values=values):
             return [("choice", listed(*values))]
+        case About(share=share):
+            return [("about", quantity_text(share, "ratio"))]
         case _:
             return [("uniform", listed(*distribution.ends))]
 
@@ -88,7 +90,7 @@ def flat(table: dict[str, Any], above: str = "") -> list[tuple[str, Any]]:
     found = []
     for key, value in table.items():
         name = f"{above}{key}"
-        if isinstance(value, dict) and not set(value) & {*_SPREADS}:
+        if isinstance(value, dict) and not set(value) & {*_SPREADS, "about"}:
             found += flat(value, f"{name}.")
         else:
             found.append((name, value))
@@ -97,12 +99,15 @@ def flat(table: dict[str, Any], above: str = "") -> list[tuple[str, Any]]:
 
 def _draw(name: str, spread: Any, place: str) -> Draw:
     dimension = dimension_of(name)
-    kinds = [kind for kind in _SPREADS if isinstance(spread, dict) and kind in spread]
+    kinds = [kind for kind in (*_SPREADS, "about") if isinstance(spread, dict) and kind in spread]
     if len(kinds) != 1:
         raise UserError(f"{place} must be one of {_FORMS}")
     unknown = set(spread) - {kinds[0], *(("within",) if kinds[0] == "normal" else ())}
     if unknown:
         raise UserError(f'{place} has an unknown key "{min(unknown)}" beside {kinds[0]}; leave it out')
+
+    if kinds == ["about"]:
+        return Draw(name=name, distribution=About(share=number_of(spread["about"], "ratio", place)))
 
     def numbers(key: str, count: int | None) -> list[float]:
         listed = spread.get(key)

@@ -114,27 +114,35 @@ def read_design(path: str | Path) -> Design:
     wanted = document.get(_REQUIREMENTS)
     return Design(
         **head,
-        specification=Specification(**values, **_how_seen(table, where)),
+        specification=Specification(**values, **how_seen(table, where, "specification.")),
         gains=read,
         requirements=None if wanted is None else read_requirements(wanted, where),
     )
 
 
-def _how_seen(table: dict[str, Any], where: str) -> dict[str, Any]:
-    """Read reference and sensors of a specification, as far as it states them."""
+def how_seen(table: dict[str, Any], where: str, prefix: str) -> dict[str, Any]:
+    """Read reference and sensors of a specification, as far as a table of a file states them.
+
+    Parameters
+    ----------
+    table : dict
+        As TOML gives it.
+    where : str
+        The file, in sentences.
+    prefix : str
+        What stands before the keys in sentences.
+    """
     stated: dict[str, Any] = {}
     if "reference" in table:
-        stated["reference"] = _string(table["reference"], f"specification.reference in {where}")
+        stated["reference"] = _string(table["reference"], f"{prefix}reference in {where}")
     if "sensors" in table:
-        sensors = _table(table["sensors"], "specification.sensors", where)
-        _check_keys(
-            sensors, (), where, "specification.sensors.", optional=tuple(f.name for f in fields(Sensors))
-        )
+        sensors = _table(table["sensors"], f"{prefix}sensors", where)
+        _check_keys(sensors, (), where, f"{prefix}sensors.", optional=tuple(f.name for f in fields(Sensors)))
         for each in fields(Sensors):
             value = sensors.get(each.name, each.default)
             if type(value) is not type(each.default):
                 kind = "text" if isinstance(each.default, str) else "true or false"
-                raise UserError(f"specification.sensors.{each.name} = {value} in {where} must be {kind}")
+                raise UserError(f"{prefix}sensors.{each.name} = {value} in {where} must be {kind}")
         stated["sensors"] = Sensors(**sensors)
     return stated
 

@@ -1,21 +1,22 @@
-"""From a task to a design: search, choice, sensitivities, and one look at the held-out sets."""
+"""From a task to gains: search, choice, sensitivities, and one look at the held-out sets."""
 
-from collections.abc import Callable
-from concurrent.futures import Executor
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wspd_design.certificates.records import Status
+from wspd_design.controllers.offers import slip_reference_of
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.judging import held_out, threads
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design
 from wspd_design.design.requirements import Judged, Limit, judged_by
 from wspd_design.design.search.journal import Journal
 from wspd_design.design.search.run import Aim, Evaluation, Space, best, front, search
-from wspd_design.design.search.score import Score, violation
+from wspd_design.design.search.score import Score, score, score_by_rail, violation
 from wspd_design.design.search.sensitivity import Sensitivity, sensitivities
 from wspd_design.design.search.sets import draw_sets
-from wspd_design.design.search.variables import Variable, variables_of
+from wspd_design.design.search.variables import design_at, variables_of
 from wspd_design.design.selection import search_ranges
 from wspd_design.design.specification_file import Task
 from wspd_design.parameters.fingerprint import fingerprint
@@ -32,9 +33,7 @@ class Found:
     """A search with its result."""
 
     task: Task
-    design: Design
-    start: Design
-    variables: tuple[Variable, ...]
+    space: Space
     limits: tuple[Limit, ...]  # that the search had to keep
     tried: tuple[Evaluation, ...]  # the first is the start
     chosen: Evaluation
@@ -43,30 +42,28 @@ class Found:
     sensitivities: tuple[Sensitivity, ...]
     held_out_start: Score
     held_out: Score
+    held_out_by_rail: Mapping[str, Score]
     judged: tuple[Judged, ...]  # on the held-out sets
     unproved: tuple[str, ...]  # certificates that must hold, and do not
 
 
 def find(
     task: Task,
-    start: Design,
-    name: str,
+    space: Space,
     *,
     limits: tuple[Limit, ...],
     journal: Path,
     progress: Callable[[int], object] = abs,
     told: Callable[[str], object] = str,
 ) -> Found:
-    """Search a design.
+    """Search the numbers of a law.
 
     Parameters
     ----------
     task : Task
         Requirements, stops and effort.
-    start : Design
-        Design that the search starts from, whose vehicle and design rail are those of the task.
-    name : str
-        Of the design that is found.
+    space : Space
+        The law with the numbers that vary.
     limits : tuple of Limit
         That points must keep before their distance counts; those of the task, or none for a law that is only tuned.
     journal : Path
@@ -79,14 +76,9 @@ def find(
     Returns
     -------
     Found
-        The design has the requirements of the task in it. The held-out sets are drawn once, after the search.
+        The held-out sets are drawn once, after the search.
     """
     vehicle, rail = load_vehicle(task.vehicle), load_rail(task.design_rail)
-    space = Space(
-        base=start,
-        variables=variables_of(start, search_ranges(start.law)),
-        build=lambda design: design.build(vehicle, rail),
-    )
     aim, effort = Aim(limits=limits), task.effort
     notes = Journal(journal, _key(task, space, vehicle, rail))
     if notes.replaced:
@@ -106,69 +98,53 @@ def find(
         )
         chosen, unproved = _chosen(tried, aim, space, task, vehicle, rail)
         steps = sensitivities(space, chosen.point, sets, pool)
-        made = _explained(space, chosen, task, name)
-        at_start, reached = _once([start, made], rail, task, pool)
+        both = [space.law_at(point) for point in (space.start, chosen.point)]
+        at_start, figures = held_out(both, task.requirements, vehicle, task.vehicle, pool)
+        reached = score(figures)
     return Found(
         task=task,
-        design=made,
-        start=start,
-        variables=space.variables,
+        space=space,
         limits=limits,
         tried=tuple(tried),
         chosen=chosen,
         reason=_reason(tried, chosen, aim),
         front=tuple(front(tried)),
         sensitivities=steps,
-        held_out_start=at_start,
+        held_out_start=score(at_start),
         held_out=reached,
+        held_out_by_rail=score_by_rail(figures, task.requirements.rails),
         judged=judged_by(task.requirements.limits, reached.reached),
         unproved=unproved,
     )
 
 
-def _key(task: Task, space: Space, vehicle: Vehicle, rail: Rail) -> str:
-    """Content key of the scores: all that they depend on beside the point."""
-    stops = replace(task.requirements, limits=(), certificates=(), held_out=task.effort.sets)
-    rails = tuple(load_rail(each) for each in stops.rails)
-    return fingerprint(
-        _KEY_FORMAT, space.base, space.variables, stops, vehicle, rail, rails, program_fingerprint()
+def space_of(start: Design, vehicle: Vehicle, rail: Rail) -> Space:
+    """Return what a search may vary of a design, in the ranges that are stated for its law."""
+    variables = variables_of(start, search_ranges(start.law))
+    return Space(
+        law=start.law,
+        variables=variables,
+        build=lambda values: design_at(start, variables, values).build(vehicle, rail),
     )
 
 
-def _once(designs: list[Design], rail: Rail, task: Task, pool: Executor) -> list[Score]:
-    """Look at the held-out sets."""
-    return held_out(designs, rail, task.requirements, task.vehicle, pool)
+def explained(found: Found, start: Design, name: str) -> Design:
+    """Return the design that was found from another one, with the reasons of its numbers and its requirements.
 
-
-def _chosen(
-    tried: list[Evaluation], aim: Aim, space: Space, task: Task, vehicle: Vehicle, rail: Rail
-) -> tuple[Evaluation, tuple[str, ...]]:
-    """Return the best point whose certificates hold; the best of all if none of the first does."""
-    first = best(tried, aim)
-    wanted = task.requirements.certificates
-    if not wanted:
-        return first, ()
-    for each in sorted(tried, key=aim.rank)[:PROOF_TRIALS]:
-        if not _unproved(space.design(each.point), wanted, vehicle, rail):
-            return each, ()
-    return first, _unproved(space.design(first.point), wanted, vehicle, rail)
-
-
-def _unproved(design: Design, names: tuple[str, ...], vehicle: Vehicle, rail: Rail) -> tuple[str, ...]:
-    """Return the certificates that are not proved for a design."""
-    from wspd_design.certificates.suite import verify
-
-    problem = stability_problem(vehicle, rail, design.build(vehicle, rail), design.specification)
-    found = verify(problem, only=names, figures=False)
-    return tuple(each.name for each in found if each.status is not Status.PROVED)
-
-
-def _explained(space: Space, chosen: Evaluation, task: Task, name: str) -> Design:
-    """Return the chosen design with the reasons of its numbers."""
-    made, effort = space.design(chosen.point), task.effort
-    searched = {variable.name: variable for variable in space.variables}
+    Parameters
+    ----------
+    found : Found
+        Search in the space of the start.
+    start : Design
+        Where it started.
+    name : str
+        Of the new design.
+    """
+    variables, effort = found.space.variables, found.task.effort
+    made = design_at(start, variables, found.chosen.values)
+    searched = {variable.name: variable for variable in variables}
     gains = []
-    for gain, before in zip(made.gains, space.base.gains, strict=True):
+    for gain, before in zip(made.gains, start.gains, strict=True):
         variable = searched.get(gain.name)
         if variable is None:
             gains.append(gain)
@@ -180,7 +156,38 @@ def _explained(space: Space, chosen: Evaluation, task: Task, name: str) -> Desig
             f"{before.why}"
         )
         gains.append(replace(gain, why=why))
-    return replace(made, name=name, gains=tuple(gains), requirements=task.requirements)
+    return replace(made, name=name, gains=tuple(gains), requirements=found.task.requirements)
+
+
+def _key(task: Task, space: Space, vehicle: Vehicle, rail: Rail) -> str:
+    """Content key of the scores: all that they depend on beside the point."""
+    stops = replace(task.requirements, limits=(), certificates=(), held_out=task.effort.sets)
+    rails = tuple(load_rail(each) for each in stops.rails)
+    law = space.law_at(space.start)
+    return fingerprint(_KEY_FORMAT, law, space.variables, stops, vehicle, rail, rails, program_fingerprint())
+
+
+def _chosen(
+    tried: list[Evaluation], aim: Aim, space: Space, task: Task, vehicle: Vehicle, rail: Rail
+) -> tuple[Evaluation, tuple[str, ...]]:
+    """Return the best point whose certificates hold; the best of all if none of the first does."""
+    first = best(tried, aim)
+    if not task.requirements.certificates:
+        return first, ()
+    for each in sorted(tried, key=aim.rank)[:PROOF_TRIALS]:
+        if not _unproved(space.law_at(each.point), task, vehicle, rail):
+            return each, ()
+    return first, _unproved(space.law_at(first.point), task, vehicle, rail)
+
+
+def _unproved(law: Law, task: Task, vehicle: Vehicle, rail: Rail) -> tuple[str, ...]:
+    """Return the certificates that are not proved for a law."""
+    from wspd_design.certificates.suite import verify
+
+    asked = replace(task.specification, slip=slip_reference_of(law) or task.specification.slip)
+    problem = stability_problem(vehicle, rail, law, asked)
+    found = verify(problem, only=task.requirements.certificates, figures=False)
+    return tuple(each.name for each in found if each.status is not Status.PROVED)
 
 
 def _told(value: object) -> str:

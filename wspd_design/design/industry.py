@@ -11,7 +11,7 @@ from wspd_design.parameters.schema import Preset
 CALIBRATED_FOR = ("er24pc", "er24pc-service")
 """Vehicles that the calibrated tables belong to: they go with the fit to Table 10 of the paper."""
 
-PRINTED = "printed"
+PRINTED, TUNED = "printed", "tuned"
 _NOT_A_NUMBER = ("name", "bounds")
 
 
@@ -40,8 +40,13 @@ def table_note(controllers: Iterable[str]) -> str:
     }
     told = list(controllers)
     said = [words for kind, words in meant.items() if any(name.endswith(f"({kind})") for name in told)]
-    belong = f"what is calibrated or printed belongs to {' and '.join(CALIBRATED_FOR)}"
-    return f"{'; '.join(said)}; {belong}." if said else ""
+    if said:
+        said.append(f"what is calibrated or printed belongs to {' and '.join(CALIBRATED_FOR)}")
+    if any(f"({TUNED}, " in name for name in told):
+        said.append(
+            "tuned: numbers of a search with this effort (wspd tune); all others are as shipped or designed"
+        )
+    return f"{'; '.join(said)}." if said else ""
 
 
 def _numbers(record: Any) -> tuple[Any, ...]:

@@ -4,6 +4,7 @@ import inspect
 import math
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -55,6 +56,69 @@ def load_controller(
     UserError
         If the file fails or what it gives is not a controller.
     """
+    found = _found(name)
+    options, written = _options(vehicle, rail, slip, sample_time)
+    made: Any = found if _is_controller(found) else _make(found, name, options, written)
+    _check(made, name, vehicle)
+    return made  # type: ignore[no-any-return]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TunableController:
+    """A class or function of a user that makes controllers, with the numbers that it can be given."""
+
+    numbers: Mapping[str, float]  # parameters whose default is a number above 0, with it
+    named: bool  # whether it can be given a name
+    make: Callable[[Mapping[str, object]], Law]
+
+
+def tunable_controller(
+    name: str, *, vehicle: Vehicle, rail: Rail, slip: float, sample_time: float
+) -> TunableController:
+    """Load what makes controllers from a Python file, and see what numbers it can be given.
+
+    Parameters
+    ----------
+    name : str
+        ``FILE.py:NAME``; NAME is a class or function. Its parameters with a number above 0 as default can be varied,
+        and its slip, if it takes one.
+    vehicle, rail, slip, sample_time
+        As of :func:`load_controller`; the slip is the value that a search starts from.
+
+    Raises
+    ------
+    UserError
+        If the file fails, or nothing in it can be varied.
+    """
+    found = _found(name)
+    if _is_controller(found) or not callable(found):
+        raise UserError(
+            f"{name} has no numbers to vary; let NAME be a class or function whose parameters have numbers as defaults"
+        )
+    parameters = inspect.signature(found).parameters
+    numbers = {
+        each.name: float(each.default)
+        for each in parameters.values()
+        if isinstance(each.default, float) and each.default > 0.0 and each.name != "sample_time"
+    }
+    if "slip" in parameters:
+        numbers["slip"] = slip
+    if not numbers:
+        raise UserError(f"{name} has no numbers to vary; give its parameters numbers above 0 as defaults")
+
+    def make(given: Mapping[str, object]) -> Law:
+        options, written = _options(vehicle, rail, None, sample_time)
+        made: Any = _make(found, name, {**options, **given}, {**written, **given})
+        _check(made, name, vehicle)
+        return made  # type: ignore[no-any-return]
+
+    return TunableController(numbers=numbers, named="name" in parameters, make=make)
+
+
+def _options(
+    vehicle: Vehicle, rail: Rail, slip: float | None, sample_time: float | None
+) -> tuple[dict[str, object], dict[str, object]]:
+    """Return what a controller can ask for, and what of it was written."""
     paper = Specification()
     wanted = {
         "vehicle": vehicle,
@@ -64,7 +128,11 @@ def load_controller(
         "sample_time": sample_time,
     }
     written = {key: value for key, value in wanted.items() if value is not None}
-    options = {"slip": paper.slip, "sample_time": paper.sample_time} | written
+    return {"slip": paper.slip, "sample_time": paper.sample_time} | written, written
+
+
+def _found(name: str) -> Any:
+    """Return what stands behind a name in a file."""
     file, _, attribute = name.rpartition(":")
     if not file.endswith(".py"):
         raise UserError(f"{name} needs the name of the controller in it: {name}:NAME; {_HOW}")
@@ -74,10 +142,7 @@ def load_controller(
             key for key, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__
         ]
         raise UserError(f'{file} has no "{attribute}"; it defines {", ".join(own) or "nothing"}; {_HOW}')
-    found = getattr(module, attribute)
-    made: Any = found if _is_controller(found) else _make(found, name, options, written)
-    _check(made, name, vehicle)
-    return made  # type: ignore[no-any-return]
+    return getattr(module, attribute)
 
 
 def fault_in_own_file(error: BaseException) -> str | None:

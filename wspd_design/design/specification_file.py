@@ -6,6 +6,7 @@ from typing import Any
 
 from wspd_design.controllers.family import tunable_family
 from wspd_design.design.case import RAIL, CaseOptions, specification
+from wspd_design.design.file import how_seen
 from wspd_design.design.records import Specification
 from wspd_design.design.requirements import (
     DrawnSets,
@@ -25,16 +26,10 @@ from wspd_design.parameters.words import did_you_mean
 SCHEMA = "wspd-specification/1"
 _FOLDER = "specifications"
 _OF_THE_DESIGN = ("slip", "tolerance", "sample_time")
+_WORDS = ("name", "law", "vehicle", "design_rail")
 _KEYS = (
-    "schema",
-    "name",
-    "law",
-    "vehicle",
-    "design_rail",
-    *_OF_THE_DESIGN,
-    "speeds",
-    "requirements",
-    "search",
+    *("schema", *_WORDS, *_OF_THE_DESIGN),
+    *("speeds", "reference", "sensors", "requirements", "search"),
 )
 _MOST_EVALUATIONS = 1_000_000
 
@@ -106,7 +101,7 @@ def _read(document: dict[str, Any], where: str) -> Task:
             f'"{SCHEMA}"'
         )
     check_keys(document, _KEYS, "", where, needed=("name", "law", "vehicle", "requirements", "search"))
-    words = {key: _text(document[key], key, where) for key in _KEYS[:5] if key in document}
+    words = {key: _text(document[key], key, where) for key in _WORDS if key in document}
     law = tunable_family(words["law"]).name
     requirements = read_requirements(document["requirements"], where)
     effort = _effort(table_of(document["search"], "search", where), where)
@@ -120,7 +115,7 @@ def _read(document: dict[str, Any], where: str) -> Task:
         law=law,
         vehicle=words["vehicle"],
         design_rail=words.get("design_rail", RAIL),
-        specification=specification(_options(document, where)),
+        specification=replace(specification(_options(document, where)), **how_seen(document, where, "")),
         requirements=requirements,
         effort=effort,
     )

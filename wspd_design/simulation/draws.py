@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from difflib import get_close_matches
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Protocol
 
 from wspd_design.parameters.errors import UserError
@@ -140,6 +141,29 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class About:
+    """Evenly about the nominal number, which the records of a campaign have, by a share of it to both sides [-]."""
+
+    share: float
+
+    def __post_init__(self) -> None:
+        """Refuse no width, and more than the number itself."""
+        if not 0.0 < self.share <= 1.0:
+            raise UserError(
+                f"a draw about the nominal number by {self.share:g} of it must lie in (0, 1], such as 25 %"
+            )
+
+    def of(self, nominal: float, name: str) -> Uniform:
+        """Return the distribution about a number of this name."""
+        if nominal == 0.0:
+            raise UserError(
+                f"{name} is drawn about its nominal number, which is 0; draw it uniform between two numbers"
+            )
+        low, high = sorted((nominal * (1.0 - self.share), nominal * (1.0 + self.share)))
+        return Uniform(low=low, high=high)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Draw:
     """A number that each stop draws anew.
 
@@ -149,7 +173,7 @@ class Draw:
     """
 
     name: str
-    distribution: Distribution
+    distribution: Distribution | About
 
 
 def within_bounds(*parameters: ParameterSet) -> tuple[Draw, ...]:
@@ -166,12 +190,12 @@ class Deck:
     """The stops of a campaign: nominal records, and the draws in their places."""
 
     def __init__(self, plant: Plant, scenario: Scenario, draws: Sequence[Draw]) -> None:
-        self._plant, self._scenario, self._draws = plant, scenario, tuple(draws)
+        self._plant, self._scenario = plant, scenario
         roots = {"vehicle": plant.vehicle, "rail": scenario.rail, "stop": scenario}
         self._columns = {draw.name: column for column, draw in enumerate(draws)}
         for draw in draws:
             _check_name(draw.name, roots)
-            _check_range(draw)
+        self._spreads = {draw.name: _spread(draw, roots) for draw in draws}
         if len(self._columns) < len(draws):
             raise UserError(f"{_twice([draw.name for draw in draws])} is drawn twice; name it once")
         drawn = {root: _below(self._columns, root) for root in roots}
@@ -185,15 +209,15 @@ class Deck:
 
     def extremes(self) -> list[tuple[Plant, Scenario]]:
         """Records with all numbers at their least, and at their largest; what cannot be is refused."""
-        return [self._case([draw.distribution.ends[end] for draw in self._draws], 0) for end in (0, 1)]
+        return [self._case([spread.ends[end] for spread in self._spreads.values()], 0) for end in (0, 1)]
 
     def values(self, first: int, count: int) -> "Array":
         """Numbers of ``count`` stops from ``first`` on, one row a stop, one column a draw."""
         import numpy as np
 
         columns = [
-            draw.distribution.at(_shares(self._scenario.seed, draw.name, first, count))
-            for draw in self._draws
+            spread.at(_shares(self._scenario.seed, name, first, count))
+            for name, spread in self._spreads.items()
         ]
         return np.array(columns, dtype=np.float64).reshape(len(columns), count).T
 
@@ -287,15 +311,20 @@ def _check_name(name: str, roots: Mapping[str, Any]) -> None:
         raise UserError(f'"{name}" is not a number of vehicle, rail or stop that can be drawn; {remedy}')
 
 
-def _check_range(draw: Draw) -> None:
-    """Refuse ends that a parameter file must not have either."""
+def _spread(draw: Draw, roots: Mapping[str, Any]) -> Distribution:
+    """Return the distribution of a draw; refuse ends that a parameter file must not have either."""
     root, _, name = draw.name.partition(".")
+    spread = draw.distribution
+    if isinstance(spread, About):
+        value = attrgetter(name)(roots[root])
+        spread = spread.of(0.0 if value is None else float(value), draw.name)
     if root not in FILE_KINDS:
-        return
+        return spread
     quantity = schema_of(FILE_KINDS[root], "")[name]
-    for end in draw.distribution.ends:
+    for end in spread.ends:
         if not quantity.admits(end):
             raise UserError(f"{draw.name} is drawn down or up to {end:g}; it must be {quantity.range_text}")
+    return spread
 
 
 def _check_ends(what: str, low: float, high: float) -> None:

@@ -141,7 +141,8 @@ def dossier(
     linearizations = tuple(linearize(vehicle, rail, slip=specification.slip, speed=float(v)) for v in speeds)
     problem = stability_problem(vehicle, rail, own, specification, seed=scenario.seed)
     certificates = verify(problem, progress=progress, stored=stored)
-    others = [_baseline(name, vehicle, rail, specification) for name in baselines]
+    shared = replace(specification, reference=None)  # which is for the law of the design alone
+    others = [_baseline(name, vehicle, rail, shared) for name in baselines]
     controllers = [own, *(law for law, _ in others)]
     trials = compare(
         vehicle,

@@ -6,7 +6,7 @@ import pytest
 
 from wspd_design.controllers.family import with_presets
 from wspd_design.design.case import CaseOptions, load_case
-from wspd_design.design.industry import CALIBRATED_FOR, table_note, usual_table
+from wspd_design.design.industry import CALIBRATED_FOR, TUNED, named_with, table_note, usual_table
 from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.loading import load_vehicle
 
@@ -68,3 +68,13 @@ def test_what_a_comparison_says_about_the_tables():
     assert "Table 10" not in said
     assert said.endswith("what is calibrated or printed belongs to er24pc and er24pc-service.")
     assert "Table 10" in table_note(["trenitalia (calibrated)"])
+
+
+def test_a_comparison_says_what_was_tuned():
+    tuned = named_with("knorr-bremse", f"{TUNED}, 128 evaluations")
+    assert tuned == "knorr-bremse (tuned, 128 evaluations)"
+    said = table_note([tuned, "trenitalia"])
+    assert said == (
+        "tuned: numbers of a search with this effort (wspd tune); all others are as shipped or designed."
+    )
+    assert table_note([tuned, "trenitalia (textbook)"]).count("; ") == 3

@@ -5,13 +5,14 @@ from dataclasses import replace
 
 import pytest
 
+from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.design.file import read_design, write_design
 from wspd_design.design.requirements import DrawnSets, Limit, read_requirements, requirements_text
 from wspd_design.design.selection import shipped_design
 from wspd_design.design.specification_file import read_task, shipped_specifications
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
-from wspd_design.simulation.draws import Choice, Draw, Normal, Uniform
+from wspd_design.simulation.draws import About, Choice, Draw, Normal, Uniform
 
 WHOLE = """schema = "wspd-specification/1"
 name = "mine"
@@ -22,6 +23,11 @@ slip = "12 %"
 tolerance = "0.04"
 speeds = ["15 km/h", "100 km/h"]
 sample_time = "50 ms"
+reference = "constant"
+
+[sensors]
+speed = "fastest-axle"
+pressures = false
 
 [requirements]
 rails = ["polach-dry", "polach-wet"]
@@ -44,6 +50,7 @@ grade = "-5 permille"
 vehicle.mass = { uniform = ["60 t", "80 t"] }
 "stop.sensing.speed_noise" = { normal = ["0.05 m/s", "0.02 m/s"], within = ["0 m/s", "0.1 m/s"] }
 stop.sensing.dead_time = { choice = ["0 ms", "20 ms"] }
+vehicle.brake.fill_time = { about = "50 %" }
 
 [search]
 method = "random"
@@ -73,6 +80,8 @@ def test_everything_that_is_written_counts(read):
     )
     wanted = task.specification
     assert (wanted.slip, wanted.slip_tolerance, wanted.sample_time) == (0.12, 0.04, 0.05)
+    assert wanted.reference == "constant"
+    assert wanted.sensors == Sensors(speed="fastest-axle", pressures=False)
     assert wanted.speeds == pytest.approx((15 / 3.6, 100 / 3.6))
     asked = task.requirements
     assert asked.rails == ("polach-dry", "polach-wet")
@@ -88,13 +97,14 @@ def test_everything_that_is_written_counts(read):
         "stop.sensing.period_timing": 1.0,
         "stop.grade": -0.005,
     }
-    assert asked.draws == (
+    assert set(asked.draws) == {
         Draw(name="vehicle.mass", distribution=Uniform(low=60e3, high=80e3)),
         Draw(
             name="stop.sensing.speed_noise", distribution=Normal(mean=0.05, deviation=0.02, low=0.0, high=0.1)
         ),
         Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),
-    )
+        Draw(name="vehicle.brake.fill_time", distribution=About(share=0.5)),
+    }
     assert (task.effort.method, task.effort.evaluations) == ("random", 40)
     assert task.effort.sets == DrawnSets(sets=25, seed=7)
 
@@ -144,8 +154,8 @@ def test_shipped_specifications_are_whole(name):
     }
     drawn = {draw.name: draw.distribution for draw in task.requirements.draws}
     for number, value in nominal.items():
-        low, high = drawn[number].ends
-        assert (low + high) / 2 == pytest.approx(value, rel=1e-3)
+        spread = drawn[number].of(value, number)
+        assert 0.19 * value < spread.high - value == pytest.approx(value - spread.low)
 
 
 @pytest.mark.parametrize(
@@ -162,6 +172,15 @@ def test_shipped_specifications_are_whole(name):
         ('slip = "12 %"', 'slip = "12 m"', "slip .* has a unit of length, not of ratio"),
         ('slip = "12 %"', 'slpi = "12 %"', "unknown key slpi in .*; did you mean slip?"),
         ('speeds = ["15 km/h", "100 km/h"]', 'speeds = ["15 km/h"]', "must be two speeds with units"),
+        (
+            'reference = "constant"',
+            'reference = "best"',
+            'reference = "best" must be one of "constant", "falling"',
+        ),
+        ('reference = "constant"', "reference = 1", "reference in .* = 1 must be text"),
+        ('speed = "fastest-axle"', 'speed = "gps"', 'sensors: speed = "gps" must be one of "told"'),
+        ("pressures = false", "pressures = 0", r"sensors\.pressures = 0 in .* must be true or false"),
+        ("pressures = false", "pressure = false", r"unknown key sensors\.pressure in"),
         ('rails = ["polach-dry", "polach-wet"]', "rails = []", "must be a list of texts, each once"),
         (
             '["polach-dry", "polach-wet"]',
@@ -204,6 +223,9 @@ def test_shipped_specifications_are_whole(name):
             'mass = "60 t"',
             r"vehicle\.mass of \[draw\] in .* must be one of",
         ),
+        ('about = "50 %"', 'about = "50 m"', "unit of length, not of ratio"),
+        ('about = "50 %"', 'about = "150 %"', r"by 1\.5 of it must lie in \(0, 1\], such as 25 %"),
+        ('about = "50 %"', 'about = "50 %", choice = ["1 s"]', "must be one of"),
         ('["60 t", "80 t"]', '["80 t", "60 t"]', "the first below the second"),
         (
             'stop.sensing.dead_time = { choice = ["0 ms", "20 ms"] }',

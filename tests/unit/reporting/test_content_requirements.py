@@ -1,11 +1,11 @@
 """Requirements, faults and estimates in the report: each finding is that of the records."""
 
-import math
 from dataclasses import replace
 
 import pytest
 
 from tests.unit.reporting.sample_dossier import estimating, faults, judgment, sample_dossier
+from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.reporting.blocks import Cell, Figure, Paragraph, Status, Table
 from wspd_design.reporting.sections.requirements import requirements
 from wspd_design.reporting.sections.robustness import robustness
@@ -46,7 +46,7 @@ def test_the_stops_are_named_with_their_seed_and_what_is_drawn():
     for words in (
         "200 stops that no search has seen, seed 77",
         "polach-wet and polach-dry in turn",
-        "all numbers with bounds of the rail and stop.sensing.dead_time",
+        "all numbers with bounds of the rail and sensing dead time",
     ):
         assert words in said
 
@@ -88,14 +88,39 @@ def test_a_law_that_is_told_the_speed_says_so():
     assert "stop-estimate" not in [each.anchor for each in stop(PLAIN) if isinstance(each, Figure)]
 
 
-def test_the_estimated_speed_stands_beside_the_true_one():
+def _with_sensors(own, **sensors):
+    made = replace(
+        PLAIN.design, specification=replace(PLAIN.design.specification, sensors=Sensors(**sensors))
+    )
+    return replace(PLAIN, design=made, trials=(own, *PLAIN.trials[1:]))
+
+
+@pytest.mark.parametrize(
+    ("sensors", "words"),
+    [
+        ({"speed": "fastest-axle"}, "takes the fastest wheelset for the train"),
+        ({"speed": "wheels"}, "from its wheels."),
+        ({"speed": "wheels", "accelerometer": True}, "from its wheels and an accelerometer."),
+    ],
+)
+def test_the_estimated_speed_stands_beside_the_true_one(sensors, words):
     own = estimating(PLAIN.trials[0])
-    dossier = replace(PLAIN, trials=(own, *PLAIN.trials[1:]))
+    dossier = _with_sensors(own, **sensors)
     assert "stop-estimate" in [each.anchor for each in stop(dossier) if isinstance(each, Figure)]
     said = _said(stop(dossier))
+    assert words in said
     assert "wrong by at most 5 %" in said
     assert "0.65 of 5 m + 5 %, inside" in said
     assert "released a wheelset 2 times" in said
     outside = replace(own, metrics=replace(own.metrics, distance_error=1.01))
-    assert "1 of 5 m + 5 %, outside" in _said(stop(replace(dossier, trials=(outside,))))
-    assert not any(math.isnan(each) for each in (own.metrics.speed_error, own.metrics.slip_band))
+    assert "1 of 5 m + 5 %, outside" in _said(stop(_with_sensors(outside, **sensors)))
+
+
+def test_a_speed_that_is_told_has_its_error_but_no_figure():
+    dossier = _with_sensors(estimating(PLAIN.trials[0]), speed="told")
+    assert "stop-estimate" not in [each.anchor for each in stop(dossier) if isinstance(each, Figure)]
+    assert "is told the train speed, and scales it" in _said(stop(dossier))
+    assert "wrong by at most 5 %" in _said(stop(dossier))
+    own = estimating(PLAIN.trials[0])
+    exact = _with_sensors(replace(own, metrics=replace(own.metrics, speed_error=1e-6)), speed="told")
+    assert "told it without an error" in _said(stop(exact))

@@ -116,6 +116,8 @@ def test_a_missed_requirement_is_bad_news_whatever_is_proved():
     assert "it misses 1 of 2 requirements (longest lock above 10 km/h)" in plain(said.sentence)
     tiles, _ = summary(dossier)
     assert tiles.numbers[2].value == "1 of 2"
+    refuted = replace(_good(Status.REFUTED), judgment=judgment(longest_lock=0.11))
+    assert "It misses 1 of 2 requirements (longest lock" in plain(verdict(refuted).sentence)
 
 
 def test_a_figure_that_the_law_does_not_have_is_missed():

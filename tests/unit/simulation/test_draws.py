@@ -11,7 +11,7 @@ from scipy import stats
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_entries, load_rail
 from wspd_design.plants.names import plant_of
-from wspd_design.simulation.draws import Choice, Deck, Draw, Normal, Uniform, drawable, within_bounds
+from wspd_design.simulation.draws import About, Choice, Deck, Draw, Normal, Uniform, drawable, within_bounds
 from wspd_design.simulation.records import Scenario, Sensing
 
 MASS = Draw(name="vehicle.mass", distribution=Uniform(low=70e3, high=80e3))
@@ -153,3 +153,46 @@ def test_rails_of_single_axles_are_not_drawn(deal, scenario):
 def test_distributions_refuse_what_they_cannot_be(make):
     with pytest.raises(UserError):
         make()
+
+
+def test_about_a_number_means_about_that_of_the_records(deal, er24pc, scenario):
+    """The same as evenly between two numbers, whatever is drawn beside it."""
+    about = [
+        Draw(name="vehicle.mass", distribution=About(share=0.1)),
+        Draw(name="vehicle.brake.fill_time", distribution=About(share=0.5)),
+        Draw(name="rail.mu0", distribution=About(share=0.2)),
+    ]
+    between = [
+        Draw(name="vehicle.mass", distribution=Uniform(low=0.9 * er24pc.mass, high=1.1 * er24pc.mass)),
+        Draw(name="vehicle.brake.fill_time", distribution=Uniform(low=0.3, high=0.9)),
+        Draw(
+            name="rail.mu0", distribution=Uniform(low=0.8 * scenario.rail.mu0, high=1.2 * scenario.rail.mu0)
+        ),
+    ]
+    assert deal(*about).values(0, 50) == pytest.approx(deal(*between).values(0, 50))
+    downhill = replace(scenario, grade=-0.01)
+    (low,), (high,) = (
+        [deck.extremes()[end][1].grade]
+        for deck in [deal(Draw(name="stop.grade", distribution=About(share=0.5)), stop=downhill)]
+        for end in (0, 1)
+    )
+    assert (low, high) == pytest.approx((-0.015, -0.005))
+
+
+@pytest.mark.parametrize(
+    ("name", "share", "sentence"),
+    [
+        ("stop.sensing.speed_noise", 0.5, "is drawn about its nominal number, which is 0"),
+        ("stop.sensing.dead_time", 0.5, "is drawn about its nominal number, which is 0"),
+        ("vehicle.mass", 1.0, "vehicle.mass is drawn down or up to 0; it must be"),
+    ],
+)
+def test_about_nothing_is_refused(deal, name, share, sentence):
+    with pytest.raises(UserError, match=sentence):
+        deal(Draw(name=name, distribution=About(share=share)))
+
+
+@pytest.mark.parametrize("share", [0.0, -0.1, 1.1, math.nan, math.inf])
+def test_a_share_that_cannot_be_is_refused(share):
+    with pytest.raises(UserError, match="must lie in"):
+        About(share=share)

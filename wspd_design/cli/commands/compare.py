@@ -8,6 +8,7 @@ from wspd_design.cli.console import console, print_json, progress, spaced
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.json_objects import comparison_object
 from wspd_design.cli.option_records import takes_records
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_figures import SENSITIVE, UNRESOLVED
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.terminal_tables import terminal_table
@@ -52,6 +53,7 @@ def compare(
     speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     as_json: options.JsonOption = False,
@@ -63,7 +65,9 @@ def compare(
     """
     check_plant(plant)
     rail, disturbances = along_the_track(rail, disturbances)
-    wanted = CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
+    wanted = CaseOptions(
+        vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words
+    )
     cases = load_cases(names or list(FAMILIES), wanted)
     stop = scenario(
         cases[0].rail,

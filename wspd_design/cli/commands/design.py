@@ -10,8 +10,10 @@ from wspd_design.cli import options
 from wspd_design.cli.console import progress
 from wspd_design.cli.exit_codes import REFUTED
 from wspd_design.cli.gains import show_design
+from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
-from wspd_design.cli.searching import SPECIFICATIONS, search_and_write
+from wspd_design.cli.searching import SPECIFICATIONS, search_design
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.controllers.family import designed_family
 from wspd_design.design import selection
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
@@ -21,7 +23,9 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
 
+@takes_records
 def design(
+    *,
     wanted: Annotated[
         str | None,
         typer.Argument(metavar="SPEC", help=f"What must be reached: {SPECIFICATIONS}.", show_default=False),
@@ -41,6 +45,7 @@ def design(
     ] = None,
     speeds: options.SpeedsOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Design file to write.")
     ] = Path(options.DESIGN_FILE),
@@ -61,6 +66,7 @@ def design(
         "--tolerance": tolerance,
         "--speeds": speeds,
         "--sample-time": sample_time,
+        **sensors.written,
     }
     if wanted is not None:
         extra = next((flag for flag, value in given.items() if value is not None), None)
@@ -70,7 +76,11 @@ def design(
             )
         _search(wanted, output, force=force)
         return
-    asked = specification(CaseOptions(slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time))
+    asked = specification(
+        CaseOptions(
+            slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time, sensors=sensors.words
+        )
+    )
     chosen = designed_family(law or options.LAW).name
     braked, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
     with progress() as tell:
@@ -88,5 +98,6 @@ def _search(wanted: str, output: Path, *, force: bool) -> None:
         tell("choosing the gains to start from")
         start = selection.design_controller(braked, friction, task.specification, law=task.law)
     name = f"{task.law}-{task.name}"
-    if not search_and_write(task, start, name, output, limits=task.requirements.limits, force=force):
+    limits = tuple(limit.with_reserve() for limit in task.requirements.limits)
+    if not search_design(task, start, name, output, limits=limits, force=force):
         raise typer.Exit(REFUTED)

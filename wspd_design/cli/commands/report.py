@@ -13,6 +13,7 @@ from wspd_design.cli.console import console, progress
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
@@ -34,6 +35,7 @@ def report(
     speed: options.SpeedOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     output: Annotated[
@@ -44,6 +46,8 @@ def report(
 ) -> None:
     """Write a report: design, poles, certificates, stops and sources."""
     from wspd_design.reporting.report import write_report
+    from wspd_design.reporting.sections.summary import verdict
+    from wspd_design.reporting.text import plain
     from wspd_design.studies.dossier import dossier
 
     check_plant(plant)
@@ -54,7 +58,10 @@ def report(
         check_output(path, force=force)
     chosen_name = chosen(name, controller)
     rail, disturbances = along_the_track(rail, disturbances)
-    case = load_case(chosen_name, CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time))
+    case = load_case(
+        chosen_name,
+        CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words),
+    )
     made = _design(chosen_name, case)
     braked_from = initial_speed(speed, case.specification)
     stop = scenario(case.rail, disturbances, initial_speed=braked_from, seed=seed, vehicle=case.vehicle)
@@ -73,6 +80,16 @@ def report(
         )
         tell("typesetting")
         write_report(computed, *paths)
+    judged = verdict(computed)
+    style = (
+        "bold green"
+        if judged.status.tone == "good"
+        else "bold red"
+        if judged.status.tone == "bad"
+        else "bold"
+    )
+    first, period, _ = plain(judged.sentence).partition(". ")
+    console().print(f"{judged.status.sign} {first}{period}".rstrip(), style=style, markup=False)
     for path in paths:
         console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
 

@@ -14,6 +14,7 @@ from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
 from wspd_design.cli.json_objects import witness_object
 from wspd_design.cli.option_records import takes_records
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_figures import show_stop
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.tables import check_table, write_table
@@ -43,6 +44,7 @@ def simulate(
     from_witness: options.FromWitnessOption = None,
     slip: options.SlipOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     disturbances: StopOptions,
     runs: Annotated[
@@ -98,7 +100,8 @@ def simulate(
         witness = read(from_witness)
     rail, disturbances = along_the_track(rail, disturbances)
     case = load_case(
-        chosen(name, controller), CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time)
+        chosen(name, controller),
+        CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words),
     )
     stop = scenario(
         case.rail,

@@ -7,6 +7,8 @@ from wspd_design.cli.arguments import check_quarter, chosen
 from wspd_design.cli.console import print_json
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 from wspd_design.cli.json_objects import verification_object
+from wspd_design.cli.option_records import takes_records
+from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.verification import (
     exit_code,
     run_checks,
@@ -20,7 +22,9 @@ from wspd_design.design.certification import problem_of_case, stored_beside
 _VERDICTS = {GOOD: "good", REFUTED: "refuted", UNDECIDED: "undecided"}
 
 
+@takes_records
 def verify(
+    *,
     name: options.ControllerArgument = None,
     controller: options.ControllerOption = None,
     vehicle: options.VehicleOption = None,
@@ -29,6 +33,7 @@ def verify(
     slip: options.SlipOption = None,
     speeds: options.SpeedsOption = None,
     sample_time: options.SampleTimeOption = None,
+    sensors: SensorOptions,
     seed: options.SeedOption = 0,
     only: options.OnlyOption = None,
     effort: options.EffortOption = 1.0,
@@ -42,7 +47,14 @@ def verify(
     check_quarter(plant, "verify")
     case = load_case(
         chosen(name, controller),
-        CaseOptions(vehicle=vehicle, rail=rail, slip=slip, speeds=speeds, sample_time=sample_time),
+        CaseOptions(
+            vehicle=vehicle,
+            rail=rail,
+            slip=slip,
+            speeds=speeds,
+            sample_time=sample_time,
+            sensors=sensors.words,
+        ),
     )
     problem = problem_of_case(case, seed=seed)
     certificates = run_checks(problem, only, effort, stored_beside(chosen(name, controller)))

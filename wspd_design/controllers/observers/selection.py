@@ -4,7 +4,8 @@ from wspd_design.controllers.observers.fastest import FastestAxle
 from wspd_design.controllers.observers.protocol import SpeedSource
 from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.controllers.observers.told import ToldSpeed
-from wspd_design.parameters.errors import UserError
+from wspd_design.controllers.observers.wheel_filter import WheelFilter
+from wspd_design.controllers.observers.wheel_filter_numbers import numbers_for
 from wspd_design.parameters.records import Vehicle
 
 
@@ -26,5 +27,11 @@ def speed_source(sensors: Sensors, vehicle: Vehicle, sample_time: float) -> Spee
             return ToldSpeed(sample_time=sample_time, wheel_radius=radius, wheelsets=wheelsets)
         case "fastest-axle":
             return FastestAxle(sample_time=sample_time, wheel_radius=radius, wheelsets=wheelsets)
-        case _:
-            raise UserError('sensors: speed = "wheels" is not available; write "told" or "fastest-axle"')
+        case "wheels":
+            return WheelFilter(
+                vehicle=vehicle,
+                sample_time=sample_time,
+                accelerometer=sensors.accelerometer,
+                grade=sensors.grade,
+                numbers=numbers_for(sample_time, sensors),
+            )

@@ -5,14 +5,13 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from wspd_design.design.records import Design
 from wspd_design.design.requirements import Limit
 from wspd_design.design.search.evaluation import evaluate
 from wspd_design.design.search.journal import Journal
 from wspd_design.design.search.methods import METHODS, Point
 from wspd_design.design.search.score import Score, rank, score
 from wspd_design.design.search.sets import Sets
-from wspd_design.design.search.variables import Variable, design_at
+from wspd_design.design.search.variables import Variable
 from wspd_design.parameters.errors import UserError
 
 if TYPE_CHECKING:
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-Claim: TypeAlias = Callable[[Design], float]
-"""By how much a claim about a design fails that must hold at every point, in scales; 0 where it holds."""
+Claim: TypeAlias = "Callable[[Law], float]"
+"""By how much a claim about a law fails that must hold at every point, in scales; 0 where it holds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,20 +33,20 @@ class Evaluation:
     point: Point
     values: tuple[float, ...]  # of the variables
     score: Score
-    unproved: float  # scales, by which claims fail
+    unproved: float  # scales, by which claims fail; they are asked of points alone that keep all limits
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Space:
-    """What is searched: a design, what of it varies, and how a law is built from it."""
+    """What is searched: the numbers that vary, and how a law is built from them."""
 
-    base: Design
+    law: str  # its name, in sentences
     variables: tuple[Variable, ...]
-    build: "Callable[[Design], Law]"
+    build: "Callable[[tuple[float, ...]], Law]"
 
-    def design(self, point: Point) -> Design:
-        """Return the design at a point."""
-        return design_at(self.base, self.variables, self.values(point))
+    def law_at(self, point: Point) -> "Law":
+        """Return the law at a point."""
+        return self.build(self.values(point))
 
     def values(self, point: Point) -> tuple[float, ...]:
         """Return the values of the variables at a point."""
@@ -55,7 +54,7 @@ class Space:
 
     @property
     def start(self) -> Point:
-        """Point of the design that the search starts from."""
+        """Point that the search starts from."""
         return tuple(each.share(each.start) for each in self.variables)
 
 
@@ -74,6 +73,12 @@ class Aim:
         """Tell whether a point stops every train, meets all limits and has all claims."""
         return self.rank(tried)[:2] == (0.0, 0.0)
 
+    def unproved(self, law: "Law", reached: Score) -> float:
+        """Return by how much claims fail about a law that keeps all limits [scales]."""
+        if not self.claims or rank(reached, self.limits)[:2] != (0.0, 0.0):
+            return 0.0
+        return sum(claim(law) for claim in self.claims)
+
 
 def search(
     space: Space,
@@ -87,7 +92,7 @@ def search(
     pool: Executor,
     progress: Callable[[int], object] = abs,
 ) -> list[Evaluation]:
-    """Try points; the first is that of the base design.
+    """Try points; the first is the start.
 
     The result depends on neither the number of threads nor the order in which they finish: a method is told whole
     generations.
@@ -120,7 +125,7 @@ def search(
     """
     if len(space.variables) < 2 and method == "cma":
         raise UserError(
-            f'method "cma" needs two or more variables, and {space.base.law} has {len(space.variables)}; '
+            f'method "cma" needs two or more variables, and {space.law} has {len(space.variables)}; '
             'write method = "random"'
         )
     tried = _tried(space, aim, sets, [space.start], journal, pool, lambda: progress(1))
@@ -152,24 +157,20 @@ def _tried(
     tell: Callable[[], object],
 ) -> list[Evaluation]:
     """Evaluate points that are not in the journal, all at once."""
-    designs = [space.design(point) for point in points]
+    laws = [space.law_at(point) for point in points]
     missing = [k for k, point in enumerate(points) if journal.known(point) is None]
     scores = {k: known for k, point in enumerate(points) if (known := journal.known(point)) is not None}
     for _ in scores:
         tell()
-    laws = [space.build(designs[k]) for k in missing]
-    for k, figures in zip(missing, evaluate(laws, sets, pool), strict=True):
+    found = evaluate([laws[k] for k in missing], sets, pool)
+    for k, figures in zip(missing, found, strict=True):
         scores[k] = score(figures)
         journal.add(points[k], scores[k])
         tell()
+    unproved = pool.map(aim.unproved, laws, [scores[k] for k in range(len(points))])
     return [
-        Evaluation(
-            point=point,
-            values=space.values(point),
-            score=scores[k],
-            unproved=sum(claim(designs[k]) for claim in aim.claims),
-        )
-        for k, point in enumerate(points)
+        Evaluation(point=point, values=space.values(point), score=scores[k], unproved=missed)
+        for k, (point, missed) in enumerate(zip(points, unproved, strict=True))
     ]
 
 

@@ -53,7 +53,7 @@ def sensitivities(space: Space, chosen: Point, sets: Sets, pool: Executor) -> tu
         if share != chosen[place]
     ]
     points = [chosen, *((*chosen[:place], share, *chosen[place + 1 :]) for place, share in steps)]
-    laws = [space.build(space.design(point)) for point in points]
+    laws = [space.law_at(point) for point in points]
     middle, *around = (figures["excess"] for figures in evaluate(laws, sets, pool))
     found = []
     for (place, share), excess in zip(steps, around, strict=True):

@@ -1,6 +1,7 @@
 """The vehicle, the rail and the controller in short."""
 
 from wspd_design.controllers.family import designed_family
+from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.units import format_quantity
 from wspd_design.plants.planar import Planar
@@ -13,6 +14,7 @@ from wspd_design.reporting.further_brakes import further_brakes
 from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
 from wspd_design.simulation.description import disturbances_of, every_rail_of
+from wspd_design.simulation.law_memory import reference_range
 from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
 
@@ -46,7 +48,8 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
             "Controller",
             f"{family.heading}, {family.origin}; design {design.name}, made on rail {design.rail}",
         ),
-        ("Slip reference", f"{specification.slip:g}, tolerance {specification.slip_tolerance:g}"),
+        ("Slip reference", _reference(dossier)),
+        *([("Sensors", _sensors(specification.sensors))] if specification.sensors != TOLD else []),
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),
         ("Sample time", format_quantity(specification.sample_time, "ms")),
         ("Plant of the stops", _plant(dossier.trials[0].run)),
@@ -58,6 +61,33 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         Definitions(rows=tuple(Definition(term=term, text=text) for term, text in rows)),
         Paragraph(text=rich("Every number with its unit, bounds, status and source stands in [](#sources).")),
     )
+
+
+def _reference(dossier: Dossier) -> str:
+    """Say which slip the law holds, and about which one the checks speak."""
+    specification = dossier.design.specification
+    checked = f"{specification.slip:g}, tolerance {specification.slip_tolerance:g}"
+    own = reference_range(dossier.trials[0].run)
+    if own is None or own[0] == own[1]:
+        return checked
+    low, high = (numbers.significant(each, 3) for each in own)
+    return f"moves with the train speed, {low} to {high} in the stop; the checks speak about {checked}"
+
+
+def _sensors(sensors: Sensors) -> str:
+    """Say what the laws go by."""
+    source = {
+        "told": "train speed told",
+        "fastest-axle": "train speed from the fastest wheelset",
+        "wheels": "train speed from all wheels",
+    }
+    said = [
+        source[sensors.speed],
+        *(["an accelerometer"] if sensors.accelerometer else []),
+        *(["a grade that is estimated"] if sensors.grade else []),
+        "pressure sensors" if sensors.pressures else "no pressure sensors",
+    ]
+    return f"{numbers.listing(said)}; the laws that it is compared with go by the same"
 
 
 def _plant(run: Run) -> str:

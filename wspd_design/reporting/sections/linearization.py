@@ -37,7 +37,7 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
         Heading(text="Linearization", anchor="linearization"),
         Paragraph(
             text=rich(
-                f"At the slip reference {specification.slip:g} and a frozen train speed the slip has the "
+                f"At the slip {specification.slip:g} of the specification and a frozen train speed the slip has the "
                 "pole $p = partial F\\/partial lambda$. " + valve + " adds a pole at "
                 "$-1\\/tau$ and leaves $p$ where it is. A law that does not read the torque and has a "
                 "memory of integrals alone leaves the sum of the poles at $p - 1\\/tau$: where $p > 1\\/tau$ one "

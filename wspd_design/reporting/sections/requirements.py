@@ -79,7 +79,7 @@ def _finding(judged: Judged) -> Cell | str:
 
 def _stops(judgment: Judgment) -> str:
     wanted = judgment.requirements
-    drawn = [draw.name for draw in wanted.draws]
+    drawn = [draw.name.partition(".")[2].replace(".", " ").replace("_", " ") for draw in wanted.draws]
     spread = [
         *(f"all numbers with bounds of the {kind}" for kind in wanted.within_bounds),
         *(escape(name) for name in drawn),

@@ -4,6 +4,7 @@ from functools import partial
 
 from wspd_design.certificates.records import Certificate
 from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE, ERROR_SPEED
+from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
@@ -20,6 +21,8 @@ from wspd_design.simulation.law_memory import reference_range, releases, speed_e
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
+
+EXACT = 1e-4  # relative error of a speed that is told, below which none is
 
 
 def stop(dossier: Dossier) -> tuple[Block, ...]:
@@ -52,7 +55,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             alt=stop_alt(own, specification),
             anchor="stop-traces",
         ),
-        *_estimate(own),
+        *_estimate(own, specification.sensors),
         *_further_brakes(run),
         Figure(
             svg=picture(
@@ -72,8 +75,8 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     )
 
 
-def _estimate(own: Trial) -> tuple[Block, ...]:
-    """Show the train speed that the law goes by beside the true one, or say that it is told it."""
+def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
+    """Say where the law has the train speed from, and show an estimate beside the true one."""
     run, figures = own.run, own.metrics
     estimate = speed_estimate(run)
     if estimate is None:
@@ -89,16 +92,21 @@ def _estimate(own: Trial) -> tuple[Block, ...]:
     looks = releases(run)
     looked = (
         ""
-        if looks is None
+        if not looks
         else f" It released a wheelset {numbers.count(looks, 'time')} to see the speed of the train."
     )
+    if sensors.speed == "told" and figures.speed_error < EXACT:
+        return (Paragraph(text=f"{_source(sensors)} In this stop it is told it without an error."),)
+    said = Paragraph(
+        text=f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
+        f"{numbers.significant(100.0 * figures.speed_error, 2)} %; the distance that follows from it by at most "
+        f"{numbers.significant(figures.distance_error, 2)} of {allowed}, {inside} what the odometry of train "
+        f"control allows.{looked}"
+    )
+    if sensors.speed == "told":
+        return (said,)
     return (
-        Paragraph(
-            text=f"The law estimates the train speed. Above {fast} km/h its estimate is wrong by at most "
-            f"{numbers.significant(100.0 * figures.speed_error, 2)} %; the distance that follows from it by at most "
-            f"{numbers.significant(figures.distance_error, 2)} of {allowed}, {inside} what the odometry of train "
-            f"control allows.{looked}"
-        ),
+        said,
         Figure(
             svg=picture(partial(estimate_panels, run=run, estimate=estimate), height=5.4),
             caption="The train speed as the law has it (dashed) beside the true one, the relative error of the speed, "
@@ -108,6 +116,20 @@ def _estimate(own: Trial) -> tuple[Block, ...]:
             anchor="stop-estimate",
         ),
     )
+
+
+def _source(sensors: Sensors) -> str:
+    """Say where a law has the train speed from."""
+    match sensors.speed:
+        case "told":
+            return "The law is told the train speed, and scales it so that wheels that roll have no slip."
+        case "fastest-axle":
+            return (
+                "The law takes the fastest wheelset for the train, and bounds how fast that speed may fall."
+            )
+        case "wheels":
+            beside = " and an accelerometer" if sensors.accelerometer else ""
+            return f"The law estimates the train speed from its wheels{beside}."
 
 
 def _further_brakes(run: Run) -> tuple[Block, ...]:

@@ -52,6 +52,7 @@ def verdict(dossier: Dossier) -> Verdict:
             f"Not fit as it stands: {len(named)} of {total} checks refuted{limits} (",
             *_links(named),
             "). ",
+            *(("It misses ", *_required(judgment), ". ") if judgment is not None and judgment.missed else ()),
         )
     elif judgment is not None and judgment.missed:
         status = Status.BAD

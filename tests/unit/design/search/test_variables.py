@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from wspd_design.controllers.family import with_numbers
+from wspd_design.design.finding import space_of
 from wspd_design.design.ranges import USUAL
 from wspd_design.design.records import Specification
-from wspd_design.design.search.run import Space
 from wspd_design.design.search.variables import Variable, design_at, variables_of
 from wspd_design.design.selection import search_ranges, shipped_design
 from wspd_design.parameters.loading import load_rail
@@ -35,10 +35,10 @@ def test_the_start_is_the_design_itself(start, law):
 @pytest.mark.parametrize("share", [0.0, 1.0])
 def test_both_ends_of_all_ranges_can_be_built(start, er24pc, law, share):
     base, rail = start(law), load_rail("polach-wet")
-    variables = variables_of(base, search_ranges(law))
-    space = Space(base=base, variables=variables, build=lambda design: design.build(er24pc, rail))
-    at_end = space.design((share,) * len(variables))
-    assert space.build(at_end) != space.build(base)
+    space = space_of(base, er24pc, rail)
+    variables, point = space.variables, (share,) * len(space.variables)
+    at_end = design_at(base, variables, space.values(point))
+    assert space.law_at(point) == at_end.build(er24pc, rail) != base.build(er24pc, rail)
     unsearched = {gain.name for gain in base.gains} - {each.name for each in variables}
     assert all(at_end.gain(name) == base.gain(name) for name in unsearched)
 
