@@ -27,6 +27,13 @@ if TYPE_CHECKING:
 
 SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (docs/design-to-requirements.md)"
 
+_BY_RAIL = {
+    "mean eff.": "efficiency_mean",
+    "worst eff.": "efficiency_worst",
+    "lock": "longest_lock",
+    "switches": "valve_switches",
+}
+
 
 def search_design(
     task: Task, start: Design, name: str, output: Path, *, limits: tuple[Limit, ...], force: bool
@@ -146,6 +153,10 @@ def _show(found: "Found", name: str) -> None:
         markup=False,
     )
     _show_judged(found.judged, found.held_out_start.reached)
+    by_rail = table("Rail", *_BY_RAIL, numeric=tuple(_BY_RAIL))
+    for rail, each in found.held_out_by_rail.items():
+        by_rail.add_row(Text(rail), *(_told(name, each.reached[name]) for name in _BY_RAIL.values()))
+    out.print(spaced(by_rail))
     for check in found.unproved:
         out.print(f"Not proved: {check}.", style="bold yellow", markup=False)
 

@@ -1,7 +1,6 @@
 """From a task to gains: search, choice, sensitivities, and one look at the held-out sets."""
 
-from collections.abc import Callable
-from concurrent.futures import Executor
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from wspd_design.design.records import Design
 from wspd_design.design.requirements import Judged, Limit, judged_by
 from wspd_design.design.search.journal import Journal
 from wspd_design.design.search.run import Aim, Evaluation, Space, best, front, search
-from wspd_design.design.search.score import Score, violation
+from wspd_design.design.search.score import Score, score, score_by_rail, violation
 from wspd_design.design.search.sensitivity import Sensitivity, sensitivities
 from wspd_design.design.search.sets import draw_sets
 from wspd_design.design.search.variables import design_at, variables_of
@@ -43,6 +42,7 @@ class Found:
     sensitivities: tuple[Sensitivity, ...]
     held_out_start: Score
     held_out: Score
+    held_out_by_rail: Mapping[str, Score]
     judged: tuple[Judged, ...]  # on the held-out sets
     unproved: tuple[str, ...]  # certificates that must hold, and do not
 
@@ -98,9 +98,9 @@ def find(
         )
         chosen, unproved = _chosen(tried, aim, space, task, vehicle, rail)
         steps = sensitivities(space, chosen.point, sets, pool)
-        at_start, reached = _once(
-            [space.law_at(space.start), space.law_at(chosen.point)], task, vehicle, pool
-        )
+        both = [space.law_at(point) for point in (space.start, chosen.point)]
+        at_start, figures = held_out(both, task.requirements, vehicle, task.vehicle, pool)
+        reached = score(figures)
     return Found(
         task=task,
         space=space,
@@ -110,8 +110,9 @@ def find(
         reason=_reason(tried, chosen, aim),
         front=tuple(front(tried)),
         sensitivities=steps,
-        held_out_start=at_start,
+        held_out_start=score(at_start),
         held_out=reached,
+        held_out_by_rail=score_by_rail(figures, task.requirements.rails),
         judged=judged_by(task.requirements.limits, reached.reached),
         unproved=unproved,
     )
@@ -164,11 +165,6 @@ def _key(task: Task, space: Space, vehicle: Vehicle, rail: Rail) -> str:
     rails = tuple(load_rail(each) for each in stops.rails)
     law = space.law_at(space.start)
     return fingerprint(_KEY_FORMAT, law, space.variables, stops, vehicle, rail, rails, program_fingerprint())
-
-
-def _once(laws: list[Law], task: Task, vehicle: Vehicle, pool: Executor) -> list[Score]:
-    """Look at the held-out sets."""
-    return held_out(laws, task.requirements, vehicle, task.vehicle, pool)
 
 
 def _chosen(

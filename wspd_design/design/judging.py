@@ -1,22 +1,29 @@
 """Judge a design by the requirements that it was made for, on the sets that its search never saw."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.records import Design
 from wspd_design.design.requirements import Judged, Requirements, judged_by
 from wspd_design.design.search.evaluation import evaluate
-from wspd_design.design.search.score import Score, score
+from wspd_design.design.search.score import score
 from wspd_design.design.search.sets import draw_sets
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import beside
 from wspd_design.parameters.loading import load_vehicle
 from wspd_design.parameters.records import Rail, Vehicle
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
 
 
 def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged, ...]:
@@ -49,16 +56,16 @@ def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged,
     name = beside(design.vehicle_file, folder) if design.vehicle_file else design.vehicle
     vehicle = load_vehicle(name)
     with threads() as pool:
-        (reached,) = held_out([design.build(vehicle, rail)], wanted, vehicle, name, pool)
-    return judged_by(wanted.limits, reached.reached)
+        (figures,) = held_out([design.build(vehicle, rail)], wanted, vehicle, name, pool)
+    return judged_by(wanted.limits, score(figures).reached)
 
 
 def held_out(
     laws: Sequence[Law], requirements: Requirements, vehicle: Vehicle, vehicle_name: str, pool: Executor
-) -> list[Score]:
-    """Return what laws reach on the held-out sets."""
+) -> "list[Mapping[str, Array]]":
+    """Return the figures of laws on the held-out sets."""
     sets = draw_sets(requirements, vehicle, vehicle_name, requirements.held_out, pool)
-    return [score(figures) for figures in evaluate(laws, sets, pool)]
+    return list(evaluate(laws, sets, pool))
 
 
 def seen_from_here(requirements: Requirements, folder: Path) -> Requirements:

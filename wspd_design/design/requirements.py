@@ -31,6 +31,10 @@ class Limit:
         """What is limited."""
         return CRITERIA[self.criterion]
 
+    def with_reserve(self) -> "Limit":
+        """Return the limit that a search keeps so that stops that it has not seen keep this one."""
+        return Limit(criterion=self.criterion, value=self.rule.with_reserve(self.value))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrawnSets:

@@ -98,5 +98,6 @@ def _search(wanted: str, output: Path, *, force: bool) -> None:
         tell("choosing the gains to start from")
         start = selection.design_controller(braked, friction, task.specification, law=task.law)
     name = f"{task.law}-{task.name}"
-    if not search_design(task, start, name, output, limits=task.requirements.limits, force=force):
+    limits = tuple(limit.with_reserve() for limit in task.requirements.limits)
+    if not search_design(task, start, name, output, limits=limits, force=force):
         raise typer.Exit(REFUTED)
