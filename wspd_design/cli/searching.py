@@ -63,19 +63,22 @@ def search_design(
     from wspd_design.design.finding import explained, space_of
 
     def write(found: "Found") -> None:
-        made = explained(found, start, name)
-        rails = tuple(seen_from(output, rail) or rail for rail in task.requirements.rails)
-        made = replace(
-            made,
-            vehicle_file=seen_from(output, task.vehicle),
-            rail_file=seen_from(output, task.design_rail),
-            requirements=replace(task.requirements, rails=rails),
-        )
-        write_design(made, output)
+        write_design(to_the_files(explained(found, start, name), task, output), output)
 
     space = space_of(start, load_vehicle(task.vehicle), load_rail(task.design_rail))
     return search_and_write(
         task, space, name, output, write, limits=limits, force=force, controller=str(output)
+    )
+
+
+def to_the_files(made: Design, task: Task, output: Path) -> Design:
+    """Return a design with the requirements of its task, files as they are seen from the folder of the design."""
+    rails = tuple(seen_from(output, rail) or rail for rail in task.requirements.rails)
+    return replace(
+        made,
+        vehicle_file=seen_from(output, task.vehicle),
+        rail_file=seen_from(output, task.design_rail),
+        requirements=replace(task.requirements, rails=rails),
     )
 
 
