@@ -15,7 +15,7 @@ from wspd_design.cli.output import check_output, write_text
 from wspd_design.design.criteria import CRITERIA
 from wspd_design.design.file import seen_from, write_design
 from wspd_design.design.records import Design
-from wspd_design.design.requirements import Judged, Limit
+from wspd_design.design.requirements import Judged
 from wspd_design.design.search.run import Space
 from wspd_design.design.specification_file import Task, shipped_specifications
 from wspd_design.exchange.plain import finite
@@ -35,9 +35,7 @@ _BY_RAIL = {
 }
 
 
-def search_design(
-    task: Task, start: Design, name: str, output: Path, *, limits: tuple[Limit, ...], force: bool
-) -> bool:
+def search_design(task: Task, start: Design, name: str, output: Path, *, keep: bool, force: bool) -> bool:
     """Search a design and write it.
 
     Parameters
@@ -50,8 +48,8 @@ def search_design(
         Of the design that is found.
     output : Path
         Design file; record and journal stand beside it.
-    limits : tuple of Limit
-        That the search has to keep.
+    keep : bool
+        Whether the search has to keep the limits of the task, or the distance alone counts.
     force : bool
         Whether existing files may be replaced.
 
@@ -66,19 +64,23 @@ def search_design(
         write_design(to_the_files(explained(found, start, name), task, output), output)
 
     space = space_of(start, load_vehicle(task.vehicle), load_rail(task.design_rail))
-    return search_and_write(
-        task, space, name, output, write, limits=limits, force=force, controller=str(output)
-    )
+    return search_and_write(task, space, name, output, write, keep=keep, force=force, controller=str(output))
 
 
 def to_the_files(made: Design, task: Task, output: Path) -> Design:
     """Return a design with the requirements of its task, files as they are seen from the folder of the design."""
-    rails = tuple(seen_from(output, rail) or rail for rail in task.requirements.rails)
+    wanted = task.requirements
     return replace(
         made,
         vehicle_file=seen_from(output, task.vehicle),
         rail_file=seen_from(output, task.design_rail),
-        requirements=replace(task.requirements, rails=rails),
+        requirements=replace(
+            wanted,
+            rails=tuple(seen_from(output, rail) or rail for rail in wanted.rails),
+            stable_within=tuple(
+                (seen_from(output, rail) or rail, share) for rail, share in wanted.stable_within
+            ),
+        ),
     )
 
 
@@ -89,7 +91,7 @@ def search_and_write(
     output: Path,
     write: "Callable[[Found], object]",
     *,
-    limits: tuple[Limit, ...],
+    keep: bool,
     force: bool,
     controller: str,
 ) -> bool:
@@ -97,7 +99,7 @@ def search_and_write(
 
     Parameters
     ----------
-    task, name, output, limits, force
+    task, name, output, keep, force
         As of :func:`search_design`.
     space : Space
         What is searched.
@@ -128,7 +130,7 @@ def search_and_write(
         with progress_bar(
             f"{total} evaluations of {space.law} on {task.effort.sets.sets} sets", total
         ) as tell:
-            found = find(task, space, limits=limits, journal=journal, progress=count, told=_say)
+            found = find(task, space, keep=keep, journal=journal, progress=count, told=_say)
     except KeyboardInterrupt:
         raise interrupted(
             f"{done} of {total} evaluations; they are in {journal}, and the same command goes on from there"
@@ -167,13 +169,12 @@ def _show(found: "Found", name: str) -> None:
 def _show_judged(judged: Sequence[Judged], before: Mapping[str, float]) -> None:
     shown = table("Criterion", "Limit", "Reached", "Start", "", numeric=("Limit", "Reached", "Start"))
     for each in judged:
-        rule = CRITERIA[each.requirement]
+        rule = CRITERIA.get(each.requirement)
+        sign = "<" if rule is None else (">=" if rule.at_least else "<=")
         verdict = "" if each.met is None else ("met" if each.met else "missed")
         shown.add_row(
             Text(each.title),
-            ""
-            if each.limit is None
-            else f"{'>=' if rule.at_least else '<='} {_told(each.requirement, each.limit)}",
+            "" if each.limit is None else f"{sign} {_told(each.requirement, each.limit)}",
             _told(each.requirement, each.reached),
             _told(each.requirement, before.get(each.requirement)),
             Text(verdict, style="" if each.met is not False else "bold yellow"),
@@ -185,6 +186,8 @@ def _told(criterion: str, value: float | None) -> str:
     """Write a number of a criterion as people read it."""
     if value is None:
         return "-"
+    if criterion not in CRITERIA:
+        return f"{value:.4f}"
     dimension = CRITERIA[criterion].dimension
     if criterion in ("vented_air", "distance_error"):
         return f"{value:.2f}"

@@ -64,7 +64,7 @@ SENSITIVITY = Form(
 JUDGED = Form(
     name="judged",
     keys=(
-        Key(name="requirement", kind="text", meaning="name of the criterion"),
+        Key(name="requirement", kind="text", meaning="name of the criterion, or stable_within"),
         Key(name="title", kind="text", meaning="in words"),
         Key(name="limit", kind="number", nullable=True, meaning="in SI units; null where none is asked for"),
         Key(

@@ -111,6 +111,5 @@ def _made_to(wanted: str, output: Path, *, rules_only: bool, force: bool) -> Non
         write_design(made, output)
         show_design(made, output, braked, friction)
         return
-    limits = tuple(limit.with_reserve() for limit in task.requirements.limits)
-    if not search_design(task, start, name, output, limits=limits, force=force):
+    if not search_design(task, start, name, output, keep=True, force=force):
         raise typer.Exit(REFUTED)
