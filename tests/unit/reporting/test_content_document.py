@@ -36,15 +36,31 @@ def _table(blocks, anchor):
     return next(each for each in blocks if isinstance(each, Table) and each.anchor == anchor)
 
 
-def test_every_check_links_to_a_section_of_its_own(document):
+def test_every_check_that_speaks_about_the_design_links_to_a_section_of_its_own(document):
     number(document)  # refuses a link that leads nowhere
     headings = {each.anchor: each.text for each in document.blocks if isinstance(each, Heading)}
     linked = [part.anchor for part in parts(document.summary) if isinstance(part, Link)]
     assert len(linked) == len(set(linked)) == len(Status)
     for each in sample_dossier().certificates:
+        if each.status is Status.NOT_APPLICABLE:
+            continue
         anchor = f"check-{each.name.replace('_', '-')}"
         assert anchor in linked
         assert headings[anchor] == each.title
+
+
+def test_checks_that_do_not_apply_stand_in_one_table_with_their_reasons():
+    silent = [certificate(name, Status.NOT_APPLICABLE) for name in ("one", "two")]
+    dossier = replace(sample_dossier(()), certificates=(*silent, certificate("three", Status.PROVED)))
+    made = report_document(dossier, DATE)
+    number(made)
+    table = _table(made.blocks, "not-applicable")
+    assert [plain(row[0]) for row in table.rows] == ["one", "two"]
+    assert [plain(row[2]) for row in table.rows] == ["the explanation of one", "the explanation of two"]
+    told = _table(made.summary, "checks").rows
+    assert [plain(row[0]) for row in told] == ["three", "2 more"]
+    assert told[1][2] == "one, two"
+    assert told[1][0][0].anchor == "finding-not-applicable"
 
 
 @pytest.mark.parametrize("law", [family.name for family in designed()])
