@@ -239,7 +239,10 @@ def test_the_record_has_what_was_required_and_what_failed():
         "valve_switches",
     ]
     assert [each["met"] for each in record["requirements"]] == [True, True, None]
-    assert [each["fault"] and each["fault"]["kind"] for each in record["faulted_stops"]] == [*FAULT_KINDS, None]
+    assert [each["fault"] and each["fault"]["kind"] for each in record["faulted_stops"]] == [
+        *FAULT_KINDS,
+        None,
+    ]
     assert record["faulted_stops"][3]["longest_locks_s"] == [0.0, 9.0, 0.0, 0.02]
     assert all(each["holds"] for each in record["faulted_stops"])
     without = report_record(sample_dossier())
