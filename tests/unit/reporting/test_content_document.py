@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 import pytest
 from jsonschema import Draft202012Validator
 
-from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
+from tests.unit.reporting.sample_dossier import certificate, faults, judgment, sample_dossier, trial
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.family import designed
 from wspd_design.exchange.files import read_schema
@@ -19,7 +19,7 @@ from wspd_design.reporting.record import report_record
 from wspd_design.reporting.report import report_document, write_report
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.text import Link, plain
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.records import FAULT_KINDS, Ending
 from wspd_design.studies.paper.published import load_table10
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
@@ -227,6 +227,26 @@ def test_programs_read_the_same_numbers(document):
     assert read["stops"][0]["step_check"]["sensitive"] is False
     assert read["stops"][0]["ideal_stop_m"] == 174.25
     assert read["parameters"][0]["entries"][0]["name"] == "mass"
+
+
+def test_the_record_has_what_was_required_and_what_failed():
+    dossier = replace(sample_dossier(), judgment=judgment(), robustness=faults())
+    record = report_record(dossier)
+    Draft202012Validator(read_schema(REPORT.schema)).validate(record)
+    assert [each["requirement"] for each in record["requirements"]] == [
+        "efficiency_mean",
+        "longest_lock",
+        "valve_switches",
+    ]
+    assert [each["met"] for each in record["requirements"]] == [True, True, None]
+    assert [each["fault"] and each["fault"]["kind"] for each in record["faulted_stops"]] == [
+        *FAULT_KINDS,
+        None,
+    ]
+    assert record["faulted_stops"][3]["longest_locks_s"] == [0.0, 9.0, 0.0, 0.02]
+    assert all(each["holds"] for each in record["faulted_stops"])
+    without = report_record(sample_dossier())
+    assert (without["requirements"], without["faulted_stops"]) == ([], [])
 
 
 def test_the_record_has_neither_nan_nor_running_times():

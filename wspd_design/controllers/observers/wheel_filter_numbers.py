@@ -17,13 +17,14 @@ class WheelFilterNumbers:
     force_noise: float = 0.03  # m/s2 sqrt(s), what they do not explain while there are none
     acceleration_noise: float = 0.15  # m/s2 rms of the accelerometer
     bias_deviation: float = 0.03  # m/s2, of its bias: within .05, evenly spread
+    bias_walk: float = 0.003  # m/s2/sqrt(s), by which bias and grade change
     grade_deviation: float = 0.03  # m/s2, of gravity along the track: within 5 per mille, evenly spread
     creep_factor: float = 0.6  # -, kA + kS of the micro-slip: that of a wet rail and a half more
-    creep_deviation: float = 1.0  # -, share of the micro-slip that is not known
+    creep_deviation: float = 0.5  # -, share of the micro-slip that is not known
     unknown_creep: float = (
         0.002  # -, further slip of a braked wheel near the limit of a rail that is not known
     )
-    creep_time: float = 0.5  # s, for which its error stays the same
+    creep_time: float = 2.0  # s, for which its error stays the same
     # when it looks
     release_share: float = (
         0.4  # of the slip speed, deviation of the train speed beyond which a wheelset is released
@@ -36,9 +37,9 @@ class WheelFilterNumbers:
     hold_time: float = 0.06  # s, for which a wheelset that was found to adhere shows the speed
     # how it recognizes a wheel that adheres
     rim_rate: float = 15.0  # 1/s, of the tracking of the rims
-    quiet_share: float = 0.3  # of the acceleration with which a free wheel spins up: quiet below it
+    quiet_share: float = 0.2  # of the acceleration with which a free wheel spins up: quiet below it
     least_quiet: float = 0.3  # m/s2, at least, since noise is not quieter
-    largest_quiet: float = 1.0  # m/s2, at most
+    largest_quiet: float = 2.5  # m/s2, at most
     quiet_time: float = 0.06  # s, for which it is quiet after it spun up
     rise_share: float = 0.35  # of the slip speed, by which it spun up
     light_share: float = 0.5  # of its friction torque when it was released, below which a wheel is light
