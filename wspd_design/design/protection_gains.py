@@ -56,8 +56,9 @@ def protection_gains(vehicle: Vehicle, rail: Rail, specification: Specification)
             name="observer_rate",
             value=observer_rate(specification.sample_time),
             unit="1/s",
-            why=f"w_o with (1 - exp(-w_o h))^2/h = {OBSERVER_NOISE:g} 1/s, but not faster than what is observed: as much "
-            f"noise of the wheel speed in the friction torque at every sample time, h = {specification.sample_time:g} s",
+            why=f"w_o with (1 - exp(-w_o h))^2/h = {OBSERVER_NOISE:g} 1/s, but no faster than friction: as much "
+            "noise of the wheel speed in the friction torque at every sample time, "
+            f"h = {specification.sample_time:g} s",
         ),
         Gain(
             name="least_pulse",

@@ -14,8 +14,6 @@ from wspd_design.simulation.peak import peak_adhesion
 LAG_PART = 6.0  # part of the lag of the valve that the approach takes longer than a sample
 AHEAD = 0.5  # -, a command acts in the middle of its sample
 TIME_SHARE, TIME_SHARE_RATE, LARGEST_TIME_SHARE = 0.55, 2.5, 0.8  # of the nominal valve times: -, 1/s, -
-    0.6  # of the nominal valve times: the fastest valve that full inversion does not drive beyond its target
-)
 DEAD_BAND_SHARE = 0.03  # of the full torque
 DEAD_BAND_SLIP_SHARE = 0.2  # of the desired slip
 INTEGRAL_SHARE = 0.5
@@ -49,9 +47,9 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
             name="valve_time_share",
             value=share,
             unit="-",
-            why=f"the inversion takes {share:.2g} of the nominal valve times: a valve that is faster than the nominal one "
-            "by so much does not go beyond the wanted torque; more of it where a long sample makes each part of the "
-            "way count",
+            why=f"the inversion takes {share:.2g} of the nominal valve times: a valve that is so much faster than "
+            "the nominal one does not go beyond the wanted torque; more of it where a long sample makes each part of "
+            "the way count",
         ),
         Gain(
             name="approach_rate",
