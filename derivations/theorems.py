@@ -4,10 +4,11 @@ Claims: every identity has the residual zero. The theorems are those that the ce
 for numbers; here stands why they are true for symbols. `make derive` writes them to docs/theory.md.
 """
 
-from derivations import brake_theorems, stop_theorems, surface_theorems, valve_theorems
+from derivations import band_theorems, brake_theorems, stop_theorems, surface_theorems, valve_theorems
 
 THEOREMS = (
     *valve_theorems.THEOREMS,
+    *band_theorems.THEOREMS,
     *surface_theorems.THEOREMS,
     *stop_theorems.THEOREMS,
     *brake_theorems.THEOREMS,
