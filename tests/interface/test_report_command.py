@@ -2,10 +2,11 @@
 
 import pytest
 
+from wspd_design.controllers.family import FAMILIES
 from wspd_design.reporting import report as report_module
+from wspd_design.reporting.blocks import Status, Verdict
+from wspd_design.reporting.sections import summary as summary_module
 from wspd_design.studies import dossier as dossier_module
-
-INDUSTRY = ("trenitalia", "knorr-bremse", "mitsubishi", "none")
 
 
 @pytest.fixture
@@ -25,6 +26,10 @@ def calls(monkeypatch):
 
     monkeypatch.setattr(dossier_module, "dossier", dossier)
     monkeypatch.setattr(report_module, "write_report", write_report)
+    found = Verdict(
+        status=Status.REFUTED, sentence=("Not fit: 1 of 2 checks refuted (", "a", "). Something else.")
+    )
+    monkeypatch.setattr(summary_module, "verdict", lambda computed: found if computed == "dossier" else None)
     return recorded
 
 
@@ -34,6 +39,8 @@ def test_report_of_a_design_file(wspd, smc_file, calls):
     assert calls["paths"] == ["a.html", "a.pdf"]
     assert "a.html" in outcome.out
     assert "a.pdf" in outcome.out
+    assert "✗ Not fit: 1 of 2 checks refuted (a)." in outcome.out
+    assert "Something else" not in outcome.out
     assert calls["design"].name == "smc-er24pc-polach-wet"
     options = calls["options"]
     assert (options["vehicle_name"], options["rail_name"], options["scenario"].seed) == (
@@ -42,7 +49,7 @@ def test_report_of_a_design_file(wspd, smc_file, calls):
         4,
     )
     assert options["scenario"].initial_speed == pytest.approx(100.0 / 3.6)
-    assert options["baselines"] == ["afsmc", "smc", "torque-feedback", *INDUSTRY]
+    assert options["baselines"] == list(FAMILIES)
 
 
 def test_report_of_a_named_controller_compares_it_with_the_others(wspd, calls):
@@ -50,7 +57,7 @@ def test_report_of_a_named_controller_compares_it_with_the_others(wspd, calls):
     assert calls["paths"] == ["a.pdf"]
     assert (calls["design"].name, calls["design"].rail) == ("smc", "polach-dry")
     assert calls["design"].specification.slip == 0.1
-    assert calls["options"]["baselines"] == ["afsmc", "torque-feedback", *INDUSTRY]
+    assert calls["options"]["baselines"] == [name for name in FAMILIES if name != "smc"]
 
 
 @pytest.mark.usefixtures("calls")

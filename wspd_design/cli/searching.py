@@ -15,7 +15,7 @@ from wspd_design.cli.output import check_output, write_text
 from wspd_design.design.criteria import CRITERIA
 from wspd_design.design.file import seen_from, write_design
 from wspd_design.design.records import Design
-from wspd_design.design.requirements import Judged, Limit
+from wspd_design.design.requirements import Judged
 from wspd_design.design.search.run import Space
 from wspd_design.design.specification_file import Task, shipped_specifications
 from wspd_design.exchange.plain import finite
@@ -27,10 +27,15 @@ if TYPE_CHECKING:
 
 SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (docs/design-to-requirements.md)"
 
+_BY_RAIL = {
+    "mean eff.": "efficiency_mean",
+    "worst eff.": "efficiency_worst",
+    "lock": "longest_lock",
+    "switches": "valve_switches",
+}
 
-def search_design(
-    task: Task, start: Design, name: str, output: Path, *, limits: tuple[Limit, ...], force: bool
-) -> bool:
+
+def search_design(task: Task, start: Design, name: str, output: Path, *, keep: bool, force: bool) -> bool:
     """Search a design and write it.
 
     Parameters
@@ -43,8 +48,8 @@ def search_design(
         Of the design that is found.
     output : Path
         Design file; record and journal stand beside it.
-    limits : tuple of Limit
-        That the search has to keep.
+    keep : bool
+        Whether the search has to keep the limits of the task, or the distance alone counts.
     force : bool
         Whether existing files may be replaced.
 
@@ -57,19 +62,23 @@ def search_design(
 
     def write(found: "Found") -> None:
         made = explained(found, start, name)
-        rails = tuple(seen_from(output, rail) or rail for rail in task.requirements.rails)
+        wanted = task.requirements
         made = replace(
             made,
             vehicle_file=seen_from(output, task.vehicle),
             rail_file=seen_from(output, task.design_rail),
-            requirements=replace(task.requirements, rails=rails),
+            requirements=replace(
+                wanted,
+                rails=tuple(seen_from(output, rail) or rail for rail in wanted.rails),
+                stable_within=tuple(
+                    (seen_from(output, rail) or rail, share) for rail, share in wanted.stable_within
+                ),
+            ),
         )
         write_design(made, output)
 
     space = space_of(start, load_vehicle(task.vehicle), load_rail(task.design_rail))
-    return search_and_write(
-        task, space, name, output, write, limits=limits, force=force, controller=str(output)
-    )
+    return search_and_write(task, space, name, output, write, keep=keep, force=force, controller=str(output))
 
 
 def search_and_write(
@@ -79,7 +88,7 @@ def search_and_write(
     output: Path,
     write: "Callable[[Found], object]",
     *,
-    limits: tuple[Limit, ...],
+    keep: bool,
     force: bool,
     controller: str,
 ) -> bool:
@@ -87,7 +96,7 @@ def search_and_write(
 
     Parameters
     ----------
-    task, name, output, limits, force
+    task, name, output, keep, force
         As of :func:`search_design`.
     space : Space
         What is searched.
@@ -118,7 +127,7 @@ def search_and_write(
         with progress_bar(
             f"{total} evaluations of {space.law} on {task.effort.sets.sets} sets", total
         ) as tell:
-            found = find(task, space, limits=limits, journal=journal, progress=count, told=_say)
+            found = find(task, space, keep=keep, journal=journal, progress=count, told=_say)
     except KeyboardInterrupt:
         raise interrupted(
             f"{done} of {total} evaluations; they are in {journal}, and the same command goes on from there"
@@ -146,6 +155,10 @@ def _show(found: "Found", name: str) -> None:
         markup=False,
     )
     _show_judged(found.judged, found.held_out_start.reached)
+    by_rail = table("Rail", *_BY_RAIL, numeric=tuple(_BY_RAIL))
+    for rail, each in found.held_out_by_rail.items():
+        by_rail.add_row(Text(rail), *(_told(name, each.reached[name]) for name in _BY_RAIL.values()))
+    out.print(spaced(by_rail))
     for check in found.unproved:
         out.print(f"Not proved: {check}.", style="bold yellow", markup=False)
 
@@ -153,13 +166,12 @@ def _show(found: "Found", name: str) -> None:
 def _show_judged(judged: Sequence[Judged], before: Mapping[str, float]) -> None:
     shown = table("Criterion", "Limit", "Reached", "Start", "", numeric=("Limit", "Reached", "Start"))
     for each in judged:
-        rule = CRITERIA[each.requirement]
+        rule = CRITERIA.get(each.requirement)
+        sign = "<" if rule is None else (">=" if rule.at_least else "<=")
         verdict = "" if each.met is None else ("met" if each.met else "missed")
         shown.add_row(
             Text(each.title),
-            ""
-            if each.limit is None
-            else f"{'>=' if rule.at_least else '<='} {_told(each.requirement, each.limit)}",
+            "" if each.limit is None else f"{sign} {_told(each.requirement, each.limit)}",
             _told(each.requirement, each.reached),
             _told(each.requirement, before.get(each.requirement)),
             Text(verdict, style="" if each.met is not False else "bold yellow"),
@@ -171,6 +183,8 @@ def _told(criterion: str, value: float | None) -> str:
     """Write a number of a criterion as people read it."""
     if value is None:
         return "-"
+    if criterion not in CRITERIA:
+        return f"{value:.4f}"
     dimension = CRITERIA[criterion].dimension
     if criterion in ("vented_air", "distance_error"):
         return f"{value:.2f}"

@@ -9,13 +9,16 @@ from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protection import Protection, ProtectionGains
 from wspd_design.controllers.protocol import Controller, Measurement
 from wspd_design.controllers.references import ConstantSlip, FallingSlip, Reference, ReferenceKind, SlipTable
+from wspd_design.controllers.seeking import PeakSeeking
 from wspd_design.controllers.valve_inversion import ValveInversion
 from wspd_design.controllers.wheel_law import OneWheelset, WheelLaw
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 
 OBSERVER_RATE = 30.0
 """Rate of the observer of the friction torque where no law states one [1/s]."""
 _SPEED = 10.0  # m/s, at which a controller is asked how much it remembers
+_SHARED = 2  # wheelsets with a brake that a search compares
 _SLIP = 0.14  # the paper's, of controllers that do not say which slip they hold
 
 
@@ -53,6 +56,24 @@ def protection(
         pressure_sensors=given.sensors.pressures,
         observer_rate=gains.observer_rate,
         cut_out_speed=gains.cut_out_speed,
+        seeking=_seeking(given) if given.reference == "seeking" else None,
+    )
+
+
+def _seeking(given: Given) -> PeakSeeking:
+    """Return the search for the peak with its gains."""
+    if sum(share > 0.0 for share in given.vehicle.brake_shares) < _SHARED:
+        raise UserError(
+            f'reference = "seeking" compares wheelsets, and {given.vehicle.name} has not two with a brake; choose '
+            '"falling" or "constant"'
+        )
+    gains = given.numbers
+    return PeakSeeking(
+        sample_time=given.sample_time,
+        amplitude=gains.seeking_amplitude,
+        half_period=gains.seeking_period,
+        gain=gains.seeking_gain,
+        bias=gains.seeking_bias,
     )
 
 

@@ -13,13 +13,17 @@ from wspd_design.controllers.gains import Quantity
 from wspd_design.controllers.observers.protocol import SpeedEstimate, SpeedSource
 from wspd_design.controllers.protocol import Command, State, VehicleMeasurement, slip_reference_name
 from wspd_design.controllers.references import DesiredSlip, Reference
+from wspd_design.controllers.seeking import PeakSeeking, Shown
 from wspd_design.controllers.valve_inversion import ValveInversion
 from wspd_design.controllers.wheel_law import WheelLaw, WheelView
 from wspd_design.model.generated import friction_observer, slip_tracking
 from wspd_design.model.generated.slip import wheel_speed_at_slip
 from wspd_design.model.number import Number, exp, maximum, minimum, where
+from wspd_design.model.slip import slip_ratio
 
 _YES = 0.5  # flags are above it
+_NEAR = 0.5  # of the slip, within which a wheel holds it
+_CAREFUL = 0.85  # of the least torque of the others: loads and friction differ from wheelset to wheelset
 _FAR = 0.5  # slip beyond which a wheel is let go at low speed, too, before it locks
 
 
@@ -32,6 +36,10 @@ class ProtectionGains:
     largest_slip: float  # -, its upper limit
     peak_speeds: Annotated[tuple[float, ...], Quantity(dimension="speed")] = ()  # of the table of the peak
     peak_slips: tuple[float, ...] = ()  # -
+    seeking_amplitude: float = 0.0  # -, of the search for the peak, in the logarithm of the slip
+    seeking_period: Annotated[float, Quantity(dimension="time")] = 0.0  # half of it
+    seeking_gain: float = 0.0  # -
+    seeking_bias: float = 0.0  # -
     observer_rate: Annotated[float, Quantity(dimension="rate", divisor=True)]  # of the friction torque
     least_pulse: Annotated[float, Quantity(dimension="time")]  # shorter ones are not commanded
     cut_out_speed: Annotated[float, Quantity(dimension="speed")]  # below it the valves hold
@@ -68,6 +76,7 @@ class Protection:
     pressure_sensors: bool
     observer_rate: float  # 1/s
     cut_out_speed: float  # m/s
+    seeking: PeakSeeking | None = None
 
     @property
     def wheelsets(self) -> int:
@@ -81,7 +90,8 @@ class Protection:
         references = [slip_reference_name(number) for number in numbers]
         own = [f"{name}_{number}" for name in _Wheelset._fields[1:] for number in numbers]
         law = [f"{name}_{number}" for name in self.core.memory for number in numbers]
-        return (*self.source.memory, *references, *own, *law)
+        search = () if self.seeking is None else self.seeking.memory
+        return (*self.source.memory, *search, *references, *own, *law)
 
     def start(self, measurement: VehicleMeasurement) -> State:
         """Start source, observers and laws with wheels that follow the train."""
@@ -93,38 +103,68 @@ class Protection:
             wheel = _Wheelset(desired.slip, torque, torque, torque, measurement.wheel_speeds[axle], 0.0)
             wheels.append(wheel)
             laws.append(self.core.start(self._view(axle, measurement, at_rest, desired, wheel)))
-        return (*self.source.start(measurement), *_by_element(wheels), *_by_element(laws))
+        search = () if self.seeking is None else self.seeking.start()
+        return (*self.source.start(measurement), *search, *_by_element(wheels), *_by_element(laws))
 
     def step(self, state: State, measurement: VehicleMeasurement) -> tuple[State, tuple[Command, ...]]:
         """Estimate the train speed, observe each wheelset and command its valve."""
-        source, wheels, laws = self._parts(state)
+        source, search, wheels, laws = self._parts(state)
         source, estimate = self.source.step(
             source,
             measurement,
             tuple(wheel.friction_torque for wheel in wheels),
             tuple(wheel.slip_reference for wheel in wheels),
         )
-        desired = self.reference.at(estimate.speed, 1.0)
         wheels = [self._observe(axle, measurement, wheel) for axle, wheel in enumerate(wheels)]
-        views = [self._view(axle, measurement, estimate, desired, wheel) for axle, wheel in enumerate(wheels)]
+        search, scales = self._seek(search, measurement, estimate, wheels)
+        wanted = [self.reference.at(estimate.speed, scale) for scale in scales]
+        views = [
+            self._view(axle, measurement, estimate, desired, wheel)
+            for axle, (desired, wheel) in enumerate(zip(wanted, wheels, strict=True))
+        ]
         decided = [self.core.step(law, view) for law, view in zip(laws, views, strict=True)]
         commands = [command for _, command in decided]
-        commands = [_without_sensor(axle, commands, measurement.healthy) for axle in range(self.wheelsets)]
+        commands = [
+            self._without_sensor(axle, command, measurement, views, wheels)
+            for axle, command in enumerate(commands)
+        ]
         commands = [self._at_low_speed(view, each) for view, each in zip(views, commands, strict=True)]
         commands = [_asked(axle, estimate, command) for axle, command in enumerate(commands)]
         following = [
-            self._remember(wheel, view, command, desired, released)
-            for wheel, view, command, released in zip(wheels, views, commands, estimate.release, strict=True)
+            self._remember(*each)
+            for each in zip(wheels, views, commands, wanted, estimate.release, strict=True)
         ]
         laws = [after for after, _ in decided]
-        return (*source, *_by_element(following), *_by_element(laws)), tuple(commands)
+        return (*source, *search, *_by_element(following), *_by_element(laws)), tuple(commands)
 
-    def _parts(self, state: State) -> tuple[State, list[_Wheelset], list[State]]:
-        """Split the state into that of the source and those of each wheelset."""
-        count, begin = self.wheelsets, len(self.source.memory)
+    def _parts(self, state: State) -> tuple[State, State, list[_Wheelset], list[State]]:
+        """Split the state into that of the source, that of the search and those of each wheelset."""
+        count, first = self.wheelsets, len(self.source.memory)
+        begin = first + (0 if self.seeking is None else len(self.seeking.memory))
         end = begin + len(_Wheelset._fields) * count
         wheels = [_Wheelset(*state[begin + axle : end : count]) for axle in range(count)]
-        return state[:begin], wheels, [state[end + axle :: count] for axle in range(count)]
+        laws = [state[end + axle :: count] for axle in range(count)]
+        return state[:first], state[first:begin], wheels, laws
+
+    def _seek(
+        self,
+        search: State,
+        measurement: VehicleMeasurement,
+        estimate: SpeedEstimate,
+        wheels: Sequence[_Wheelset],
+    ) -> tuple[State, tuple[Number, ...]]:
+        """Search for the peak; without a search the reference is held as it is."""
+        if self.seeking is None:
+            return search, (1.0,) * self.wheelsets
+        shown = []
+        for axle, wheel in enumerate(wheels):
+            slip = slip_ratio(estimate.speed, wheel.observed_speed, self.wheel_radius)
+            near = abs(slip - wheel.slip_reference) < _NEAR * wheel.slip_reference
+            well = where(wheel.released > _YES, False, measurement.healthy[axle] > _YES)
+            holds = where(estimate.speed > self.cut_out_speed, where(near, well, False), False)
+            braked = self.torque_shares[axle] > 0.0
+            shown.append(Shown(wheel.friction_torque, slip, where(holds, 1.0, 0.0) if braked else 0.0))
+        return self.seeking.step(search, tuple(shown))
 
     def _full_torque(self, axle: int) -> Number:
         return self.torque_shares[axle] * self.valve.brake.max_torque
@@ -167,6 +207,7 @@ class Protection:
             speed=speed,
             acceleration=estimate.acceleration,
             wheel_speed=measurement.wheel_speeds[axle],
+            rolling_speed=speed / self.wheel_radius,
             desired_speed=wheel_speed_at_slip(desired.slip, speed, self.wheel_radius),
             desired_acceleration=slip_tracking.reference_acceleration(
                 speed, estimate.acceleration, desired.slip, desired.slope, self.wheel_radius
@@ -175,6 +216,30 @@ class Protection:
             torque=wheel.torque,
             available=measurement.demand * self._full_torque(axle),
             full_torque=self._full_torque(axle),
+        )
+
+    def _without_sensor(
+        self,
+        axle: int,
+        command: Command,
+        measurement: VehicleMeasurement,
+        views: Sequence[WheelView],
+        wheels: Sequence[_Wheelset],
+    ) -> Command:
+        """Return the command of a wheelset; without its speed sensor it brakes less than all that have theirs.
+
+        Without any sensor it takes the whole brake, as without a protection.
+        """
+        own = views[axle]
+        target = own.available
+        for other, (view, wheel) in enumerate(zip(views, wheels, strict=True)):
+            if other != axle and self.torque_shares[other] > 0.0:
+                seen = where(wheel.released > _YES, False, measurement.healthy[other] > _YES)
+                target = minimum(target, where(seen, _CAREFUL * view.torque, own.available))
+        careful = self.valve.command(own.torque, target, own.available, 0.0, own.full_torque)
+        well = measurement.healthy[axle] > _YES
+        return Command(
+            fill=where(well, command.fill, careful.fill), vent=where(well, command.vent, careful.vent)
         )
 
     def _at_low_speed(self, view: WheelView, command: Command) -> Command:
@@ -192,23 +257,6 @@ class Protection:
         """Work out what the command makes of the torque."""
         torque, mean = self.valve.after(command, wheel.torque, view.available, view.full_torque)
         return wheel._replace(slip_reference=desired.slip, torque=torque, mean_torque=mean, released=released)
-
-
-def _without_sensor(axle: int, commands: Sequence[Command], healthy: tuple[Number, ...]) -> Command:
-    """Return the command of a wheelset; without its speed sensor, the most careful one of its neighbors."""
-    fill: Number = 1.0
-    vent: Number = 0.0
-    for neighbor in (axle - 1, axle + 1):
-        if 0 <= neighbor < len(commands):
-            seen = healthy[neighbor] > _YES
-            fill = minimum(fill, where(seen, commands[neighbor].fill, 1.0))
-            vent = maximum(vent, where(seen, commands[neighbor].vent, 0.0))
-    fill = where(vent > 0.0, 0.0, fill)
-    own = healthy[axle] > _YES
-    return Command(
-        fill=where(own, commands[axle].fill, fill),
-        vent=where(own, commands[axle].vent, vent),
-    )
 
 
 def _asked(axle: int, estimate: SpeedEstimate, command: Command) -> Command:

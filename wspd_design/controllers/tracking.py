@@ -9,7 +9,7 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.valve_inversion import ValveInversion
 from wspd_design.controllers.wheel_law import WheelView
 from wspd_design.model.generated import slip_tracking
-from wspd_design.model.number import Number, minimum, where
+from wspd_design.model.number import Number, maximum, minimum, where
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,7 +20,7 @@ class TrackingGains(ProtectionGains):
     ahead: float  # -, of a sample: the error is that of so much later
     valve_time_share: Annotated[float, Quantity(dimension="ratio", divisor=True)]  # of the nominal times
     dead_band: Annotated[float, Quantity(dimension="torque")]  # about the torque that is wanted
-    dead_band_slip: float  # -, error of the slip that the dead band may cause
+    dead_band_share: float  # -, of the desired slip: error that the dead band may cause at most
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class Tracking:
     approach_rate: float  # 1/s
     ahead: float  # -, of a sample
     dead_band: float  # N m
-    dead_band_slip: float  # -
+    dead_band_share: float  # -, of the desired slip
 
     def error(self, view: WheelView) -> Number:
         """Wheel speed above the desired one, a part of the coming sample ahead [rad/s]."""
@@ -54,9 +54,10 @@ class Tracking:
 
     def command(self, view: WheelView, target: Number) -> Command:
         """Pulse that leads to a torque."""
-        # An error of the torque is one of J k e: the same error of the slip is less torque at low speed.
-        torque_of_speed = self.wheelset_inertia * self.approach_rate * view.desired_speed
-        dead_band = minimum(self.dead_band, self.dead_band_slip * torque_of_speed)
+        # The torque J k e belongs to an error e: where the desired sliding speed is low, so must be the dead band.
+        sliding = maximum(view.rolling_speed - view.desired_speed, 0.0)
+        of_slip = self.dead_band_share * sliding * self.wheelset_inertia * self.approach_rate
+        dead_band = minimum(self.dead_band, of_slip)
         return self.valve.command(view.torque, target, view.available, dead_band, view.full_torque)
 
     def free(self, view: WheelView, target: Number, error: Number) -> Number:
@@ -74,5 +75,5 @@ def tracking(gains: TrackingGains, valve: ValveInversion, wheelset_inertia: floa
         approach_rate=gains.approach_rate,
         ahead=gains.ahead,
         dead_band=gains.dead_band,
-        dead_band_slip=gains.dead_band_slip,
+        dead_band_share=gains.dead_band_share,
     )

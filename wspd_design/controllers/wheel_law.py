@@ -13,6 +13,7 @@ class WheelView(NamedTuple):
     speed: Number  # m/s, of the train as the source has it
     acceleration: Number  # m/s2, of the train, negative while it brakes
     wheel_speed: Number  # rad/s
+    rolling_speed: Number  # rad/s, of a wheel without slip
     desired_speed: Number  # rad/s, of the wheel at the desired slip
     desired_acceleration: Number  # rad/s2
     friction_torque: Number  # N m, with which the rail turns the wheelset, as observed

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
+RESERVE = 0.5  # scales
+
 FiguresOfStops: TypeAlias = "Mapping[str, Array]"
 """Columns of a campaign by their names, one value for each stop."""
 
@@ -50,6 +52,12 @@ class Criterion:
         """Return by how much a limit is missed, in scales; 0 where it is met and infinite where nothing was reached."""
         missed = (limit - reached if self.at_least else reached - limit) / self.scale
         return max(missed, 0.0) if missed == missed else float("inf")
+
+    def with_reserve(self, limit: float) -> float:
+        """Return the limit that a search keeps so that other stops keep this one: tighter by half a scale."""
+        if self.at_least:
+            return limit + RESERVE * self.scale
+        return max(limit - RESERVE * self.scale, 0.0)
 
 
 def _is_of_axle(name: str, figure: str) -> bool:

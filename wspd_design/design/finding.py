@@ -1,25 +1,25 @@
 """From a task to gains: search, choice, sensitivities, and one look at the held-out sets."""
 
-from collections.abc import Callable
-from concurrent.futures import Executor
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Law
-from wspd_design.design.judging import held_out, threads
+from wspd_design.design.judging import held_out, judged_stability, threads
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design
 from wspd_design.design.requirements import Judged, Limit, judged_by
 from wspd_design.design.search.journal import Journal
-from wspd_design.design.search.run import Aim, Evaluation, Space, best, front, search
-from wspd_design.design.search.score import Score, violation
+from wspd_design.design.search.run import Aim, Claim, Evaluation, Space, best, front, search
+from wspd_design.design.search.score import Score, score, score_by_rail, violation
 from wspd_design.design.search.sensitivity import Sensitivity, sensitivities
 from wspd_design.design.search.sets import draw_sets
 from wspd_design.design.search.variables import design_at, variables_of
 from wspd_design.design.selection import search_ranges
 from wspd_design.design.specification_file import Task
+from wspd_design.design.stability import closes
 from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail, Vehicle
@@ -43,6 +43,7 @@ class Found:
     sensitivities: tuple[Sensitivity, ...]
     held_out_start: Score
     held_out: Score
+    held_out_by_rail: Mapping[str, Score]
     judged: tuple[Judged, ...]  # on the held-out sets
     unproved: tuple[str, ...]  # certificates that must hold, and do not
 
@@ -51,7 +52,7 @@ def find(
     task: Task,
     space: Space,
     *,
-    limits: tuple[Limit, ...],
+    keep: bool,
     journal: Path,
     progress: Callable[[int], object] = abs,
     told: Callable[[str], object] = str,
@@ -64,8 +65,9 @@ def find(
         Requirements, stops and effort.
     space : Space
         The law with the numbers that vary.
-    limits : tuple of Limit
-        That points must keep before their distance counts; those of the task, or none for a law that is only tuned.
+    keep : bool
+        Whether points must keep the limits of the task, each with its reserve, and its claims before their distance
+        counts; not of a law that is only tuned.
     journal : Path
         File for what is finished, from which the same search goes on.
     progress : callable
@@ -79,7 +81,7 @@ def find(
         The held-out sets are drawn once, after the search.
     """
     vehicle, rail = load_vehicle(task.vehicle), load_rail(task.design_rail)
-    aim, effort = Aim(limits=limits), task.effort
+    aim, effort = _aim(task, vehicle) if keep else Aim(limits=()), task.effort
     notes = Journal(journal, _key(task, space, vehicle, rail))
     if notes.replaced:
         told(f"{journal} belongs to another search or program and was begun anew")
@@ -98,21 +100,25 @@ def find(
         )
         chosen, unproved = _chosen(tried, aim, space, task, vehicle, rail)
         steps = sensitivities(space, chosen.point, sets, pool)
-        at_start, reached = _once(
-            [space.law_at(space.start), space.law_at(chosen.point)], task, vehicle, pool
-        )
+        both = [space.law_at(point) for point in (space.start, chosen.point)]
+        at_start, figures = held_out(both, task.requirements, vehicle, task.vehicle, pool)
+        reached = score(figures)
     return Found(
         task=task,
         space=space,
-        limits=limits,
+        limits=aim.limits,
         tried=tuple(tried),
         chosen=chosen,
         reason=_reason(tried, chosen, aim),
         front=tuple(front(tried)),
         sensitivities=steps,
-        held_out_start=at_start,
+        held_out_start=score(at_start),
         held_out=reached,
-        judged=judged_by(task.requirements.limits, reached.reached),
+        held_out_by_rail=score_by_rail(figures, task.requirements.rails),
+        judged=(
+            *judged_by(task.requirements.limits, reached.reached),
+            *judged_stability(both[1], task.requirements, vehicle, task.specification.speeds),
+        ),
         unproved=unproved,
     )
 
@@ -160,15 +166,26 @@ def explained(found: Found, start: Design, name: str) -> Design:
 
 def _key(task: Task, space: Space, vehicle: Vehicle, rail: Rail) -> str:
     """Content key of the scores: all that they depend on beside the point."""
-    stops = replace(task.requirements, limits=(), certificates=(), held_out=task.effort.sets)
+    stops = replace(
+        task.requirements, limits=(), certificates=(), stable_within=(), held_out=task.effort.sets
+    )
     rails = tuple(load_rail(each) for each in stops.rails)
     law = space.law_at(space.start)
     return fingerprint(_KEY_FORMAT, law, space.variables, stops, vehicle, rail, rails, program_fingerprint())
 
 
-def _once(laws: list[Law], task: Task, vehicle: Vehicle, pool: Executor) -> list[Score]:
-    """Look at the held-out sets."""
-    return held_out(laws, task.requirements, vehicle, task.vehicle, pool)
+def _aim(task: Task, vehicle: Vehicle) -> Aim:
+    """Return what points have to keep."""
+    wanted, speeds = task.requirements, task.specification.speeds
+
+    def closing(rail: Rail, share: float) -> Claim:
+        """Quadratic functions are found on a share of the box; without them the claim fails by one scale."""
+        return lambda law: float(closes(law, vehicle, rail, speeds=speeds, share=share) is None)
+
+    return Aim(
+        limits=tuple(limit.with_reserve() for limit in wanted.limits),
+        claims=tuple(closing(load_rail(name), share) for name, share in wanted.stable_within),
+    )
 
 
 def _chosen(
@@ -202,14 +219,14 @@ def _reason(tried: list[Evaluation], chosen: Evaluation, aim: Aim) -> str:
     holding = sum(aim.holds(each) for each in tried)
     start = tried[0]
     compared = f"objective {chosen.score.objective:.4f} against {start.score.objective:.4f} at the start"
-    if not aim.limits:
+    if not aim.limits and not aim.claims:
         return f"smallest objective of {len(tried)} points, without limits: {compared}"
     if aim.holds(chosen):
         return (
             f"smallest objective of the {holding} points among {len(tried)} that keep all limits: {compared}"
         )
-    missed = violation(chosen.score, aim.limits)
+    missed = violation(chosen.score, aim.limits) + chosen.unproved
     return (
-        f"none of {len(tried)} points keeps all limits; this one misses them least, by {missed:.2f} in the scales of "
-        f"the criteria: {compared}"
+        f"none of {len(tried)} points keeps all limits and claims; this one misses them least, by {missed:.2f} in the "
+        f"scales of the criteria: {compared}"
     )

@@ -1,22 +1,30 @@
 """Judge a design by the requirements that it was made for, on the sets that its search never saw."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.records import Design
-from wspd_design.design.requirements import Judged, Requirements, judged_by
+from wspd_design.design.requirements import Judged, Requirements, judged_by, seen_from_here
 from wspd_design.design.search.evaluation import evaluate
-from wspd_design.design.search.score import Score, score
+from wspd_design.design.search.score import score
 from wspd_design.design.search.sets import draw_sets
+from wspd_design.design.stability import closes
+from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import beside
-from wspd_design.parameters.loading import load_vehicle
+from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail, Vehicle
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
 
 
 def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged, ...]:
@@ -48,22 +56,40 @@ def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged,
     wanted = seen_from_here(design.requirements, folder)
     name = beside(design.vehicle_file, folder) if design.vehicle_file else design.vehicle
     vehicle = load_vehicle(name)
+    law, speeds = design.build(vehicle, rail), design.specification.speeds
     with threads() as pool:
-        (reached,) = held_out([design.build(vehicle, rail)], wanted, vehicle, name, pool)
-    return judged_by(wanted.limits, reached.reached)
+        (figures,) = held_out([law], wanted, vehicle, name, pool)
+    return (
+        *judged_by(wanted.limits, score(figures).reached),
+        *judged_stability(law, wanted, vehicle, speeds),
+    )
 
 
 def held_out(
     laws: Sequence[Law], requirements: Requirements, vehicle: Vehicle, vehicle_name: str, pool: Executor
-) -> list[Score]:
-    """Return what laws reach on the held-out sets."""
+) -> "list[Mapping[str, Array]]":
+    """Return the figures of laws on the held-out sets."""
     sets = draw_sets(requirements, vehicle, vehicle_name, requirements.held_out, pool)
-    return [score(figures) for figures in evaluate(laws, sets, pool)]
+    return list(evaluate(laws, sets, pool))
 
 
-def seen_from_here(requirements: Requirements, folder: Path) -> Requirements:
-    """Return requirements of a file in a folder with the paths of rails as they are seen from here."""
-    return replace(requirements, rails=tuple(beside(name, folder) for name in requirements.rails))
+def judged_stability(
+    law: Law, requirements: Requirements, vehicle: Vehicle, speeds: Ends
+) -> tuple[Judged, ...]:
+    """Tell for each rail that asks for it whether quadratic functions are found."""
+    judged = []
+    for rail, share in requirements.stable_within:
+        found = closes(law, vehicle, load_rail(rail), speeds=speeds, share=share)
+        judged.append(
+            Judged(
+                requirement="stable_within",
+                title=f"state left per sample, {share:.0%} of the box of {Path(rail).stem}",
+                limit=1.0,
+                reached=found,
+                met=found is not None,
+            )
+        )
+    return tuple(judged)
 
 
 @contextmanager

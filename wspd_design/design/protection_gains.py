@@ -15,6 +15,8 @@ UNKNOWN_RAIL = (
 )
 LARGEST_SLIP = 0.35  # -
 CUT_OUT = 5.0 / KMH  # m/s
+SEEKING_AMPLITUDE, SEEKING_GAIN, SEEKING_BIAS = 0.1, 3.0, 0.0
+SEEKING_PERIOD = 0.75  # s, half of it
 PEAK_POINTS = 12  # of the table of the peak
 
 
@@ -46,6 +48,7 @@ def protection_gains(vehicle: Vehicle, rail: Rail, specification: Specification)
             why="limit of c/sqrt(v), which has none at standstill",
         ),
         *(_peak(vehicle, rail, specification) if specification.reference == "peak" else ()),
+        *(_seeking() if specification.reference == "seeking" else ()),
         Gain(
             name="observer_rate",
             value=OBSERVER_RATE,
@@ -80,4 +83,35 @@ def _peak(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[G
     return (
         Gain(name="peak_speeds", value=tuple(map(float, speeds)), unit="m/s", why=why),
         Gain(name="peak_slips", value=tuple(map(float, slips)), unit="-", why=why),
+    )
+
+
+def _seeking() -> tuple[Gain, ...]:
+    """Gains of the search for the peak."""
+    return (
+        Gain(
+            name="seeking_amplitude",
+            value=SEEKING_AMPLITUDE,
+            unit="-",
+            why=f"{SEEKING_AMPLITUDE:.0%} of the slip to both sides: costs little where the peak is flat",
+        ),
+        Gain(
+            name="seeking_period",
+            value=SEEKING_PERIOD,
+            unit="s",
+            why="half a period: the slip follows its reference within some tenths of a second, and friction is then "
+            "averaged over as long",
+        ),
+        Gain(
+            name="seeking_gain",
+            value=SEEKING_GAIN,
+            unit="-",
+            why="change of ln(slip) per slope of ln(friction)",
+        ),
+        Gain(
+            name="seeking_bias",
+            value=SEEKING_BIAS,
+            unit="-",
+            why="slope of ln(friction) that is sought: that of the peak",
+        ),
     )

@@ -4,18 +4,20 @@ The table stands in a specification, and in the design that was made for it, so 
 design by the same stops again.
 """
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any
 
 from wspd_design.design.criteria import CRITERIA, Criterion
 from wspd_design.design.draw_table import dimension_of, draws_text, flat, number_of, quantity_text, read_draws
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.files import uniform_rails
+from wspd_design.parameters.files import beside, uniform_rails
 from wspd_design.simulation.draws import FILE_KINDS, Draw
 
-_KEYS = ("rails", "within_bounds", "certificates", "held_out", "limits", "stop", "draw")
+_KEYS = ("rails", "within_bounds", "certificates", "stable_within", "held_out", "limits", "stop", "draw")
 MOST_SETS = 1_000_000
 
 
@@ -30,6 +32,10 @@ class Limit:
     def rule(self) -> Criterion:
         """What is limited."""
         return CRITERIA[self.criterion]
+
+    def with_reserve(self) -> "Limit":
+        """Return the limit that a search keeps so that stops that it has not seen keep this one."""
+        return Limit(criterion=self.criterion, value=self.rule.with_reserve(self.value))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +53,9 @@ class Requirements:
     rails: tuple[str, ...]  # shipped names or paths; the sets take them in turn
     within_bounds: tuple[str, ...] = ()  # files whose bounds are drawn from: "vehicle", "rail"
     certificates: tuple[str, ...] = ()  # checks that must be proved
+    stable_within: tuple[
+        tuple[str, float], ...
+    ] = ()  # rail, and share of the box on which quadratic functions must be found
     held_out: DrawnSets  # sets that no search has seen
     limits: tuple[Limit, ...]
     stop: tuple[tuple[str, float], ...]  # numbers of every stop by the names of the drawing, SI
@@ -57,7 +66,7 @@ class Requirements:
 class Judged:
     """What was reached of one requirement."""
 
-    requirement: str  # name of the criterion, or of the certificate
+    requirement: str  # name of the criterion, or of the key of the requirements
     title: str
     limit: float | None  # SI; None where there is none: the criterion is told, not limited
     reached: float | None  # SI; None where the law has no such figure
@@ -117,6 +126,9 @@ def read_requirements(table: object, where: str) -> Requirements:
         rails=rails,
         within_bounds=bounded,
         certificates=texts(stated.get("certificates", []), "requirements.certificates", where, empty=True),
+        stable_within=_stable(
+            table_of(stated.get("stable_within", {}), "requirements.stable_within", where), where
+        ),
         held_out=read_sets(stated["held_out"], "requirements.held_out", where),
         limits=_limits(table_of(stated["limits"], "requirements.limits", where), where),
         stop=stop,
@@ -146,9 +158,24 @@ def requirements_text(requirements: Requirements) -> str:
         dimension = dimension_of(name)
         assert dimension is not None, "a number of a stop that was read has a dimension"
         lines.append(f"{name.removeprefix('stop.')} = {quantity_text(value, dimension)}")
+    if requirements.stable_within:
+        lines += ["", "[requirements.stable_within]"]
+        lines += [
+            f"{json.dumps(rail, ensure_ascii=False)} = {quantity_text(share, 'ratio')}"
+            for rail, share in requirements.stable_within
+        ]
     if requirements.draws:
         lines += ["", "[requirements.draw]", draws_text(requirements.draws)]
     return "\n".join(lines) + "\n"
+
+
+def seen_from_here(requirements: Requirements, folder: Path) -> Requirements:
+    """Return requirements of a file in a folder with the paths of rails as they are seen from here."""
+    return replace(
+        requirements,
+        rails=tuple(beside(name, folder) for name in requirements.rails),
+        stable_within=tuple((beside(name, folder), share) for name, share in requirements.stable_within),
+    )
 
 
 def read_sets(table: object, what: str, where: str) -> DrawnSets:
@@ -174,6 +201,19 @@ def _limits(table: dict[str, Any], where: str) -> tuple[Limit, ...]:
             raise UserError(f"{place} = {given} must {allowed}")
         limits.append(Limit(criterion=name, value=value))
     return tuple(limits)
+
+
+def _stable(table: dict[str, Any], where: str) -> tuple[tuple[str, float], ...]:
+    found = []
+    for rail, given in table.items():
+        place = f"requirements.stable_within.{rail} in {where}"
+        share = number_of(given, "ratio", place)
+        if not 0.0 < share <= 1.0:
+            raise UserError(
+                f"{place} = {given} must lie in (0, 1]; 100 % is the box that vehicle and rail state"
+            )
+        found.append((rail, share))
+    return tuple(found)
 
 
 def _stop(table: dict[str, Any], where: str) -> tuple[tuple[str, float], ...]:
@@ -237,6 +277,4 @@ def whole(value: object, name: str, where: str, *, least: int, most: int) -> int
 
 
 def _listed(names: tuple[str, ...]) -> str:
-    import json
-
     return f"[{', '.join(json.dumps(name, ensure_ascii=False) for name in names)}]"

@@ -14,6 +14,7 @@ from wspd_design.design.requirements import (
     check_keys,
     read_requirements,
     read_sets,
+    seen_from_here,
     table_of,
     whole,
 )
@@ -25,6 +26,7 @@ from wspd_design.parameters.words import did_you_mean
 
 SCHEMA = "wspd-specification/1"
 _FOLDER = "specifications"
+STABLE_LAW = "observer-smc"  # whose sampled loop is known as a matrix
 _OF_THE_DESIGN = ("slip", "tolerance", "sample_time")
 _WORDS = ("name", "law", "vehicle", "design_rail")
 _KEYS = (
@@ -110,6 +112,11 @@ def _read(document: dict[str, Any], where: str) -> Task:
             f"search.seed = {effort.sets.seed} and requirements.held_out.seed = {requirements.held_out.seed} in "
             f"{where} share stops; keep the seeds farther apart than the numbers of sets, such as 1000 and 900000"
         )
+    if requirements.stable_within and law != STABLE_LAW:
+        raise UserError(
+            f"requirements.stable_within in {where} is known for {STABLE_LAW}, not for {law}; leave it out, or "
+            "take that law"
+        )
     return Task(
         name=words["name"],
         law=law,
@@ -148,12 +155,11 @@ def _effort(table: dict[str, Any], where: str) -> Effort:
 
 
 def _beside(task: Task, folder: Path) -> Task:
-    rails = tuple(beside(name, folder) for name in task.requirements.rails)
     return replace(
         task,
         vehicle=beside(task.vehicle, folder),
         design_rail=beside(task.design_rail, folder),
-        requirements=replace(task.requirements, rails=rails),
+        requirements=seen_from_here(task.requirements, folder),
     )
 
 

@@ -16,8 +16,8 @@ AHEAD = 0.5  # -, a command acts in the middle of its sample
 TIME_SHARE = (
     0.6  # of the nominal valve times: the fastest valve that full inversion does not drive beyond its target
 )
-DEAD_BAND_SHARE = 0.01  # of the full torque
-DEAD_BAND_SLIP = 0.01  # -
+DEAD_BAND_SHARE = 0.03  # of the full torque
+DEAD_BAND_SLIP_SHARE = 0.2  # of the desired slip
 INTEGRAL_SHARE = 0.5
 SURFACE_SHARE = 0.6
 
@@ -71,11 +71,11 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
             why=f"{DEAD_BAND_SHARE:.0%} of the full torque: the valves rest while noise alone moves the wanted torque",
         ),
         Gain(
-            name="dead_band_slip",
-            value=DEAD_BAND_SLIP,
+            name="dead_band_share",
+            value=DEAD_BAND_SLIP_SHARE,
             unit="-",
-            why="a dead band of J k e is an error of the slip that grows as 1/v: at low speed it is narrowed to this "
-            "slip",
+            why="a dead band of J k e leaves an error e of the wheel speed: at low speed, where the wheel slides by "
+            f"little, it is narrowed to {DEAD_BAND_SLIP_SHARE:.0%} of the desired slip",
         ),
     )
 

@@ -45,6 +45,13 @@ REQUIREMENTS_TABLE = Form(
             always=False,
         ),
         Key(name="certificates", kind="text", many=ANY, meaning="checks that must be proved", always=False),
+        Key(
+            name="stable_within",
+            kind="value",
+            by_name=True,
+            meaning="by rail, share of the box on which quadratic functions must be found",
+            always=False,
+        ),
         Key(name="held_out", kind=HELD_OUT_TABLE, meaning="sets that no search has seen"),
         Key(name="limits", kind="value", by_name=True, meaning="by criterion, with units"),
         Key(name="stop", kind="value", by_name=True, meaning="numbers of every stop, with units"),

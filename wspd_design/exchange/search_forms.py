@@ -64,7 +64,7 @@ SENSITIVITY = Form(
 JUDGED = Form(
     name="judged",
     keys=(
-        Key(name="requirement", kind="text", meaning="name of the criterion"),
+        Key(name="requirement", kind="text", meaning="name of the criterion, or stable_within"),
         Key(name="title", kind="text", meaning="in words"),
         Key(name="limit", kind="number", nullable=True, meaning="in SI units; null where none is asked for"),
         Key(
@@ -115,6 +115,7 @@ SEARCH = Form(
         Key(name="held_out_sets", kind=DRAWN_SETS, meaning="that the search never saw"),
         Key(name="held_out_start", kind=SCORE, meaning="of the start on the held-out sets"),
         Key(name="held_out", kind=SCORE, meaning="of the design on the held-out sets, looked at once"),
+        Key(name="held_out_by_rail", kind=SCORE, by_name=True, meaning="the same on the sets of each rail"),
         Key(name="requirements", kind=JUDGED, many=ANY, meaning="on the held-out sets"),
         Key(name="unproved", kind="text", many=ANY, meaning="certificates that must hold and do not"),
         VERSION_KEY,

@@ -33,6 +33,7 @@ def search_object(found: Found, name: str) -> dict[str, Any]:
         "held_out_sets": asdict(task.requirements.held_out),
         "held_out_start": plain_score(found.held_out_start),
         "held_out": plain_score(found.held_out),
+        "held_out_by_rail": {rail: plain_score(each) for rail, each in found.held_out_by_rail.items()},
         "requirements": [asdict(each) for each in found.judged],
         "unproved": list(found.unproved),
         "version": program_version(),

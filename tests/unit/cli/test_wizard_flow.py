@@ -5,6 +5,7 @@ import pytest
 from wspd_design.cli.wizard.draft import read_draft, write_draft
 from wspd_design.cli.wizard.flow import Back, complete, walk
 from wspd_design.cli.wizard.steps import AGAIN, OWN, SAVE, accept, split_speeds, steps, wanted
+from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
 
@@ -41,6 +42,24 @@ def test_own_file_is_asked_for_only_where_it_was_chosen():
     answers = walk(ALL, {}, ask)
     assert asked[:3] == ["vehicle", "vehicle_file", "rail"]
     assert answers["vehicle_file"] == "mine.toml"
+
+
+def test_the_train_speed_is_asked_of_laws_of_a_vehicle_alone():
+    ask, asked = script(None, None, "observer-smc", "wheels and accelerometer")
+    answers = walk(ALL, {}, ask)
+    assert asked == [*TITLES[:3], "sensors", *TITLES[3:]]
+    assert wanted(answers).sensors == Sensors(speed="wheels", accelerometer=True)
+    ask, asked = script("afsmc")
+    del answers["law"]
+    walk(ALL, answers, ask)
+    assert "sensors" not in asked
+    assert wanted(answers).sensors == TOLD
+
+
+@pytest.mark.parametrize("option", step("sensors").options, ids=lambda option: option.value)
+def test_every_source_of_the_train_speed_is_one(option):
+    found = wanted(complete(ALL, {"law": "observer-smc", "sensors": option.value}))
+    assert found.sensors.speed == option.value.partition(" ")[0]
 
 
 def test_back_goes_to_the_question_that_was_asked_before():

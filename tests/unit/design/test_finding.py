@@ -55,8 +55,9 @@ def start(er24pc, task):
 def finds(task, start, er24pc, tmp_path):
     space = space_of(start, er24pc, load_rail("polach-wet"))
 
-    def finding_one(limits=task.requirements.limits, **changes):
-        return find(replace(task, **changes), space, limits=limits, journal=tmp_path / "journal")
+    def finding_one(keep=True, **changes):
+        wanted = replace(task, requirements=replace(task.requirements, **changes))
+        return find(wanted, space, keep=keep, journal=tmp_path / "journal")
 
     return finding_one
 
@@ -109,27 +110,57 @@ def test_the_design_says_what_was_found(finds, task, start, tmp_path):
 
 def test_the_reason_says_how_many_points_kept_the_limits(finds):
     """The first generation is the same with and without limits, so that some point is sure to keep this one."""
-    free = finds(limits=())
-    limit = Limit(
-        criterion="vented_air", value=max(each.score.reached["vented_air"] for each in free.tried[:8])
-    )
+    free = finds(keep=False)
+    most = max(each.score.reached["vented_air"] for each in free.tried[:8])
+    limit = Limit(criterion="vented_air", value=most + 0.5)
     bound = finds(limits=(limit,))
+    (kept,) = bound.limits
+    assert kept.value == pytest.approx(limit.value - 0.5)  # half a scale in reserve
     assert bound.tried[:8] == free.tried[:8]
-    holding = sum(each.score.reached["vented_air"] <= limit.value for each in bound.tried)
+    holding = sum(each.score.reached["vented_air"] <= kept.value for each in bound.tried)
     assert bound.reason.startswith(
         f"smallest objective of the {holding} points among 16 that keep all limits: "
     )
     assert free.reason.startswith("smallest objective of 16 points, without limits: ")
 
 
-def test_a_limit_that_cannot_be_kept_is_missed_least(finds, task):
+def test_a_limit_that_cannot_be_kept_is_missed_least(finds):
     impossible = (Limit(criterion="efficiency_mean", value=0.999),)
-    found = finds(limits=impossible, requirements=replace(task.requirements, limits=impossible))
-    assert "none of 16 points keeps all limits" in found.reason
+    found = finds(limits=impossible)
+    assert "none of 16 points keeps all limits and claims" in found.reason
     (judged,) = (each for each in found.judged if each.limit is not None)
     assert judged.met is False
     best = max(each.score.reached["efficiency_mean"] for each in found.tried)
     assert found.chosen.score.reached["efficiency_mean"] == best
+
+
+def test_quadratic_functions_that_must_be_found_are_claims(finds, monkeypatch):
+    """Planted answers: they are found for torque gains below that of the free optimum only."""
+    edge = finds(keep=False).chosen.values[-1]
+    asked = []
+
+    def closes(law, vehicle, rail, *, speeds, share):
+        asked.append((vehicle.name, rail.name, speeds, share))
+        return 0.9 if law.gains.torque_gain < edge else None
+
+    monkeypatch.setattr(finding, "closes", closes)
+    monkeypatch.setattr(judging, "closes", closes)
+    found = finds(limits=(), stable_within=(("polach-dry", 0.5),))
+    assert set(asked) == {("er24pc", "polach-dry", (10 / 3.6, 120 / 3.6), 0.5)}
+    told = found.judged[-1]
+    assert (told.requirement, told.title) == (
+        "stable_within",
+        "state left per sample, 50% of the box of polach-dry",
+    )
+    if found.chosen.unproved:
+        assert (told.reached, told.met) == (None, False)
+        assert "keeps all limits and claims" in found.reason
+    else:
+        assert found.chosen.values[-1] < edge
+        assert (told.limit, told.reached, told.met) == (1.0, 0.9, True)
+    asked.clear()
+    assert finds(keep=False, stable_within=(("polach-dry", 0.5),)).chosen.unproved == 0.0
+    assert len(asked) == 1  # told of the chosen one, not asked of every point
 
 
 def test_anybody_can_judge_the_design_again(finds, start, tmp_path):
@@ -149,10 +180,10 @@ def test_a_design_without_requirements_cannot_be_judged(start):
         judge(start, load_rail("polach-wet"))
 
 
-def test_certificates_that_must_hold_choose_among_the_best(finds, task, monkeypatch):
+def test_certificates_that_must_hold_choose_among_the_best(finds, monkeypatch):
     """Planted verdicts: only laws with a torque gain below that of the free optimum are proved."""
-    wanted = replace(task.requirements, certificates=("open_loop_pole",))
-    free = finds(limits=())
+    wanted = ("open_loop_pole",)
+    free = finds(keep=False)
     edge = free.chosen.values[-1]
 
     def verdict(problem, *, only, figures):
@@ -164,7 +195,7 @@ def test_certificates_that_must_hold_choose_among_the_best(finds, task, monkeypa
         )
 
     monkeypatch.setattr("wspd_design.certificates.suite.verify", verdict)
-    found = finds(limits=(), requirements=wanted)
+    found = finds(keep=False, certificates=wanted)
     ranked = sorted(free.tried, key=lambda each: each.score.objective)[: finding.PROOF_TRIALS]
     proved = [each for each in ranked if each.values[-1] < edge]
     if proved:
@@ -172,4 +203,4 @@ def test_certificates_that_must_hold_choose_among_the_best(finds, task, monkeypa
     else:
         assert (found.chosen.values, found.unproved) == (ranked[0].values, ("open_loop_pole",))
     edge = -1.0
-    assert finds(limits=(), requirements=wanted).unproved == ("open_loop_pole",)
+    assert finds(keep=False, certificates=wanted).unproved == ("open_loop_pole",)

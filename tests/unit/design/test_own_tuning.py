@@ -79,7 +79,7 @@ def test_what_varies_are_the_slip_and_numbers_with_a_default(task, er24pc, rail,
 def test_the_file_makes_the_law_that_was_found(task, er24pc, rail, tmp_path):
     name = f"{tmp_path}/band.py:Band"
     space, own = own_space(name, task, er24pc, rail)
-    found = find(task, space, limits=(), journal=tmp_path / "journal")
+    found = find(task, space, keep=False, journal=tmp_path / "journal")
     assert found.chosen.score.objective < found.tried[0].score.objective
     (tmp_path / "band_tuned.py").write_text(tuned_source(name, "band (tuned)", own, found))
     law = load_controller(f"{tmp_path}/band_tuned.py:tuned", vehicle=er24pc, rail=rail, sample_time=0.05)

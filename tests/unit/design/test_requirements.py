@@ -40,6 +40,8 @@ efficiency_mean = "95 %"
 longest_lock = "100 ms"
 stopping_distance = "0.9 km"
 
+[requirements.stable_within]
+
 [requirements.stop]
 initial_speed = "100 km/h"
 sensing.pulses_per_turn = 100
@@ -110,7 +112,11 @@ def test_everything_that_is_written_counts(read):
 
 
 def test_requirements_survive_being_written(read):
-    asked = read(WHOLE).requirements
+    text = WHOLE.replace("torque-feedback", "observer-smc").replace(
+        "stable_within]", 'stable_within]\n"polach-wet" = "60 %"'
+    )
+    asked = read(text).requirements
+    assert asked.stable_within == (("polach-wet", 0.6),)
     assert read_requirements(tomllib.loads(requirements_text(asked))["requirements"], "x") == asked
     third = replace(asked, limits=(Limit(criterion="speed_error", value=1 / 30),), draws=())
     assert read_requirements(tomllib.loads(requirements_text(third))["requirements"], "x") == third
@@ -231,6 +237,16 @@ def test_shipped_specifications_are_whole(name):
             'stop.sensing.dead_time = { choice = ["0 ms", "20 ms"] }',
             "stop.sensing.period_timing = { choice = [0, 1] }",
             r"stop\.sensing\.period_timing stands in requirements\.stop and in",
+        ),
+        (
+            "stable_within]",
+            "stable_within]\npolach-wet = 1.0",
+            "is known for observer-smc, not for torque-feedback",
+        ),
+        (
+            "stable_within]",
+            'stable_within]\npolach-wet = "120 %"',
+            r"stable_within\.polach-wet in .* must lie in \(0, 1\]",
         ),
         ('method = "random"', 'method = "tpe"', "search.method = 'tpe' in .* must be one of cma, random"),
         (

@@ -121,3 +121,6 @@ def test_a_speed_that_is_told_has_its_error_but_no_figure():
     assert "stop-estimate" not in [each.anchor for each in stop(dossier) if isinstance(each, Figure)]
     assert "is told the train speed, and scales it" in _said(stop(dossier))
     assert "wrong by at most 5 %" in _said(stop(dossier))
+    own = estimating(PLAIN.trials[0])
+    exact = _with_sensors(replace(own, metrics=replace(own.metrics, speed_error=1e-6)), speed="told")
+    assert "told it without an error" in _said(stop(exact))

@@ -98,5 +98,5 @@ def _search(wanted: str, output: Path, *, force: bool) -> None:
         tell("choosing the gains to start from")
         start = selection.design_controller(braked, friction, task.specification, law=task.law)
     name = f"{task.law}-{task.name}"
-    if not search_design(task, start, name, output, limits=task.requirements.limits, force=force):
+    if not search_design(task, start, name, output, keep=True, force=force):
         raise typer.Exit(REFUTED)

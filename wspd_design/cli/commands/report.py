@@ -46,6 +46,8 @@ def report(
 ) -> None:
     """Write a report: design, poles, certificates, stops and sources."""
     from wspd_design.reporting.report import write_report
+    from wspd_design.reporting.sections.summary import verdict
+    from wspd_design.reporting.text import plain
     from wspd_design.studies.dossier import dossier
 
     check_plant(plant)
@@ -78,6 +80,16 @@ def report(
         )
         tell("typesetting")
         write_report(computed, *paths)
+    judged = verdict(computed)
+    style = (
+        "bold green"
+        if judged.status.tone == "good"
+        else "bold red"
+        if judged.status.tone == "bad"
+        else "bold"
+    )
+    first, period, _ = plain(judged.sentence).partition(". ")
+    console().print(f"{judged.status.sign} {first}{period}".rstrip(), style=style, markup=False)
     for path in paths:
         console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
 

@@ -56,7 +56,7 @@ def tune(
     with progress() as tell:
         tell("choosing the numbers to start from")
         start = shipped_design(family.name, vehicle, rail, task.specification)
-    search_design(task, start, _tuned(family.name, task), path, limits=(), force=force)
+    search_design(task, start, _tuned(family.name, task), path, keep=False, force=force)
 
 
 def _tune_own(law: str, task: Task, output: Path | None, *, force: bool) -> None:
@@ -79,7 +79,7 @@ def _tune_own(law: str, task: Task, output: Path | None, *, force: bool) -> None
         name,
         path,
         lambda found: write_text(path, tuned_source(law, name, own, found), force=True),
-        limits=(),
+        keep=False,
         force=force,
         controller=f"{path}:tuned",
     )

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from wspd_design.cli import options
-from wspd_design.controllers.family import designed
-from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
+from wspd_design.controllers.family import FAMILIES, designed
+from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, SensorWords, specification
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import uniform_rails
@@ -17,6 +17,13 @@ Answers: TypeAlias = Mapping[str, str]
 """What the user wrote, by the key of the step."""
 
 OWN = "own file"
+TOLD, WHEELS, WHEELS_ACCELEROMETER, FASTEST = "told", "wheels", "wheels and accelerometer", "fastest-axle"
+_SENSORS = {
+    TOLD: SensorWords(),
+    WHEELS: SensorWords(speed="wheels"),
+    WHEELS_ACCELEROMETER: SensorWords(speed="wheels", accelerometer=True),
+    FASTEST: SensorWords(speed="fastest-axle"),
+}
 SAVE, AGAIN = "save", "again"
 
 
@@ -70,11 +77,26 @@ def steps() -> tuple[Step, ...]:
             key="law",
             title="Control law",
             explanation="The adaptive fuzzy law is the paper's, with the repaired proof; it needs no "
-            "friction model. The other two use the friction of the design rail. Torque feedback also needs the "
-            "cylinder pressure. Where adhesion falls steeply with sliding, as on dry rail, it is the only one of the "
-            "three that the lag of the valve leaves free to be stable, with a sample time of about 20 ms.",
+            "friction model. The other two laws of one wheelset use the friction of the design rail; torque feedback "
+            "also needs the cylinder pressure. The laws of the whole vehicle observe friction and command the valve "
+            "through its lag; with a sample time of 20 ms or less they hold the slip best.",
             default=options.LAW,
             options=tuple(Option(value=family.name, text=family.title) for family in designed()),
+        ),
+        Step(
+            key="sensors",
+            title="Train speed",
+            explanation="A law of the whole vehicle can do without a radar: it lets one wheelset roll now and then and "
+            "works the train speed out from its wheels. An accelerometer makes that speed better. The fastest wheelset "
+            "alone is wrong as soon as all of them slide.",
+            default=TOLD,
+            options=(
+                Option(value=TOLD, text="told by a source of its own, such as a radar"),
+                Option(value=WHEELS_ACCELEROMETER, text="from the wheels, with an accelerometer"),
+                Option(value=WHEELS, text="from the wheels alone"),
+                Option(value=FASTEST, text="the fastest wheelset"),
+            ),
+            applies=_of_whole_vehicle,
         ),
         Step(
             key="slip",
@@ -137,6 +159,7 @@ def wanted(answers: Answers) -> Specification:
             speeds=split_speeds(answers["speeds"]) if "speeds" in answers else None,
             tolerance=answers.get("tolerance"),
             sample_time=answers.get("sample_time"),
+            sensors=_SENSORS[answers.get("sensors", TOLD)],
         )
     )
 
@@ -157,6 +180,10 @@ def split_speeds(text: str) -> tuple[str, str]:
     if low[-1:].isdigit():
         low += " " + high.lstrip("0123456789., ")
     return low, high
+
+
+def _of_whole_vehicle(answers: Answers) -> bool:
+    return FAMILIES[answers["law"]].reference is not None
 
 
 def _with(answers: Answers, **new: str) -> Specification:

@@ -18,7 +18,8 @@ class Wheel(NamedTuple):
     rim_rate: Number  # m/s2, as tracked
     risen: Number  # m/s, by which it has spun up since it was released
     quiet: Number  # s, for which it has turned as evenly as the train
-    idle: Number  # s, for which in addition the rail has turned it with next to nothing
+    light: Number  # s, for which in addition the rail has turned it with less than usual
+    idle: Number  # s, for which it has turned it with next to nothing
     released: Number  # 1 while it is vented to look
     held: Number  # s, for which it is still held
 
@@ -31,6 +32,7 @@ class Around(NamedTuple):
     spin_up: Number  # m/s2, with which a free wheel would spin up
     usual_torque: Number  # N m, friction torque of a wheelset
     rolling: Number  # wheelsets that adhered at the last sample
+    shown: Number  # 1 while a wheelset is held, because it shows the speed
     others_slide: Number  # 1 while a wheelset with a healthy sensor slides
     clock: Number  # s, since the last release began, or ended if none is on
 
@@ -56,31 +58,41 @@ class Recognition:
         limit = numbers.quiet_share * around.spin_up
         limit = minimum(maximum(limit, numbers.least_quiet), numbers.largest_quiet)
         quiet = abs(against_train) < limit
+        light = numbers.lapse_share * around.usual_torque
         return wheel._replace(
             risen=where(wheel.released > _YES, wheel.risen + h * against_train, 0.0),
             quiet=where(quiet, wheel.quiet + h, 0.0),
+            light=where(quiet * (friction_torque < light), wheel.light + h, 0.0),
             idle=where(quiet * (friction_torque < self.idle_torque), wheel.idle + h, 0.0),
         )
 
-    def found(self, wheel: Wheel, friction_torque: Number, around: Around) -> Number:
+    def found(self, wheel: Wheel, innovation: Number, spread: Number, around: Around) -> Number:
         """Tell whether a wheel that was released, or is idle, adheres now.
 
-        A released wheel that spun up and is quiet has reached the train; so has one that was released long ago, unless
-        its valve sticks, so that the rail still turns it against the brake. A wheel at the slip that the law holds is
-        quiet as well, but it is neither released nor idle.
+        A released wheel that spun up and is quiet has reached the train; so has one that is quiet while the rail turns
+        it with little and that has not fallen behind, as it does where the rail gets worse. Both are believed as far as
+        the train speed can be wrong. A wheel at the slip that the law holds is quiet as well, but neither released nor
+        idle; one whose valve sticks is not light.
+
+        Parameters
+        ----------
+        wheel : Wheel
+            After :meth:`timed`.
+        innovation : number
+            Rim speed less what is expected of a wheel that adheres [m/s].
+        spread : number
+            Variance of that expectation [m2/s2].
+        around : Around
+            What counts for every wheelset.
         """
         numbers = self.numbers
         late = 0.5 * self.sample_time  # times are sums of samples
         spun_up = (wheel.risen > numbers.rise_share * around.slip_speed) * (
             wheel.quiet > numbers.quiet_time - late
         )
-        light = friction_torque < numbers.lapse_share * around.usual_torque
-        long = (
-            light
-            * (around.clock > numbers.long_release - late)
-            * (wheel.quiet > 2.0 * numbers.quiet_time - late)
-        )
-        shows = (wheel.released > _YES) * ((spun_up + long) > 0)
+        light = (wheel.light > numbers.light_time - late) * (wheel.risen > -numbers.rim_noise)
+        possible = innovation > -numbers.surprise_gate * sqrt(spread + numbers.rim_noise * numbers.rim_noise)
+        shows = (wheel.released > _YES) * possible * ((spun_up + light) > 0)
         return (shows + (wheel.idle > numbers.idle_time - late)) > 0
 
     def adheres(
@@ -97,7 +109,7 @@ class Recognition:
         """Tell whether a wheel adheres, 1 or 0.
 
         A wheel that adhered goes on until it falls behind, or its friction torque is what makes others slide. One that
-        turns like the train, while its speed is well known, has begun to.
+        turns as fast as another that shows the speed has begun to.
 
         Parameters
         ----------
@@ -121,8 +133,7 @@ class Recognition:
         most = numbers.gate_share * around.slip_speed
         follows = innovation > -(numbers.gate * sqrt(near) + minimum(numbers.gate * sqrt(spread), most))
         differs = minimum(2.0 * sqrt(spread + near), numbers.alike_share * around.slip_speed)
-        known = sqrt(spread) < most
-        alike = known * (abs(innovation) < differs) * (wheel.quiet > numbers.idle_time)
+        alike = around.shown * (abs(innovation) < differs) * (wheel.quiet > numbers.idle_time)
         like_sliding = around.others_slide * (friction_torque > numbers.lapse_share * around.usual_torque)
         before = where(like_sliding, 0.0, wheel.rolls)
         return where(found, 1.0, where((alike + before) * follows > _YES, 1.0, 0.0))

@@ -18,7 +18,7 @@ from wspd_design.controllers.observers.wheel_filter_numbers import WheelFilterNu
 from wspd_design.controllers.protocol import State, VehicleMeasurement
 from wspd_design.model import adhesion
 from wspd_design.model.generated import wheel_filter as generated
-from wspd_design.model.number import Number, exp, maximum, minimum, sqrt, where
+from wspd_design.model.number import Number, clip, exp, maximum, minimum, sqrt, where
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.records import Vehicle
 
@@ -78,7 +78,7 @@ class WheelFilter:
         zero = 0.0 * speed
         rolling = where(seen.demand <= RELEASED_DEMAND, 1.0, 0.0)
         wheels = [
-            Wheel(healthy * rolling, self.vehicle.wheel_radius * wheel_speed, *(zero,) * 6)
+            Wheel(healthy * rolling, self.vehicle.wheel_radius * wheel_speed, *(zero,) * 7)
             for healthy, wheel_speed in zip(seen.healthy, seen.wheel_speeds, strict=True)
         ]
         whole = _Whole(zero, zero, zero, zero, seen.acceleration)
@@ -145,6 +145,7 @@ class WheelFilter:
             spin_up=usual * vehicle.wheel_radius / vehicle.wheelset_inertia,
             usual_torque=usual,
             rolling=rolling,
+            shown=where(total([wheel.held for wheel in wheels]) > 0.0, 1.0, 0.0),
             others_slide=where(rolling < total(seen.healthy) - _YES, 1.0, 0.0),
             clock=whole.clock,
         )
@@ -171,29 +172,29 @@ class WheelFilter:
         creep = minimum(creep, _LARGEST_CREEP)
         creep_deviation = numbers.creep_deviation * creep * belief.mean[0]
         creep_variance = creep_deviation * creep_deviation
-        recognition = Recognition(
-            sample_time=h,
-            idle_torque=2.0 * numbers.idle_adhesion * load * vehicle.wheel_radius,
-            numbers=numbers,
-        )
+        idle_torque = 2.0 * numbers.idle_adhesion * load * vehicle.wheel_radius
+        recognition = Recognition(sample_time=h, idle_torque=idle_torque, numbers=numbers)
         wheel = recognition.tracked(wheel, rim)
         wheel = recognition.timed(wheel, friction_torque, around)
-        found = recognition.found(wheel, friction_torque, around)
+        innovation = rim - (1.0 - creep) * belief.mean[0]
+        found = recognition.found(wheel, innovation, belief.spread, around)
         rolls = healthy * recognition.adheres(
             wheel,
             found,
-            innovation=rim - (1.0 - creep) * belief.mean[0],
+            innovation=innovation,
             spread=belief.spread,
             creep_variance=creep_variance,
             friction_torque=friction_torque,
             around=around,
         )
         belief = self.motion.not_slower(belief, healthy * (rim - numbers.bound_gate * numbers.rim_noise))
-        # The micro-slip is wrong alike on all wheels, and for longer than a sample: as noise it is larger.
+        # Near its limit a rail that is not known lets a wheel creep more; that is wrong alike on all wheels, and for
+        # longer than a sample: as noise it is larger.
+        braked = clip(friction_torque / idle_torque - 1.0, 0.0, 1.0)
+        unknown = creep_deviation + numbers.unknown_creep * braked * belief.mean[0]
         rim_variance = numbers.rim_noise * numbers.rim_noise
-        variance = rim_variance + creep_variance * (1.0 + numbers.creep_time / h) * maximum(
-            around.rolling, 1.0
-        )
+        lasting = (1.0 + numbers.creep_time / h) * maximum(around.rolling, 1.0)
+        variance = rim_variance + unknown * unknown * lasting
         belief = self.motion.rim_seen(belief, rim, creep, variance, use=rolls, found=found)
         return belief, recognition.after(wheel, rolls, around)
 

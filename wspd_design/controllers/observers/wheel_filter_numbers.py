@@ -20,6 +20,9 @@ class WheelFilterNumbers:
     grade_deviation: float = 0.03  # m/s2, of gravity along the track: within 5 per mille, evenly spread
     creep_factor: float = 0.6  # -, kA + kS of the micro-slip: that of a wet rail and a half more
     creep_deviation: float = 1.0  # -, share of the micro-slip that is not known
+    unknown_creep: float = (
+        0.002  # -, further slip of a braked wheel near the limit of a rail that is not known
+    )
     creep_time: float = 0.5  # s, for which its error stays the same
     # when it looks
     release_share: float = (
@@ -38,15 +41,16 @@ class WheelFilterNumbers:
     largest_quiet: float = 1.0  # m/s2, at most
     quiet_time: float = 0.06  # s, for which it is quiet after it spun up
     rise_share: float = 0.35  # of the slip speed, by which it spun up
-    long_release: float = 1.5  # s, after which a wheelset without brake needs no spinning up to be seen
+    light_time: float = 0.2  # s, for which a released wheel is quiet while the rail turns it with little
+    surprise_gate: float = (
+        5.0  # deviations below the expected speed, beyond which it has not reached the train
+    )
     idle_adhesion: float = 0.008  # -, below that which every rail gives: no wheel slides on less
     idle_time: float = 0.5  # s, for which a wheel is idle or quiet before that alone says that it adheres
     # how it sees that a wheel slides
     gate: float = 3.0  # deviations of a rim speed below the expected one
     gate_share: float = 0.1  # of the slip speed, most that an uncertain train speed adds to them
-    lapse_share: float = (
-        0.5  # of the usual friction torque, from which a wheel counts as sliding if others slide
-    )
+    lapse_share: float = 0.5  # of the usual friction torque: above it a wheel slides if others do
     bound_gate: float = 2.0  # deviations of a rim speed above the train speed
     alike_share: float = 0.3  # of the slip speed, by which a wheel that adheres differs at most
 
@@ -62,9 +66,12 @@ def numbers_for(sample_time: float, sensors: Sensors) -> WheelFilterNumbers:
         What the vehicle has.
     """
     slow = sample_time > 0.05  # few samples: steadier tracking, longer looks
+    # An accelerometer leaves fewer looks to pay for; a long sample makes each of them dearer.
+    cheap, dear = (0.3, 0.35) if sensors.accelerometer else (0.4, 0.5)
     return WheelFilterNumbers(
-        release_share=0.5 if slow else 0.4,
+        release_share=dear if slow else cheap,
         rim_rate=8.0 if slow else 15.0,
         hold_time=0.1 if slow else 0.06,
-        scale_walk=0.03 if sensors.pressures else 0.05,
+        light_time=max(0.2, 4.0 * sample_time),  # noise of the friction torque alone does not last so long
+        scale_walk=0.03 if sensors.pressures else 0.05,  # a model of the valve is wrong by more than a scale
     )

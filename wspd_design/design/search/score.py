@@ -44,6 +44,15 @@ def score(figures: "Mapping[str, Array]") -> Score:
     )
 
 
+def score_by_rail(figures: "Mapping[str, Array]", rails: Sequence[str]) -> dict[str, Score]:
+    """Work out what a law reached on the sets of each rail, of which set k has number k modulo their number."""
+    return {
+        rail: score({name: values[place :: len(rails)] for name, values in figures.items()})
+        for place, rail in enumerate(rails)
+        if place < len(figures["excess"])
+    }
+
+
 def objective(excess: "Array") -> float:
     """Return the mean excess of the distance and ``WORST_WEIGHT`` times that of the worst sixth."""
     import numpy as np

@@ -43,7 +43,6 @@ class Sets:
     """All stops of a search, or all held-out ones."""
 
     drawn: DrawnSets
-    rails: tuple[str, ...]  # of set k: number k modulo their number
     groups: tuple[Group, ...]  # the last may hold more sets than are asked for
 
 
@@ -91,7 +90,7 @@ def draw_sets(
         Group(numbers=group, cases=each, ideal=ideal)
         for group, each, ideal in zip(numbers, cases, ideals, strict=True)
     ]
-    return Sets(drawn=drawn, rails=requirements.rails, groups=tuple(groups))
+    return Sets(drawn=drawn, groups=tuple(groups))
 
 
 def _grouped(count: int, rails: int) -> list[tuple[int, ...]]:
@@ -137,8 +136,3 @@ def _deck(
 def disjoint(one: DrawnSets, other: DrawnSets) -> bool:
     """Tell whether two series of sets share neither drawn numbers nor the seeds of the noise of any stop."""
     return abs(one.seed - other.seed) >= max(one.sets, other.sets) + STOPS_SIDE_BY_SIDE
-
-
-def rail_names(sets: Sets) -> Sequence[str]:
-    """Return the rail of every set."""
-    return [sets.rails[k % len(sets.rails)] for k in range(sets.drawn.sets)]

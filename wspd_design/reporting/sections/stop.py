@@ -22,6 +22,8 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
 from wspd_design.studies.dossier import Dossier
 
+EXACT = 1e-4  # relative error of a speed that is told, below which none is
+
 
 def stop(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the simulated stop."""
@@ -93,6 +95,8 @@ def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
         if not looks
         else f" It released a wheelset {numbers.count(looks, 'time')} to see the speed of the train."
     )
+    if sensors.speed == "told" and figures.speed_error < EXACT:
+        return (Paragraph(text=f"{_source(sensors)} In this stop it is told it without an error."),)
     said = Paragraph(
         text=f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
         f"{numbers.significant(100.0 * figures.speed_error, 2)} %; the distance that follows from it by at most "

@@ -20,7 +20,7 @@ from wspd_design.design.selection import search_ranges, shipped_design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
 
-SETS = Sets(drawn=DrawnSets(sets=6, seed=0), rails=("polach-wet",), groups=())
+SETS = Sets(drawn=DrawnSets(sets=6, seed=0), groups=())
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from wspd_design.design.criteria import CRITERIA
 from wspd_design.design.requirements import Limit, judged_by
-from wspd_design.design.search.score import Score, objective, rank, score, violation
+from wspd_design.design.search.score import Score, objective, rank, score, score_by_rail, violation
 
 
 def figures(**changes):
@@ -102,3 +102,26 @@ def test_every_criterion_has_both_sides_of_its_limit(name):
     assert judged_by((Limit(criterion=name, value=0.5),), {name: better})[0].met is True
     assert judged_by((Limit(criterion=name, value=0.5),), {})[0].met is False
     assert judged_by((), {name: worse})[0].met is None
+
+
+@pytest.mark.parametrize(
+    ("criterion", "limit", "kept"),
+    [
+        ("efficiency_mean", 0.9, 0.905),
+        ("valve_switches", 15.0, 14.5),
+        ("longest_lock", 0.5, 0.45),
+        ("longest_lock", 0.0, 0.0),
+    ],
+)
+def test_a_search_keeps_a_reserve(criterion, limit, kept):
+    assert Limit(criterion=criterion, value=limit).with_reserve().value == pytest.approx(kept)
+
+
+def test_each_rail_has_its_sets():
+    """Sets 0 and 2 are those of the first rail, set 1 that of the second; a third one has none."""
+    found = score_by_rail(figures(), ("a", "b"))
+    assert list(found) == ["a", "b"]
+    assert found["a"].reached["valve_switches"] == 6.0 == found["b"].reached["valve_switches"]
+    assert (found["a"].reached["efficiency_mean"], found["b"].reached["efficiency_mean"]) == (0.45, 0.8)
+    assert (found["a"].unstopped, found["b"].unstopped) == (0.5, 0.0)
+    assert list(score_by_rail(figures(), ("a", "b", "c", "d"))) == ["a", "b", "c"]
