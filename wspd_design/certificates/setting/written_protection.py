@@ -27,7 +27,7 @@ POINTS, DOUBLES, DIGITS = (
     1e-9,
 )  # of the field, in doubles, and the difference that rounding may make there
 LEAST = 1e-3  # of the full torque, and in N m
-HALF = 0.5
+HALF, CAREFUL = 0.5, 0.85
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +96,7 @@ class WrittenProtection:
         """One sample."""
         n, h, inertia = self.wheelsets, self.sample_time, self.of.wheelset_inertia
         before, acceleration, scale = state[:3]
-        _, frictions, _, means, observed, _ = (state[3 + k * n : 3 + (k + 1) * n] for k in range(6))
+        _, frictions, _, means, observed, released = (state[3 + k * n : 3 + (k + 1) * n] for k in range(6))
         speed = scale * m.speed
         new = 1.0 - exp(-h / self.source.acceleration_time)
         acceleration = acceleration + new * ((speed - before) / h - acceleration)
@@ -111,8 +111,11 @@ class WrittenProtection:
             speeds.append(expected + (1.0 - theta**2) * r)
             taus.append(maximum(frictions[k] + inertia * r * (1.0 - theta) ** 2 / h, 0.0))
             torques.append(self._torque(m, k))
-            commands.append(self._pulses(k, m, wanted_speed, wanted_rate, taus[k], torques[k]))
-        commands = [self._careful(k, commands, m.healthy) for k in range(n)]
+            commands.append(self._pulses(k, m, speed, wanted_speed, wanted_rate, taus[k], torques[k]))
+        well = [
+            where(flag > HALF, False, seen > HALF) for flag, seen in zip(released, m.healthy, strict=True)
+        ]
+        commands = [self._careful(k, m, commands[k], torques, well) for k in range(n)]
         commands = [
             self._slow(speed, wheel, each) for wheel, each in zip(m.wheel_speeds, commands, strict=True)
         ]
@@ -126,13 +129,14 @@ class WrittenProtection:
         self,
         k: int,
         m: VehicleMeasurement,
+        speed: Number,
         wanted_speed: Number,
         wanted_rate: Number,
         tau: Number,
         torque: Number,
     ) -> Command:
         """Torque at which the error falls at the pull, and the pulse that leads there."""
-        tracking, valve, h = self.core.tracking, self.of.valve, self.sample_time
+        tracking, h = self.core.tracking, self.sample_time
         inertia, rate = tracking.wheelset_inertia, tracking.approach_rate
         error = (
             m.wheel_speeds[k] - wanted_speed + tracking.ahead * h * ((tau - torque) / inertia - wanted_rate)
@@ -141,8 +145,17 @@ class WrittenProtection:
         curve = sqrt(maximum(2.0 * slew * (error - slew / (2.0 * rate**2)), 0.0))
         pull = where(error * rate * rate > slew, curve, rate * error)
         available, full = m.demand * self._full(k), self._full(k)
-        target = minimum(maximum(tau - inertia * (wanted_rate - pull), 0.0), available)
-        band = minimum(tracking.dead_band, tracking.dead_band_slip * (inertia * rate * wanted_speed))
+        target = tau - inertia * (wanted_rate - pull)
+        sliding = maximum(speed / self.of.wheel_radius - wanted_speed, 0.0)
+        band = minimum(tracking.dead_band, tracking.dead_band_share * sliding * inertia * rate)
+        return self._towards(torque, target, available, band, full)
+
+    def _towards(
+        self, torque: Number, target: Number, available: Number, band: Number, full: Number
+    ) -> Command:
+        """Pulse that leads to a target, for a share of the nominal times."""
+        valve, h = self.of.valve, self.sample_time
+        target = minimum(maximum(target, 0.0), available)
         least = LEAST * full + LEAST
         room, left = maximum(available - torque, least), maximum(available - target, least)
         filling = valve.brake.fill_time * log(room / left) / h
@@ -154,18 +167,24 @@ class WrittenProtection:
             shares.append(where(way > band, long_enough, 0.0))
         return Command(*shares)
 
-    def _careful(self, k: int, commands: Sequence[Command], healthy: Sequence[Number]) -> Command:
-        """Without its speed sensor a wheelset fills as little and vents as much as its neighbors."""
-        fill: Number = 1.0
-        vent: Number = 0.0
-        for neighbor in (k - 1, k + 1):
-            if 0 <= neighbor < len(commands):
-                fill = minimum(fill, where(healthy[neighbor] > HALF, commands[neighbor].fill, 1.0))
-                vent = maximum(vent, where(healthy[neighbor] > HALF, commands[neighbor].vent, 0.0))
-        own = healthy[k] > HALF
+    def _careful(
+        self,
+        k: int,
+        m: VehicleMeasurement,
+        command: Command,
+        torques: Sequence[Number],
+        well: Sequence[Number],
+    ) -> Command:
+        """Without its speed sensor a wheelset brakes less than all that have theirs and do not roll."""
+        available = m.demand * self._full(k)
+        target = available
+        for other, torque in enumerate(torques):
+            if other != k and self.of.torque_shares[other] > 0.0:
+                target = minimum(target, where(well[other], CAREFUL * torque, available))
+        careful = self._towards(torques[k], target, available, 0.0, self._full(k))
+        own = m.healthy[k] > HALF
         return Command(
-            fill=where(own, commands[k].fill, where(vent > 0.0, 0.0, fill)),
-            vent=where(own, commands[k].vent, vent),
+            fill=where(own, command.fill, careful.fill), vent=where(own, command.vent, careful.vent)
         )
 
     def _slow(self, speed: Number, wheel: Number, command: Command) -> Command:
@@ -200,7 +219,7 @@ def written(law: object) -> WrittenProtection | None:
         return None
     core, reference, source = law.core, law.reference, law.source
     kinds = type(core) is ObserverSmc and type(reference) is ConstantSlip and type(source) is ToldSpeed
-    if not kinds or not law.pressure_sensors or law.valve.brake.valve != "lag":
+    if not kinds or law.seeking is not None or not law.pressure_sensors or law.valve.brake.valve != "lag":
         return None
     assert isinstance(core, ObserverSmc)
     assert isinstance(reference, ConstantSlip)

@@ -3,10 +3,10 @@
 See :mod:`wspd_design.certificates.theorems.slip_band` for loop, proof and checker.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
-from math import isfinite
 from typing import cast
 
 from wspd_design.certificates.kernel.claim import Claim, Relation
@@ -29,6 +29,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 )
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
 from wspd_design.controllers.protection import Protection
+from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH
 
@@ -65,7 +66,7 @@ def proved_friction(problem: Problem, findings: Findings) -> tuple[Friction, ...
     found = []
     for k in range(len(windows_of(problem))):
         ends = [(findings[key(name, k, ">=")].low, findings[key(name, k, "<=")].high) for name in BOUNDED]
-        if not all(isfinite(end) for each in ends for end in each):
+        if not all(math.isfinite(end) for each in ends for end in each):
             return None
         found.append(Friction(*ends))
     return tuple(found)
@@ -144,7 +145,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"constant parameters in the box: {domain.described(_held(problem), VARIED, held)}; sampled every "
         f"{problem.sample_time * 1e3:g} ms, with any course of the friction whose slope stays within its proved range."
     )
-    explanation, margin = "No ellipsoids were found for the whole box.", None
+    explanation, margin = f"No ellipsoids were found for the whole box. {_dead_band(problem)}.", None
     worst: tuple[Point, ...] = ()
     if cells.status is Status.PROVED:
         bands = [cells.numbers[f"band {k}"] for k in range(len(windows))]
@@ -188,6 +189,26 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         method="ellipsoids by linear matrix inequalities in doubles; LDL' in balls at the corners of the sampled loop, "
         "with the friction bounded by interval branch and bound, replayed by the independent checker",
         reference="docs/theory.md#band",
+    )
+
+
+def _dead_band(problem: Problem) -> str:
+    """Compare what the law leaves out with what a sample of venting can do."""
+    law = law_of(cast(Protection, problem.controller))
+    h, speed = float(law.sample_time), problem.speeds[0]
+    held = (
+        2.0
+        * problem.vehicle.wheel_radius
+        * float(slip_dynamics(problem.vehicle, problem.rail, problem.slip, speed).creep_force)
+    )
+    vented = held * -math.expm1(-h / float(law.vent_time))
+    sliding = problem.slip * speed / problem.vehicle.wheel_radius
+    narrowed = float(law.dead_band_share * law.inertia * law.approach_rate) * sliding
+    left_out = min(float(law.dead_band), narrowed)
+    return (
+        f"At {speed * KMH:.0f} km/h venting takes at most {vented / 1e3:.2g} of {held / 1e3:.3g} kN m off in one "
+        f"sample, of which the dead band of {left_out / 1e3:.2g} kN m, drift and the lag of the acceleration must "
+        "leave some"
     )
 
 

@@ -16,8 +16,8 @@ from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 if TYPE_CHECKING:
     from wspd_design.certificates.search.matrix_inequalities import Array
 
-KEPT = (0.96, 0.93, 0.98)  # of the function after a sample without disturbance; the first that succeeds
-FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 6, 8  # of the loop that the inequalities begin with, and are added
+KEPT = (0.96, 0.98)  # of the function after a sample without disturbance; the first that succeeds
+FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 12, 6  # of the loop that the inequalities begin with, and are added
 UNIT = 0.05  # rad/s, in which states are counted, so that the numbers of the inequalities are near 1
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
 DIGITS = 9  # of the numbers in the proof

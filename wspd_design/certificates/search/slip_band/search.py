@@ -45,7 +45,12 @@ def search(problem: Problem, law: BandLaw, friction: Sequence[Friction], most_ce
     most_cells : int
         That may be tried.
     """
-    waiting, steps = [(box_of(problem), 0)], ""
+    box = box_of(problem)
+    middle = tuple(((low + high) / 2,) * 2 for low, high in box)
+    alone = _all_windows(problem, law, middle, friction)
+    if isinstance(alone, int):  # no cell around it can do better
+        return Failed(cell=middle, window=alone, tried=1, left=1.0, cut=False)
+    waiting, steps = [(box, 0)], ""
     cells: list[tuple[Ellipsoid, ...]] = []
     tried = 0
     while waiting:

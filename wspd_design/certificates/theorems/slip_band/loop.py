@@ -106,7 +106,7 @@ def loop_of(
         ),
         disturbances=(
             known,
-            _upper(h / point(law.inertia) * _dead_band(law, rolling * speed)),
+            _upper(h / point(law.inertia) * _dead_band(law, slip * speed / radius)),
             _upper(h * h * drift),
             _upper(h * h * drift),
             _upper(h * h * turning),
@@ -191,9 +191,9 @@ def _seen(law: BandLaw) -> Pair:
     return _ends(_hull((low / 2, high)))  # the way is gone at least evenly
 
 
-def _dead_band(law: BandLaw, reference_speed: Ball) -> Ball:
+def _dead_band(law: BandLaw, sliding: Ball) -> Ball:
     """Largest wanted change of the torque that the law leaves out [N m]."""
-    narrowed = point(law.dead_band_slip) * point(law.inertia) * point(law.approach_rate) * reference_speed
+    narrowed = point(law.dead_band_share) * sliding * point(law.inertia) * point(law.approach_rate)
     shortest = -point(law.least_pulse) / point(min(law.fill_time, law.vent_time))
     return _most([_least([point(law.dead_band), narrowed]), -point(law.full_torque) * shortest.expm1()])
 

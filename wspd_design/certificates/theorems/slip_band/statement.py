@@ -47,7 +47,7 @@ class BandLaw:
     time_share: Fraction  # -, of the nominal times, by which the mean torque is worked out
     least_pulse: Fraction  # s
     dead_band: Fraction  # N m
-    dead_band_slip: Fraction  # -
+    dead_band_share: Fraction  # -, of the desired slip
     torque_slew: Fraction  # N m/s, of the braking curve
     acceleration_time: Fraction  # s, of the filter of the train's acceleration
 
@@ -74,7 +74,7 @@ def law_of(law: Protection) -> BandLaw:
         time_share=share,
         least_pulse=Fraction(valve.least_pulse),
         dead_band=Fraction(tracking.dead_band),
-        dead_band_slip=Fraction(tracking.dead_band_slip),
+        dead_band_share=Fraction(tracking.dead_band_share),
         torque_slew=Fraction(core.torque_slew),
         acceleration_time=Fraction(source.acceleration_time),
     )
