@@ -149,7 +149,7 @@ def _theorem(theorem: Theorem) -> str:
     shown = "\n".join(f"* {identity.text}: residual 0" for identity in theorem.identities)
     names = (
         ", ".join(f"`{name}`" for name in theorem.certificates)
-        or "none; the brake of every stop is that of this page"
+        or "none; programs compute with the functions that are generated from it"
     )
     return (
         f'\n## <a id="{theorem.anchor}"></a>{theorem.title}\n\n{theorem.statement}\n\n**Needs**\n\n{needs}\n\n'

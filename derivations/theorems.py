@@ -4,7 +4,14 @@ Claims: every identity has the residual zero. The theorems are those that the ce
 for numbers; here stands why they are true for symbols. `make derive` writes them to docs/theory.md.
 """
 
-from derivations import band_theorems, brake_theorems, stop_theorems, surface_theorems, valve_theorems
+from derivations import (
+    band_theorems,
+    brake_theorems,
+    stop_theorems,
+    surface_theorems,
+    valve_theorems,
+    vehicle_law_theorems,
+)
 
 THEOREMS = (
     *valve_theorems.THEOREMS,
@@ -12,4 +19,5 @@ THEOREMS = (
     *surface_theorems.THEOREMS,
     *stop_theorems.THEOREMS,
     *brake_theorems.THEOREMS,
+    *vehicle_law_theorems.THEOREMS,
 )

@@ -188,6 +188,7 @@ BESIDE_THE_PAPER = {
     "slip_tracking",
     "valve_flow",
     "valve_inversion",
+    "wheel_filter",
 }  # ISO 6358, electro-pneumatic build-up and laws of vehicles, of which the paper prints nothing
 
 

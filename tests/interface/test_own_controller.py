@@ -257,6 +257,23 @@ def test_a_law_of_a_whole_vehicle(wspd, whole):
     assert found["slip_band"] is None
 
 
+def test_sensors_of_ones_own_law(wspd, own, whole):
+    """A law of one wheelset can be given another train speed; one of the vehicle works out its own."""
+    plain, seeing = (
+        json.loads(wspd("simulate", f"{own.name}:Threshold", *FAR, *options, "--json").out)
+        for options in ((), ("--speed-source", "fastest-axle"))
+    )
+    assert plain["speed_error"] is None
+    assert seeing["speed_error"] > 0.0
+    for name, options in (
+        (f"{whole.name}:Fastest", ("--speed-source", "told")),
+        (f"{own.name}:Threshold", ("--reference", "falling")),
+    ):
+        outcome = wspd("simulate", name, *FAR, *options)
+        assert outcome.code == 2
+        assert "has its own sensors and reference" in outcome.err
+
+
 @pytest.mark.parametrize("fault", FAULTS_OF_WHOLE)
 def test_what_is_no_law_of_a_vehicle(fault, wspd, whole):
     (old, new), said = FAULTS_OF_WHOLE[fault]

@@ -182,3 +182,13 @@ def test_a_killed_search_goes_on_and_ends_as_a_whole_one(wspd, spec, tmp_path):
     assert wspd("design", spec.name, "-o", "made.toml").code == 0
     assert {name: (tmp_path / name).read_bytes() for name in whole} == whole
     assert not journal.exists()
+
+
+def test_rules_alone_make_a_design_that_knows_its_requirements(wspd, spec, tmp_path):
+    outcome = wspd("design", spec.name, "--rules-only", "-o", "made.toml")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["made.toml", "spec.toml"]
+    made = read_design(tmp_path / "made.toml")
+    assert made.requirements.held_out.seed == 9000
+    assert not any("searched" in gain.why for gain in made.gains)
+    assert "--rules-only goes with a specification" in wspd("design", "--rules-only", "-o", "b.toml").err

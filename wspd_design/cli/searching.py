@@ -61,24 +61,27 @@ def search_design(task: Task, start: Design, name: str, output: Path, *, keep: b
     from wspd_design.design.finding import explained, space_of
 
     def write(found: "Found") -> None:
-        made = explained(found, start, name)
-        wanted = task.requirements
-        made = replace(
-            made,
-            vehicle_file=seen_from(output, task.vehicle),
-            rail_file=seen_from(output, task.design_rail),
-            requirements=replace(
-                wanted,
-                rails=tuple(seen_from(output, rail) or rail for rail in wanted.rails),
-                stable_within=tuple(
-                    (seen_from(output, rail) or rail, share) for rail, share in wanted.stable_within
-                ),
-            ),
-        )
-        write_design(made, output)
+        write_design(to_the_files(explained(found, start, name), task, output), output)
 
     space = space_of(start, load_vehicle(task.vehicle), load_rail(task.design_rail))
     return search_and_write(task, space, name, output, write, keep=keep, force=force, controller=str(output))
+
+
+def to_the_files(made: Design, task: Task, output: Path) -> Design:
+    """Return a design with the requirements of its task, files as they are seen from the folder of the design."""
+    wanted = task.requirements
+    return replace(
+        made,
+        vehicle_file=seen_from(output, task.vehicle),
+        rail_file=seen_from(output, task.design_rail),
+        requirements=replace(
+            wanted,
+            rails=tuple(seen_from(output, rail) or rail for rail in wanted.rails),
+            stable_within=tuple(
+                (seen_from(output, rail) or rail, share) for rail, share in wanted.stable_within
+            ),
+        ),
+    )
 
 
 def search_and_write(

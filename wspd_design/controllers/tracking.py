@@ -11,6 +11,8 @@ from wspd_design.controllers.wheel_law import WheelView
 from wspd_design.model.generated import slip_tracking
 from wspd_design.model.number import Number, maximum, minimum, where
 
+_LARGEST_BAND = 0.5  # of the torque that brakes
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackingGains(ProtectionGains):
@@ -57,7 +59,9 @@ class Tracking:
         # The torque J k e belongs to an error e: where the desired sliding speed is low, so must be the dead band.
         sliding = maximum(view.rolling_speed - view.desired_speed, 0.0)
         of_slip = self.dead_band_share * sliding * self.wheelset_inertia * self.approach_rate
-        dead_band = minimum(self.dead_band, of_slip)
+        # On a poor rail all torque is little: a band about the target that contains what brakes now would hold a wheel
+        # that locks.
+        dead_band = minimum(minimum(self.dead_band, of_slip), _LARGEST_BAND * view.torque)
         return self.valve.command(view.torque, target, view.available, dead_band, view.full_torque)
 
     def free(self, view: WheelView, target: Number, error: Number) -> Number:

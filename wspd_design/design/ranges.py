@@ -80,6 +80,9 @@ _TRACKING_RANGES = {
         low=0.0, high=1.2, log=False, why="from the sample to the next one and its dead time"
     ),
     "dead_band": _factor(0.1, 4.0, "from valves that hardly rest to those that rest most of the time"),
+    "least_pulse": SearchRange(
+        low=0.0, high=0.015, log=False, why="from every pulse to those of three quarters of a sample of 20 ms"
+    ),
     "dead_band_share": _factor(0.1, 4.0, "as the dead band"),
 }
 _LAYER = _factor(0.2, 5.0, "a factor 5 on both sides of the rule")

@@ -14,7 +14,7 @@ from wspd_design.exchange.version import program_version
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.law_memory import reference_range
-from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.records import Fault, Scenario
 
 if TYPE_CHECKING:
     from wspd_design.analysis.brake_sheet import BrakeSheet
@@ -106,12 +106,15 @@ def scenario_object(scenario: Scenario, *, dead_time: float, shortest_pulse: flo
         "accelerometer_bias_m_s2": sensing.accelerometer_bias,
         "accelerometer_noise_m_s2": sensing.accelerometer_noise,
         "radius_errors": list(sensing.radius_errors),
-        "faults": [
-            {"axle": fault.axle, "kind": fault.kind, "since_s": fault.since} for fault in scenario.faults
-        ],
+        "faults": [fault_object(each) for each in scenario.faults],
         "dead_time_s": dead_time,
         "shortest_pulse_s": shortest_pulse,
     }
+
+
+def fault_object(fault: Fault) -> dict[str, Any]:
+    """Return what fails at a wheelset."""
+    return {"axle": fault.axle, "kind": fault.kind, "since_s": fault.since}
 
 
 def check_object(certificate: Certificate) -> dict[str, Any]:

@@ -15,7 +15,8 @@ from wspd_design.exchange.common_keys import (
     nullable,
 )
 from wspd_design.exchange.forms import Form, Key
-from wspd_design.exchange.stop_forms import STOP
+from wspd_design.exchange.search_forms import JUDGED
+from wspd_design.exchange.stop_forms import FAULT, STOP
 
 LINEARIZATION_POINT = Form(
     name="linearization_point",
@@ -170,6 +171,25 @@ PROVENANCE = Form(
         Key(name="input_hash", kind="text", meaning="SHA-256 of design, vehicle, rail and scenario"),
     ),
 )
+FAULTED_STOP = Form(
+    name="faulted_stop",
+    keys=(
+        Key(name="fault", kind=FAULT, nullable=True, meaning="null for the stop on patches"),
+        Key(name="stopped", kind="flag", meaning="whether the train stopped"),
+        Key(name="distance_m", kind="number", meaning="to standstill or to the time limit"),
+        Key(
+            name="longest_locks_s",
+            kind="number",
+            many=ANY,
+            meaning="of each wheelset above 10 km/h, front first",
+        ),
+        Key(
+            name="holds",
+            kind="flag",
+            meaning="whether it stopped and no wheel that a law could keep turning was locked for more than 0.5 s",
+        ),
+    ),
+)
 REPORT = Form(
     name="report",
     schema="wspd-report/2",
@@ -186,7 +206,19 @@ REPORT = Form(
         Key(name="brake", kind=BRAKE, meaning="while no wheel slides, by mean values"),
         Key(name="linearizations", kind=LINEARIZATION_POINT, many=ANY, meaning="over speed"),
         Key(name="checks", kind=CHECK, many=ANY, meaning="one object for each claim"),
+        Key(
+            name="requirements",
+            kind=JUDGED,
+            many=ANY,
+            meaning="what the design reaches of them on held-out stops; empty for a design without",
+        ),
         Key(name="stops", kind=STOP, many=(1, None), meaning="the design's own stop first"),
+        Key(
+            name="faulted_stops",
+            kind=FAULTED_STOP,
+            many=ANY,
+            meaning="of the design: each fault at the axle where it does most harm, and patches",
+        ),
         Key(name="parameters", kind=PARAMETERS, many=ANY, meaning="each set that was used"),
         VERSION_KEY,
     ),

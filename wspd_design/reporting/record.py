@@ -7,6 +7,7 @@ from wspd_design.exchange.objects import (
     brake_object,
     check_object,
     design_object,
+    fault_object,
     linearization_point_object,
     parameters_object,
     stop_object,
@@ -15,6 +16,7 @@ from wspd_design.exchange.plain import finite
 from wspd_design.exchange.study_forms import REPORT
 from wspd_design.exchange.version import program_version
 from wspd_design.studies.dossier import Dossier
+from wspd_design.studies.faults import FaultedStop, Robustness
 
 
 def report_record(dossier: Dossier) -> dict[str, Any]:
@@ -41,11 +43,27 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
             "brake": brake_object(dossier.brake),
             "linearizations": [linearization_point_object(point) for point in dossier.linearizations],
             "checks": [check_object(each) for each in dossier.certificates],
+            "requirements": []
+            if dossier.judgment is None
+            else [asdict(each) for each in dossier.judgment.judged],
             "stops": [
                 stop_object(trial, dossier.scenario, slip_reference=reference) for trial in dossier.trials
             ],
+            "faulted_stops": []
+            if dossier.robustness is None
+            else [_faulted_stop(each, dossier.robustness) for each in dossier.robustness.stops],
             "parameters": [parameters_object(each) for each in sets],
             "version": program_version(),
         }
     )
     return record
+
+
+def _faulted_stop(stop: FaultedStop, found: Robustness) -> dict[str, Any]:
+    return {
+        "fault": None if stop.fault is None else fault_object(stop.fault),
+        "stopped": stop.stopped,
+        "distance_m": stop.distance,
+        "longest_locks_s": list(stop.locks),
+        "holds": found.holds(stop),
+    }

@@ -57,6 +57,11 @@ class Robustness:
     most_adhesion: tuple[float, float]  # N m, that the rail can take from a wheelset, over the judged speeds
 
     @property
+    def stops(self) -> tuple[FaultedStop, ...]:
+        """All of them."""
+        return (*self.faults, *((self.patches,) if self.patches else ()))
+
+    @property
     def fills_lock(self) -> bool:
         """Whether a filled brake locks its wheels on this rail at some judged speed, whatever a law does."""
         return self.full_torque > self.most_adhesion[0]

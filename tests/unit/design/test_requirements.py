@@ -1,7 +1,9 @@
 """Requirements and specifications: read and written without loss, and every fault in one becomes one sentence."""
 
+import re
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -140,6 +142,15 @@ def test_files_are_seen_from_the_specification(read, tmp_path):
     task = read(text.replace('design_rail = "polach-dry"', 'design_rail = "leaves.toml"'))
     assert task.requirements.rails == ("polach-dry", str(tmp_path / "leaves.toml"))
     assert (task.vehicle, task.design_rail) == (str(tmp_path / "train.toml"), str(tmp_path / "leaves.toml"))
+
+
+def test_the_specification_of_the_page_is_whole(read):
+    page = (Path(__file__).parents[3] / "docs" / "design-to-requirements.md").read_text(encoding="utf-8")
+    written, stable = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    task = read(written)
+    assert (task.name, task.requirements.held_out.sets) == ("small", 200)
+    asked = read(written.replace("torque-feedback", "observer-smc") + stable).requirements
+    assert asked.stable_within == (("polach-wet", 1.0), ("polach-dry", 0.5))
 
 
 @pytest.mark.parametrize("name", shipped_specifications())

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 import pytest
 from jsonschema import Draft202012Validator
 
-from tests.unit.reporting.sample_dossier import certificate, sample_dossier, trial
+from tests.unit.reporting.sample_dossier import certificate, faults, judgment, sample_dossier, trial
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.family import designed
 from wspd_design.exchange.files import read_schema
@@ -19,7 +19,7 @@ from wspd_design.reporting.record import report_record
 from wspd_design.reporting.report import report_document, write_report
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.text import Link, plain
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.records import FAULT_KINDS, Ending
 from wspd_design.studies.paper.published import load_table10
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
@@ -36,15 +36,31 @@ def _table(blocks, anchor):
     return next(each for each in blocks if isinstance(each, Table) and each.anchor == anchor)
 
 
-def test_every_check_links_to_a_section_of_its_own(document):
+def test_every_check_that_speaks_about_the_design_links_to_a_section_of_its_own(document):
     number(document)  # refuses a link that leads nowhere
     headings = {each.anchor: each.text for each in document.blocks if isinstance(each, Heading)}
     linked = [part.anchor for part in parts(document.summary) if isinstance(part, Link)]
     assert len(linked) == len(set(linked)) == len(Status)
     for each in sample_dossier().certificates:
+        if each.status is Status.NOT_APPLICABLE:
+            continue
         anchor = f"check-{each.name.replace('_', '-')}"
         assert anchor in linked
         assert headings[anchor] == each.title
+
+
+def test_checks_that_do_not_apply_stand_in_one_table_with_their_reasons():
+    silent = [certificate(name, Status.NOT_APPLICABLE) for name in ("one", "two")]
+    dossier = replace(sample_dossier(()), certificates=(*silent, certificate("three", Status.PROVED)))
+    made = report_document(dossier, DATE)
+    number(made)
+    table = _table(made.blocks, "not-applicable")
+    assert [plain(row[0]) for row in table.rows] == ["one", "two"]
+    assert [plain(row[2]) for row in table.rows] == ["the explanation of one", "the explanation of two"]
+    told = _table(made.summary, "checks").rows
+    assert [plain(row[0]) for row in told] == ["three", "2 more"]
+    assert told[1][2] == "one, two"
+    assert told[1][0][0].anchor == "finding-not-applicable"
 
 
 @pytest.mark.parametrize("law", [family.name for family in designed()])
@@ -211,6 +227,26 @@ def test_programs_read_the_same_numbers(document):
     assert read["stops"][0]["step_check"]["sensitive"] is False
     assert read["stops"][0]["ideal_stop_m"] == 174.25
     assert read["parameters"][0]["entries"][0]["name"] == "mass"
+
+
+def test_the_record_has_what_was_required_and_what_failed():
+    dossier = replace(sample_dossier(), judgment=judgment(), robustness=faults())
+    record = report_record(dossier)
+    Draft202012Validator(read_schema(REPORT.schema)).validate(record)
+    assert [each["requirement"] for each in record["requirements"]] == [
+        "efficiency_mean",
+        "longest_lock",
+        "valve_switches",
+    ]
+    assert [each["met"] for each in record["requirements"]] == [True, True, None]
+    assert [each["fault"] and each["fault"]["kind"] for each in record["faulted_stops"]] == [
+        *FAULT_KINDS,
+        None,
+    ]
+    assert record["faulted_stops"][3]["longest_locks_s"] == [0.0, 9.0, 0.0, 0.02]
+    assert all(each["holds"] for each in record["faulted_stops"])
+    without = report_record(sample_dossier())
+    assert (without["requirements"], without["faulted_stops"]) == ([], [])
 
 
 def test_the_record_has_neither_nan_nor_running_times():

@@ -6,6 +6,7 @@ import pytest
 
 from tests.unit.reporting.sample_dossier import estimating, faults, judgment, sample_dossier
 from wspd_design.controllers.observers.sensors import Sensors
+from wspd_design.design.requirements import Judged
 from wspd_design.reporting.blocks import Cell, Figure, Paragraph, Status, Table
 from wspd_design.reporting.sections.requirements import requirements
 from wspd_design.reporting.sections.robustness import robustness
@@ -39,6 +40,17 @@ def test_limits_and_what_was_reached_stand_side_by_side():
     assert lock[:3] == ["longest lock above 10 km/h", "≤ 0.1 s", "0.2 s"]
     assert switches[1:] == ["–", "12.3 1/s", ""]
     assert [mean[3].status, lock[3].status] == [Status.MET, Status.MISSED]
+
+
+def test_a_certificate_is_proved_and_a_quadratic_function_has_a_number():
+    more = (
+        Judged(requirement="margins", title="margins", limit=None, reached=None, met=False),
+        Judged(requirement="stable_within", title="state left per sample", limit=1.0, reached=0.97, met=True),
+    )
+    made = replace(JUDGED, judgment=replace(JUDGED.judgment, judged=more))
+    proof, stable = _rows(requirements(made))
+    assert (proof[1:3], proof[3].status) == (["proved", "–"], Status.MISSED)
+    assert (stable[1:3], stable[3].status) == (["< 1", "0.97"], Status.MET)
 
 
 def test_the_stops_are_named_with_their_seed_and_what_is_drawn():

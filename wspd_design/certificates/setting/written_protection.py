@@ -27,7 +27,7 @@ POINTS, DOUBLES, DIGITS = (
     1e-9,
 )  # of the field, in doubles, and the difference that rounding may make there
 LEAST = 1e-3  # of the full torque, and in N m
-HALF, CAREFUL = 0.5, 0.85
+HALF, CAREFUL, LARGEST_BAND = 0.5, 0.85, 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,7 +148,7 @@ class WrittenProtection:
         target = tau - inertia * (wanted_rate - pull)
         sliding = maximum(speed / self.of.wheel_radius - wanted_speed, 0.0)
         band = minimum(tracking.dead_band, tracking.dead_band_share * sliding * inertia * rate)
-        return self._towards(torque, target, available, band, full)
+        return self._towards(torque, target, available, minimum(band, LARGEST_BAND * torque), full)
 
     def _towards(
         self, torque: Number, target: Number, available: Number, band: Number, full: Number

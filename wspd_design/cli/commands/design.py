@@ -12,7 +12,7 @@ from wspd_design.cli.exit_codes import REFUTED
 from wspd_design.cli.gains import show_design
 from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
-from wspd_design.cli.searching import SPECIFICATIONS, search_design
+from wspd_design.cli.searching import SPECIFICATIONS, search_design, to_the_files
 from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.controllers.family import designed_family
 from wspd_design.design import selection
@@ -46,6 +46,10 @@ def design(
     speeds: options.SpeedsOption = None,
     sample_time: options.SampleTimeOption = None,
     sensors: SensorOptions,
+    rules_only: Annotated[
+        bool,
+        typer.Option("--rules-only", help="Take the gains of the rules for SPEC, too, and search nothing."),
+    ] = False,
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Design file to write.")
     ] = Path(options.DESIGN_FILE),
@@ -74,8 +78,12 @@ def design(
             raise UserError(
                 f"{extra} is stated by the specification {wanted}; leave it out, or change the file"
             )
-        _search(wanted, output, force=force)
+        _made_to(wanted, output, rules_only=rules_only, force=force)
         return
+    if rules_only:
+        raise UserError(
+            "--rules-only goes with a specification; without one the rules choose all gains anyway"
+        )
     asked = specification(
         CaseOptions(
             slip=slip, speeds=speeds, tolerance=tolerance, sample_time=sample_time, sensors=sensors.words
@@ -91,12 +99,17 @@ def design(
     show_design(made, output, braked, friction)
 
 
-def _search(wanted: str, output: Path, *, force: bool) -> None:
+def _made_to(wanted: str, output: Path, *, rules_only: bool, force: bool) -> None:
     task = read_task(wanted)
     braked, friction = load_vehicle(task.vehicle), load_rail(task.design_rail)
     with progress() as tell:
         tell("choosing the gains to start from")
         start = selection.design_controller(braked, friction, task.specification, law=task.law)
     name = f"{task.law}-{task.name}"
+    if rules_only:
+        made = to_the_files(replace(start, name=name), task, output)
+        write_design(made, output)
+        show_design(made, output, braked, friction)
+        return
     if not search_design(task, start, name, output, keep=True, force=force):
         raise typer.Exit(REFUTED)

@@ -16,11 +16,13 @@ class Wheel(NamedTuple):
     rolls: Number  # 1 while it adheres, so that it shows the train speed
     rim_speed: Number  # m/s, as tracked
     rim_rate: Number  # m/s2, as tracked
+    steady_friction: Number  # N m, friction torque without its noise
+    friction_before: Number  # N m, the same when it was released last
     risen: Number  # m/s, by which it has spun up since it was released
     quiet: Number  # s, for which it has turned as evenly as the train
-    light: Number  # s, for which in addition the rail has turned it with less than usual
+    light: Number  # s, for which in addition its friction torque has fallen as that of its brake does
     idle: Number  # s, for which it has turned it with next to nothing
-    released: Number  # 1 while it is vented to look
+    vented: Number  # 1 while it is vented to look
     held: Number  # s, for which it is still held
 
 
@@ -58,21 +60,26 @@ class Recognition:
         limit = numbers.quiet_share * around.spin_up
         limit = minimum(maximum(limit, numbers.least_quiet), numbers.largest_quiet)
         quiet = abs(against_train) < limit
-        light = numbers.lapse_share * around.usual_torque
+        new = 1.0 - exp(-h / numbers.torque_time)
+        friction = wheel.steady_friction + new * (friction_torque - wheel.steady_friction)
         return wheel._replace(
-            risen=where(wheel.released > _YES, wheel.risen + h * against_train, 0.0),
+            steady_friction=friction,
+            friction_before=where(wheel.vented > _YES, wheel.friction_before, friction),
+            risen=where(wheel.vented > _YES, wheel.risen + h * against_train, 0.0),
             quiet=where(quiet, wheel.quiet + h, 0.0),
-            light=where(quiet * (friction_torque < light), wheel.light + h, 0.0),
-            idle=where(quiet * (friction_torque < self.idle_torque), wheel.idle + h, 0.0),
+            light=where(
+                quiet * (friction < numbers.light_share * wheel.friction_before), wheel.light + h, 0.0
+            ),
+            idle=where(quiet * (friction < self.idle_torque), wheel.idle + h, 0.0),
         )
 
     def found(self, wheel: Wheel, innovation: Number, spread: Number, around: Around) -> Number:
         """Tell whether a wheel that was released, or is idle, adheres now.
 
-        A released wheel that spun up and is quiet has reached the train; so has one that is quiet while the rail turns
-        it with little and that has not fallen behind, as it does where the rail gets worse. Both are believed as far as
-        the train speed can be wrong. A wheel at the slip that the law holds is quiet as well, but neither released nor
-        idle; one whose valve sticks is not light.
+        A released wheel that spun up and is quiet has reached the train. So has one that is quiet while its friction
+        falls with its brake, which that of a sliding wheel does not; where the rail gets worse, the wheel falls behind.
+        Both are believed as far as the train speed can be wrong. A wheel at the slip that the law holds is quiet as
+        well, but neither released nor idle, and the friction of one whose valve sticks does not fall.
 
         Parameters
         ----------
@@ -90,9 +97,10 @@ class Recognition:
         spun_up = (wheel.risen > numbers.rise_share * around.slip_speed) * (
             wheel.quiet > numbers.quiet_time - late
         )
-        light = (wheel.light > numbers.light_time - late) * (wheel.risen > -numbers.rim_noise)
+        fallen = wheel.risen < -around.slip_speed
+        light = (wheel.light > numbers.light_time - late) * (fallen < _YES)
         possible = innovation > -numbers.surprise_gate * sqrt(spread + numbers.rim_noise * numbers.rim_noise)
-        shows = (wheel.released > _YES) * possible * ((spun_up + light) > 0)
+        shows = (wheel.vented > _YES) * possible * ((spun_up + light) > 0)
         return (shows + (wheel.idle > numbers.idle_time - late)) > 0
 
     def adheres(
@@ -141,10 +149,10 @@ class Recognition:
     def after(self, wheel: Wheel, rolls: Number, around: Around) -> Wheel:
         """End a release with a hold once the wheel adheres, or without one after too long."""
         numbers = self.numbers
-        shows = (wheel.released > _YES) * (rolls > _YES)
+        shows = (wheel.vented > _YES) * (rolls > _YES)
         ended = ((rolls > _YES) + (around.clock > numbers.give_up_time)) > 0
         return wheel._replace(
             rolls=rolls,
-            released=where(ended, 0.0, wheel.released),
+            vented=where(ended, 0.0, wheel.vented),
             held=where(shows, numbers.hold_time, maximum(wheel.held - self.sample_time, 0.0)),
         )

@@ -72,7 +72,8 @@ class TrainMotion:
         slopes = [1.0, -h * per_scale, *[0.0] * further]
         if self.grade:
             slopes[-1] = -h
-        noise = [h * density, h * numbers.scale_walk * numbers.scale_walk, *[0.0] * further]
+        walks = (numbers.scale_walk, *(numbers.bias_walk,) * further)
+        noise = [h * density, *(h * walk * walk for walk in walks)]
         speed = maximum(belief.mean[0] + h * self.acceleration(belief, torques), 0.0)
         expected = -self.slowing(belief, torques)
         belief = predicted(belief, speed, slopes, noise)
@@ -113,14 +114,16 @@ class TrainMotion:
     def not_slower(self, belief: Belief, least: Number) -> Belief:
         """Raise the train speed to one that a wheel shows: no wheel of a braking train is faster than the train.
 
-        The scale follows as far as it can be what was wrong. That there is a slip keeps the speed as uncertain as the
-        error was large.
+        The scale follows as far as it can be what was wrong. The wheel may have a slip: the speed stays at least as
+        uncertain as the error was large.
         """
         speed, *others = belief.mean
         raised = maximum(least - speed, 0.0)
         explained = minimum(raised, _SURPRISE * sqrt(belief.spread)) / belief.spread
         mean = [x + belief.between(0, k) * explained for k, x in enumerate(others, start=1)]
-        return Belief((speed + raised, *mean), belief.covariance).with_spread(raised * raised)
+        return Belief((speed + raised, *mean), belief.covariance).with_spread(
+            maximum(raised * raised - belief.spread, 0.0)
+        )
 
 
 def within_limits(belief: Belief) -> Belief:

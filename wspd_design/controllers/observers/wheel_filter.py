@@ -78,7 +78,7 @@ class WheelFilter:
         zero = 0.0 * speed
         rolling = where(seen.demand <= RELEASED_DEMAND, 1.0, 0.0)
         wheels = [
-            Wheel(healthy * rolling, self.vehicle.wheel_radius * wheel_speed, *(zero,) * 7)
+            Wheel(healthy * rolling, self.vehicle.wheel_radius * wheel_speed, *(zero,) * 9)
             for healthy, wheel_speed in zip(seen.healthy, seen.wheel_speeds, strict=True)
         ]
         whole = _Whole(zero, zero, zero, zero, seen.acceleration)
@@ -108,7 +108,7 @@ class WheelFilter:
         estimate = SpeedEstimate(
             belief.mean[0],
             whole.acceleration,
-            tuple(wheel.released for wheel in wheels),
+            tuple(wheel.vented for wheel in wheels),
             tuple(where(wheel.held > 0.0, 1.0, 0.0) for wheel in wheels),
         )
         return self._state(belief, wheels, whole), estimate
@@ -187,6 +187,11 @@ class WheelFilter:
             friction_torque=friction_torque,
             around=around,
         )
+        # A wheel that no longer follows slides, or the train is slower than it is believed to be.
+        doubt = where(
+            wheel.rolls * healthy > rolls + _YES, numbers.doubt_share * innovation * innovation, 0.0
+        )
+        belief = belief.with_spread(doubt)
         belief = self.motion.not_slower(belief, healthy * (rim - numbers.bound_gate * numbers.rim_noise))
         # Near its limit a rail that is not known lets a wheel creep more; that is wrong alike on all wheels, and for
         # longer than a sample: as noise it is larger.
@@ -210,12 +215,12 @@ class WheelFilter:
     ) -> tuple[list[Wheel], _Whole]:
         """Release the next wheelset if the speed is too uncertain or the brake lost, and nobody shows the speed."""
         numbers = self.numbers
-        looked = total([wheel.released for wheel in before]) > _YES
-        looking = total([wheel.released for wheel in wheels]) > _YES
+        looked = total([wheel.vented for wheel in before]) > _YES
+        looking = total([wheel.vented for wheel in wheels]) > _YES
         clock = where(looked * (looking < _YES), 0.0, whole.clock + self.sample_time)
         uncertain = sqrt(belief.spread) > numbers.release_share * around.slip_speed
         lost = torque < numbers.lost_share * around.usual_torque
-        nobody = total([wheel.rolls + wheel.released + wheel.held for wheel in wheels]) <= 0.0
+        nobody = total([wheel.rolls + wheel.vented + wheel.held for wheel in wheels]) <= 0.0
         due = (
             ((uncertain + lost) > 0)
             * nobody
@@ -224,9 +229,7 @@ class WheelFilter:
         )
         released = [
             wheel._replace(
-                released=where(
-                    due * (abs(whole.turn - float(axle)) < _YES), seen.healthy[axle], wheel.released
-                )
+                vented=where(due * (abs(whole.turn - float(axle)) < _YES), seen.healthy[axle], wheel.vented)
             )
             for axle, wheel in enumerate(wheels)
         ]

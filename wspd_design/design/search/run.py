@@ -1,5 +1,6 @@
 """One search: a method, generations of points, their scores on the same sets, and the best point that holds."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -188,9 +189,9 @@ def best(tried: Sequence[Evaluation], aim: Aim) -> Evaluation:
 def front(tried: Sequence[Evaluation]) -> list[Evaluation]:
     """Return the points that no other one beats in objective, switches and air at once, by their objective.
 
-    Points at which a train does not stop are left out.
+    Points at which a train does not stop, or that gave what is not a number, are left out.
     """
-    moving = [each for each in tried if each.score.unstopped == 0.0]
+    moving = [each for each in tried if each.score.unstopped == 0.0 and math.isfinite(each.score.objective)]
     return sorted(
         (each for each in moving if not any(_beats(other, each) for other in moving)),
         key=lambda each: each.score.objective,

@@ -24,7 +24,7 @@ class Score:
 
     objective: float  # -, mean excess of the distance and WORST_WEIGHT times that of the worst sixth
     unstopped: float  # -, share of trains that did not come to a standstill
-    reached: Mapping[str, float]  # by criterion
+    reached: Mapping[str, float]  # by criterion; without those that the law has no figure for
 
 
 def score(figures: "Mapping[str, Array]") -> Score:
@@ -40,7 +40,9 @@ def score(figures: "Mapping[str, Array]") -> Score:
     return Score(
         objective=objective(figures["excess"]),
         unstopped=1.0 - float(figures["stopped"].mean()),
-        reached={name: value for name, value in reached.items() if value is not None},
+        reached={
+            name: value for name, value in reached.items() if value is not None and math.isfinite(value)
+        },
     )
 
 

@@ -1,6 +1,7 @@
 """Every check in full: claim, finding, margin, worst point, hypotheses, assumptions, method and curves."""
 
 import shlex
+from collections.abc import Sequence
 from functools import partial
 
 from wspd_design.certificates.kernel.file import certificate_text, file_name
@@ -62,6 +63,11 @@ def check_anchor(certificate: Certificate) -> str:
     return f"check-{certificate.name.replace('_', '-')}"
 
 
+def finding_anchor(status: Status) -> str:
+    """Return the anchor of the checks with a finding."""
+    return f"finding-{status.word.replace(' ', '-')}"
+
+
 def certificate_files(dossier: Dossier) -> tuple[Attachment, ...]:
     """Return what ``wspd check`` can decide about, proofs and witnesses, each as the file that it reads."""
     return tuple(
@@ -95,12 +101,29 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
         if group:
             word = status.word.capitalize()
             found += [
-                Heading(text=word, anchor=f"finding-{word.lower().replace(' ', '-')}", level=2),
+                Heading(text=word, anchor=finding_anchor(status), level=2),
                 Paragraph(text=f"{word}: {meaning}."),
             ]
+        if status is Status.NOT_APPLICABLE:
+            found += [_not_applicable(group)] if group else []
+            continue
         for certificate in group:
             found += _check(certificate)
     return tuple(found)
+
+
+def _not_applicable(group: Sequence[Certificate]) -> Table:
+    """List the checks that do not speak about this design, with the reasons."""
+    return build(
+        group,
+        (
+            ColumnOf(title="Check", read=lambda each: each.name),
+            ColumnOf(title="What is checked", read=lambda each: each.title),
+            ColumnOf(title="Why it does not speak about this design", read=lambda each: each.explanation),
+        ),
+        caption="Checks that say nothing here.",
+        anchor="not-applicable",
+    )
 
 
 def _replay(dossier: Dossier) -> tuple[Block, ...]:
@@ -146,12 +169,10 @@ def _check(certificate: Certificate) -> list[Block]:
                 anchor=f"{anchor}-hypotheses",
             )
         )
-    if certificate.status is not Finding.NOT_APPLICABLE:
-        found.append(Definitions(rows=_details(certificate)))
+    found.append(Definitions(rows=_details(certificate)))
     if certificate.proved:
         found.append(_proofs(certificate))
-    if certificate.status is not Finding.NOT_APPLICABLE:
-        found += _figures(certificate, anchor)
+    found += _figures(certificate, anchor)
     return found
 
 

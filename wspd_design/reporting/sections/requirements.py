@@ -64,10 +64,10 @@ def quantity(judged: Judged, value: float | None) -> str:
 
 def _limit(judged: Judged) -> str:
     rule = CRITERIA.get(judged.requirement)
-    if rule is None:
-        return "proved"  # a certificate
     if judged.limit is None:
-        return numbers.NONE
+        return "proved" if rule is None else numbers.NONE  # a certificate has no number
+    if rule is None:
+        return f"< {quantity(judged, judged.limit)}"
     return f"{'≥' if rule.at_least else '≤'} {quantity(judged, judged.limit)}"
 
 

@@ -9,6 +9,9 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import LONGEST_LOCK, PATCHES, SINCE, FaultedStop, Robustness
 
+ROBUSTNESS = "robustness"
+"""Anchor of the section."""
+
 _FAULTS = {
     "sensor-lost": "speed sensor lost",
     "valve-holds": "valve stuck, holds",
@@ -25,7 +28,7 @@ def robustness(dossier: Dossier) -> tuple[Block, ...]:
     judged = numbers.significant(JUDGING_SPEED * KMH)
     rails = rails_of(dossier.scenario)
     return (
-        Heading(text="Faults and patches", anchor="robustness"),
+        Heading(text="Faults and patches", anchor=ROBUSTNESS),
         Paragraph(
             text=f"The same design, unchanged, where one wheelset has a fault from {SINCE:g} s on; of the axles the "
             f"one where it does most harm. Stops on {rails} without a fault take "
@@ -38,11 +41,10 @@ def robustness(dossier: Dossier) -> tuple[Block, ...]:
 
 
 def _table(found: Robustness, judged: str) -> Table:
-    stops = (*found.faults, *((found.patches,) if found.patches else ()))
     return build(
-        stops,
+        found.stops,
         (
-            ColumnOf(title="What fails", read=_what),
+            ColumnOf(title="What fails", read=what_fails),
             ColumnOf(title="Axle", read=lambda each: str(each.fault.axle) if each.fault else numbers.NONE),
             ColumnOf(title="Distance", unit="m", decimals=1, read=lambda each: each.distance),
             ColumnOf(
@@ -66,7 +68,8 @@ def _table(found: Robustness, judged: str) -> Table:
     )
 
 
-def _what(stop: FaultedStop) -> str:
+def what_fails(stop: FaultedStop) -> str:
+    """Name what is not as it was designed for."""
     return f"rail {PATCHES}" if stop.fault is None else _FAULTS[stop.fault.kind]
 
 

@@ -2,6 +2,7 @@
 
 import math
 from collections import Counter
+from dataclasses import replace
 
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import rounded_down
@@ -10,8 +11,9 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
 from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.sections.checks import check_anchor, is_bad_news, status_of
+from wspd_design.reporting.sections.checks import check_anchor, finding_anchor, is_bad_news, status_of
 from wspd_design.reporting.sections.requirements import REQUIREMENTS, stops_of
+from wspd_design.reporting.sections.robustness import ROBUSTNESS, what_fails
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
@@ -20,6 +22,7 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
+from wspd_design.studies.faults import Robustness
 from wspd_design.studies.judgment import Judgment
 
 COUNTED = {
@@ -68,6 +71,7 @@ def verdict(dossier: Dossier) -> Verdict:
             ", and no check that speaks about it is refuted. That is shown by simulated stops, not proved",
             *_not_shown(certificates),
             ". ",
+            *_fails_with(dossier.robustness),
         )
     elif named := _of(certificates, Status.UNDECIDED):
         status = Status.UNDECIDED
@@ -115,6 +119,15 @@ def _not_shown(certificates: tuple[Certificate, ...]) -> tuple[Inline, ...]:
     if sampled:
         said += ["; sampled only: ", *_links(sampled)]
     return tuple(said)
+
+
+def _fails_with(robustness: Robustness | None) -> tuple[Inline, ...]:
+    """Name the faults with which an accepted design does not hold."""
+    failing = [] if robustness is None else [each for each in robustness.stops if not robustness.holds(each)]
+    if not failing:
+        return ()
+    named = numbers.listing([what_fails(each) for each in failing])
+    return ("It does not hold ", Link(anchor=ROBUSTNESS, text="with a fault"), f": {named}. ")
 
 
 def _of(certificates: tuple[Certificate, ...], *found: Status) -> list[Certificate]:
@@ -249,8 +262,9 @@ def _yardsticks(dossier: Dossier) -> Text:
 
 
 def _checks(certificates: tuple[Certificate, ...]) -> Table:
-    return build(
-        certificates,
+    silent = _of(certificates, Status.NOT_APPLICABLE)
+    table = build(
+        [each for each in certificates if each not in silent],
         (
             ColumnOf(title="Check", read=lambda each: (Link(anchor=check_anchor(each), text=each.name),)),
             ColumnOf(title="Finding", read=lambda each: Cell(status=status_of(each))),
@@ -261,3 +275,9 @@ def _checks(certificates: tuple[Certificate, ...]) -> Table:
         "only.",
         anchor="checks",
     )
+    if not silent:
+        return table
+    link = Link(anchor=finding_anchor(Status.NOT_APPLICABLE), text=f"{len(silent)} more")
+    names = ", ".join(each.name for each in silent)
+    row = ((link,), Cell(status=Status.NOT_APPLICABLE), names, numbers.NONE)
+    return replace(table, rows=(*table.rows, row))

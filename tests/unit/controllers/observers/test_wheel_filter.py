@@ -10,6 +10,9 @@ from wspd_design.controllers.observers.selection import speed_source
 from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.controllers.observers.wheel_filter import WheelFilter
 from wspd_design.controllers.protocol import VehicleMeasurement
+from wspd_design.design.records import Specification
+from wspd_design.design.selection import named_design
+from wspd_design.parameters.loading import load_rail
 
 PERIOD, RADIUS, SLIP = 0.02, 0.55, 0.03
 
@@ -198,3 +201,10 @@ def test_traced_filter_computes_what_python_does(source):
     train.run(8.0)
     assert compared == 400
     assert train.released()
+
+
+def test_names_of_the_filter_are_not_those_of_the_protection_around_it(er24pc):
+    rail = load_rail("polach-wet")
+    sensors = Sensors(speed="wheels", accelerometer=True, grade=True)
+    law = named_design("observer-smc", er24pc, rail, Specification(sensors=sensors)).build(er24pc, rail)
+    assert len(set(law.memory)) == len(law.memory)

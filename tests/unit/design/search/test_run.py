@@ -136,6 +136,7 @@ def test_not_a_number_is_never_chosen(bowl, tmp_path, monkeypatch):
     tried = bowl(tmp_path / "journal")
     assert sum(math.isnan(each.score.objective) for each in tried) > 30
     assert best(tried, Aim(limits=())).score.objective < 0.02
+    assert not any(math.isnan(each.score.objective) for each in front(tried))
 
 
 @pytest.mark.parametrize("left", [0, 1, 7, 8, 50])

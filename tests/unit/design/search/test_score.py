@@ -55,7 +55,9 @@ def test_slips_that_never_reach_their_reference_have_no_band():
     one, none = np.array([0.1, np.nan, 0.05]), np.full(3, np.nan)
     assert score(figures(slip_band_1=one, slip_band_2=none)).reached["slip_band"] == 0.1
     assert "slip_band" not in score(figures(slip_band_1=none)).reached
-    assert math.isnan(score(figures(speed_error=one)).reached["speed_error"])  # that one must be there
+    missing = score(figures(speed_error=one)).reached  # that one must be there in every stop
+    assert "speed_error" not in missing
+    assert judged_by((Limit(criterion="speed_error", value=0.5),), missing)[-1].met is False
 
 
 def test_objective_by_hand():
