@@ -59,7 +59,8 @@ THEOREMS = (
         statement="If the friction torque is known, the torque tau - J (w_r' - y) makes the error of the wheel speed "
         "fall at the rate y. The valve moves the error in its second derivative and e' + k e in the first. On the "
         "curve y^2 = 2 s (e - s/(2 k^2)) the pull falls evenly with the slew s, and meets y = k e with the same slope. "
-        "With y = k_1 abs(e)^(1/2) sgn(e) + z, z' = k_2 sgn(e), a quadratic function of (abs(e)^(1/2) sgn(e), z) falls. "
+        "With y = k_1 abs(e)^(1/2) sgn(e) + z, z' = k_2 sgn(e), a quadratic function of (abs(e)^(1/2) sgn(e), z) "
+        "falls. "
         "With y = k e + W sgn(e + k int e dt) the surface is reached against disturbances below W.",
         hypotheses=(
             "J e' = tau - T - J w_r', the torque T being that which is asked for",

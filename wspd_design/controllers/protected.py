@@ -1,5 +1,6 @@
 """Protections of vehicles, put together from what a law is built from."""
 
+import math
 from collections.abc import Callable
 
 from wspd_design.controllers.given import Given
@@ -15,8 +16,9 @@ from wspd_design.controllers.wheel_law import OneWheelset, WheelLaw
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 
-OBSERVER_RATE = 30.0
-"""Rate of the observer of the friction torque where no law states one [1/s]."""
+OBSERVER_NOISE = 10.0
+"""Torque over inertia that noise of 1 rad/s of the wheel speed moves the observed friction by [1/s]."""
+FASTEST_OBSERVER = 45.0  # 1/s, faster than friction and valve change
 _SPEED = 10.0  # m/s, at which a controller is asked how much it remembers
 _SHARED = 2  # wheelsets with a brake that a search compares
 _SLIP = 0.14  # the paper's, of controllers that do not say which slip they hold
@@ -118,6 +120,16 @@ def protected(law: Controller, vehicle: Vehicle, sensors: Sensors) -> Protection
         core=OneWheelset(law=law, states=len(law.start(seen))),
         valve=valve,
         pressure_sensors=sensors.pressures,
-        observer_rate=OBSERVER_RATE,
+        observer_rate=observer_rate(law.sample_time),
         cut_out_speed=0.0,
     )
+
+
+def observer_rate(sample_time: float) -> float:
+    """Rate of the observer of the friction torque that passes on as much noise at every sample time [1/s].
+
+    Noise of the wheel speed moves the observed torque by (1 - theta)^2 J/h, theta = exp(-rate h).
+    """
+    left = 1.0 - math.sqrt(min(OBSERVER_NOISE * sample_time, 1.0))
+    slowest = math.exp(-FASTEST_OBSERVER * sample_time)
+    return -math.log(max(left, slowest)) / sample_time

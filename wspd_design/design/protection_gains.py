@@ -4,7 +4,7 @@ The slip that is held decides most: a reference that falls as 1/sqrt(v) runs bes
 known here.
 """
 
-from wspd_design.controllers.protected import OBSERVER_RATE
+from wspd_design.controllers.protected import OBSERVER_NOISE, observer_rate
 from wspd_design.design.records import Gain, Specification
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH
@@ -13,6 +13,10 @@ from wspd_design.simulation.peak import peak_adhesion
 UNKNOWN_RAIL = (
     0.16  # -, slip at 1 m/s between the peaks of the rails known here, on the side of the small slips
 )
+ESTIMATED_SPEED = (
+    0.18  # -, likewise for a train speed from the wheels: where it is a little high, slip is missing
+)
+SEARCH_START = 0.15  # -, likewise where it is searched for: to grow costs less than to fall back
 LARGEST_SLIP = 0.35  # -
 CUT_OUT = 5.0 / KMH  # m/s
 SEEKING_AMPLITUDE, SEEKING_GAIN, SEEKING_BIAS = 0.1, 3.0, 0.0
@@ -33,13 +37,16 @@ def protection_gains(vehicle: Vehicle, rail: Rail, specification: Specification)
         Ranges and reference.
     """
     brake = vehicle.brake
+    searched, estimated = specification.reference == "seeking", specification.sensors.speed == "wheels"
+    slip = SEARCH_START if searched else ESTIMATED_SPEED if estimated else UNKNOWN_RAIL
     return (
         Gain(
             name="falling_slip",
-            value=UNKNOWN_RAIL,
+            value=slip,
             unit="-",
-            why=f"c of c/sqrt(v) with v in m/s: the peaks of the known rails lie at c = 0.1 to 0.32; {UNKNOWN_RAIL:g} "
-            "loses least over all of them, since beyond a peak friction falls and below it nothing is lost but slip",
+            why=f"c of c/sqrt(v) with v in m/s: the peaks of the known rails lie at c = 0.1 to 0.32; {slip:g} loses "
+            + ("least while the search for the peak begins" if searched else "least over all of them")
+            + (" with a train speed from the wheels, whose error counts as slip" if estimated else ""),
         ),
         Gain(
             name="largest_slip",
@@ -48,13 +55,14 @@ def protection_gains(vehicle: Vehicle, rail: Rail, specification: Specification)
             why="limit of c/sqrt(v), which has none at standstill",
         ),
         *(_peak(vehicle, rail, specification) if specification.reference == "peak" else ()),
-        *(_seeking() if specification.reference == "seeking" else ()),
+        *(_seeking() if searched else ()),
         Gain(
             name="observer_rate",
-            value=OBSERVER_RATE,
+            value=observer_rate(specification.sample_time),
             unit="1/s",
-            why=f"w_o = {OBSERVER_RATE:g} 1/s: friction is followed within {1e3 / OBSERVER_RATE:.0f} ms, faster than "
-            "the approach; a faster observer passes on the noise of the wheel speed",
+            why=f"w_o with (1 - exp(-w_o h))^2/h = {OBSERVER_NOISE:g} 1/s, but no faster than friction: as much "
+            "noise of the wheel speed in the friction torque at every sample time, "
+            f"h = {specification.sample_time:g} s",
         ),
         Gain(
             name="least_pulse",

@@ -13,9 +13,7 @@ from wspd_design.simulation.peak import peak_adhesion
 
 LAG_PART = 6.0  # part of the lag of the valve that the approach takes longer than a sample
 AHEAD = 0.5  # -, a command acts in the middle of its sample
-TIME_SHARE = (
-    0.6  # of the nominal valve times: the fastest valve that full inversion does not drive beyond its target
-)
+TIME_SHARE, TIME_SHARE_RATE, LARGEST_TIME_SHARE = 0.55, 2.5, 0.8  # of the nominal valve times: -, 1/s, -
 DEAD_BAND_SHARE = 0.03  # of the full torque
 DEAD_BAND_SLIP_SHARE = 0.2  # of the desired slip
 INTEGRAL_SHARE = 0.5
@@ -42,14 +40,16 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
     brake, period = vehicle.brake, specification.sample_time
     lag = max(brake.fill_time, brake.vent_time)
     rate = 1.0 / (period + lag / LAG_PART)
+    share = min(TIME_SHARE + TIME_SHARE_RATE * period, LARGEST_TIME_SHARE)
     return (
         *protection_gains(vehicle, rail, specification),
         Gain(
             name="valve_time_share",
-            value=TIME_SHARE,
+            value=share,
             unit="-",
-            why=f"the inversion takes {TIME_SHARE:g} of the nominal valve times: a valve that is faster than the "
-            "nominal one by so much does not go beyond the wanted torque",
+            why=f"the inversion takes {share:.2g} of the nominal valve times: a valve that is so much faster than "
+            "the nominal one does not go beyond the wanted torque; more of it where a long sample makes each part of "
+            "the way count",
         ),
         Gain(
             name="approach_rate",
