@@ -15,7 +15,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 
 # What a vehicle without a radar has: pulse wheels whose periods are timed, and an accelerometer that is not exact.
-SENSING := --pulses 100 --period-timing --accelerometer-noise "0.05 m/s2" --accelerometer-bias "0.05 m/s2"
+SENSING := --pulses 100 --period-timing --accelerometer-noise "0.05 m/s2"
 PROTECTION := reports/protection-polach-wet
 
 .PHONY: demo demo-paper demo-protection test check derive reports wheels bench clean
