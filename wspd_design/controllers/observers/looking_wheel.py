@@ -94,9 +94,9 @@ class Recognition:
         """
         numbers = self.numbers
         late = 0.5 * self.sample_time  # times are sums of samples
-        spun_up = (wheel.risen > numbers.rise_share * around.slip_speed) * (
-            wheel.quiet > numbers.quiet_time - late
-        )
+        risen = wheel.risen > numbers.rise_share * around.slip_speed
+        quiet_again = (wheel.quiet > numbers.quiet_time - late) * (wheel.quiet < around.clock - late)
+        spun_up = risen * quiet_again
         fallen = wheel.risen < -around.slip_speed
         light = (wheel.light > numbers.light_time - late) * (fallen < _YES)
         possible = innovation > -numbers.surprise_gate * sqrt(spread + numbers.rim_noise * numbers.rim_noise)

@@ -39,7 +39,7 @@ class WheelFilterNumbers:
     rim_rate: float = 15.0  # 1/s, of the tracking of the rims
     quiet_share: float = 0.2  # of the acceleration with which a free wheel spins up: quiet below it
     least_quiet: float = 0.3  # m/s2, at least, since noise is not quieter
-    largest_quiet: float = 2.5  # m/s2, at most
+    largest_quiet: float = 1.2  # m/s2, at most
     quiet_time: float = 0.06  # s, for which it is quiet after it spun up
     rise_share: float = 0.35  # of the slip speed, by which it spun up
     light_share: float = 0.5  # of its friction torque when it was released, below which a wheel is light
@@ -72,18 +72,19 @@ def numbers_for(sample_time: float, sensors: Sensors) -> WheelFilterNumbers:
         What the vehicle has.
     """
     slow = sample_time > 0.05  # few samples: steadier tracking, longer looks
-    # An accelerometer leaves fewer looks to pay for; a long sample makes each of them dearer.
-    cheap, dear = (0.3, 0.35) if sensors.accelerometer else (0.4, 0.5)
+    # An accelerometer leaves fewer looks to pay for.
+    quick, late = (0.35, 0.4) if sensors.accelerometer else (0.55, 0.5)
     # Without one the scale of the torques decides, which only wheels can teach: they have to be trusted more, and until
     # a look has confirmed what they say, the scale less.
     alone = not sensors.accelerometer
     return WheelFilterNumbers(
-        release_share=dear if slow else cheap,
+        release_share=late if slow else quick,
         scale_deviation=0.3 if alone else 0.2,
         unknown_creep=0.0005 if alone else 0.002,
         doubt_share=0.5 if alone else 0.0,
-        rim_rate=8.0 if slow else 15.0,
+        rim_rate=12.0 if slow else 15.0,
+        largest_quiet=1.0 if slow else 1.2,
         hold_time=0.1 if slow else 0.06,
-        light_time=max(0.2, 4.0 * sample_time),  # noise of the friction torque alone does not last so long
+        light_time=max(0.2, 3.0 * sample_time),  # noise of the friction torque alone does not last so long
         scale_walk=0.03 if sensors.pressures else 0.05,  # a model of the valve is wrong by more than a scale
     )
