@@ -76,6 +76,10 @@ def test_every_parameter_name_is_there(made, html):
 
 def test_every_check_leads_to_its_section(made, html):
     for each in made.certificates:
+        if each.status is Status.NOT_APPLICABLE:
+            assert f'<td class="left">{each.name}</td>' in html
+            assert 'href="#finding-not-applicable"' in html
+            continue
         anchor = f"check-{each.name.replace('_', '-')}"
         assert f'href="#{anchor}">{each.name}</a>' in html
         assert f'id="{anchor}"' in html
