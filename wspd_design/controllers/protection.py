@@ -24,6 +24,7 @@ from wspd_design.model.slip import slip_ratio
 _YES = 0.5  # flags are above it
 _NEAR = 0.5  # of the slip, within which a wheel holds it
 _CAREFUL = 0.85  # of the least torque of the others: loads and friction differ from wheelset to wheelset
+_HELD_SLOWING = 0.05  # m/s2, least deceleration with which a valve is held at low speed
 _FAR = 0.5  # slip beyond which a wheel is let go at low speed, too, before it locks
 
 
@@ -244,7 +245,8 @@ class Protection:
 
     def _at_low_speed(self, view: WheelView, command: Command) -> Command:
         """Hold, and let only a wheel go that slides far: at low speed neither slip nor wheel speed can be trusted."""
-        slow = view.speed < self.cut_out_speed
+        # What is held has to brake: a train that came to that speed with empty cylinders would run on down a grade.
+        slow = (view.speed < self.cut_out_speed) * (view.acceleration < -_HELD_SLOWING)
         slides_far = self.wheel_radius * view.wheel_speed < (1.0 - _FAR) * view.speed
         return Command(
             fill=where(slow, 0.0, command.fill),

@@ -116,11 +116,19 @@ def test_at_low_speed_the_valves_hold_and_a_wheel_that_slides_far_is_let_go(er24
         (3.0, (0.0,) * 4, None),
     ):
         now = braking(er24pc, slips, speed=speed)
-        _, commands = made.step(made.start(now), now)
+        before = now if expected is None else braking(er24pc, slips, speed=speed + 0.3)
+        _, commands = made.step(made.start(before), now)
         if expected is None:
             assert all(command.fill > 0.0 for command in commands)
         else:
             assert [(command.fill, command.vent) for command in commands] == expected
+
+
+def test_a_slow_train_that_is_not_braked_is_braked_again(er24pc):
+    made = protection(er24pc)
+    now = braking(er24pc, (0.0,) * 4, speed=1.0, share=0.0)  # empty cylinders: a grade would keep it running
+    _, commands = made.step(made.start(now), now)
+    assert all(command.fill > 0.0 for command in commands)
 
 
 @pytest.mark.parametrize("pressures", [True, False])
