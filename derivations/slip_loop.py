@@ -64,11 +64,12 @@ wanted = N + k * (e + a * (N - Y + accel)) + accel  # Y*
 wanted_residual = sp.expand(h * (_wanted / J - _t0) - wanted)
 
 way = sp.Symbol("way", real=True)  # Y* - Y
-_mean = J * ((Y + seen * way) / h + _t0)  # of the torque over the sample, as the law works it out
+went = way + asked  # what dead band and shortest pulse leave of it
+_mean = J * ((Y + seen * went) / h + _t0)  # of the torque over the sample, as the law works it out
 _expected = _observed + h / J * (_friction - _mean)
 _measured = w_r1 + _e1
 _r = _measured - _expected
-innovation = _e1 - e - p - N + Y + seen * way + turned
+innovation = _e1 - e - p - N + Y + seen * went + turned
 _reference = {w_r1: w_r + h * rate + turned}
 innovation_residual = sp.expand((_r - innovation).subs(_reference))
 _observer_next = _expected + (1 - theta**2) * _r - _measured
@@ -79,7 +80,7 @@ observer_residual = sp.expand((_observer_next - observer_next).subs(_reference))
 friction_residual = sp.expand((_friction_next - friction_next).subs(_reference))
 
 # --- the valve: T goes the part rho of the way to T* -----------------------------------------------------------------
-_step = rho * (way + asked)
+_step = rho * went
 torque_next = Y + _step - rise
 error_next = phi * e - g * psi * (Y + (1 - late) * _step - held)
 x, c, u = sp.symbols("x c u", positive=True)

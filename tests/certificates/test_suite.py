@@ -54,6 +54,7 @@ def test_order(certificates):
         "margins",
         "lpv_lyapunov",
         "sampled_invariance",
+        "slip_band",
         "tracking",
         "conservation",
         "stop_bound",

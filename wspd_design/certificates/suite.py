@@ -19,7 +19,7 @@ from wspd_design.certificates.checks.foundations import (
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.linear import margins, routh_lag
-from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance
+from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance, slip_band
 from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
 from wspd_design.certificates.checks.stop import stop_bound, tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
@@ -55,6 +55,7 @@ CHECKS: Mapping[str, Check] = {
         margins.CHECK,
         lpv_lyapunov.CHECK,
         sampled_invariance.CHECK,
+        slip_band.CHECK,
         tracking.CHECK,
         conservation.CHECK,
         stop_bound.CHECK,

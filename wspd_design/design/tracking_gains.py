@@ -40,7 +40,7 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
     brake, period = vehicle.brake, specification.sample_time
     lag = max(brake.fill_time, brake.vent_time)
     rate = 1.0 / (period + lag / LAG_PART)
-    share = min(TIME_SHARE + TIME_SHARE_RATE * period, LARGEST_TIME_SHARE)
+    share = round(min(TIME_SHARE + TIME_SHARE_RATE * period, LARGEST_TIME_SHARE), 3)
     return (
         *protection_gains(vehicle, rail, specification),
         Gain(

@@ -66,4 +66,5 @@ class Inequalities:
             settings,
         )
         found = solver.solve()
-        return np.array(found.x) if found.status == clarabel.SolverStatus.Solved else None
+        usable = (clarabel.SolverStatus.Solved, clarabel.SolverStatus.AlmostSolved)
+        return np.array(found.x) if found.status in usable else None

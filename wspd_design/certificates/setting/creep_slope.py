@@ -16,11 +16,13 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.arb import above, below, point
 from wspd_design.certificates.kernel.checker import Ends as Balls
 from wspd_design.certificates.kernel.checker import add, inverse, mul, power
-from wspd_design.certificates.kernel.claim import Claim, Relation, variable
+from wspd_design.certificates.kernel.claim import Claim, Expression, Relation, variable
 from wspd_design.certificates.quantities import QUANTITIES
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.plant import EXPONENT, Values, forces
+from wspd_design.model.adhesion import contact_stiffness
+from wspd_design.model.generated.adhesion import creep_force_speed_derivative
 from wspd_design.model.number import Number
 from wspd_design.model.slip import slip_dynamics, static_wheel_load, wheels
 from wspd_design.parameters.bounds import Ends
@@ -58,20 +60,62 @@ def slope_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fracti
     def arranged(x: Values) -> Number:
         return forces(*_normal(problem, x), 1.0, x[SLIDING], deceleration=0.0).pole
 
+    name = "slope of the creep force over mu0 Q v, falling"
+    return _claim(problem, slips, name, expression, relation, bound, "s/m", form=arranged)
+
+
+def level_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
+    """Claim that the creep force over mu0 Q stays on one side of a bound [-]; the rest as in :func:`slope_claim`."""
+
+    def expression(x: Values) -> Number:
+        vehicle, rail = _normal(problem, x)
+        force = slip_dynamics(vehicle, rail, 1.0, x[SLIDING], deceleration=0.0).creep_force
+        return force / static_wheel_load(vehicle)
+
+    return _claim(problem, slips, "creep force over mu0 Q", expression, relation, bound, "-")
+
+
+def fading_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
+    """Claim a bound on how the creep force over mu0 Q changes with the sliding speed at a fixed slip [s/m]."""
+
+    def expression(x: Values) -> Number:
+        vehicle, rail = _normal(problem, x)
+        load = static_wheel_load(vehicle)
+        stiffness = contact_stiffness(vehicle.contact, load)
+        friction = (rail.mu0, rail.friction_ratio, rail.friction_decay)
+        reductions = (rail.adhesion_reduction, rail.slip_reduction)
+        return creep_force_speed_derivative(1.0, x[SLIDING], load, *friction, *reductions, stiffness) / load
+
+    name = "change of the creep force over mu0 Q with the sliding speed"
+    return _claim(problem, slips, name, expression, relation, bound, "s/m")
+
+
+def _claim(
+    problem: Problem,
+    slips: Ends,
+    name: str,
+    expression: Expression,
+    relation: Relation,
+    bound: Fraction,
+    unit: str,
+    *,
+    form: Expression | None = None,
+) -> Claim:
+    """Claim a bound about the normal wheel."""
     return Claim(
-        name="slope of the creep force over mu0 Q v, falling",
+        name=name,
         variables=(
             variable(STEEPNESS, _doubles(_steepness(problem, slips)), "Pa"),
             variable(RATIO, _doubles(_quotient(problem, "slip reduction", "adhesion reduction")), "-"),
-            *(variable(name, problem.nominal(name), QUANTITIES[name].unit) for name in HELD),
+            *(variable(held, problem.nominal(held), QUANTITIES[held].unit) for held in HELD),
             variable(NORMAL_MASS, 1.0, "kg"),
             variable(SLIDING, _doubles(mul(_wide(slips), _span(problem, "speed"))), "m/s"),
         ),
         expression=expression,
-        form=arranged,
+        form=form,
         relation=relation,
         bound=bound,
-        unit="s/m",
+        unit=unit,
     )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from wspd_design.certificates.theorems import (
     afsmc_energy,
     authority,
+    band,
     barbalat,
     equations,
     foundations,
@@ -45,6 +46,7 @@ THEOREMS: Mapping[str, Theorem] = {
         linear.MARGINS_THEOREM,
         region.LPV_LYAPUNOV,
         region.SAMPLED_INVARIANCE,
+        band.SLIP_BAND,
         simulated_stop.TRACKING,
         simulated_stop.CONSERVATION,
         STOP_BOUND,

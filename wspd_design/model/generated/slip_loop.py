@@ -95,15 +95,16 @@ def next_sample(
     tuple[Number, Number, Number, Number]
         e, p, N and Y [rad/s].
     """
-    x0 = rho * (command_error + way)
-    x1 = error * phi - g * psi * (-mean_torque_drift + torque + x0 * (1.0 - late))
-    x2 = -error - friction + mean_reference_drift - observer_error + seen * way + torque + x1
-    x3 = -torque_drift
+    x0 = command_error + way
+    x1 = rho * x0
+    x2 = error * phi - g * psi * (-mean_torque_drift + torque + x1 * (1.0 - late))
+    x3 = -error - friction + mean_reference_drift - observer_error + seen * x0 + torque + x2
+    x4 = -torque_drift
     return (
-        x1,
-        -(observer_pole**2) * x2,
-        friction - reference_drift + x2 * (1.0 - observer_pole) ** 2 + x3,
-        torque + x0 + x3,
+        x2,
+        -(observer_pole**2) * x3,
+        friction - reference_drift + x3 * (1.0 - observer_pole) ** 2 + x4,
+        torque + x1 + x4,
     )
 
 

@@ -1,0 +1,65 @@
+"""A sampled law with observer keeps its slip in a band: ellipsoids that no sample leads out of."""
+
+from collections.abc import Mapping
+from typing import cast
+
+from wspd_design.certificates.checks.frame import Check, Figures, level, series
+from wspd_design.certificates.kernel.finding import Effort, Stated
+from wspd_design.certificates.kernel.obligation import Inequality
+from wspd_design.certificates.records import Certificate, Problem, Status
+from wspd_design.certificates.search.budget import budget
+from wspd_design.certificates.search.settle import enclose, finding
+from wspd_design.certificates.search.slip_band.search import Failed
+from wspd_design.certificates.search.slip_band.search import search as find
+from wspd_design.certificates.theorems.band import BOUNDED, CELLS, DIRECTIONS, SLIP_BAND, key, proved_friction
+from wspd_design.certificates.theorems.slip_band.proof import write
+from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
+from wspd_design.controllers.protection import Protection
+from wspd_design.parameters.units import KMH
+
+TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
+CELLS_TRIED = 100  # with an effort of 1
+
+
+def search(problem: Problem) -> Mapping[str, Stated]:
+    """Bound the friction in each window, then cover the box with cells that have ellipsoids."""
+    wanted = {each.key: each for each in SLIP_BAND.obligations(problem)}
+    stated = {}
+    for k in range(len(windows_of(problem))):
+        for name in BOUNDED:
+            for relation in DIRECTIONS:
+                obligation = wanted[key(name, k, relation)]
+                assert isinstance(obligation, Inequality)
+                stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name])
+    friction = proved_friction(problem, {name: finding(wanted[name], each) for name, each in stated.items()})
+    if friction is None:
+        return stated | {CELLS: Stated()}
+    law = law_of(cast(Protection, problem.controller))
+    found = find(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
+    if isinstance(found, Failed):
+        return stated | {CELLS: Stated(effort=Effort(boxes=found.tried, undecided=found.left, cut=found.cut))}
+    return stated | {CELLS: Stated(proof=write(found))}
+
+
+def figures(problem: Problem, certificate: Certificate) -> Figures:
+    """Proved band over speed."""
+    import numpy as np
+
+    axes = ("speed [km/h]", "slip [-]")
+    speeds = np.array(problem.speeds) * KMH
+    reference = level("reference", *axes, (float(speeds[0]), float(speeds[1])), problem.slip)
+    if certificate.status is not Status.PROVED:
+        return Figures(series=(reference,))
+    windows, numbers = windows_of(problem), certificate.findings[CELLS].numbers
+    x = np.array([speed * KMH for window in windows for speed in window])
+    bands = np.array([numbers[f"band {k}"] for k in range(len(windows)) for _ in range(2)])
+    return Figures(
+        series=(
+            series("largest slip", *axes, x, problem.slip + bands),
+            series("smallest slip", *axes, x, problem.slip - bands),
+            reference,
+        )
+    )
+
+
+CHECK = Check(theorem=SLIP_BAND, search=search, figures=figures)

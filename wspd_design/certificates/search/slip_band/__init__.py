@@ -1,0 +1,1 @@
+"""Search for the ellipsoids of a band of slip."""

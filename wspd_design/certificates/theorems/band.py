@@ -1,0 +1,223 @@
+"""The band of slip: what a sampled law with friction-torque observer keeps through its real valve, over a whole stop.
+
+See :mod:`wspd_design.certificates.theorems.slip_band` for loop, proof and checker.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+from typing import cast
+
+from wspd_design.certificates.kernel.claim import Claim, Relation
+from wspd_design.certificates.kernel.finding import Finding
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
+from wspd_design.certificates.outside import OutsideModel
+from wspd_design.certificates.quantities import CONTACT, RAIL
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.certificates.setting import creep_slope, domain
+from wspd_design.certificates.setting.assumptions import BUILT_UP
+from wspd_design.certificates.setting.written_protection import not_written
+from wspd_design.certificates.theorems.slip_band.checker import checker
+from wspd_design.certificates.theorems.slip_band.loop import Friction
+from wspd_design.certificates.theorems.slip_band.statement import (
+    JERK_FACTOR,
+    NAMES,
+    law_of,
+    slips_of,
+    windows_of,
+)
+from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
+from wspd_design.controllers.protection import Protection
+from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.units import KMH
+
+CELLS = "ellipsoids"
+VARIED = (*NAMES, "resistance constant", "resistance linear", "resistance quadratic")
+DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
+BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
+    "slope": creep_slope.slope_claim,
+    "level": creep_slope.level_claim,
+    "fading": creep_slope.fading_claim,
+}
+"""What of the friction is bounded in each window: the fields of :class:`Friction`."""
+
+
+def key(name: str, window: int, relation: Relation) -> str:
+    """Name of the obligation to bound a property of the friction in a window, the slowest being 1."""
+    return f"{name} {'from' if relation == '>=' else 'to'}, window {window + 1}"
+
+
+def claims(problem: Problem) -> dict[str, Claim]:
+    """Claims about the friction; whatever bound is proved counts."""
+    found = {}
+    for k, window in enumerate(windows_of(problem)):
+        there = _held(replace(problem, speeds=window))
+        for name, claim in BOUNDED.items():
+            slips = slips_of(problem, window) if name == "slope" else (problem.slip, problem.slip)
+            for relation in DIRECTIONS:
+                found[key(name, k, relation)] = claim(there, slips, relation, Fraction(0))
+    return found
+
+
+def proved_friction(problem: Problem, findings: Findings) -> tuple[Friction, ...] | None:
+    """Proved bounds of the friction for each window, or none if one is open."""
+    found = []
+    for k in range(len(windows_of(problem))):
+        ends = [(findings[key(name, k, ">=")].low, findings[key(name, k, "<=")].high) for name in BOUNDED]
+        if not all(math.isfinite(end) for each in ends for end in each):
+            return None
+        found.append(Friction(*ends))
+    return tuple(found)
+
+
+def _held(problem: Problem) -> Problem:
+    """Hold the contact and the shape of the friction at their nominal values."""
+    kept = {name: ends for name, ends in problem.bounds.items() if name in VARIED}
+    return replace(problem, bounds=type(problem.bounds).of(kept))
+
+
+def held_names(problem: Problem) -> tuple[str, ...]:
+    """Names of the numbers with bounds that the claim depends on and holds."""
+    return tuple(
+        name
+        for name in domain.uncertain(problem)
+        if name in (*CONTACT, *RAIL, "supply rate") and name not in VARIED
+    )
+
+
+def speaks_about(problem: Problem) -> str:
+    """Say why the theorem does not speak about a law; empty if it does."""
+    law = problem.controller
+    if not isinstance(law, Protection):
+        return "is not a law of a vehicle with an observer of the friction torque"
+    reason = not_written(law)
+    if reason:
+        return reason
+    brake, modeled = problem.vehicle.brake, law.valve.brake
+    if (brake.max_pressure, problem.vehicle.wheelsets) != (modeled.max_pressure, law.wheelsets):
+        return "was made for another vehicle"
+    numbers = law_of(law)
+    if numbers.slip != Fraction(problem.slip):
+        return f"holds slip {float(numbers.slip):g}, not {problem.slip:g}"
+    if law.cut_out_speed > problem.speeds[0]:
+        return f"holds its valves below {law.cut_out_speed * KMH:.3g} km/h, inside the range of speed"
+    return ""
+
+
+def _obligations(problem: Problem) -> tuple[Obligation, ...]:
+    domain.box(problem, VARIED)
+    if windows_of(problem)[0][0] <= 0.0:
+        raise OutsideModel("a sample may end at standstill")
+    law = cast(Protection, problem.controller)
+    return (
+        *(Inequality(key=name, claim=claim) for name, claim in claims(problem).items()),
+        Special(
+            key=CELLS,
+            text="for every cell of the box and every window of speed no sample leads out of an ellipsoid of the state",
+            check=checker(_held(problem), law),
+        ),
+    )
+
+
+def _covered(problem: Problem, findings: Findings) -> Finding:
+    """Return the finding on the ellipsoids; it counts only for friction within the bounds that it was made for."""
+    found, proved = findings[CELLS], proved_friction(problem, findings)
+    if found.status is not Status.PROVED:
+        return found
+    within = proved is not None and all(
+        found.numbers[f"{name} {k} low"] <= low and high <= found.numbers[f"{name} {k} high"]
+        for k, friction in enumerate(proved)
+        for name, (low, high) in friction._asdict().items()
+    )
+    return found if within else Finding(status=Status.UNDECIDED, asked=found.asked)
+
+
+def _tell(problem: Problem, findings: Findings) -> Certificate:
+    cells, windows = _covered(problem, findings), windows_of(problem)
+    friction = proved_friction(problem, findings)
+    held = held_names(problem)
+    low, high = (speed * KMH for speed in problem.speeds)
+    claim = (
+        f"Once the state of a wheelset is in its ellipsoid, its slip stays in a band around {problem.slip:g} at every "
+        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit. For "
+        f"constant parameters in the box: {domain.described(_held(problem), VARIED, held)}; sampled every "
+        f"{problem.sample_time * 1e3:g} ms, with any course of the friction whose slope stays within its proved range."
+    )
+    explanation, margin = f"No ellipsoids were found for the whole box. {_dead_band(problem)}.", None
+    worst: tuple[Point, ...] = ()
+    if cells.status is Status.PROVED:
+        bands = [cells.numbers[f"band {k}"] for k in range(len(windows))]
+        told = ", ".join(
+            f"{band:.2g} at {slow * KMH:.0f} to {fast * KMH:.0f} km/h"
+            for band, (slow, fast) in zip(bands, windows, strict=True)
+        )
+        explanation = (
+            f"The slip stays within +-{told}. {cells.numbers['cells']:g} cells of the box, each with an ellipsoid for "
+            "each window of speed, that of a faster window inside that of the next slower one."
+        )
+        margin = Range(low=1.0 - problem.slip - max(bands), high=None, unit="-")
+        worst = (Point(name="slip", value=problem.slip + max(bands), unit="-"),)
+    return Certificate(
+        claim=claim,
+        status=all_of(cells),
+        explanation=explanation,
+        margin=margin,
+        worst_point=worst,
+        hypotheses=(
+            hypothesis(
+                "slope, level and fading of the friction stay in their proved ranges",
+                Finding(
+                    status=Status.PROVED if friction is not None else Status.UNDECIDED,
+                    asked="the friction is bounded in each window",
+                ),
+            ),
+            hypothesis(cells.asked, cells),
+        ),
+        assumptions=(
+            "the parameters do not change during the stop; the full pressure is demanded and there",
+            "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time; the "
+            "scale of the train speed was found while rolling",
+            "all axles at static load and within their bands; the deceleration of the train changes at most "
+            f"{float(JERK_FACTOR):g} times as fast as with all wheels at the reference, and its filter has settled",
+            "pulses begin with the sample; the law computes with real numbers",
+            "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
+        ),
+        varied=tuple(name for name in domain.uncertain(problem) if name in VARIED),
+        held=held,
+        method="ellipsoids by linear matrix inequalities in doubles; LDL' in balls at the corners of the sampled loop, "
+        "with the friction bounded by interval branch and bound, replayed by the independent checker",
+        reference="docs/theory.md#band",
+    )
+
+
+def _dead_band(problem: Problem) -> str:
+    """Compare what the law leaves out with what a sample of venting can do."""
+    law = law_of(cast(Protection, problem.controller))
+    h, speed = float(law.sample_time), problem.speeds[0]
+    held = (
+        2.0
+        * problem.vehicle.wheel_radius
+        * float(slip_dynamics(problem.vehicle, problem.rail, problem.slip, speed).creep_force)
+    )
+    vented = held * -math.expm1(-h / float(law.vent_time))
+    sliding = problem.slip * speed / problem.vehicle.wheel_radius
+    narrowed = float(law.dead_band_share * law.inertia * law.approach_rate) * sliding
+    left_out = min(float(law.dead_band), narrowed)
+    return (
+        f"At {speed * KMH:.0f} km/h venting takes at most {vented / 1e3:.2g} of {held / 1e3:.3g} kN m off in one "
+        f"sample, of which the dead band of {left_out / 1e3:.2g} kN m, drift and the lag of the acceleration must "
+        "leave some"
+    )
+
+
+SLIP_BAND = Theorem(
+    name="slip_band",
+    title="Band of slip of the sampled loop",
+    claim="Once the state of a wheelset is in its ellipsoid, its slip stays in a band around the reference.",
+    speaks_about=speaks_about,
+    obligations=_obligations,
+    tell=_tell,
+    assumes=BUILT_UP,
+)

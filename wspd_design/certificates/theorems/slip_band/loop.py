@@ -1,0 +1,233 @@
+"""Numbers of the loop in one cell and one window: ranges, bounds of what disturbs it, and limits of the state.
+
+All of them are worked out in balls from the box and from the proved bounds of the friction, and rounded outwards.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple, TypeAlias
+
+from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.slip_loop import LoopLaw, LoopRanges, Pair, parts_of, wanted
+from wspd_design.certificates.theorems.slip_band.statement import (
+    FASTEST_LOSS,
+    JERK_FACTOR,
+    SLIP_AROUND,
+    BandLaw,
+    Cell,
+)
+from wspd_design.model.slip import wheels
+from wspd_design.parameters.loading import constants
+
+Row: TypeAlias = tuple[Ball, ...]
+
+LEAST = Fraction(2, 1000)  # of the full torque, of which the law takes a logarithm as it is
+
+
+class Friction(NamedTuple):
+    """Bounds of the friction in a window: of -S, of the force over mu0 Q at the reference, of its fading."""
+
+    slope: tuple[float, float]  # s/m
+    level: tuple[float, float]  # -
+    fading: tuple[float, float]  # s/m
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """A linear function of the state and what its magnitude must not exceed."""
+
+    what: str
+    row: Row
+    bound: Ball
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Loop:
+    """The loop in one cell and one window."""
+
+    ranges: LoopRanges
+    disturbances: tuple[Ball, ...]  # bounds [rad/s]
+    limits: tuple[Limit, ...]
+    widest: Ball  # rad/s, error up to which the slope is bounded
+
+
+def loop_law(law: BandLaw) -> LoopLaw:
+    """Numbers of the law in balls."""
+    h = point(law.sample_time)
+    return LoopLaw(
+        sample_time=h,
+        gain=point(law.approach_rate) * h,
+        ahead=point(law.ahead),
+        pole=(-point(law.observer_rate) * h).exp(),
+    )
+
+
+def loop_of(
+    problem: Problem, law: BandLaw, cell: Cell, window: tuple[float, float], friction: Friction
+) -> Loop:
+    """Work out the loop of a cell in a window of speed."""
+    mass, inertia, radius, mu0, torque, fill, vent = (ball(*each) for each in cell)
+    speed, h, slip = ball(*window), point(law.sample_time), point(law.slip)
+    vehicle = problem.vehicle
+    damping = 2 * point(vehicle.wheel_damping)
+    normal = mass * point(constants().gravity) / wheels(vehicle) * mu0  # mu0 Q
+    rolling = (1 - slip) / radius
+    drag = _resistance(problem, speed) / mass
+    # All axles are within their bands, and from the reference to their slip the force follows the slope.
+    used = ball(*friction.level) + ball(*friction.slope) * ball(-SLIP_AROUND, SLIP_AROUND) * point(
+        problem.speeds[0]
+    )
+    braking = point(constants().gravity) * mu0 * used + drag
+    if not braking < point(FASTEST_LOSS) or not braking >= 0:
+        raise Refused("the train may lose more speed in a sample than the windows overlap, or gain some")
+    slowing = ball(Fraction(0), Fraction(above(braking)))
+    friction_torque = 2 * radius * normal * ball(*friction.level) - damping * rolling * speed
+    fading = abs(2 * radius * normal * slip * ball(*friction.fading)) + damping * rolling
+    secants = (2 * radius * radius * normal * ball(*friction.slope) - damping) / inertia
+    pads = torque / point(law.full_torque)
+    seen_inertia = pads * point(law.inertia)  # true torque over the number Y h counts it in
+    held = (friction_torque + inertia * rolling * slowing) / seen_inertia
+    drag_slope = _resistance(problem, speed, 1) / mass
+    jerk = point(JERK_FACTOR) * braking * (wheels(vehicle) * fading / (2 * radius * mass) + drag_slope)
+    drift = (fading * braking + inertia * rolling * jerk) / seen_inertia
+    turning = rolling * jerk
+    # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2 at most.
+    share = -(-h / point(law.acceleration_time)).expm1()
+    known = _upper(h * turning * h * (1 / share - point(Fraction(1, 2))))
+    return Loop(
+        ranges=LoopRanges(
+            secants=_ends(secants),
+            effects=_ends(seen_inertia / inertia),
+            parts=_parts(law, fill, vent),
+            seen=_seen(law),
+        ),
+        disturbances=(
+            known,
+            _upper(h / point(law.inertia) * _dead_band(law, slip * speed / radius)),
+            _upper(h * h * drift),
+            _upper(h * h * drift),
+            _upper(h * h * turning),
+            _upper(h * h * turning / 2),
+        ),
+        limits=_limits(law, held, rolling * slowing, known),
+        widest=point(SLIP_AROUND) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
+    )
+
+
+def _limits(law: BandLaw, held: Ball, falling: Ball, known: Ball) -> tuple[Limit, ...]:
+    """Return what keeps the state where the law is the written one and the valve is not saturated.
+
+    Parameters
+    ----------
+    law : BandLaw
+        Its numbers.
+    held : ball
+        Torque that holds the reference, over the inertia of the law [rad/s2].
+    falling : ball
+        Deceleration of the reference [rad/s2].
+    known : ball
+        Bound of the error of that acceleration in the law, times h [rad/s].
+    """
+    h, inertia = point(law.sample_time), point(law.inertia)
+    least_held, most_held = _ends(h * held)
+    full = h * point(law.full_torque) / inertia
+    least = point(LEAST) * full
+    asked = wanted(loop_law(law))
+    venting, filling = (-h / point(each) for each in (law.vent_time, law.fill_time))
+    vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one sample
+    ahead, zero = point(law.ahead), point(0)
+    slew = point(law.torque_slew) / inertia / point(law.approach_rate) ** 2
+    return (
+        Limit(
+            what="what venting takes off in a sample",
+            row=(*asked[:3], asked[3] - 1 + vent),
+            bound=vent * least_held - abs(asked[4]) * known,
+        ),
+        Limit(
+            what="what filling adds in a sample",
+            row=(*asked[:3], asked[3] - 1 + fill),
+            bound=fill * (full - most_held) - abs(asked[4]) * known,
+        ),
+        Limit(
+            what="the beginning of the braking curve",
+            row=(point(1), zero, ahead, -ahead),
+            bound=slew - ahead * known,
+        ),
+        Limit(
+            what="the observed friction above 0",
+            row=(zero, zero, point(1), zero),
+            bound=least_held - _upper(h * falling),
+        ),
+        Limit(
+            what="the torque that is left",
+            row=(zero, zero, zero, point(1)),
+            bound=least_held - least / venting.exp(),
+        ),
+        Limit(
+            what="the torque that the brake can add",
+            row=(zero, zero, zero, point(1)),
+            bound=full - most_held - least / filling.exp(),
+        ),
+    )
+
+
+def _parts(law: BandLaw, fill: Ball, vent: Ball) -> Pair:
+    """Part of the wanted way that the true valve goes."""
+    longest = point(law.sample_time) / point(min(law.fill_time, law.vent_time))
+    speedups = [
+        end for ratio in (point(law.fill_time) / fill, point(law.vent_time) / vent) for end in _ends(ratio)
+    ]
+    return _ends(_hull(parts_of((_least(speedups), _most(speedups)), longest)))
+
+
+def _seen(law: BandLaw) -> Pair:
+    """Part of the wanted way in the mean torque, which the law works out with the nominal times."""
+    longest = point(law.sample_time) / point(min(law.fill_time, law.vent_time))
+    share = point(law.time_share)
+    low, high = parts_of((share, share), longest)
+    return _ends(_hull((low / 2, high)))  # the way is gone at least evenly
+
+
+def _dead_band(law: BandLaw, sliding: Ball) -> Ball:
+    """Largest wanted change of the torque that the law leaves out [N m]."""
+    narrowed = point(law.dead_band_share) * sliding * point(law.inertia) * point(law.approach_rate)
+    shortest = -point(law.least_pulse) / point(min(law.fill_time, law.vent_time))
+    return _most([_least([point(law.dead_band), narrowed]), -point(law.full_torque) * shortest.expm1()])
+
+
+def _resistance(problem: Problem, speed: Ball, order: int = 0) -> Ball:
+    """Running resistance, or its derivative in the train speed."""
+    constant, linear, square = (
+        ball(*map(Fraction, problem.span(f"resistance {name}")))
+        for name in ("constant", "linear", "quadratic")
+    )
+    return linear + 2 * square * speed if order else constant + linear * speed + square * speed**2
+
+
+def _ends(value: Ball) -> Pair:
+    return point(Fraction(below(value))), point(Fraction(above(value)))
+
+
+def _upper(value: Ball) -> Ball:
+    return point(Fraction(above(value)))
+
+
+def _hull(balls: Sequence[Ball]) -> Ball:
+    found = balls[0]
+    for each in balls[1:]:
+        found = found.union(each)
+    return found
+
+
+def _least(balls: Sequence[Ball]) -> Ball:
+    found = balls[0]
+    for each in balls[1:]:
+        found = found.min(each)
+    return found
+
+
+def _most(balls: Sequence[Ball]) -> Ball:
+    return -_least([-each for each in balls])

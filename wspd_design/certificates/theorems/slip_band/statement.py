@@ -1,0 +1,109 @@
+"""What the band of slip is stated about: the law in exact numbers, windows of speed, and a box of constant numbers."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, log
+from typing import TypeAlias
+
+from wspd_design.certificates.records import Problem
+from wspd_design.controllers.observer_smc import ObserverSmc
+from wspd_design.controllers.observers.told import ToldSpeed
+from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.references import ConstantSlip
+
+Interval: TypeAlias = tuple[Fraction, Fraction]
+
+NAMES = ("mass", "wheelset inertia", "wheel radius", "mu0", "max torque", "fill time", "vent time")
+"""Numbers that do not change during a stop; their box is halved into cells."""
+LETTERS = "mirutfv"
+"""Which range a step halves, in the order of :data:`NAMES`; a full stop is a cell."""
+Cell: TypeAlias = tuple[Interval, ...]
+
+JERK_FACTOR = Fraction(
+    5, 4
+)  # -, how much faster the deceleration changes than with all wheels at the reference
+FASTEST_LOSS = Fraction(10)  # m/s2, more than adhesion and resistance take off
+WIDEST_WINDOW = 1.6  # ratio of its speeds
+SLIP_AROUND = Fraction(
+    1, 40
+)  # -, on either side of the reference at the lowest speed, where the slope is bounded
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BandLaw:
+    """Exact numbers of the law."""
+
+    slip: Fraction  # -, reference
+    sample_time: Fraction  # s, h
+    approach_rate: Fraction  # 1/s, k
+    ahead: Fraction  # -
+    observer_rate: Fraction  # 1/s
+    inertia: Fraction  # kg m2
+    radius: Fraction  # m
+    full_torque: Fraction  # N m
+    fill_time: Fraction  # s, that the inversion assumes, as the next
+    vent_time: Fraction  # s
+    time_share: Fraction  # -, of the nominal times, by which the mean torque is worked out
+    least_pulse: Fraction  # s
+    dead_band: Fraction  # N m
+    dead_band_share: Fraction  # -, of the desired slip
+    torque_slew: Fraction  # N m/s, of the braking curve
+    acceleration_time: Fraction  # s, of the filter of the train's acceleration
+
+
+def law_of(law: Protection) -> BandLaw:
+    """Exact numbers of a protection with constant reference and sliding mode of relative degree two."""
+    core, reference, source = law.core, law.reference, law.source
+    assert isinstance(core, ObserverSmc)
+    assert isinstance(reference, ConstantSlip)
+    assert isinstance(source, ToldSpeed)
+    tracking, valve = core.tracking, law.valve
+    share = Fraction(valve.time_share)
+    return BandLaw(
+        slip=Fraction(reference.slip),
+        sample_time=Fraction(law.sample_time),
+        approach_rate=Fraction(tracking.approach_rate),
+        ahead=Fraction(tracking.ahead),
+        observer_rate=Fraction(law.observer_rate),
+        inertia=Fraction(law.wheelset_inertia),
+        radius=Fraction(law.wheel_radius),
+        full_torque=Fraction(valve.brake.max_torque),
+        fill_time=share * Fraction(valve.brake.fill_time),
+        vent_time=share * Fraction(valve.brake.vent_time),
+        time_share=share,
+        least_pulse=Fraction(valve.least_pulse),
+        dead_band=Fraction(tracking.dead_band),
+        dead_band_share=Fraction(tracking.dead_band_share),
+        torque_slew=Fraction(core.torque_slew),
+        acceleration_time=Fraction(source.acceleration_time),
+    )
+
+
+def box_of(problem: Problem) -> Cell:
+    """Return the whole box."""
+    spans = [problem.span(name) for name in NAMES]
+    return tuple((Fraction(low), Fraction(high)) for low, high in spans)
+
+
+def halved(cell: Cell, letter: str) -> tuple[Cell, Cell]:
+    """Both halves of a cell, the lower one first."""
+    k = LETTERS.index(letter)
+    low, high = cell[k]
+    middle = (low + high) / 2
+    return (*cell[:k], (low, middle), *cell[k + 1 :]), (*cell[:k], (middle, high), *cell[k + 1 :])
+
+
+def windows_of(problem: Problem) -> tuple[tuple[float, float], ...]:
+    """Windows of speed, the slowest first; each reaches down as far as one sample may lead out of it [m/s]."""
+    low, high = problem.speeds
+    count = ceil(log(high / low) / log(WIDEST_WINDOW))
+    edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
+    loss = float(FASTEST_LOSS) * problem.sample_time
+    return tuple((slow - loss, fast) for slow, fast in pairwise(edges))
+
+
+def slips_of(problem: Problem, window: tuple[float, float]) -> tuple[float, float]:
+    """Range of slip in which a window bounds the slope of the friction."""
+    around = float(SLIP_AROUND) * problem.speeds[0] / window[0]
+    return max(problem.slip - around, 0.0), problem.slip + around
