@@ -42,7 +42,7 @@ class WheelFilterNumbers:
     largest_quiet: float = 1.2  # m/s2, at most
     quiet_time: float = 0.06  # s, for which it is quiet after it spun up
     rise_share: float = 0.35  # of the slip speed, by which it spun up
-    light_share: float = 0.5  # of its friction torque when it was released, below which a wheel is light
+    light_share: float = 0.7  # of its friction torque when it was released, below which a wheel is light
     light_time: float = 0.2  # s, for which it is quiet and light
     surprise_gate: float = (
         5.0  # deviations below the expected speed, beyond which it has not reached the train
@@ -73,7 +73,7 @@ def numbers_for(sample_time: float, sensors: Sensors) -> WheelFilterNumbers:
     """
     slow = sample_time > 0.05  # few samples: steadier tracking, longer looks
     # An accelerometer leaves fewer looks to pay for.
-    quick, late = (0.35, 0.4) if sensors.accelerometer else (0.55, 0.5)
+    quick, late = (0.3, 0.35) if sensors.accelerometer else (0.55, 0.5)
     # Without one the scale of the torques decides, which only wheels can teach: they have to be trusted more, and until
     # a look has confirmed what they say, the scale less.
     alone = not sensors.accelerometer
