@@ -1,4 +1,4 @@
-# make demo   sets up .venv, designs the paper's controller and a protection that works, and writes their reports
+# make demo   sets up .venv, designs the paper's controller, and writes its report and that of a protection that works
 # make test   sets up .venv with the test tools and runs the tests
 # make check  formatting, types and layers
 # make derive writes the generated model and the equation map from derivations/
@@ -23,14 +23,13 @@ PROTECTION := reports/protection-polach-wet
 demo: $(VENV)/.installed
 	@mkdir -p $(OUT)
 	$(BIN)/wspd design --rail polach-wet --output $(OUT)/er24pc.toml --force
-	$(BIN)/wspd design $(PROTECTION)/specification.toml --rules-only --output $(OUT)/protection.toml --force
 	@$(MAKE) --no-print-directory --jobs=2 demo-paper demo-protection
 
 demo-paper:
 	$(BIN)/wspd report $(OUT)/er24pc.toml --output $(OUT)/er24pc.html --pdf --force
 
 demo-protection:
-	$(BIN)/wspd report $(OUT)/protection.toml $(SENSING) --output $(OUT)/protection.html --pdf --force
+	$(BIN)/wspd report $(PROTECTION)/design.toml $(SENSING) --output $(OUT)/protection.html --pdf --force
 
 test: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest
@@ -52,7 +51,6 @@ reports: $(VENV)/.installed
 	$(BIN)/wspd report reports/er24pc-polach-wet/design.toml --output reports/er24pc-polach-wet/report.html --force
 	$(BIN)/wspd design --law torque-feedback --rail polach-wet --sample-time "20 ms" --output reports/torque-feedback-polach-wet/design.toml --force
 	$(BIN)/wspd report reports/torque-feedback-polach-wet/design.toml --output reports/torque-feedback-polach-wet/report.html --force
-	$(BIN)/wspd design $(PROTECTION)/specification.toml --rules-only --output $(PROTECTION)/design.toml --force
 	$(BIN)/wspd report $(PROTECTION)/design.toml $(SENSING) --output $(PROTECTION)/report.html --force
 	$(BIN)/wspd reproduce --output reports/paper --force
 
