@@ -13,9 +13,6 @@ from wspd_design.simulation.peak import peak_adhesion
 UNKNOWN_RAIL = (
     0.16  # -, slip at 1 m/s between the peaks of the rails known here, on the side of the small slips
 )
-ESTIMATED_SPEED = (
-    0.18  # -, likewise for a train speed from the wheels: where it is a little high, slip is missing
-)
 SEARCH_START = 0.15  # -, likewise where it is searched for: to grow costs less than to fall back
 LARGEST_SLIP = 0.35  # -
 CUT_OUT = 5.0 / KMH  # m/s
@@ -37,16 +34,15 @@ def protection_gains(vehicle: Vehicle, rail: Rail, specification: Specification)
         Ranges and reference.
     """
     brake = vehicle.brake
-    searched, estimated = specification.reference == "seeking", specification.sensors.speed == "wheels"
-    slip = SEARCH_START if searched else ESTIMATED_SPEED if estimated else UNKNOWN_RAIL
+    searched = specification.reference == "seeking"
+    slip = SEARCH_START if searched else UNKNOWN_RAIL
     return (
         Gain(
             name="falling_slip",
             value=slip,
             unit="-",
             why=f"c of c/sqrt(v) with v in m/s: the peaks of the known rails lie at c = 0.1 to 0.32; {slip:g} loses "
-            + ("least while the search for the peak begins" if searched else "least over all of them")
-            + (" with a train speed from the wheels, whose error counts as slip" if estimated else ""),
+            + ("least while the search for the peak begins" if searched else "least over all of them"),
         ),
         Gain(
             name="largest_slip",
