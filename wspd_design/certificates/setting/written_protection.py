@@ -28,6 +28,7 @@ POINTS, DOUBLES, DIGITS = (
 )  # of the field, in doubles, and the difference that rounding may make there
 LEAST = 1e-3  # of the full torque, and in N m
 HALF, CAREFUL, LARGEST_BAND = 0.5, 0.85, 0.5
+LEAST_SLOWING = 0.05  # m/s2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,7 +118,8 @@ class WrittenProtection:
         ]
         commands = [self._careful(k, m, commands[k], torques, well) for k in range(n)]
         commands = [
-            self._slow(speed, wheel, each) for wheel, each in zip(m.wheel_speeds, commands, strict=True)
+            self._slow(speed, acceleration, wheel, each)
+            for wheel, each in zip(m.wheel_speeds, commands, strict=True)
         ]
         after = [self._after(k, m, torques[k], each) for k, each in enumerate(commands)]
         ends, averages = zip(*after, strict=True)
@@ -187,9 +189,9 @@ class WrittenProtection:
             fill=where(own, command.fill, careful.fill), vent=where(own, command.vent, careful.vent)
         )
 
-    def _slow(self, speed: Number, wheel: Number, command: Command) -> Command:
-        """Hold at low speed; vent a wheel that turns with less than half of the speed."""
-        slow = speed < self.of.cut_out_speed
+    def _slow(self, speed: Number, acceleration: Number, wheel: Number, command: Command) -> Command:
+        """Hold at low speed while the train slows down; vent a wheel that turns with less than half of the speed."""
+        slow = (speed < self.of.cut_out_speed) * (acceleration < -LEAST_SLOWING)
         far = self.of.wheel_radius * wheel < HALF * speed
         return Command(
             fill=where(slow, 0.0, command.fill), vent=where(slow, where(far, 1.0, 0.0), command.vent)

@@ -20,6 +20,7 @@ KEPT = (0.96, 0.98)  # of the function after a sample without disturbance; the f
 FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 12, 6  # of the loop that the inequalities begin with, and are added
 UNIT = 0.05  # rad/s, in which states are counted, so that the numbers of the inequalities are near 1
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
+LEAST_DISTURBANCE = 0.01  # of the tightest limit of the state, that the inequalities reckon with
 DIGITS = 9  # of the numbers in the proof
 
 
@@ -41,6 +42,9 @@ def ellipsoid(law: BandLaw, loop: Loop, faster: Ellipsoid | None) -> Ellipsoid |
         return None
     bounds = np.array([float(each.mid()) for each in loop.disturbances])
     used = [k for k, bound in enumerate(bounds) if bound > 0.0]
+    room = min(float(each.bound.mid()) for each in loop.limits)
+    # Ellipsoids far smaller than the room are hard to find, and nobody needs them.
+    bounds = np.where(bounds > 0.0, np.maximum(bounds, LEAST_DISTURBANCE * room), 0.0)
     maps = np.array([_doubles(each) for each in corners(loop_law(law), loop.ranges)])
     maps = np.concatenate(
         [maps[:, :, :STATES], maps[:, :, STATES:][:, :, used] * bounds[used] / UNIT], axis=2
