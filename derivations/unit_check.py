@@ -5,8 +5,9 @@ equations that an equation of the paper imposes are solved. Angles are pure numb
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -76,6 +77,7 @@ class _Walk:
 
     unknown: tuple[str, ...]
     keep_angles: bool
+    own: Mapping[str, str]  # units of symbols that mean something else than in the nomenclature
     equations: list[tuple[sp.Matrix, str]] = field(default_factory=list)
 
     def of(self, expression: sp.Expr) -> sp.Matrix:
@@ -129,9 +131,10 @@ class _Walk:
         if name == "t":
             return _SECOND
         known = quantity(name)
-        if known is None or not known.unit:
+        unit = self.own.get(name) or (known.unit if known else "")
+        if not unit:
             raise ValueError(f"{name} has no unit in the nomenclature")
-        found = parse(known.unit)
+        found = parse(unit)
         return found if self.keep_angles else sp.Matrix([[*found[:3], 0]])
 
     def _differ(self, one: sp.Expr, of_one: sp.Matrix, other: sp.Expr, of_other: sp.Matrix) -> str:
@@ -144,7 +147,13 @@ def _exponent(name: str, base: str) -> sp.Symbol:
     return sp.Symbol(f"{name}:{base}")
 
 
-def check(sides: tuple[sp.Expr, ...], unknown: tuple[str, ...] = (), *, keep_angles: bool = False) -> Units:
+def check(
+    sides: tuple[sp.Expr, ...],
+    unknown: tuple[str, ...] = (),
+    *,
+    keep_angles: bool = False,
+    own: Mapping[str, str] = MappingProxyType({}),
+) -> Units:
     """Check that all sides have one unit.
 
     Parameters
@@ -155,13 +164,15 @@ def check(sides: tuple[sp.Expr, ...], unknown: tuple[str, ...] = (), *, keep_ang
         Names of the symbols whose units are solved for.
     keep_angles : bool
         Whether rad is a unit of its own.
+    own : mapping of str to str
+        Units of symbols that mean something else than in the nomenclature.
 
     Returns
     -------
     Units
         The unit and no fault; or no unit and the first fault.
     """
-    walk = _Walk(unknown, keep_angles)
+    walk = _Walk(unknown, keep_angles, own)
     unit = walk.same(*sides)
     exponents = [_exponent(name, base) for name in unknown for base in _BASE]
     solution: dict[sp.Symbol, sp.Expr] = {}

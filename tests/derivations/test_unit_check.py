@@ -35,6 +35,18 @@ def test_every_quantity_of_the_nomenclature_has_a_unit_that_can_be_read():
             parse(quantity.unit)
 
 
+def own_units(function):
+    """Units of arguments whose meaning stands with the function."""
+    return {name: re.findall(r"\[(.*?)\]", meaning)[-1] for name, meaning in function.meanings.items()}
+
+
+def test_units_that_stand_with_a_function_are_checked():
+    """The planted fault: the time that has passed, taken for a speed."""
+    length, time = symbols("wheel_radius elapsed")
+    assert not check((length, time * sp.Symbol("speed")), own={"elapsed": "s"}).fault
+    assert check((length, time * sp.Symbol("speed")), own={"elapsed": "m/s"}).fault
+
+
 @pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.name)
 def test_generated_functions_return_what_their_docstrings_say(function):
     stated = re.findall(r"\[([^\];]*)[;\]]", function.returns)
@@ -47,7 +59,7 @@ def test_generated_functions_return_what_their_docstrings_say(function):
         assert not found.fault
         return
     for place, expression in enumerate(function.expressions):
-        found = check((expression,))
+        found = check((expression,), own=own_units(function))
         assert not found.fault
         if stated:
             unit = stated[place if len(stated) == len(function.expressions) else -1]
