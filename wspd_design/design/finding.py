@@ -1,6 +1,7 @@
-"""From a task to gains: search, choice, sensitivities, and one look at the held-out sets."""
+"""From a task to gains: search, final among the best points, sensitivities, and one look at the held-out sets."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,9 +11,10 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.judging import held_out, judged_stability, threads
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design
-from wspd_design.design.requirements import Judged, Limit, judged_by
+from wspd_design.design.requirements import DrawnSets, Judged, Limit, judged_by
+from wspd_design.design.search.evaluation import evaluate
 from wspd_design.design.search.journal import Journal
-from wspd_design.design.search.run import Aim, Claim, Evaluation, Space, best, front, search
+from wspd_design.design.search.run import Aim, Claim, Evaluation, Space, front, ranked, search
 from wspd_design.design.search.score import Score, score, score_by_rail, violation
 from wspd_design.design.search.sensitivity import Sensitivity, sensitivities
 from wspd_design.design.search.sets import draw_sets
@@ -26,6 +28,9 @@ from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.simulation.campaign_rows import program_fingerprint
 
 _KEY_FORMAT = 1
+FINALISTS = (
+    8  # points of a search, the best first and the start beside them, that meet on the sets of its final
+)
 PROOF_TRIALS = 5  # points, the best first, of which certificates are asked for
 
 
@@ -39,6 +44,9 @@ class Found:
     tried: tuple[Evaluation, ...]  # the first is the start
     chosen: Evaluation
     reason: str  # of the choice
+    finalists: tuple[
+        Evaluation, ...
+    ]  # as they are judged on the sets of the final, the best first; none without it
     front: tuple[Evaluation, ...]
     sensitivities: tuple[Sensitivity, ...]
     held_out_start: Score
@@ -98,7 +106,10 @@ def find(
             pool=pool,
             progress=progress,
         )
-        chosen, unproved = _chosen(tried, aim, space, task, vehicle, rail)
+        finalists = _final(tried, aim, space, task, vehicle, pool)
+        ordered = finalists or ranked(tried, aim)
+        preferred, unproved = _preferred(ordered, space, task, vehicle, rail)
+        chosen = next(each for each in tried if each.point == preferred.point)
         steps = sensitivities(space, chosen.point, sets, pool)
         both = [space.law_at(point) for point in (space.start, chosen.point)]
         at_start, figures = held_out(both, task.requirements, vehicle, task.vehicle, pool)
@@ -109,7 +120,8 @@ def find(
         limits=aim.limits,
         tried=tuple(tried),
         chosen=chosen,
-        reason=_reason(tried, chosen, aim),
+        reason=_reason(tried, preferred, aim, effort.final if finalists else None),
+        finalists=tuple(finalists),
         front=tuple(front(tried)),
         sensitivities=steps,
         held_out_start=score(at_start),
@@ -188,14 +200,30 @@ def _aim(task: Task, vehicle: Vehicle) -> Aim:
     )
 
 
-def _chosen(
-    tried: list[Evaluation], aim: Aim, space: Space, task: Task, vehicle: Vehicle, rail: Rail
+def _final(
+    tried: Sequence[Evaluation], aim: Aim, space: Space, task: Task, vehicle: Vehicle, pool: Executor
+) -> list[Evaluation]:
+    """Judge the best points and the start again on further sets: the best of many points is partly lucky."""
+    drawn = task.effort.final
+    if drawn is None:
+        return []
+    first, *others = tried
+    best = [each for each in ranked(others, aim) if each.point != first.point]
+    finalists = [*best[:FINALISTS], first]
+    sets = draw_sets(task.requirements, vehicle, task.vehicle, drawn, pool)
+    figures = evaluate([space.law_at(each.point) for each in finalists], sets, pool)
+    judged = [replace(each, score=score(found)) for each, found in zip(finalists, figures, strict=True)]
+    return ranked(judged, aim)
+
+
+def _preferred(
+    ordered: Sequence[Evaluation], space: Space, task: Task, vehicle: Vehicle, rail: Rail
 ) -> tuple[Evaluation, tuple[str, ...]]:
-    """Return the best point whose certificates hold; the best of all if none of the first does."""
-    first = best(tried, aim)
+    """Return the first point whose certificates hold; the first of all if none of some has them."""
+    first = ordered[0]
     if not task.requirements.certificates:
         return first, ()
-    for each in sorted(tried, key=aim.rank)[:PROOF_TRIALS]:
+    for each in ordered[:PROOF_TRIALS]:
         if not _unproved(space.law_at(each.point), task, vehicle, rail):
             return each, ()
     return first, _unproved(space.law_at(first.point), task, vehicle, rail)
@@ -215,18 +243,24 @@ def _told(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else f"{value}"
 
 
-def _reason(tried: list[Evaluation], chosen: Evaluation, aim: Aim) -> str:
+def _reason(tried: Sequence[Evaluation], chosen: Evaluation, aim: Aim, final: DrawnSets | None) -> str:
+    """Say why a point was chosen, with its figures on the sets of the final if there was one."""
     holding = sum(aim.holds(each) for each in tried)
-    start = tried[0]
-    compared = f"objective {chosen.score.objective:.4f} against {start.score.objective:.4f} at the start"
+    compared = f"objective {chosen.score.objective:.4f}"
+    if final is None:
+        compared += f" against {tried[0].score.objective:.4f} at the start"
+        among = f"{len(tried)} points"
+    else:
+        compared += f" on {final.sets} further sets of seed {final.seed}"
+        among = f"the start and the {min(FINALISTS, len(tried) - 1)} best of {len(tried)} points"
     if not aim.limits and not aim.claims:
-        return f"smallest objective of {len(tried)} points, without limits: {compared}"
+        return f"smallest objective of {among}, without limits: {compared}"
     if aim.holds(chosen):
-        return (
-            f"smallest objective of the {holding} points among {len(tried)} that keep all limits: {compared}"
-        )
+        if final is None:
+            among = f"the {holding} points among {len(tried)} that keep all limits"
+        return f"smallest objective of {among}{', within all limits' if final else ''}: {compared}"
     missed = violation(chosen.score, aim.limits) + chosen.unproved
     return (
-        f"none of {len(tried)} points keeps all limits and claims; this one misses them least, by {missed:.2f} in the "
+        f"none of {among} keeps all limits and claims; this one misses them least, by {missed:.2f} in the "
         f"scales of the criteria: {compared}"
     )

@@ -1,6 +1,7 @@
 """The file of a specification: law, vehicle, rails, requirements and effort, as TOML with units."""
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,7 @@ class Effort:
     method: str
     evaluations: int
     sets: DrawnSets
+    final: DrawnSets | None = None  # sets on which the best points are judged again before one is chosen
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,11 +109,15 @@ def _read(document: dict[str, Any], where: str) -> Task:
     law = tunable_family(words["law"]).name
     requirements = read_requirements(document["requirements"], where)
     effort = _effort(table_of(document["search"], "search", where), where)
-    if not disjoint(effort.sets, requirements.held_out):
-        raise UserError(
-            f"search.seed = {effort.sets.seed} and requirements.held_out.seed = {requirements.held_out.seed} in "
-            f"{where} share stops; keep the seeds farther apart than the numbers of sets, such as 1000 and 900000"
-        )
+    series = {"search": effort.sets, "requirements.held_out": requirements.held_out}
+    if effort.final is not None:
+        series["search.final"] = effort.final
+    for (one, some), (other, others) in combinations(series.items(), 2):
+        if not disjoint(some, others):
+            raise UserError(
+                f"{one}.seed = {some.seed} and {other}.seed = {others.seed} in {where} share stops; keep the seeds "
+                "farther apart than the numbers of sets, such as 1000 and 900000"
+            )
     if requirements.stable_within and law != STABLE_LAW:
         raise UserError(
             f"requirements.stable_within in {where} is known for {STABLE_LAW}, not for {law}; leave it out, or "
@@ -144,14 +150,15 @@ def _options(document: dict[str, Any], where: str) -> CaseOptions:
 
 
 def _effort(table: dict[str, Any], where: str) -> Effort:
-    known = ("method", "evaluations", "sets", "seed")
+    known = ("method", "evaluations", "sets", "seed", "final")
     check_keys(table, known, "search.", where, needed=("evaluations", "sets", "seed"))
     method = table.get("method", "cma")
     if method not in METHODS:
         raise UserError(f"search.method = {method!r} in {where} must be one of {', '.join(METHODS)}")
     evaluations = whole(table["evaluations"], "search.evaluations", where, least=1, most=_MOST_EVALUATIONS)
     drawn = read_sets({key: table[key] for key in ("sets", "seed")}, "search", where)
-    return Effort(method=method, evaluations=evaluations, sets=drawn)
+    final = read_sets(table["final"], "search.final", where) if "final" in table else None
+    return Effort(method=method, evaluations=evaluations, sets=drawn, final=final)
 
 
 def _beside(task: Task, folder: Path) -> Task:

@@ -51,6 +51,13 @@ TRIED = Form(
         Key(name="score", kind=SCORE, meaning="on the sets of the search"),
     ),
 )
+FINALIST = Form(
+    name="finalist",
+    keys=(
+        Key(name="point", kind="integer", meaning="place among the points"),
+        Key(name="score", kind=SCORE, meaning="on the sets of the final"),
+    ),
+)
 SENSITIVITY = Form(
     name="sensitivity",
     keys=(
@@ -100,6 +107,13 @@ SEARCH = Form(
         Key(name="points", kind=TRIED, many=(1, None), meaning="in the order of the search, the start first"),
         Key(name="chosen", kind="integer", meaning="place of the chosen point among them, from 0"),
         Key(name="reason", kind="text", meaning="of the choice"),
+        Key(
+            name="final_sets",
+            kind=DRAWN_SETS,
+            nullable=True,
+            meaning="on which the best points met again; null without a final",
+        ),
+        Key(name="finalists", kind=FINALIST, many=ANY, meaning="of the final, the best first"),
         Key(
             name="front",
             kind="integer",

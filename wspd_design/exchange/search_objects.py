@@ -12,6 +12,7 @@ from wspd_design.exchange.version import program_version
 def search_object(found: Found, name: str) -> dict[str, Any]:
     """Return what was varied, tried, chosen and reached, with the name of what was found."""
     task, tried = found.task, list(found.tried)
+    places = {each.point: place for place, each in reversed(list(enumerate(tried)))}
     return {
         "schema": SEARCH.schema,
         "design": name,
@@ -28,6 +29,10 @@ def search_object(found: Found, name: str) -> dict[str, Any]:
         "points": [{"values": list(each.values), "score": plain_score(each.score)} for each in tried],
         "chosen": tried.index(found.chosen),
         "reason": found.reason,
+        "final_sets": None if task.effort.final is None else asdict(task.effort.final),
+        "finalists": [
+            {"point": places[each.point], "score": plain_score(each.score)} for each in found.finalists
+        ],
         "front": [tried.index(each) for each in found.front],
         "sensitivities": [asdict(each) for each in found.sensitivities],
         "held_out_sets": asdict(task.requirements.held_out),

@@ -9,7 +9,8 @@ from wspd_design.design import finding, judging
 from wspd_design.design.file import read_design, write_design
 from wspd_design.design.finding import explained, find, space_of
 from wspd_design.design.judging import judge
-from wspd_design.design.requirements import Limit
+from wspd_design.design.requirements import DrawnSets, Limit
+from wspd_design.design.search.run import ranked
 from wspd_design.design.selection import design_controller
 from wspd_design.design.specification_file import read_task
 from wspd_design.parameters.errors import UserError
@@ -55,8 +56,8 @@ def start(er24pc, task):
 def finds(task, start, er24pc, tmp_path):
     space = space_of(start, er24pc, load_rail("polach-wet"))
 
-    def finding_one(keep=True, **changes):
-        wanted = replace(task, requirements=replace(task.requirements, **changes))
+    def finding_one(keep=True, effort=task.effort, **changes):
+        wanted = replace(task, requirements=replace(task.requirements, **changes), effort=effort)
         return find(wanted, space, keep=keep, journal=tmp_path / "journal")
 
     return finding_one
@@ -204,3 +205,37 @@ def test_certificates_that_must_hold_choose_among_the_best(finds, monkeypatch):
         assert (found.chosen.values, found.unproved) == (ranked[0].values, ("open_loop_pole",))
     edge = -1.0
     assert finds(keep=False, certificates=wanted).unproved == ("open_loop_pole",)
+
+
+def test_a_final_judges_the_best_points_on_further_sets(finds, task):
+    """Chosen is the best of start and best points there; held-out sets stay unseen."""
+    drawn = DrawnSets(sets=24, seed=500_000)
+    alone = finds()
+    found = finds(effort=replace(task.effort, final=drawn))
+    assert [each.point for each in found.tried] == [each.point for each in alone.tried]
+    aim = finding.Aim(limits=found.limits)
+    kept = {each.point for each in found.finalists}
+    assert found.tried[0].point in kept
+    others = [each.point for each in ranked(found.tried[1:], aim) if each.point != found.tried[0].point]
+    assert kept - {found.tried[0].point} == set(others[: finding.FINALISTS])
+    assert [aim.rank(each) for each in found.finalists] == sorted(map(aim.rank, found.finalists))
+    assert found.chosen.point == found.finalists[0].point
+    assert found.chosen in found.tried  # with its score on the sets of the search
+    first = next(each for each in found.finalists if each.point == found.chosen.point)
+    assert first.score != found.chosen.score
+    assert "24 further sets of seed 500000" in found.reason
+
+
+def test_a_lucky_point_does_not_survive_the_final(finds, task, monkeypatch):
+    """Planted luck: the best point of the search is the worst of the final."""
+    drawn = DrawnSets(sets=24, seed=500_000)
+    lucky = finds().chosen.point
+    honest = finding.evaluate
+
+    def unlucky(laws, sets, pool):
+        for place, figures in enumerate(honest(laws, sets, pool)):
+            worse = sets.drawn == drawn and place == 0  # the best of the search comes first
+            yield {**figures, "excess": figures["excess"] + 1.0} if worse else figures
+
+    monkeypatch.setattr(finding, "evaluate", unlucky)
+    assert finds(effort=replace(task.effort, final=drawn)).chosen.point != lucky

@@ -181,9 +181,9 @@ def _order(keys: Sequence[tuple[float, float, float]]) -> list[int]:
     return [by_rank.index(k) for k in range(len(keys))]
 
 
-def best(tried: Sequence[Evaluation], aim: Aim) -> Evaluation:
-    """Return the point that ranks first."""
-    return min(tried, key=aim.rank)
+def ranked(tried: Sequence[Evaluation], aim: Aim) -> list[Evaluation]:
+    """Return the points in their order, the best first."""
+    return sorted(tried, key=aim.rank)
 
 
 def front(tried: Sequence[Evaluation]) -> list[Evaluation]:
