@@ -29,7 +29,8 @@ demo-paper:
 	$(BIN)/wspd report $(OUT)/er24pc.toml --output $(OUT)/er24pc.html --pdf --force
 
 demo-protection:
-	$(BIN)/wspd report $(PROTECTION)/design.toml $(SENSING) --output $(OUT)/protection.html --pdf --force
+	$(BIN)/wspd design $(PROTECTION)/specification.toml --rules-only --output $(OUT)/protection.toml --force
+	$(BIN)/wspd report $(OUT)/protection.toml $(SENSING) --output $(OUT)/protection.html --pdf --force
 
 test: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest
@@ -51,6 +52,7 @@ reports: $(VENV)/.installed
 	$(BIN)/wspd report reports/er24pc-polach-wet/design.toml --output reports/er24pc-polach-wet/report.html --force
 	$(BIN)/wspd design --law torque-feedback --rail polach-wet --sample-time "20 ms" --output reports/torque-feedback-polach-wet/design.toml --force
 	$(BIN)/wspd report reports/torque-feedback-polach-wet/design.toml --output reports/torque-feedback-polach-wet/report.html --force
+	$(BIN)/wspd design $(PROTECTION)/specification.toml --rules-only --output $(PROTECTION)/design.toml --force
 	$(BIN)/wspd report $(PROTECTION)/design.toml $(SENSING) --output $(PROTECTION)/report.html --force
 	$(BIN)/wspd reproduce --output reports/paper --force
 
