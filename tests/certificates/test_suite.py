@@ -147,6 +147,7 @@ def test_printed_law_on_dry_rail(printed):
         "margins": Status.REFUTED,
         "lpv_lyapunov": Status.NOT_APPLICABLE,
         "sampled_invariance": Status.NOT_APPLICABLE,
+        "slip_band": Status.NOT_APPLICABLE,
         "tracking": Status.REFUTED,
         "conservation": Status.EVIDENCE,
         "stop_bound": Status.PROVED,
