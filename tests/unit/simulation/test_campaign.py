@@ -167,7 +167,11 @@ SPREADS = {
     "dead_time": Uniform(low=0.0, high=0.25),
     "shortest_pulse": Choice(values=(0.0, 0.02)),
 }
-OF_VEHICLE = {"accelerometer_bias", "accelerometer_noise", "radius_errors"}  # test_vehicle_law_engines.py has these
+OF_VEHICLE = {
+    "accelerometer_bias",
+    "accelerometer_noise",
+    "radius_errors",
+}  # test_vehicle_law_engines.py has these
 
 
 def test_every_disturbance_differs_from_stop_to_stop(er24pc, make_controller, scenario):
