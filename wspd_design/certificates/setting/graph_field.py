@@ -132,3 +132,23 @@ def _names() -> dict[int, str]:
     import casadi as ca
 
     return {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}
+
+
+def field_point(function: Any, number: int) -> list[list[int]]:
+    """Return elements of the field for all inputs of a function, others for each number."""
+    return [
+        [element("input", place, index, number) for index in range(function.nnz_in(place))]
+        for place in range(function.n_in())
+    ]
+
+
+def same_in_field(pairs: Sequence[tuple[Any, Any]], points: int) -> bool:
+    """Tell whether the functions of each pair have the same values at points; False where that is not decided."""
+    try:
+        return all(
+            values(one, field_point(one, number)) == values(other, field_point(other, number))
+            for one, other in pairs
+            for number in range(points)
+        )
+    except UndecidedError:
+        return False

@@ -11,7 +11,7 @@ from typing import Any
 
 from wspd_design.certificates.kernel.checker import PRIME, element
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.graph_field import UndecidedError, values
+from wspd_design.certificates.setting.graph_field import UndecidedError, field_point, same_in_field, values
 from wspd_design.certificates.setting.written_laws import WRITTEN, WrittenLaw
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.laws import law_constants
@@ -97,15 +97,7 @@ def same_function(one: TracedLaw, other: TracedLaw) -> bool:
     if one.states != other.states:
         return False
     pairs = ((one.start, other.start), (one.step, other.step))
-    try:
-        same = all(
-            values(a, _point(a, number)) == values(b, _point(b, number))
-            for a, b in pairs
-            for number in range(POINTS)
-        )
-    except UndecidedError:
-        return False
-    return same and all(_agree_in_doubles(a, b) for a, b in pairs)
+    return same_in_field(pairs, POINTS) and all(_agree_in_doubles(a, b) for a, b in pairs)
 
 
 def law_of_theorem(problem: Problem, family: str) -> str | None:
@@ -174,7 +166,7 @@ def memory(law: Law) -> LawMemory | str:
     slopes = ca.densify(ca.jacobian(step(x, m)[:states], x)) if states else ca.SX(0, 0)
     jacobian = ca.Function("memory_slopes", [x, m], [slopes])
     try:
-        rows = [_square(values(jacobian, _point(jacobian, k))[0], states) for k in range(POINTS)]
+        rows = [_square(values(jacobian, field_point(jacobian, k))[0], states) for k in range(POINTS)]
         moved = [_with_other_torque(step, k) for k in range(POINTS)]
     except UndecidedError as reason:
         return f"the memory of {law.name} is not decided ({reason})"
@@ -190,13 +182,6 @@ def memory(law: Law) -> LawMemory | str:
         command_reads_torque=any(plain[states:] != other[states:] for plain, other in moved),
         memory_reads_torque=any(plain[:states] != other[:states] for plain, other in moved),
     )
-
-
-def _point(function: Any, number: int) -> list[list[int]]:
-    return [
-        [element("input", place, index, number) for index in range(function.nnz_in(place))]
-        for place in range(function.n_in())
-    ]
 
 
 def _agree_in_doubles(one: Any, other: Any) -> bool:
@@ -221,7 +206,7 @@ def _share(*content: object) -> float:
 
 def _with_other_torque(step: Any, number: int) -> tuple[list[int], list[int]]:
     """Outputs of a step at two points that differ in the torque alone."""
-    point = _point(step, number)
+    point = field_point(step, number)
     other = [point[0], [*point[1][:TORQUE], element("other torque", number)]]
     return values(step, point)[0], values(step, other)[0]
 

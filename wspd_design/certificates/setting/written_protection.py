@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from wspd_design.certificates.kernel.checker import PRIME, element
-from wspd_design.certificates.setting.graph_field import UndecidedError, values
+from wspd_design.certificates.setting.graph_field import same_in_field
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.laws import LawKernels, law_constants
 from wspd_design.controllers.observer_smc import ObserverSmc
@@ -248,22 +248,7 @@ def _same(one: LawKernels, other: LawKernels) -> bool:
     if one.states != other.states:
         return False
     pairs = ((one.start, other.start), (one.step, other.step))
-    try:
-        same = all(
-            values(a, _elements(a, number)) == values(b, _elements(b, number))
-            for a, b in pairs
-            for number in range(POINTS)
-        )
-    except UndecidedError:
-        return False
-    return same and all(_agree_in_doubles(a, b) for a, b in pairs)
-
-
-def _elements(function: Any, number: int) -> list[list[int]]:
-    return [
-        [element("input", place, index, number) for index in range(function.nnz_in(place))]
-        for place in range(function.n_in())
-    ]
+    return same_in_field(pairs, POINTS) and all(_agree_in_doubles(a, b) for a, b in pairs)
 
 
 def _agree_in_doubles(one: Any, other: Any) -> bool:
