@@ -25,6 +25,8 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.sections.theory import theory
+from wspd_design.reporting.sections.words import words
 from wspd_design.studies.dossier import Dossier
 
 SECTIONS = (
@@ -40,6 +42,7 @@ SECTIONS = (
     comparison,
     sources,
     limits,
+    theory,
 )
 
 
@@ -71,6 +74,7 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
     made = dossier.design
     version = dict(dossier.provenance.versions)["wspd-design"]
     speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
+    blocks = tuple(block for section in SECTIONS for block in section(dossier))
     record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
     return Document(
         title=f"Wheel slide protection: {made.name}",
@@ -80,7 +84,7 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
         f"inputs {dossier.provenance.input_hash[:12]}",
         verdict=verdict(dossier),
         summary=summary(dossier),
-        blocks=tuple(block for section in SECTIONS for block in section(dossier)),
+        blocks=(*blocks, *words(blocks)),
         provenance=provenance(dossier),
         attachments=(
             Attachment(
