@@ -1,6 +1,7 @@
 """The numbers of a report for programs: the attached ``report.json``, described in ``docs/json.md``."""
 
 from dataclasses import asdict
+from datetime import datetime
 from typing import Any
 
 from wspd_design.exchange.objects import (
@@ -17,15 +18,18 @@ from wspd_design.exchange.study_forms import REPORT
 from wspd_design.exchange.version import program_version
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import FaultedStop, Robustness
+from wspd_design.studies.provenance import Provenance
 
 
-def report_record(dossier: Dossier) -> dict[str, Any]:
+def report_record(dossier: Dossier, made_at: datetime) -> dict[str, Any]:
     """Return everything that a report states as plain data; traces and curves are left out.
 
     Parameters
     ----------
     dossier : Dossier
         What the report is about.
+    made_at : datetime
+        Of the report.
 
     Returns
     -------
@@ -37,7 +41,7 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
     record: dict[str, Any] = finite(
         {
             "schema": REPORT.schema,
-            "provenance": {**asdict(dossier.provenance), "versions": dict(dossier.provenance.versions)},
+            "provenance": _provenance(dossier.provenance, made_at),
             "design": design_object(dossier.design),
             "compared_designs": [design_object(each) for each in dossier.compared_designs],
             "brake": brake_object(dossier.brake),
@@ -57,6 +61,16 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
         }
     )
     return record
+
+
+def _provenance(made: Provenance, made_at: datetime) -> dict[str, Any]:
+    return {
+        **asdict(made),
+        "made_at": made_at.isoformat(),
+        "inputs": [{"name": each.name, "sha256": each.sha256} for each in made.inputs],
+        "input_hash": made.input_hash,
+        "versions": dict(made.versions),
+    }
 
 
 def _faulted_stop(stop: FaultedStop, found: Robustness) -> dict[str, Any]:

@@ -1,24 +1,23 @@
 """The report of a design: a dossier in, one HTML or PDF file out."""
 
-import json
 import os
 from datetime import UTC, datetime
 from pathlib import Path
 
 from wspd_design.controllers.family import designed_family
-from wspd_design.design.file import design_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Attachment, Document
+from wspd_design.reporting.attachments import attachments
+from wspd_design.reporting.blocks import Document
 from wspd_design.reporting.output import write_document
-from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
-from wspd_design.reporting.sections.checks import certificate_files, checks
+from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
-from wspd_design.reporting.sections.limits import limits, provenance
+from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.linearization import linearization
+from wspd_design.reporting.sections.replay import provenance, replay
 from wspd_design.reporting.sections.requirements import requirements
 from wspd_design.reporting.sections.robustness import robustness
 from wspd_design.reporting.sections.slip_equation import slip_equation
@@ -40,6 +39,7 @@ SECTIONS = (
     comparison,
     sources,
     limits,
+    replay,
 )
 
 
@@ -68,44 +68,19 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
 
 def report_document(dossier: Dossier, timestamp: datetime) -> Document:
     """Return the report of a design, not yet rendered."""
-    made = dossier.design
-    version = dict(dossier.provenance.versions)["wspd-design"]
+    made, origin = dossier.design, dossier.provenance
     speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
-    record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
     return Document(
         title=f"Wheel slide protection: {made.name}",
         subtitle=f"{designed_family(made.law).heading}, for {dossier.vehicle.name} on {dossier.rail.name}, "
         f"from {speed}",
-        status_line=f"wspd {version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {dossier.provenance.seed} · "
-        f"inputs {dossier.provenance.input_hash[:12]}",
+        status_line=f"wspd {origin.program_version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {origin.seed} · "
+        f"inputs {origin.input_hash[:12]}",
         verdict=verdict(dossier),
         summary=summary(dossier),
         blocks=tuple(block for section in SECTIONS for block in section(dossier)),
         provenance=provenance(dossier),
-        attachments=(
-            Attachment(
-                name="design.toml",
-                media_type="application/toml",
-                content=design_text(made),
-                description="the design, which every command takes in place of a controller's name",
-            ),
-            *(
-                Attachment(
-                    name=own.name,
-                    media_type="application/toml",
-                    content=own.text,
-                    description=f"the {own.kind}, a file of its own",
-                )
-                for own in dossier.own_files
-            ),
-            Attachment(
-                name="report.json",
-                media_type="application/json",
-                content=f"{record}\n",
-                description="all numbers of this report",
-            ),
-            *certificate_files(dossier),
-        ),
+        attachments=attachments(dossier, timestamp),
         timestamp=timestamp,
     )
 

@@ -1,10 +1,7 @@
 """Everything that a report shows about a design, computed once."""
 
-import hashlib
-import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
@@ -16,13 +13,12 @@ from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.catalog import controller, controller_of, design_rail, is_design_file
-from wspd_design.design.file import design_text, read_design
+from wspd_design.design.file import read_design
 from wspd_design.design.industry import usual_table
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.files import available, load_entries
-from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
@@ -31,20 +27,11 @@ from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
+from wspd_design.studies.inputs import input_files
 from wspd_design.studies.judgment import Judgment, judgment
+from wspd_design.studies.provenance import InputFile, Provenance, provenance
 
 POLE_SPEEDS = 60  # points of the pole map
-PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Provenance:
-    """How to compute a report again."""
-
-    command: str
-    versions: tuple[tuple[str, str], ...]
-    seed: int
-    input_hash: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,23 +45,12 @@ class PhasePlane:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnFile:
-    """A vehicle or rail of the user's own, which no one else has."""
-
-    kind: str  # vehicle or rail
-    name: str  # of the file, without its folder
-    variant: str  # what follows it in options, such as :laden
-    text: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Dossier:
     """A design, the numbers it rests on, its linearizations, certificates and simulated stops."""
 
     design: Design
     vehicle: ParameterSet
     rail: ParameterSet
-    own_files: tuple[OwnFile, ...]  # of those two, where they do not ship with the program
     other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
     brake: BrakeSheet  # on full adhesion
@@ -97,7 +73,8 @@ def dossier(
     rail_name: str,
     scenario: Scenario,
     baselines: Sequence[str],
-    command: str,
+    command: str = "",
+    inputs: Sequence[InputFile] = (),
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
     folder: Path = Path(),
@@ -116,7 +93,9 @@ def dossier(
     baselines : sequence of str
         Controllers to compare with.
     command : str
-        The command line, for the record.
+        That makes the report again from the input files; empty where there is none.
+    inputs : sequence of InputFile
+        What it is made from; by default the design and its vehicle and rail, where they are files of one's own.
     plant : {"planar", "quarter"}
         Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
@@ -152,12 +131,10 @@ def dossier(
         plant=plant,
         progress=progress,
     )
-    inputs = "\n".join((design_text(made), repr(vehicle), repr(rail), repr(scenario), plant))
     return Dossier(
         design=made,
         vehicle=load_entries("vehicle", vehicle_name),
         rail=load_entries("rail", rail_name),
-        own_files=(*_own_file("vehicle", vehicle_name), *_own_file("rail", rail_name)),
         other_parameters=_other_parameters(made, vehicle, rail, baselines),
         compared_designs=tuple(design for _, design in others if design is not None),
         brake=brake_sheet(vehicle),
@@ -170,26 +147,13 @@ def dossier(
         judgment=judgment(made, design_rail(made, rail), certificates, folder=folder, progress=progress),
         robustness=robustness(vehicle, own, scenario, plant=plant, progress=progress),
         scenario=scenario,
-        provenance=Provenance(
+        provenance=provenance(
             command=command,
-            versions=versions(),
             seed=scenario.seed,
-            input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
+            inputs=inputs or input_files(made, vehicle_name=vehicle_name, rail_names=(rail_name,)),
+            certificates=certificates,
         ),
     )
-
-
-def _own_file(kind: str, written: str) -> tuple[OwnFile, ...]:
-    path = Path(written.removesuffix(LADEN))
-    if path.suffix != ".toml":
-        return ()
-    text = path.read_text(encoding="utf-8-sig")
-    return (OwnFile(kind=kind, name=path.name, variant=written.removeprefix(str(path)), text=text),)
-
-
-def versions() -> tuple[tuple[str, str], ...]:
-    """Return the versions of Python and of the packages that numbers depend on."""
-    return (("Python", platform.python_version()), *((name, version(name)) for name in PACKAGES))
 
 
 def phase_plane(run: Run, law: Surface) -> PhasePlane:

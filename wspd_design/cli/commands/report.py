@@ -1,20 +1,20 @@
 """``wspd report``: everything about a design in one document."""
 
-import shlex
-import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated
 
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.arguments import check_plant, chosen, initial_speed
+from wspd_design.cli.arguments import check_plant, chosen
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
+from wspd_design.cli.report_call import ReportCall, compute
 from wspd_design.cli.sensor_options import SensorOptions
-from wspd_design.cli.stop_options import along_the_track, scenario
+from wspd_design.cli.stop_options import along_the_track
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
@@ -22,6 +22,7 @@ from wspd_design.design.certification import stored_beside
 from wspd_design.design.records import Design
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
+from wspd_design.studies.inputs import attached_design, attached_name, input_files, required_rails
 
 
 @takes_records
@@ -48,7 +49,6 @@ def report(
     from wspd_design.reporting.report import write_report
     from wspd_design.reporting.sections.summary import verdict
     from wspd_design.reporting.text import plain
-    from wspd_design.studies.dossier import dossier
 
     check_plant(plant)
     paths = list(dict.fromkeys([output, output.with_suffix(".pdf")] if pdf else [output]))
@@ -63,21 +63,21 @@ def report(
         CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words),
     )
     made = _design(chosen_name, case)
-    braked_from = initial_speed(speed, case.specification)
-    stop = scenario(case.rail, disturbances, initial_speed=braked_from, seed=seed, vehicle=case.vehicle)
-    with progress() as tell:
-        computed = dossier(
-            made,
-            vehicle_name=case.vehicle_name,
-            rail_name=case.rail_name,
-            scenario=stop,
-            baselines=[other for other in FAMILIES if other not in (made.name, chosen_name)],
-            command=shlex.join(["wspd", *sys.argv[1:]]),
-            plant=plant,
-            stored=stored_beside(chosen_name),
-            folder=Path(chosen_name).parent if is_design_file(chosen_name) else Path(),
-            progress=tell,
-        )
+    call = ReportCall(
+        vehicle=case.vehicle_name,
+        rail=case.rail_name,
+        plant=plant,
+        speed=speed,
+        seed=seed,
+        disturbances=disturbances,
+    )
+    beside = Path(chosen_name).parent if is_design_file(chosen_name) else Path()
+    rails = (*call.rails, *required_rails(made, beside))
+    attached = attached_design(made, vehicle_name=call.vehicle, rail_name=call.rail, rail=case.rail)
+    call = call.named(attached_name)
+    inputs = input_files(attached, vehicle_name=case.vehicle_name, rail_names=rails, command=call.text)
+    with progress() as tell, TemporaryDirectory(prefix="wspd-") as folder:
+        computed = compute(call, inputs, Path(folder), stored=stored_beside(chosen_name), progress=tell)
         tell("typesetting")
         write_report(computed, *paths)
     judged = verdict(computed)
