@@ -34,6 +34,7 @@ from wspd_design.reporting.svg import size
 from wspd_design.reporting.template import ROLES, Template
 from wspd_design.reporting.text import CodeSpan, Emphasis, Inline, Link, Math, Text, plain, printable, spans
 
+
 def render_pdf(document: Document) -> bytes:
     """Return a document as PDF.
 
