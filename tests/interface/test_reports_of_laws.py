@@ -91,13 +91,15 @@ def test_its_vehicle_travels_with_the_report_to_the_last_bit(in_memory, vehicle,
 
 
 def test_the_opposite_law_is_another_one_and_is_not_fit(in_memory, vehicle):
-    wrong = wd.dossier(Band(radius=vehicle.wheel_radius, sign=-1.0), vehicle=vehicle, rail=RAIL, scenario=STOP)
+    wrong = wd.dossier(
+        Band(radius=vehicle.wheel_radius, sign=-1.0), vehicle=vehicle, rail=RAIL, scenario=STOP
+    )
     assert wrong.law.fingerprint != in_memory.law.fingerprint
     assert wrong.provenance.input_hash != in_memory.provenance.input_hash
     assert plain(verdict(wrong).sentence).startswith("Not fit")
 
 
-def test_a_design_keeps_its_specification(vehicle):
+def test_a_design_keeps_its_specification():
     made = wd.design_controller(load_vehicle("er24pc"), RAIL, wd.Specification())
     with pytest.raises(wd.UserError, match="has its own specification; leave specification out"):
         wd.dossier(made, vehicle="er24pc", rail=RAIL, scenario=STOP, specification=wd.Specification(slip=0.1))

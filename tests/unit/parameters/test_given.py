@@ -34,7 +34,9 @@ def test_a_changed_number_loses_its_source_and_the_others_keep_theirs(er24pc):
 
 @pytest.mark.parametrize("name", available("vehicle"))
 def test_its_file_gives_the_same_record_to_the_last_bit(tmp_path, name):
-    own = replace(load_vehicle(name), name="own", wheel_radius=load_vehicle(name).wheel_radius * 0.99912345678912)
+    own = replace(
+        load_vehicle(name), name="own", wheel_radius=load_vehicle(name).wheel_radius * 0.99912345678912
+    )
     found = given_entries(own)
     path = tmp_path / "own.toml"
     path.write_text(parameter_file(found.title, (), found.entries.values()), encoding="utf-8")
@@ -44,7 +46,10 @@ def test_its_file_gives_the_same_record_to_the_last_bit(tmp_path, name):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"mass": -1.0, "bounds": EXACT}, "mass = -1 kg of vehicle er24pc must be above 0; correct the record"),
+        (
+            {"mass": -1.0, "bounds": EXACT},
+            "mass = -1 kg of vehicle er24pc must be above 0; correct the record",
+        ),
         ({"mass": 1e9}, "mass = 1e.09 kg of vehicle er24pc lies outside its bounds"),
     ],
 )
