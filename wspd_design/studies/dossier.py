@@ -92,7 +92,6 @@ class Dossier:
     linearizations: tuple[Linearization, ...]  # over speed, at the slip reference
     certificates: tuple[Certificate, ...]
     trials: tuple[Trial, ...]  # the design's own stop first
-    lag_distances: tuple[float, ...]  # m, of each trial: the part of the distance that the build-up costs
     phase_plane: PhasePlane | None  # of laws with a sliding surface
     judgment: Judgment | None  # of a design with requirements
     robustness: Robustness | None  # where wheelsets differ
@@ -204,7 +203,6 @@ def dossier(
         linearizations=linearizations,
         certificates=certificates,
         trials=trials,
-        lag_distances=tuple(scenario.initial_speed * each.metrics.lag for each in trials),
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
         judgment=None
         if design is None
