@@ -4,6 +4,7 @@ import hashlib
 import json
 import re
 from datetime import datetime
+from pathlib import PurePath
 
 from wspd_design.parameters.files import available, data_text
 from wspd_design.parameters.records import ParameterSet
@@ -11,16 +12,17 @@ from wspd_design.parameters.schema import Kind
 from wspd_design.reporting.blocks import Attachment
 from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.checks import certificate_files
+from wspd_design.reporting.template import BLANK, Template, template_text
 from wspd_design.simulation.records import Run
 from wspd_design.simulation.traces import on_a_grid, traces
 from wspd_design.studies.dossier import Dossier
 
-RECORD, SUMS = "report.json", "SHA256SUMS"
+RECORD, TEMPLATE, SUMS = "report.json", "template.toml", "SHA256SUMS"
 OWN_INTERVAL, OTHER_INTERVAL = 0.02, 0.1  # s, between the rows of traces
 _SHIPPED = "shipped-"
 
 
-def attachments(dossier: Dossier, made_at: datetime) -> tuple[Attachment, ...]:
+def attachments(dossier: Dossier, made_at: datetime, template: Template = BLANK) -> tuple[Attachment, ...]:
     """Return all attachments; the last one has the SHA-256 of each other."""
     record = json.dumps(report_record(dossier, made_at), indent=1, ensure_ascii=False, allow_nan=False)
     found = (
@@ -39,6 +41,7 @@ def attachments(dossier: Dossier, made_at: datetime) -> tuple[Attachment, ...]:
         ),
         *_traces(dossier),
         *certificate_files(dossier),
+        *_template_file(template),
     )
     sums = "".join(f"{hashlib.sha256(each.content.encode()).hexdigest()}  {each.name}\n" for each in found)
     checked = Attachment(
@@ -47,8 +50,22 @@ def attachments(dossier: Dossier, made_at: datetime) -> tuple[Attachment, ...]:
     return (*found, checked)
 
 
+def _template_file(template: Template) -> tuple[Attachment, ...]:
+    if template == BLANK:
+        return ()
+    return (
+        Attachment(
+            name=TEMPLATE,
+            media_type="application/toml",
+            content=template_text(template),
+            description="logo, names and numbers of this report, for wspd report --template",
+        ),
+    )
+
+
 def _media_type(name: str) -> str:
-    return "application/toml" if name.endswith(".toml") else "text/plain"
+    endings = {".toml": "application/toml", ".py": "text/x-python", ".json": "application/json"}
+    return endings.get(PurePath(name).suffix, "text/plain")
 
 
 def _shipped(dossier: Dossier) -> tuple[Attachment, ...]:

@@ -4,7 +4,6 @@ import os
 from datetime import UTC, datetime
 from pathlib import Path
 
-from wspd_design.controllers.family import designed_family
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting import numbers
 from wspd_design.reporting.attachments import attachments
@@ -24,6 +23,7 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.template import BLANK, Template
 from wspd_design.studies.dossier import Dossier
 
 SECTIONS = (
@@ -43,7 +43,7 @@ SECTIONS = (
 )
 
 
-def write_report(dossier: Dossier, *paths: str | Path) -> None:
+def write_report(dossier: Dossier, *paths: str | Path, template: Template = BLANK) -> None:
     """Write the report of a design to files; the ending of a name, ``.html`` or ``.pdf``, chooses its format.
 
     The date in the report is now, or that of the environment variable ``SOURCE_DATE_EPOCH`` [s]; all else
@@ -55,33 +55,37 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
         What :func:`wspd_design.studies.dossier.dossier` returned.
     *paths : str or Path
         One file for each format wanted.
+    template : Template, optional
+        Logo, names and numbers of a company, of :func:`wspd_design.reporting.template.read_template`.
 
     Raises
     ------
     UserError
         If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is not a number of seconds.
     """
-    document = report_document(dossier, report_time())
+    document = report_document(dossier, report_time(), template)
     for path in paths:
         write_document(document, path)
 
 
-def report_document(dossier: Dossier, timestamp: datetime) -> Document:
+def report_document(dossier: Dossier, timestamp: datetime, template: Template = BLANK) -> Document:
     """Return the report of a design, not yet rendered."""
-    made, origin = dossier.design, dossier.provenance
+    law, origin = dossier.law, dossier.provenance
     speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
     return Document(
-        title=f"Wheel slide protection: {made.name}",
-        subtitle=f"{designed_family(made.law).heading}, for {dossier.vehicle.name} on {dossier.rail.name}, "
-        f"from {speed}",
+        title=f"Wheel slide protection: {law.name}",
+        subtitle=f"{law.heading}, for {dossier.vehicle.name} on {dossier.rail.name}, from {speed}",
         status_line=f"wspd {origin.program_version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {origin.seed} · "
         f"inputs {origin.input_hash[:12]}",
         verdict=verdict(dossier),
         summary=summary(dossier),
         blocks=tuple(block for section in SECTIONS for block in section(dossier)),
         provenance=provenance(dossier),
-        attachments=attachments(dossier, timestamp),
+        attachments=attachments(dossier, timestamp, template),
         timestamp=timestamp,
+        author=template.author or template.organization or f"wspd {origin.program_version}",
+        keywords=("wheel slide protection", law.heading, dossier.vehicle.name, dossier.rail.name),
+        template=template,
     )
 
 

@@ -42,7 +42,13 @@ def test_the_identity_is_what_git_and_sha256sum_say(clone):
 
 def test_every_byte_and_every_name_counts_and_what_machines_make_does_not(clone):
     before = identity(clone)
-    for name in ("__pycache__/a.pyc", "prebuilt/plant.so", "data/law.so", "empty/__pycache__/b.pyc", ".hidden"):
+    for name in (
+        "__pycache__/a.pyc",
+        "prebuilt/plant.so",
+        "data/law.so",
+        "empty/__pycache__/b.pyc",
+        ".hidden",
+    ):
         (clone / name).parent.mkdir(parents=True, exist_ok=True)
         (clone / name).write_text("made")
     assert identity(clone) == before
@@ -75,7 +81,9 @@ def test_a_clone_knows_whether_it_is_that_of_its_commit(clone, monkeypatch):
 @pytest.mark.slow
 def test_a_wheel_has_the_identity_of_the_clone(tmp_path):
     source = tmp_path / "source"
-    shutil.copytree(ROOT / "wspd_design", source / "wspd_design", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        ROOT / "wspd_design", source / "wspd_design", ignore=shutil.ignore_patterns("__pycache__")
+    )
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, source)
     build = "from setuptools import setup; setup(script_args=['--quiet', 'build_py', '--build-lib', 'built'])"

@@ -16,7 +16,12 @@ def replay(dossier: Dossier) -> tuple[Block, ...]:
     made = dossier.provenance
     again: tuple[Block, ...] = (
         Paragraph(
-            text="No command makes this report again: a program in Python made it, from objects that are in no file."
+            text=rich(
+                "No command makes this report again: a program in Python made it by `wspd_design.dossier` and "
+                "`wspd_design.write_report`. The attached file of a check is decided again where the law was made: by "
+                "`wspd_design.check`, with the problem that `wspd_design.stability_problem` makes of law, vehicle, "
+                "rail and specification."
+            )
         ),
     )
     if made.command:
@@ -76,6 +81,14 @@ def provenance(dossier: Dossier) -> tuple[Definition, ...]:
             text=(CodeSpan(text=made.input_hash), ", ", CodeSpan(text=f"sha256sum {named} | sha256sum")),
         ),
         Definition(term="Searches cut by their budget", text=searches_cut(made)),
+        *_fingerprints(dossier),
+    )
+
+
+def _fingerprints(dossier: Dossier) -> tuple[Definition, ...]:
+    if dossier.design is None:
+        return (Definition(term="Law, fingerprint", text=dossier.law.fingerprint),)
+    return (
         Definition(term="Vehicle, fingerprint in the design", text=dossier.design.vehicle_hash),
         Definition(term="Design rail, fingerprint in the design", text=dossier.design.rail_hash),
     )
