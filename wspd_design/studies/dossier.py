@@ -32,6 +32,7 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
 from wspd_design.studies.judgment import Judgment, judgment
+from wspd_design.studies.uncertainty import Uncertainty, uncertainty
 
 POLE_SPEEDS = 60  # points of the pole map
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
@@ -86,6 +87,7 @@ class Dossier:
     phase_plane: PhasePlane | None  # of laws with a sliding surface
     judgment: Judgment | None  # of a design with requirements
     robustness: Robustness | None  # where wheelsets differ
+    uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
     provenance: Provenance
 
@@ -98,6 +100,7 @@ def dossier(
     scenario: Scenario,
     baselines: Sequence[str],
     command: str,
+    stop_command: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
     folder: Path = Path(),
@@ -117,6 +120,8 @@ def dossier(
         Controllers to compare with.
     command : str
         The command line, for the record.
+    stop_command : str
+        ``wspd simulate`` with what the command line says about the stop, so that drawn ones can be simulated again.
     plant : {"planar", "quarter"}
         Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
@@ -152,11 +157,12 @@ def dossier(
         plant=plant,
         progress=progress,
     )
+    entries = load_entries("vehicle", vehicle_name), load_entries("rail", rail_name)
     inputs = "\n".join((design_text(made), repr(vehicle), repr(rail), repr(scenario), plant))
     return Dossier(
         design=made,
-        vehicle=load_entries("vehicle", vehicle_name),
-        rail=load_entries("rail", rail_name),
+        vehicle=entries[0],
+        rail=entries[1],
         own_files=(*_own_file("vehicle", vehicle_name), *_own_file("rail", rail_name)),
         other_parameters=_other_parameters(made, vehicle, rail, baselines),
         compared_designs=tuple(design for _, design in others if design is not None),
@@ -169,6 +175,18 @@ def dossier(
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
         judgment=judgment(made, design_rail(made, rail), certificates, folder=folder, progress=progress),
         robustness=robustness(vehicle, own, scenario, plant=plant, progress=progress),
+        uncertainty=uncertainty(
+            vehicle,
+            own,
+            scenario,
+            trials[0],
+            slip_reference=specification.slip,
+            parameters=entries,
+            laden=load_vehicle(f"{vehicle_name}{LADEN}") if "laden.mass" in entries[0].entries else None,
+            plant=plant,
+            command=stop_command,
+            progress=progress,
+        ),
         scenario=scenario,
         provenance=Provenance(
             command=command,

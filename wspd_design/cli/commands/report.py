@@ -14,6 +14,7 @@ from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
 from wspd_design.cli.sensor_options import SensorOptions
+from wspd_design.cli.stop_command import stop_command
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.design.case import Case, CaseOptions, load_case
@@ -73,6 +74,7 @@ def report(
             scenario=stop,
             baselines=[other for other in FAMILIES if other not in (made.name, chosen_name)],
             command=shlex.join(["wspd", *sys.argv[1:]]),
+            stop_command=stop_command(sys.argv[2:]),
             plant=plant,
             stored=stored_beside(chosen_name),
             folder=Path(chosen_name).parent if is_design_file(chosen_name) else Path(),
