@@ -8,6 +8,7 @@ import numpy as np
 from wspd_design.analysis.brake_sheet import brake_sheet
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
+from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.design.requirements import DrawnSets, Limit, Requirements, judged_by
@@ -20,6 +21,7 @@ from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.reported_law import ReportedLaw
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
@@ -101,11 +103,18 @@ def trial(
         distance=187.65,
         stopping_time=10.0,
         torque_integral=1.5678e6,
+        build_up=1.2,
+        build_up_distance=38.5,
         lag=1.259,
         plateau=3.8135,
         slip_mean=0.1412,
         slip_max=0.2399,
         slip_rms=0.0707,
+        slip_reached=2.1,
+        held_slip_rms=0.0612,
+        slip_overshoot=0.0999,
+        slip_undershoot=0.1001,
+        perfect_slip_rms=0.0012,
         lock_time=0.975,
         judged_lock=0.5,
         slip_band=math.nan,
@@ -215,11 +224,22 @@ def sample_dossier(
     if trials is None:
         trials = (
             trial("mine", rail),
-            trial("trenitalia", rail, distance=201.75, lag=2.0),
+            trial("trenitalia", rail, distance=201.75, build_up_distance=62.0),
             trial("none", rail),
         )
     names = ("lyapunov_one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
     return Dossier(
+        law=ReportedLaw(
+            name="mine",
+            title="adaptive fuzzy sliding mode",
+            origin="eqs. (29) to (42)",
+            own=False,
+            called="design.toml",
+            equations=FAMILIES["afsmc"].equations,
+            acts_on="one wheelset",
+            fingerprint="123abc" * 10 + "1234",
+        ),
+        specification=Specification(),
         design=Design(
             name="mine",
             law="afsmc",
@@ -246,7 +266,6 @@ def sample_dossier(
         ),
         certificates=tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False)),
         trials=trials,
-        lag_distances=tuple(INITIAL_SPEED * each.metrics.lag for each in trials),
         phase_plane=PhasePlane(
             integral=(0.0, 0.014, 0.02), error=(0.14, 0.06, -0.05), surface_rate=0.38, layer=0.025
         ),

@@ -176,11 +176,13 @@ def test_the_ranking_says_what_separates_the_stops():
     def said(rail, **kwargs):
         blocks = comparison(sample_dossier(rail=rail, **kwargs))
         return plain(
-            next(each.text for each in blocks if isinstance(each, Paragraph) and "Lag" in plain(each.text))
+            next(
+                each.text for each in blocks if isinstance(each, Paragraph) and "built up" in plain(each.text)
+            )
         )
 
-    # 201.75 m against 187.65 m; lags 2 s against 1.259 s at 33.3 m/s.
-    assert "lie 14.1 m: 24.7 m of lag and −10.6 m of plateau" in said("polach-wet")
+    # 201.75 m against 187.65 m; built up after 62 m and 38.5 m.
+    assert "lie 14.1 m: 23.5 m until the brake is built up and −9.4 m after it" in said("polach-wet")
     assert "friction falls with the sliding speed" in said("polach-wet")
     assert "says nothing about the control of slip" in said("table10-dry")
     alone = said("polach-wet", trials=(trial("mine"), trial("none", ending=Ending.TIME_LIMIT)))
@@ -277,6 +279,7 @@ def test_hostile_names_stay_text(tmp_path):
     dossier = sample_dossier(trials=(trial("mine"), trial(hostile, distance=300.0)))
     dossier = replace(
         dossier,
+        law=replace(dossier.law, name=hostile, origin=hostile),
         design=replace(dossier.design, name=hostile),
         rail=replace(dossier.rail, name="../my rail.toml"),
         certificates=(certificate("one", Status.REFUTED, title=hostile, claim=hostile),),
