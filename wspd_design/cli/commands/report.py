@@ -44,11 +44,20 @@ def report(
         Path, typer.Option("--output", "-o", metavar="FILE", help="Report to write, .html or .pdf.")
     ] = Path("report.html"),
     pdf: Annotated[bool, typer.Option("--pdf", help="Write the same content as PDF beside it, too.")] = False,
+    template: Annotated[
+        Path | None,
+        typer.Option(
+            "--template",
+            metavar="FILE.toml",
+            help="Logo, names, document number and issue of your company.",
+        ),
+    ] = None,
     force: options.ForceOption = False,
 ) -> None:
     """Write a report on a design or any other law: gains, poles, certificates, stops and sources."""
     from wspd_design.reporting.report import write_report
     from wspd_design.reporting.sections.summary import verdict
+    from wspd_design.reporting.template import BLANK, read_template
     from wspd_design.reporting.text import plain
     from wspd_design.studies.dossier import dossier
 
@@ -58,6 +67,7 @@ def report(
         if path.suffix.lower() not in (".html", ".pdf"):
             raise UserError(f"report {path} must end in .html or .pdf, which chooses the format")
         check_output(path, force=force)
+    letterhead = BLANK if template is None else read_template(template)
     chosen_name = chosen(name, controller)
     rail, disturbances = along_the_track(rail, disturbances)
     case = load_case(
@@ -84,7 +94,7 @@ def report(
             progress=tell,
         )
         tell("typesetting")
-        write_report(computed, *paths)
+        write_report(computed, *paths, template=letterhead)
     judged = verdict(computed)
     style = (
         "bold green"
