@@ -74,10 +74,18 @@ class ReportCall:
     @property
     def text(self) -> str:
         """The command line; :func:`read_call` reads it."""
+        return self._after(*_HEAD)
+
+    @property
+    def simulation(self) -> str:
+        """The command line that simulates the stop of the report."""
+        return replace(self, template=None)._after("wspd", "simulate")
+
+    def _after(self, *head: str) -> str:
         plain = ReportCall(vehicle="", rail="")
         pairs = ((self, plain), (self.sensors, plain.sensors), (self.disturbances, plain.disturbances))
         words = [word for record, default in pairs for word in _words(record, default)]
-        return shlex.join([*_HEAD, self.law, *words])
+        return shlex.join([*head, self.law, *words])
 
 
 def _words(record: object, default: object) -> Iterator[str]:
@@ -224,6 +232,7 @@ def compute(
             specification=None if isinstance(made, Design) else case.specification,
             baselines=[other for other in FAMILIES if other not in (made.name, call.law)],
             command=call.text,
+            stop_command=call.simulation,
             inputs=inputs,
             written="" if isinstance(made, Design) else call.law,
             plant=call.plant,

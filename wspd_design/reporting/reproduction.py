@@ -71,7 +71,7 @@ def reproduction_document(made: Reproduction, timestamp: datetime) -> Document:
         provenance=_provenance(made),
         attachments=(),
         timestamp=timestamp,
-        author=f"wspd {version}",
+        author=f"wspd {made.provenance.program_version}",
         keywords=("wheel slide protection", "reproduction", "ER24PC"),
     )
 

@@ -23,6 +23,7 @@ from wspd_design.design.selection import named_design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.given import given_entries
+from wspd_design.parameters.laden import laden
 from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS, Kind
@@ -35,6 +36,7 @@ from wspd_design.studies.inputs import design_input, law_inputs, parameter_input
 from wspd_design.studies.judgment import Judgment, judgment
 from wspd_design.studies.provenance import InputFile, Provenance, provenance
 from wspd_design.studies.reported_law import ReportedLaw, reported_law
+from wspd_design.studies.uncertainty import Uncertainty, uncertainty
 
 POLE_SPEEDS = 60  # points of the pole map
 
@@ -68,6 +70,7 @@ class Dossier:
     phase_plane: PhasePlane | None  # of laws with a sliding surface
     judgment: Judgment | None  # of a design with requirements
     robustness: Robustness | None  # where wheelsets differ
+    uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
     provenance: Provenance
 
@@ -82,6 +85,7 @@ def dossier(
     baselines: Sequence[str] = (),
     command: str = "",
     inputs: Sequence[InputFile] = (),
+    stop_command: str = "",
     written: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
@@ -106,7 +110,9 @@ def dossier(
     command : str
         That makes the report from the input files; empty for a report that was made in Python.
     inputs : sequence of InputFile
-        What the command makes it from; without a command they are the design and the vehicle, rail and law of one's own.
+        What the command makes it from; without a command, the design and the vehicle, rail and law of one's own.
+    stop_command : str
+        ``wspd simulate`` with what the command says about the stop, so that drawn ones can be simulated again.
     written : str
         What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
         report.
@@ -183,6 +189,18 @@ def dossier(
         if design is None
         else judgment(design, design_rail(design, of_rail), certificates, folder=folder, progress=progress),
         robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),
+        uncertainty=uncertainty(
+            of_vehicle,
+            own,
+            scenario,
+            trials[0],
+            slip_reference=asked.slip,
+            parameters=(vehicle_set, rail_set),
+            laden=vehicle_of(laden(vehicle_set)) if "laden.mass" in vehicle_set.entries else None,
+            plant=plant,
+            command=stop_command,
+            progress=progress,
+        ),
         scenario=scenario,
         provenance=provenance(command=command, seed=scenario.seed, inputs=inputs, certificates=certificates),
     )
