@@ -26,8 +26,8 @@ def made():
     vehicle, rail = load_vehicle("er24pc"), load_rail("table10-dry")
     return dossier(
         named_design("afsmc", vehicle, rail, Specification()),
-        vehicle_name="er24pc",
-        rail_name="table10-dry",
+        vehicle="er24pc",
+        rail="table10-dry",
         scenario=Scenario.stop(from_kmh=120.0, rail=rail),
         baselines=("trenitalia", "none"),
         command="wspd report afsmc --rail table10-dry",
@@ -103,7 +103,9 @@ def test_the_first_pdf_page_is_enough_to_decide(made, pdf):
     for each in made.certificates:
         assert each.name in first
     assert f"{made.trials[0].metrics.distance:.1f}" in first
-    assert "Provenance" in first  # the contents end on the first page
+    second = re.sub(r"\s+", " ", pdf.pages[1].extract_text())
+    assert "Role Name Signature Date" in first + second
+    assert "Provenance" in second  # the contents end there
 
 
 def test_the_files_travel_with_the_report(made, pdf):

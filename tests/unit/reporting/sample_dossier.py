@@ -8,6 +8,7 @@ import numpy as np
 from wspd_design.analysis.brake_sheet import brake_sheet
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
+from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.design.requirements import DrawnSets, Limit, Requirements, judged_by
@@ -17,12 +18,27 @@ from wspd_design.simulation.draws import Choice, Draw
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Fault, Run, Sample, Scenario, Totals
 from wspd_design.simulation.self_check import StepCheck
-from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
+from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.provenance import InputFile, Provenance
+from wspd_design.studies.reported_law import ReportedLaw
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
+SAMPLE_PROVENANCE = Provenance(
+    command="wspd report design.toml --vehicle er24pc --rail polach-wet --seed 7",
+    seed=7,
+    inputs=(InputFile(name="design.toml", text="[gains]\n", meaning="the design"),),
+    searches_cut=("two",),
+    program_version="0.1.0",
+    package_sha256="fedcba9876543210" * 4,
+    package_tree="0123456789" * 4,
+    changed=False,
+    compiler="cc 1.2.3",
+    platform="Linux x86_64",
+    versions=(("Python", "3.11.7"), ("numpy", "2.4.6")),
+)
 
 
 def certificate(name: str, status: Status, **changes) -> Certificate:
@@ -101,11 +117,18 @@ def trial(
         distance=187.65,
         stopping_time=10.0,
         torque_integral=1.5678e6,
+        build_up=1.2,
+        build_up_distance=38.5,
         lag=1.259,
         plateau=3.8135,
         slip_mean=0.1412,
         slip_max=0.2399,
         slip_rms=0.0707,
+        slip_reached=2.1,
+        held_slip_rms=0.0612,
+        slip_overshoot=0.0999,
+        slip_undershoot=0.1001,
+        perfect_slip_rms=0.0012,
         lock_time=0.975,
         judged_lock=0.5,
         slip_band=math.nan,
@@ -215,11 +238,22 @@ def sample_dossier(
     if trials is None:
         trials = (
             trial("mine", rail),
-            trial("trenitalia", rail, distance=201.75, lag=2.0),
+            trial("trenitalia", rail, distance=201.75, build_up_distance=62.0),
             trial("none", rail),
         )
     names = ("lyapunov_one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
     return Dossier(
+        law=ReportedLaw(
+            name="mine",
+            title="adaptive fuzzy sliding mode",
+            origin="eqs. (29) to (42)",
+            own=False,
+            called="design.toml",
+            equations=FAMILIES["afsmc"].equations,
+            acts_on="one wheelset",
+            fingerprint="123abc" * 10 + "1234",
+        ),
+        specification=Specification(),
         design=Design(
             name="mine",
             law="afsmc",
@@ -236,7 +270,6 @@ def sample_dossier(
         ),
         vehicle=load_entries("vehicle", "er24pc"),
         rail=load_entries("rail", rail),
-        own_files=(),
         other_parameters=(load_entries("constants", "constants"), load_entries("controller", "trenitalia")),
         compared_designs=(),
         brake=brake_sheet(load_vehicle("er24pc")),
@@ -246,17 +279,12 @@ def sample_dossier(
         ),
         certificates=tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False)),
         trials=trials,
-        lag_distances=tuple(INITIAL_SPEED * each.metrics.lag for each in trials),
         phase_plane=PhasePlane(
             integral=(0.0, 0.014, 0.02), error=(0.14, 0.06, -0.05), surface_rate=0.38, layer=0.025
         ),
         judgment=None,
         robustness=None,
+        uncertainty=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
-        provenance=Provenance(
-            command="wspd report mine.toml",
-            versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),
-            seed=7,
-            input_hash="fedcba9876543210" * 4,
-        ),
+        provenance=SAMPLE_PROVENANCE,
     )

@@ -122,14 +122,12 @@ def test_a_moving_reference_is_drawn_as_the_law_holds_it():
 
 def test_distances_show_both_parts_and_the_paper():
     with figure_style():
-        figure = distance_bars(
-            new_figure(height=3.0), DOSSIER.trials, DOSSIER.lag_distances, load_table10().on("table10-dry")
-        )
+        figure = distance_bars(new_figure(height=3.0), DOSSIER.trials, load_table10().on("table10-dry"))
     axes = figure.axes[0]
     assert axes.get_xlabel() == "distance [m]"
     widths = [patch.get_width() for patch in axes.patches]
-    for index, (trial, lag) in enumerate(zip(DOSSIER.trials, DOSSIER.lag_distances, strict=True)):
-        assert widths[2 * index] == pytest.approx(lag)
+    for index, trial in enumerate(DOSSIER.trials):
+        assert widths[2 * index] == pytest.approx(trial.metrics.build_up_distance)
         assert widths[2 * index] + widths[2 * index + 1] == pytest.approx(trial.metrics.distance)
     mark, ideal = axes.get_lines()
     assert set(mark.get_xdata()) == {184.63}
@@ -137,14 +135,16 @@ def test_distances_show_both_parts_and_the_paper():
 
 
 def test_distances_without_parts_are_whole_bars():
-    unknown = [math.nan] * len(DOSSIER.trials)
+    unknown = [
+        replace(each, metrics=replace(each.metrics, build_up_distance=math.nan)) for each in DOSSIER.trials
+    ]
     with figure_style():
-        axes = distance_bars(new_figure(height=3.0), DOSSIER.trials, unknown, {}).axes[0]
+        axes = distance_bars(new_figure(height=3.0), unknown, {}).axes[0]
     assert [patch.get_width() for patch in axes.patches if patch.get_width()] == pytest.approx(
         [trial.metrics.distance for trial in DOSSIER.trials]
     )
     assert axes.get_legend_handles_labels()[1] == ["ideal stop"]
-    assert "nan" not in distances_alt(DOSSIER.trials, unknown)
+    assert "nan" not in distances_alt(unknown)
 
 
 @pytest.mark.parametrize("count", [2, 8])

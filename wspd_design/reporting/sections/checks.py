@@ -1,7 +1,6 @@
 """Every check in full, the worst first: claim, finding, needs, proofs, margin, what it does not say, and curves."""
 
 import re
-import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -16,7 +15,6 @@ from wspd_design.reporting.blocks import (
     Attachment,
     Block,
     Cell,
-    Code,
     Definition,
     Definitions,
     Figure,
@@ -40,7 +38,7 @@ from wspd_design.reporting.sections.domains import domains
 from wspd_design.reporting.sections.theory import theorem_anchor, theorems_of
 from wspd_design.reporting.statements import Statements, linked, statements_of
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import Emphasis, Inline, Link, Text, escape, rich, spans
+from wspd_design.reporting.text import Emphasis, Inline, Link, Text, rich, spans
 from wspd_design.studies.dossier import Dossier
 
 MAP_HEIGHT = 2.6  # in
@@ -121,10 +119,10 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
                 "Each check states a claim on a domain, under the assumptions that it names. The worst findings "
                 "stand first; among those of one kind, what fails with the nominal numbers comes before what fails "
                 "within their bounds, and the whole loop before its parts. Symbols stand in [](#symbols), terms in "
-                "[](#glossary)."
+                "[](#glossary). Nobody has to trust the programs that found the proofs: [one command](#replay) lets "
+                "the checkers decide again about all of them."
             )
         ),
-        *_replay(dossier),
         *domains(statements, dossier),
     ]
     shown = _Shown(
@@ -167,30 +165,6 @@ def _silent(group: Sequence[Certificate]) -> Paragraph:
             *said,
             ".",
         )
-    )
-
-
-def _replay(dossier: Dossier) -> tuple[Block, ...]:
-    """Say how to have a proof decided again; the checker needs the vehicle and the rail that were certified."""
-    kept = _kept(dossier)
-    if not kept:
-        return ()
-    example = next((each for each in kept if each.status is Finding.PROVED), kept[0])
-    stated = {"vehicle": dossier.vehicle.name, "rail": dossier.rail.name}
-    stated |= {own.kind: own.name + own.variant for own in dossier.own_files}
-    case = [word for kind, name in stated.items() for word in (f"--{kind}", name)]
-    files = ", ".join(
-        f"`{name}`" for name in ("design.toml", *(escape(own.name) for own in dossier.own_files))
-    )
-    return (
-        Paragraph(
-            text=rich(
-                f"Nobody has to trust the prover. Save the attached {files} and the attached file of a check "
-                "into one folder. The command below decides again about its proofs, or about the witness of what is "
-                "refuted, without the program that found them."
-            )
-        ),
-        Code(text=shlex.join(("wspd", "check", file_name(example), "--design", "design.toml", *case))),
     )
 
 

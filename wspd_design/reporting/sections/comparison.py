@@ -31,11 +31,9 @@ BAR_HEIGHT, ROW_HEIGHT = 0.33, 1.55  # in
 
 def comparison(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section that compares the controllers."""
-    trials, specification = dossier.trials, dossier.design.specification
+    trials, specification = dossier.trials, dossier.specification
     published = _published(dossier)
-    draw_bars = partial(
-        distance_bars, trials=trials, lag_distances=dossier.lag_distances, published=published
-    )
+    draw_bars = partial(distance_bars, trials=trials, published=published)
     rows = -(-len(trials) // (3 if len(trials) > 4 else 2))
     marked = " Black marks: Table 10 of the paper." if published else ""
     found: list[Block] = [
@@ -44,7 +42,7 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
             caption=f"Stopping distances. {_parts(dossier)}Dashed: the ideal stop, "
             f"{ideal_distance(trials[0].metrics)}, a simulation of a brake that holds the best slip.{marked}",
-            alt=distances_alt(trials, dossier.lag_distances),
+            alt=distances_alt(trials),
             anchor="distances",
         ),
         Paragraph(text=_yardsticks(dossier)),
@@ -101,19 +99,12 @@ def _parts(dossier: Dossier) -> str:
     """Say which part of a bar is which, if they have parts: not where the rail changes along the track."""
     if dossier.scenario.patches:
         return ""
-    return (
-        "Dark: initial speed times lag, what the brake build-up costs; light: the rest, at the plateau "
-        "deceleration. "
-    )
+    return "Orange: until the torque of the brake is built up, 90 % of what it then holds; blue: the rest. "
 
 
 def _ranking(dossier: Dossier) -> Text:
     """Say what separates the shortest from the longest stop, and what the ranking is worth."""
-    stopped = [
-        (trial, lag)
-        for trial, lag in zip(dossier.trials, dossier.lag_distances, strict=True)
-        if trial.run.ending is Ending.STOPPED
-    ]
+    stopped = [each for each in dossier.trials if each.run.ending is Ending.STOPPED]
     decay, ratio = (dossier.rail.entries[name].value for name in ("friction_decay", "friction_ratio"))
     world = (
         "On this rail the friction falls with the sliding speed, so that adhesion is lost by sliding."
@@ -122,19 +113,13 @@ def _ranking(dossier: Dossier) -> Text:
         "as well as a controlled one, and the ranking says nothing about the control of slip. It needs a rail "
         "with a peak."
     )
-    meaning = (
-        "Lag and plateau are the dead time and the constant deceleration that together give the same "
-        "distance and time. They part the build-up of the brake from the use of adhesion as long as the "
-        "deceleration stays about the same; where it falls during the stop, as with wheels locked on "
-        "falling friction, the lag comes out too small and the plateau too low. "
-    )
+    meaning = "The brake is built up where the torque of all wheelsets first reaches 90 % of its median above 10 km/h. "
     if dossier.scenario.patches:
         return "The rail changes along the track: no stop has parts of build-up and of constant deceleration."
     if len(stopped) < 2:
         return meaning + world
-    (best, best_lag), (worst, worst_lag) = (
-        pick(stopped, key=lambda each: each[0].metrics.distance) for pick in (min, max)
-    )
+    best, worst = (pick(stopped, key=lambda each: each.metrics.distance) for pick in (min, max))
+    first = worst.metrics.build_up_distance - best.metrics.build_up_distance
     gap = worst.metrics.distance - best.metrics.distance
     return (
         f"{meaning}Between the shortest stop, ",
@@ -142,8 +127,8 @@ def _ranking(dossier: Dossier) -> Text:
         f" with {best.metrics.distance:.1f} m, and the longest, ",
         CodeSpan(text=worst.run.controller),
         f" with {worst.metrics.distance:.1f} m, lie {gap:.1f} m: "
-        f"{numbers.decimals(worst_lag - best_lag, 1)} m of lag and "
-        f"{numbers.decimals(gap - worst_lag + best_lag, 1)} m of plateau. {world} The torque integral is a "
+        f"{numbers.decimals(first, 1)} m until the brake is built up and "
+        f"{numbers.decimals(gap - first, 1)} m after it. {world} The torque integral is a "
         "balance of momentum, nearly the same for all, and no measure of air consumption.",
     )
 
@@ -168,19 +153,26 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
                 title="Efficiency", unit="%", decimals=1, read=lambda each: 100.0 * each.metrics.efficiency
             ),
             ColumnOf(title="Time", unit="s", decimals=2, read=lambda each: each.metrics.stopping_time),
-            ColumnOf(title="Lag", unit="s", decimals=2, read=lambda each: each.metrics.lag),
-            ColumnOf(title="Plateau", unit="m/s²", decimals=2, read=lambda each: each.metrics.plateau),
-            ColumnOf(title="Slip rms", unit="-", decimals=3, read=lambda each: each.metrics.slip_rms),
+            ColumnOf(title="Build-up", unit="s", decimals=2, read=lambda each: each.metrics.build_up),
+            ColumnOf(title="Slip rms", unit="-", decimals=3, read=lambda each: each.metrics.held_slip_rms),
+            ColumnOf(title="Over", unit="-", decimals=3, read=lambda each: each.metrics.slip_overshoot),
+            ColumnOf(title="Under", unit="-", decimals=3, read=lambda each: each.metrics.slip_undershoot),
             ColumnOf(title="Mean", unit="-", decimals=3, read=lambda each: each.metrics.slip_mean),
             ColumnOf(title="Largest", unit="-", decimals=3, read=lambda each: each.metrics.slip_max),
             ColumnOf(title="Locked", unit="s", decimals=2, read=lambda each: each.metrics.lock_time),
         ),
         caption=f"Stops of {trials[0].run.train}; this design first. The ideal stop: "
         f"{ideal_distance(trials[0].metrics)}; efficiency is ideal stop over distance. Slip of all "
-        "wheelsets about its reference above 10 km/h; locked: the wheelset that is locked longest. Lag "
-        "2 d/v0 − t and plateau v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
+        "wheelsets above 10 km/h: rms, overshoot and undershoot about its reference, each wheelset once it has 90 % of "
+        f"it{_perfect(trials)}; mean and largest of the whole stop. Locked: the wheelset that is locked longest.",
         anchor="stops-table",
     )
+
+
+def _perfect(trials: tuple[Trial, ...]) -> str:
+    """Say what a perfect law would have in the place of the rms of this design."""
+    best = trials[0].metrics.perfect_slip_rms
+    return "" if math.isnan(best) else f", where a perfect law has {numbers.decimals(best, 3)} rms"
 
 
 def _efforts(trials: tuple[Trial, ...]) -> Table:

@@ -18,7 +18,7 @@ def domains(statements: Statements, dossier: Dossier) -> tuple[Block, ...]:
     """Return the table of the domains; nothing where no claim varies a number."""
     if not statements.domains:
         return ()
-    specification = dossier.design.specification
+    specification = dossier.specification
     return (
         Heading(text="Domains", anchor="domains-section", level=2),
         Paragraph(
