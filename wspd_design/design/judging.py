@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged, ...]:
+def judge(
+    design: Design, rail: Rail, *, folder: Path = Path(), wanted: Requirements | None = None
+) -> tuple[Judged, ...]:
     """Compute the figures of a design on its held-out sets again and compare them with its limits.
 
     Parameters
@@ -38,6 +40,8 @@ def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged,
         The design rail.
     folder : Path
         Of the design file, from which its own files are seen.
+    wanted : Requirements, optional
+        Others than those of the design; paths of rails as seen from the working folder.
 
     Returns
     -------
@@ -49,11 +53,12 @@ def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged,
     UserError
         If the design states no requirements, or its files are not there.
     """
-    if design.requirements is None:
-        raise UserError(
-            f"design {design.name} states no requirements; make it from a specification: wspd design SPEC"
-        )
-    wanted = seen_from_here(design.requirements, folder)
+    if wanted is None:
+        if design.requirements is None:
+            raise UserError(
+                f"design {design.name} states no requirements; make it from a specification: wspd design SPEC"
+            )
+        wanted = seen_from_here(design.requirements, folder)
     name = beside(design.vehicle_file, folder) if design.vehicle_file else design.vehicle
     vehicle = load_vehicle(name)
     law, speeds = design.build(vehicle, rail), design.specification.speeds
