@@ -43,7 +43,7 @@ def test_report_of_a_design_file(wspd, smc_file, calls):
     assert "Something else" not in outcome.out
     assert calls["design"].name == "smc-er24pc-polach-wet"
     options = calls["options"]
-    assert (options["vehicle_name"], options["rail_name"], options["scenario"].seed) == (
+    assert (options["vehicle"], options["rail"], options["scenario"].seed) == (
         "er24pc",
         "polach-wet",
         4,

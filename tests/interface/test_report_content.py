@@ -26,8 +26,8 @@ def made():
     vehicle, rail = load_vehicle("er24pc"), load_rail("table10-dry")
     return dossier(
         named_design("afsmc", vehicle, rail, Specification()),
-        vehicle_name="er24pc",
-        rail_name="table10-dry",
+        vehicle="er24pc",
+        rail="table10-dry",
         scenario=Scenario.stop(from_kmh=120.0, rail=rail),
         baselines=("trenitalia", "none"),
         command="wspd report afsmc --rail table10-dry",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from wspd_design.certificates.kernel.file import file_name
 from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.records import Certificate
-from wspd_design.design.records import Design
+from wspd_design.design.records import Design, Specification
 from wspd_design.exchange.stop_forms import STOP
 from wspd_design.exchange.study_forms import BRAKE
 from wspd_design.exchange.version import program_version
@@ -207,21 +207,25 @@ def brake_object(sheet: "BrakeSheet") -> dict[str, Any]:
 
 def design_object(design: Design) -> dict[str, Any]:
     """Return a design with its specification and the reasons of its gains."""
-    wanted = design.specification
     return {
         "name": design.name,
         "law": design.law,
         "vehicle": design.vehicle,
         "vehicle_hash": design.vehicle_hash,
         "rail": design.rail,
-        "specification": {
-            "slip_reference": wanted.slip,
-            "slip_tolerance": wanted.slip_tolerance,
-            "slips": list(wanted.slips),
-            "speeds_m_s": list(wanted.speeds),
-            "sample_time_s": wanted.sample_time,
-        },
+        "specification": specification_object(design.specification),
         "gains": [asdict(gain) for gain in design.gains],
+    }
+
+
+def specification_object(wanted: Specification) -> dict[str, Any]:
+    """Return what is asked of a law."""
+    return {
+        "slip_reference": wanted.slip,
+        "slip_tolerance": wanted.slip_tolerance,
+        "slips": list(wanted.slips),
+        "speeds_m_s": list(wanted.speeds),
+        "sample_time_s": wanted.sample_time,
     }
 
 

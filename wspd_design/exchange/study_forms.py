@@ -190,13 +190,30 @@ FAULTED_STOP = Form(
         ),
     ),
 )
+REPORTED_LAW = Form(
+    name="reported_law",
+    keys=(
+        Key(name="name", kind="text", meaning="in tables and figures"),
+        Key(name="title", kind="text", meaning="what it is"),
+        Key(name="origin", kind="text", meaning="where it comes from"),
+        Key(name="acts_on", kind="text", meaning="one wheelset, or all wheelsets of the vehicle together"),
+        Key(name="fingerprint", kind="text", meaning="SHA-256 of all that decides what it does"),
+    ),
+)
 REPORT = Form(
     name="report",
-    schema="wspd-report/2",
+    schema="wspd-report/3",
     keys=(
         SCHEMA_KEY,
         Key(name="provenance", kind=PROVENANCE, meaning="how to make the report again"),
-        Key(name="design", kind=DESIGN, meaning="what the report is about"),
+        Key(name="law", kind=REPORTED_LAW, meaning="what the report is about"),
+        Key(
+            name="design",
+            kind=DESIGN,
+            nullable=True,
+            meaning="of this law; null for one without gains that were chosen",
+        ),
+        Key(name="specification", kind=SPECIFICATION, meaning="what is asked of the law"),
         Key(
             name="compared_designs",
             kind=DESIGN,

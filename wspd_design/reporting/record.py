@@ -10,6 +10,7 @@ from wspd_design.exchange.objects import (
     fault_object,
     linearization_point_object,
     parameters_object,
+    specification_object,
     stop_object,
 )
 from wspd_design.exchange.plain import finite
@@ -32,13 +33,18 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
     dict
         Ready for :func:`json.dumps`; numbers that do not exist are None.
     """
-    reference = dossier.design.specification.slip
+    reference = dossier.specification.slip
     sets = (dossier.vehicle, dossier.rail, *dossier.other_parameters)
     record: dict[str, Any] = finite(
         {
             "schema": REPORT.schema,
             "provenance": {**asdict(dossier.provenance), "versions": dict(dossier.provenance.versions)},
-            "design": design_object(dossier.design),
+            "law": {
+                key: getattr(dossier.law, key)
+                for key in ("name", "title", "origin", "acts_on", "fingerprint")
+            },
+            "design": None if dossier.design is None else design_object(dossier.design),
+            "specification": specification_object(dossier.specification),
             "compared_designs": [design_object(each) for each in dossier.compared_designs],
             "brake": brake_object(dossier.brake),
             "linearizations": [linearization_point_object(point) for point in dossier.linearizations],

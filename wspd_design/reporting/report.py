@@ -5,7 +5,6 @@ import os
 from datetime import UTC, datetime
 from pathlib import Path
 
-from wspd_design.controllers.family import designed_family
 from wspd_design.design.file import design_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting import numbers
@@ -43,6 +42,10 @@ SECTIONS = (
 )
 
 
+MEDIA_TYPES = {"controller": "text/x-python"}
+"""Of the user's own files that are not TOML."""
+
+
 def write_report(dossier: Dossier, *paths: str | Path) -> None:
     """Write the report of a design to files; the ending of a name, ``.html`` or ``.pdf``, chooses its format.
 
@@ -68,14 +71,13 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
 
 def report_document(dossier: Dossier, timestamp: datetime) -> Document:
     """Return the report of a design, not yet rendered."""
-    made = dossier.design
+    law = dossier.law
     version = dict(dossier.provenance.versions)["wspd-design"]
     speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
     record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
     return Document(
-        title=f"Wheel slide protection: {made.name}",
-        subtitle=f"{designed_family(made.law).heading}, for {dossier.vehicle.name} on {dossier.rail.name}, "
-        f"from {speed}",
+        title=f"Wheel slide protection: {law.name}",
+        subtitle=f"{law.heading}, for {dossier.vehicle.name} on {dossier.rail.name}, from {speed}",
         status_line=f"wspd {version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {dossier.provenance.seed} · "
         f"inputs {dossier.provenance.input_hash[:12]}",
         verdict=verdict(dossier),
@@ -83,16 +85,11 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
         blocks=tuple(block for section in SECTIONS for block in section(dossier)),
         provenance=provenance(dossier),
         attachments=(
-            Attachment(
-                name="design.toml",
-                media_type="application/toml",
-                content=design_text(made),
-                description="the design, which every command takes in place of a controller's name",
-            ),
+            *_design(dossier),
             *(
                 Attachment(
                     name=own.name,
-                    media_type="application/toml",
+                    media_type=MEDIA_TYPES.get(own.kind, "application/toml"),
                     content=own.text,
                     description=f"the {own.kind}, a file of its own",
                 )
@@ -107,6 +104,19 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
             *certificate_files(dossier),
         ),
         timestamp=timestamp,
+    )
+
+
+def _design(dossier: Dossier) -> tuple[Attachment, ...]:
+    if dossier.design is None:
+        return ()
+    return (
+        Attachment(
+            name="design.toml",
+            media_type="application/toml",
+            content=design_text(dossier.design),
+            description="the design, which every command takes in place of a controller's name",
+        ),
     )
 
 

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
+from typing import Literal
+from urllib.parse import quote
 
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
 from wspd_design.analysis.linearization import Linearization, linearize
@@ -15,15 +17,20 @@ from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
+from wspd_design.design.case import specification_of
 from wspd_design.design.catalog import controller, controller_of, design_rail, is_design_file
 from wspd_design.design.file import design_text, read_design
 from wspd_design.design.industry import usual_table
+from wspd_design.design.own_controller import is_own_controller
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
+from wspd_design.exchange.parameter_file import parameter_file
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
+from wspd_design.parameters.given import given_entries, given_in_python
 from wspd_design.parameters.laden import LADEN
-from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
 from wspd_design.plants.names import DEFAULT_PLANT
@@ -32,6 +39,7 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
 from wspd_design.studies.judgment import Judgment, judgment
+from wspd_design.studies.reported_law import ReportedLaw, reported_law
 
 POLE_SPEEDS = 60  # points of the pole map
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
@@ -59,22 +67,24 @@ class PhasePlane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnFile:
-    """A vehicle or rail of the user's own, which no one else has."""
+    """A vehicle, rail or law of the user's own, which no one else has."""
 
-    kind: str  # vehicle or rail
+    kind: str  # vehicle, rail or controller
     name: str  # of the file, without its folder
-    variant: str  # what follows it in options, such as :laden
+    variant: str  # what follows it in options, such as :laden, or the name of a law in it
     text: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Dossier:
-    """A design, the numbers it rests on, its linearizations, certificates and simulated stops."""
+    """A law, the numbers it rests on, its linearizations, certificates and simulated stops."""
 
-    design: Design
+    law: ReportedLaw
+    specification: Specification  # what is asked of it
+    design: Design | None  # None for a law without gains that were chosen
     vehicle: ParameterSet
     rail: ParameterSet
-    own_files: tuple[OwnFile, ...]  # of those two, where they do not ship with the program
+    own_files: tuple[OwnFile, ...]  # of law, vehicle and rail, where they do not ship with the program
     other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
     brake: BrakeSheet  # on full adhesion
@@ -90,32 +100,40 @@ class Dossier:
 
 
 def dossier(
-    made: Design,
+    made: Design | Law,
     *,
-    vehicle_name: str,
-    rail_name: str,
+    vehicle: Vehicle | Path | str,
+    rail: Rail | Path | str,
     scenario: Scenario,
-    baselines: Sequence[str],
-    command: str,
+    specification: Specification | None = None,
+    baselines: Sequence[str] = (),
+    command: str = "",
+    written: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
     folder: Path = Path(),
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
-    """Compute everything about a design.
+    """Compute everything about a law.
 
     Parameters
     ----------
-    made : Design
-        The design.
-    vehicle_name, rail_name : str
-        Names or paths of the vehicle and of the rail of the stops.
+    made : Design or Law
+        The design; or any controller of a wheelset or of a vehicle, which needs no design.
+    vehicle, rail : Vehicle, Rail, Path or str
+        Of the stops: records, shipped names or files.
     scenario : Scenario
         The stops, on this rail; its seed is that of the sampled checks, too.
+    specification : Specification, optional
+        What is asked of a law that is no design; by default the paper's case with the slip and the sample time of the
+        law.
     baselines : sequence of str
         Controllers to compare with.
     command : str
-        The command line, for the record.
+        The command line, for the record; empty for a report that was made in Python.
+    written : str
+        What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
+        report.
     plant : {"planar", "quarter"}
         Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
@@ -129,44 +147,67 @@ def dossier(
     -------
     Dossier
         Records only.
+
+    Raises
+    ------
+    UserError
+        If a name is unknown, a number of vehicle or rail is impossible, or the law fails.
     """
     import numpy as np
 
-    vehicle, rail = load_vehicle(vehicle_name), load_rail(rail_name)
-    own = controller_of(made, vehicle, rail)
-    specification = made.specification
+    design = made if isinstance(made, Design) else None
+    vehicle_set, own_vehicle = _stated("vehicle", vehicle)
+    rail_set, own_rail = _stated("rail", rail)
+    of_vehicle = vehicle_of(vehicle_set) if isinstance(vehicle, Vehicle) else load_vehicle(vehicle)
+    of_rail = rail if isinstance(rail, Rail) else load_rail(rail)
+    own = controller_of(made, of_vehicle, of_rail) if isinstance(made, Design) else made
+    asked = _asked(made, specification)
     progress("linearization")
-    speeds = np.geomspace(1.0, max(specification.speeds[1], scenario.initial_speed), POLE_SPEEDS)
-    linearizations = tuple(linearize(vehicle, rail, slip=specification.slip, speed=float(v)) for v in speeds)
-    problem = stability_problem(vehicle, rail, own, specification, seed=scenario.seed)
+    speeds = np.geomspace(1.0, max(asked.speeds[1], scenario.initial_speed), POLE_SPEEDS)
+    linearizations = tuple(linearize(of_vehicle, of_rail, slip=asked.slip, speed=float(v)) for v in speeds)
+    problem = stability_problem(of_vehicle, of_rail, own, asked, seed=scenario.seed)
     certificates = verify(problem, progress=progress, stored=stored)
-    shared = replace(specification, reference=None)  # which is for the law of the design alone
-    others = [_baseline(name, vehicle, rail, shared) for name in baselines]
+    shared = replace(asked, reference=None)  # which is for the law of the report alone
+    others = [_baseline(name, of_vehicle, of_rail, shared) for name in baselines]
     controllers = [own, *(law for law, _ in others)]
     trials = compare(
-        vehicle,
+        of_vehicle,
         controllers,
         scenario,
-        slip_reference=specification.slip,
+        slip_reference=asked.slip,
         plant=plant,
         progress=progress,
     )
-    inputs = "\n".join((design_text(made), repr(vehicle), repr(rail), repr(scenario), plant))
+    told = reported_law(own, design, written=written)
+    inputs = "\n".join(
+        (
+            told.fingerprint if design is None else design_text(design),
+            repr(of_vehicle),
+            repr(of_rail),
+            repr(scenario),
+            plant,
+        )
+    )
+    named = [written] if written and design is None and not is_own_controller(written) else []
     return Dossier(
-        design=made,
-        vehicle=load_entries("vehicle", vehicle_name),
-        rail=load_entries("rail", rail_name),
-        own_files=(*_own_file("vehicle", vehicle_name), *_own_file("rail", rail_name)),
-        other_parameters=_other_parameters(made, vehicle, rail, baselines),
-        compared_designs=tuple(design for _, design in others if design is not None),
-        brake=brake_sheet(vehicle),
-        adhesion_use=adhesion_sentence(vehicle, rail, specification.speeds),
+        law=told,
+        specification=asked,
+        design=design,
+        vehicle=vehicle_set,
+        rail=rail_set,
+        own_files=(*own_vehicle, *own_rail, *_own_law(written)),
+        other_parameters=_other_parameters(design, of_vehicle, of_rail, [*named, *baselines]),
+        compared_designs=tuple(each for _, each in others if each is not None),
+        brake=brake_sheet(of_vehicle),
+        adhesion_use=adhesion_sentence(of_vehicle, of_rail, asked.speeds),
         linearizations=linearizations,
         certificates=certificates,
         trials=trials,
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
-        judgment=judgment(made, design_rail(made, rail), certificates, folder=folder, progress=progress),
-        robustness=robustness(vehicle, own, scenario, plant=plant, progress=progress),
+        judgment=None
+        if design is None
+        else judgment(design, design_rail(design, of_rail), certificates, folder=folder, progress=progress),
+        robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),
         scenario=scenario,
         provenance=Provenance(
             command=command,
@@ -177,12 +218,45 @@ def dossier(
     )
 
 
+def _asked(made: Design | Law, specification: Specification | None) -> Specification:
+    """Return what is asked of a law."""
+    if not isinstance(made, Design):
+        return specification or specification_of(made)
+    if specification is not None:
+        raise UserError(f"design {made.name} has its own specification; leave specification out")
+    return made.specification
+
+
+def _stated(
+    kind: Literal["vehicle", "rail"], given: Vehicle | Rail | Path | str
+) -> tuple[ParameterSet, tuple[OwnFile, ...]]:
+    """Return what is stated about a vehicle or rail, and the file of one that does not ship with the program."""
+    if isinstance(given, Vehicle | Rail):
+        found = given_entries(given)
+        if not given_in_python(found):
+            return found, ()
+        text = parameter_file(
+            found.title, ("Written from a record that was made in Python.",), found.entries.values()
+        )
+        return found, (OwnFile(kind=kind, name=f"{quote(found.name, safe=' ')}.toml", variant="", text=text),)
+    return load_entries(kind, given), _own_file(kind, str(given))
+
+
 def _own_file(kind: str, written: str) -> tuple[OwnFile, ...]:
     path = Path(written.removesuffix(LADEN))
     if path.suffix != ".toml":
         return ()
     text = path.read_text(encoding="utf-8-sig")
     return (OwnFile(kind=kind, name=path.name, variant=written.removeprefix(str(path)), text=text),)
+
+
+def _own_law(written: str) -> tuple[OwnFile, ...]:
+    """Return the file of a law of the user's own."""
+    if not is_own_controller(written):
+        return ()
+    file, _, name = written.rpartition(":")
+    text = Path(file).read_text(encoding="utf-8")
+    return (OwnFile(kind="controller", name=Path(file).name, variant=f":{name}", text=text),)
 
 
 def versions() -> tuple[tuple[str, str], ...]:
@@ -221,12 +295,13 @@ def _baseline(
 
 
 def _other_parameters(
-    made: Design, vehicle: Vehicle, rail: Rail, baselines: Sequence[str]
+    made: Design | None, vehicle: Vehicle, rail: Rail, laws: Sequence[str]
 ) -> tuple[ParameterSet, ...]:
+    """Return the constants, the design rail if it is another one, and the tables of laws."""
     found = [load_entries("constants", "constants")]
-    if not made.made_on(rail):
+    if made is not None and not made.made_on(rail):
         found.append(load_entries("rail", made.rail))
-    for written in baselines:
+    for written in dict.fromkeys(laws):
         name, _, preset = written.partition(":")
         if name in available("controller"):
             parameters = load_entries("controller", name)

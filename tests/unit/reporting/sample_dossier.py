@@ -8,6 +8,7 @@ import numpy as np
 from wspd_design.analysis.brake_sheet import brake_sheet
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
+from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.design.requirements import DrawnSets, Limit, Requirements, judged_by
@@ -20,6 +21,7 @@ from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.reported_law import ReportedLaw
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
@@ -227,6 +229,17 @@ def sample_dossier(
         )
     names = ("lyapunov_one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
     return Dossier(
+        law=ReportedLaw(
+            name="mine",
+            title="adaptive fuzzy sliding mode",
+            origin="eqs. (29) to (42)",
+            own=False,
+            called="design.toml",
+            equations=FAMILIES["afsmc"].equations,
+            acts_on="one wheelset",
+            fingerprint="123abc" * 10 + "1234",
+        ),
+        specification=Specification(),
         design=Design(
             name="mine",
             law="afsmc",

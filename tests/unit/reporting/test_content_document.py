@@ -279,6 +279,7 @@ def test_hostile_names_stay_text(tmp_path):
     dossier = sample_dossier(trials=(trial("mine"), trial(hostile, distance=300.0)))
     dossier = replace(
         dossier,
+        law=replace(dossier.law, name=hostile, origin=hostile),
         design=replace(dossier.design, name=hostile),
         rail=replace(dossier.rail, name="../my rail.toml"),
         certificates=(certificate("one", Status.REFUTED, title=hostile, claim=hostile),),

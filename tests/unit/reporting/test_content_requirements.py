@@ -101,10 +101,8 @@ def test_a_law_that_is_told_the_speed_says_so():
 
 
 def _with_sensors(own, **sensors):
-    made = replace(
-        PLAIN.design, specification=replace(PLAIN.design.specification, sensors=Sensors(**sensors))
-    )
-    return replace(PLAIN, design=made, trials=(own, *PLAIN.trials[1:]))
+    asked = replace(PLAIN.specification, sensors=Sensors(**sensors))
+    return replace(PLAIN, specification=asked, trials=(own, *PLAIN.trials[1:]))
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from wspd_design.cli.output import check_output
 from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
 from wspd_design.design.certification import stored_beside
@@ -44,7 +45,7 @@ def report(
     pdf: Annotated[bool, typer.Option("--pdf", help="Write the same content as PDF beside it, too.")] = False,
     force: options.ForceOption = False,
 ) -> None:
-    """Write a report: design, poles, certificates, stops and sources."""
+    """Write a report on a design or any other law: gains, poles, certificates, stops and sources."""
     from wspd_design.reporting.report import write_report
     from wspd_design.reporting.sections.summary import verdict
     from wspd_design.reporting.text import plain
@@ -62,17 +63,19 @@ def report(
         chosen_name,
         CaseOptions(vehicle=vehicle, rail=rail, slip=slip, sample_time=sample_time, sensors=sensors.words),
     )
-    made = _design(chosen_name, case)
+    made = _reported(chosen_name, case)
     braked_from = initial_speed(speed, case.specification)
     stop = scenario(case.rail, disturbances, initial_speed=braked_from, seed=seed, vehicle=case.vehicle)
     with progress() as tell:
         computed = dossier(
             made,
-            vehicle_name=case.vehicle_name,
-            rail_name=case.rail_name,
+            vehicle=case.vehicle_name,
+            rail=case.rail_name,
             scenario=stop,
+            specification=None if isinstance(made, Design) else case.specification,
             baselines=[other for other in FAMILIES if other not in (made.name, chosen_name)],
             command=shlex.join(["wspd", *sys.argv[1:]]),
+            written="" if isinstance(made, Design) else chosen_name,
             plant=plant,
             stored=stored_beside(chosen_name),
             folder=Path(chosen_name).parent if is_design_file(chosen_name) else Path(),
@@ -94,13 +97,10 @@ def report(
         console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
 
 
-def _design(name: str, case: Case) -> Design:
-    """Return the design that the report is about."""
+def _reported(name: str, case: Case) -> Design | Law:
+    """Return the design that the report is about, or the law where no rule chose its gains."""
     if case.design is not None:
         return case.design
-    if name not in FAMILIES or FAMILIES[name].gains is None:
-        raise UserError(
-            f"{name} has no design to report on; choose {options.LAWS} or a design file, "
-            "which are compared with all others"
-        )
-    return named_design(name, case.vehicle, case.rail, case.specification)
+    if name in FAMILIES and FAMILIES[name].gains is not None:
+        return named_design(name, case.vehicle, case.rail, case.specification)
+    return case.controller

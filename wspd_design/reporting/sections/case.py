@@ -1,6 +1,5 @@
 """The vehicle, the rail and the controller in short."""
 
-from wspd_design.controllers.family import designed_family
 from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.units import format_quantity
@@ -21,8 +20,7 @@ from wspd_design.studies.dossier import Dossier
 
 def case(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about what was designed, for what."""
-    design, vehicle, rail = dossier.design, dossier.vehicle, dossier.rail
-    specification, family = design.specification, designed_family(design.law)
+    vehicle, rail, specification = dossier.vehicle, dossier.rail, dossier.specification
     low, high = (numbers.significant(speed * KMH) for speed in specification.speeds)
     slip_low, slip_high = specification.slips
     shown = {
@@ -44,10 +42,7 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Brake", brake_text(vehicle, shown)),
         *further_brakes(vehicle),
         ("Rail", friction),
-        (
-            "Controller",
-            f"{family.heading}, {family.origin}; design {design.name}, made on rail {design.rail}",
-        ),
+        ("Controller", _controller(dossier)),
         ("Slip reference", _reference(dossier)),
         *([("Sensors", _sensors(specification.sensors))] if specification.sensors != TOLD else []),
         ("Range of the checks", f"{low} to {high} km/h, slip {slip_low:g} to {slip_high:g}"),
@@ -63,9 +58,19 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
     )
 
 
+def _controller(dossier: Dossier) -> str:
+    law, design = dossier.law, dossier.design
+    made = (
+        f"its name is {law.name}; it commands {law.acts_on}"
+        if design is None
+        else f"design {design.name}, made on rail {design.rail}"
+    )
+    return f"{law.heading}, {law.origin}; {made}"
+
+
 def _reference(dossier: Dossier) -> str:
     """Say which slip the law holds, and about which one the checks speak."""
-    specification = dossier.design.specification
+    specification = dossier.specification
     checked = f"{specification.slip:g}, tolerance {specification.slip_tolerance:g}"
     own = reference_range(dossier.trials[0].run)
     if own is None or own[0] == own[1]:

@@ -128,25 +128,37 @@ def _not_applicable(group: Sequence[Certificate]) -> Table:
 
 def _replay(dossier: Dossier) -> tuple[Block, ...]:
     """Say how to have a proof decided again; the checker needs the vehicle and the rail that were certified."""
-    kept = _kept(dossier)
+    kept, called = _kept(dossier), dossier.law.called
     if not kept:
         return ()
+    if not called:
+        text = (
+            "The attached file of a check is decided again where the law was made: by `wspd_design.check`, with the "
+            "problem that `wspd_design.stability_problem` makes of law, vehicle, rail and specification."
+        )
+        return (Paragraph(text=rich(text)),)
     example = next((each for each in kept if each.status is Finding.PROVED), kept[0])
     stated = {"vehicle": dossier.vehicle.name, "rail": dossier.rail.name}
-    stated |= {own.kind: own.name + own.variant for own in dossier.own_files}
+    stated |= {own.kind: own.name + own.variant for own in dossier.own_files if own.kind in stated}
     case = [word for kind, name in stated.items() for word in (f"--{kind}", name)]
-    files = ", ".join(
-        f"`{name}`" for name in ("design.toml", *(escape(own.name) for own in dossier.own_files))
+    names = [
+        *(["design.toml"] if dossier.design is not None else []),
+        *(own.name for own in dossier.own_files),
+    ]
+    files = "".join(f"`{escape(name)}`, " for name in names).removesuffix(", ")
+    both = (
+        f"{files} and the attached file of a check into one folder"
+        if files
+        else "the attached file of a check"
     )
     return (
         Paragraph(
             text=rich(
-                f"Nobody has to trust the prover. Save the attached {files} and the attached file of a check "
-                "into one folder. The command below decides again about its proofs, or about the witness of what is "
-                "refuted, without the program that found them."
+                f"Nobody has to trust the prover. Save {both}. The command below decides again about its proofs, or "
+                "about the witness of what is refuted, without the program that found them."
             )
         ),
-        Code(text=shlex.join(("wspd", "check", file_name(example), "--design", "design.toml", *case))),
+        Code(text=shlex.join(("wspd", "check", file_name(example), "--design", called, *case))),
     )
 
 

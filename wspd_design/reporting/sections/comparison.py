@@ -31,7 +31,7 @@ BAR_HEIGHT, ROW_HEIGHT = 0.33, 1.55  # in
 
 def comparison(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section that compares the controllers."""
-    trials, specification = dossier.trials, dossier.design.specification
+    trials, specification = dossier.trials, dossier.specification
     published = _published(dossier)
     draw_bars = partial(distance_bars, trials=trials, published=published)
     rows = -(-len(trials) // (3 if len(trials) > 4 else 2))

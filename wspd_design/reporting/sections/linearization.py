@@ -19,7 +19,7 @@ MEGA = 1e6
 
 def linearization(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the slip pole."""
-    points, specification = dossier.linearizations, dossier.design.specification
+    points, specification = dossier.linearizations, dossier.specification
     times = lag_times(dossier.vehicle)
     valve, tau = (
         (

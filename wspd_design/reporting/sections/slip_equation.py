@@ -1,6 +1,5 @@
 """Equation (19) and what became of the equations that the design rests on."""
 
-from wspd_design.controllers.family import designed_family
 from wspd_design.parameters.equations import Equation as PaperEquation
 from wspd_design.parameters.equations import load_equations
 from wspd_design.reporting.blocks import Block, Cell, Equation, Heading, Paragraph, Status
@@ -18,7 +17,7 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the equations."""
     equations = load_equations()
     slip = next(each for each in equations if each.number == "19")
-    numbers = (*PLANT, *designed_family(dossier.design.law).equations)
+    numbers = (*PLANT, *dossier.law.equations)
     used = [each for each in equations if each.number in numbers]
     faulty = [each for each in used if set(each.verdicts) & set(TONES)]
     return (
@@ -45,7 +44,7 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
             )
         ),
         Paragraph(
-            text=f"Of the {len(used)} equations of the paper that this design rests on, {len(faulty)} are "
+            text=f"Of the {len(used)} equations of the paper that this report rests on, {len(faulty)} are "
             "misprinted or true only under an assumption that the paper does not state. The program uses the "
             "corrected forms."
         ),
@@ -62,7 +61,7 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
                     title="What is wrong, and what is assumed instead", read=lambda each: _explained(each)
                 ),
             ),
-            caption="Misprints and gaps that matter for this design; wspd equations prints all equations.",
+            caption="Misprints and gaps that matter here; wspd equations prints all equations.",
             anchor="misprints",
         ),
     )

@@ -27,7 +27,7 @@ EXACT = 1e-4  # relative error of a speed that is told, below which none is
 
 def stop(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the simulated stop."""
-    own, specification = dossier.trials[0], dossier.design.specification
+    own, specification = dossier.trials[0], dossier.specification
     run, figures = own.run, own.metrics
     radius = dossier.vehicle.number("wheel_radius")
     limit = dossier.vehicle.number("brake.max_torque") * max(axle_shares(dossier.vehicle))
@@ -55,7 +55,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             alt=stop_alt(own, specification),
             anchor="stop-traces",
         ),
-        *_estimate(own, specification.sensors),
+        *_estimate(own, None if dossier.law.own else specification.sensors),
         *_further_brakes(run),
         Figure(
             svg=picture(
@@ -75,7 +75,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     )
 
 
-def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
+def _estimate(own: Trial, sensors: Sensors | None) -> tuple[Block, ...]:
     """Say where the law has the train speed from, and show an estimate beside the true one."""
     run, figures = own.run, own.metrics
     estimate = speed_estimate(run)
@@ -95,7 +95,7 @@ def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
         if not looks
         else f" It released a wheelset {numbers.count(looks, 'time')} to see the speed of the train."
     )
-    if sensors.speed == "told" and figures.speed_error < EXACT:
+    if sensors is not None and sensors.speed == "told" and figures.speed_error < EXACT:
         return (Paragraph(text=f"{_source(sensors)} In this stop it is told it without an error."),)
     said = Paragraph(
         text=f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
@@ -103,7 +103,7 @@ def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
         f"{numbers.significant(figures.distance_error, 2)} of {allowed}, {inside} what the odometry of train "
         f"control allows.{looked}"
     )
-    if sensors.speed == "told":
+    if sensors is not None and sensors.speed == "told":
         return (said,)
     return (
         said,
@@ -118,8 +118,10 @@ def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
     )
 
 
-def _source(sensors: Sensors) -> str:
+def _source(sensors: Sensors | None) -> str:
     """Say where a law has the train speed from."""
+    if sensors is None:
+        return "The law goes by a train speed of its own."
     match sensors.speed:
         case "told":
             return "The law is told the train speed, and scales it so that wheels that roll have no slip."

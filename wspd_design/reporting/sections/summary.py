@@ -149,7 +149,7 @@ def _lowered(title: str) -> str:
 
 def _stop(dossier: Dossier) -> tuple[str, bool]:
     """Say how the design's own stop went, and whether it kept to the tolerance if that is what it is judged by."""
-    own, specification = dossier.trials[0], dossier.design.specification
+    own, specification = dossier.trials[0], dossier.specification
     run, figures = own.run, own.metrics
     start = (
         f"The simulated stop of {run.train} from "
@@ -177,7 +177,7 @@ def summary(dossier: Dossier) -> tuple[Block, ...]:
 
 
 def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
-    own, specification = dossier.trials[0], dossier.design.specification
+    own, specification = dossier.trials[0], dossier.specification
     run, figures = own.run, own.metrics
     stopped = run.ending is Ending.STOPPED
     start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
@@ -216,7 +216,7 @@ def _slip_or_requirements(dossier: Dossier) -> KeyNumber:
     judgment, figures, specification = (
         dossier.judgment,
         dossier.trials[0].metrics,
-        dossier.design.specification,
+        dossier.specification,
     )
     if judgment is not None:
         met = len(judgment.limited) - len(judgment.missed)
@@ -256,7 +256,7 @@ def _yardsticks(dossier: Dossier) -> Text:
     proved = proved_bound(dossier.certificates)
     if proved is None:
         return f"{ideal}; no bound is proved"
-    start = numbers.significant(dossier.design.specification.speeds[1] * KMH)
+    start = numbers.significant(dossier.specification.speeds[1] * KMH)
     link = Link(anchor=check_anchor(proved.certificate), text="proved bound")
     return (f"{ideal}; ", link, f" from {start} km/h: {rounded_down(proved.distance)} m")
 
