@@ -27,9 +27,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 
-def judge(
-    design: Design, rail: Rail, *, folder: Path = Path(), wanted: Requirements | None = None
-) -> tuple[Judged, ...]:
+def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged, ...]:
     """Compute the figures of a design on its held-out sets again and compare them with its limits.
 
     Parameters
@@ -40,8 +38,6 @@ def judge(
         The design rail.
     folder : Path
         Of the design file, from which its own files are seen.
-    wanted : Requirements, optional
-        Others than those of the design; paths of rails as seen from the working folder.
 
     Returns
     -------
@@ -53,17 +49,22 @@ def judge(
     UserError
         If the design states no requirements, or its files are not there.
     """
-    if wanted is None:
-        if design.requirements is None:
-            raise UserError(
-                f"design {design.name} states no requirements; make it from a specification: wspd design SPEC"
-            )
-        wanted = seen_from_here(design.requirements, folder)
+    if design.requirements is None:
+        raise UserError(
+            f"design {design.name} states no requirements; make it from a specification: wspd design SPEC"
+        )
+    wanted = seen_from_here(design.requirements, folder)
     name = beside(design.vehicle_file, folder) if design.vehicle_file else design.vehicle
     vehicle = load_vehicle(name)
-    law, speeds = design.build(vehicle, rail), design.specification.speeds
+    return judge_law(design.build(vehicle, rail), wanted, vehicle, name, design.specification.speeds)
+
+
+def judge_law(
+    law: Law, wanted: Requirements, vehicle: Vehicle, vehicle_name: str, speeds: Ends
+) -> tuple[Judged, ...]:
+    """Compare a law with requirements on drawn stops; paths of rails as seen from here."""
     with threads() as pool:
-        (figures,) = held_out([law], wanted, vehicle, name, pool)
+        (figures,) = held_out([law], wanted, vehicle, vehicle_name, pool)
     return (
         *judged_by(wanted.limits, score(figures).reached),
         *judged_stability(law, wanted, vehicle, speeds),

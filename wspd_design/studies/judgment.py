@@ -2,23 +2,25 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
-from pathlib import Path
 
 from wspd_design.certificates.records import Certificate, Status
-from wspd_design.certificates.theorems.holds_for import HOLDS_FOR, HoldsFor
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.criteria import CRITERIA
-from wspd_design.design.judging import judge
-from wspd_design.design.records import Design
+from wspd_design.design.judging import judge_law
 from wspd_design.design.requirements import Judged, Limit, Requirements, judged_by
 from wspd_design.design.stop_requirements import LOOP, MODEL, StopRequirements
-from wspd_design.parameters.records import Rail
+from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.figures_of_stop import figures_of_stop
+from wspd_design.studies.loop_growth import Growth
 
 _HARMLESS = (Status.PROVED, Status.EVIDENCE, Status.NOT_APPLICABLE, Status.VACUOUS, Status.LIMITATION)
+_PROOFS_OF_THE_LOOP = ("lpv_lyapunov", "sampled_invariance", "slip_band")
 _TOLD = ("efficiency_worst", "stopping_distance", "slip_undershoot", "valve_switches", "vented_air")
 """Criteria that the report tells of a single stop without a limit."""
 
@@ -89,6 +91,11 @@ class Judgment:
         return all(each.outcome is Outcome.MET for each in self.limited)
 
     @property
+    def verdict(self) -> str:
+        """One word: a requirement that is missed decides, then one that is open."""
+        return "rejected" if self.missed else "accepted" if self.accepted else "undecided"
+
+    @property
     def weakest(self) -> Requirement | None:
         """The first requirement that is missed, else the first open one, else the one with the smallest margin."""
         if self.missed or self.open:
@@ -101,45 +108,57 @@ class Judgment:
 
 
 def judgment(
-    design: Design,
+    law: Law,
     wanted: StopRequirements | Requirements,
     *,
-    rail: Rail,
+    vehicle: Vehicle,
+    vehicle_name: str,
+    speeds: Ends,
     own: Trial,
     certificates: Sequence[Certificate],
-    growth: float | None,
+    growth: Growth | None,
     full_adhesion: float,
-    folder: Path,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Judgment:
-    """Judge a design by its requirements.
+    """Judge a law by its requirements.
 
     Parameters
     ----------
-    design : Design
-        The design.
+    law : Law
+        The law.
     wanted : StopRequirements or Requirements
-        On the stop of its report, or on drawn stops.
-    rail : Rail
-        Its design rail.
+        On the stop of its report, or on drawn stops; paths of rails as seen from here.
+    vehicle : Vehicle
+        The vehicle.
+    vehicle_name : str
+        Shipped name or path, of which drawn stops vary the numbers; empty for a record that was made in Python.
+    speeds : Ends
+        Range of operation [m/s].
     own : Trial
         Its stop.
     certificates : sequence of Certificate
         All checks of it.
-    growth : float or None
-        By which a deviation grows per sample near the reference, at its worst speed [-]; None where no check tells.
+    growth : Growth or None
+        Of a deviation near the reference; None where no check tells.
     full_adhesion : float
         Distance of the same stop while no wheel slides [m].
-    folder : Path
-        Of the design file.
     progress : callable, optional
         Told what is simulated.
+
+    Raises
+    ------
+    UserError
+        If drawn stops are asked for of a vehicle without a file.
     """
     found = {each.name: each for each in certificates}
     if isinstance(wanted, StopRequirements):
         return judged_stop(wanted, own, found, growth=growth, full_adhesion=full_adhesion)
+    if not vehicle_name:
+        raise UserError(
+            f"requirements on drawn stops need the file of vehicle {vehicle.name}; write it, and give its path"
+        )
     progress(f"requirements on {wanted.held_out.sets} stops")
-    judged = judge(design, rail, folder=folder, wanted=wanted)
+    judged = judge_law(law, wanted, vehicle, vehicle_name, speeds)
     limits = {each.criterion: each for each in wanted.limits}
     evidence = f"{wanted.held_out.sets} simulated stops"
     rows = [
@@ -157,7 +176,7 @@ def judged_stop(
     own: Trial,
     found: Mapping[str, Certificate],
     *,
-    growth: float | None,
+    growth: Growth | None,
     full_adhesion: float,
 ) -> Judgment:
     """Judge one stop and the checks beside it."""
@@ -212,7 +231,7 @@ def _by_checks(name: str, title: str, names: Sequence[str], found: Mapping[str, 
         reached=None,
         outcome=outcome,
         evidence=evidence_of(known),
-        checks=tuple(each.name for each in known),
+        checks=tuple(each.name for each in known if each.status is not Status.NOT_APPLICABLE),
         source="no evidence counts without it",
         remark=f"refuted: {', '.join(refuted)}"
         if refuted
@@ -222,16 +241,14 @@ def _by_checks(name: str, title: str, names: Sequence[str], found: Mapping[str, 
     )
 
 
-def _loop(found: Mapping[str, Certificate], growth: float | None) -> Requirement:
+def _loop(found: Mapping[str, Certificate], growth: Growth | None) -> Requirement:
     """Judge the loop near its reference by the check of its sampled poles; else by a proof about the sampled loop."""
     check = found.get(LOOP)
     speaks = check is not None and check.status not in (Status.NOT_APPLICABLE, Status.VACUOUS)
     proofs = tuple(
         each
         for each in found.values()
-        if HOLDS_FOR.get(each.name) is HoldsFor.SAMPLED
-        and each.name in ("lpv_lyapunov", "sampled_invariance", "slip_band")
-        and each.status is Status.PROVED
+        if each.name in _PROOFS_OF_THE_LOOP and each.status is Status.PROVED
     )
     outcome, evidence, names, remark = Outcome.TOLD, "none", (), "no check speaks about this law"
     if check is not None and speaks:
@@ -248,7 +265,7 @@ def _loop(found: Mapping[str, Certificate], growth: float | None) -> Requirement
         name="loop",
         title="growth of a deviation per sample, near the reference",
         limit=1.0 if growth is not None and speaks else None,
-        reached=growth if speaks else None,
+        reached=growth.factor if growth is not None and speaks else None,
         outcome=outcome,
         evidence=evidence,
         checks=names,
@@ -267,7 +284,7 @@ def _proved(name: str, found: Mapping[str, Certificate]) -> Requirement:
         reached=None,
         outcome=Outcome.MET if check is not None and check.status is Status.PROVED else Outcome.MISSED,
         evidence=evidence_of([check] if check else []),
-        checks=(name,),
+        checks=(name,) if check is not None and check.status is not Status.NOT_APPLICABLE else (),
         source="asked for by the table",
         remark="" if check is None else check.status.name.lower().replace("_", " "),
     )
@@ -312,6 +329,4 @@ def _row(judged: Judged, limit: Limit | None, evidence: str, perfect: float = ma
 
 
 def _numbered(rows: Sequence[Requirement]) -> tuple[Requirement, ...]:
-    from dataclasses import replace
-
     return tuple(replace(each, id=f"R{place}") for place, each in enumerate(rows, start=1))
