@@ -5,6 +5,7 @@ judged by such a table; without one of its own, by what the paper asks for.
 """
 
 from dataclasses import dataclass
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from wspd_design.certificates.theorems.holds_for import HOLDS_FOR, HoldsFor
@@ -93,7 +94,7 @@ def named_requirements(written: str, specification: Specification) -> StopRequir
     return read_stop_requirements(path, written)
 
 
-def read_stop_requirements(path: Path, where: str) -> StopRequirements:
+def read_stop_requirements(path: Traversable | Path, where: str) -> StopRequirements:
     """Read a file of requirements on one stop.
 
     Raises

@@ -16,6 +16,7 @@ from wspd_design.exchange.common_keys import (
 )
 from wspd_design.exchange.forms import Form, Key
 from wspd_design.exchange.stop_forms import FAULT, STOP
+from wspd_design.exchange.uncertainty_forms import UNCERTAINTY
 
 LINEARIZATION_POINT = Form(
     name="linearization_point",
@@ -209,7 +210,9 @@ REQUIREMENT = Form(
         nullable("reached", "in SI units; null where there is no such figure"),
         nullable("perfect", "what a perfect law reaches in the same stop; null where that is not known"),
         nullable("margin", "distance from the limit over the limit, positive where it is kept"),
-        Key(name="outcome", kind="text", words=("met", "missed", "open", "told"), meaning="told: not required"),
+        Key(
+            name="outcome", kind="text", words=("met", "missed", "open", "told"), meaning="told: not required"
+        ),
         Key(name="evidence", kind="text", meaning="what shows it"),
         Key(name="checks", kind="text", many=ANY, meaning="names of those that decide it"),
         Key(name="source", kind="text", meaning="of the limit"),
@@ -273,6 +276,12 @@ REPORT = Form(
             kind=FAULTED_STOP,
             many=ANY,
             meaning="of the design: each fault at the axle where it does most harm, and patches",
+        ),
+        Key(
+            name="uncertainty",
+            kind=UNCERTAINTY,
+            nullable=True,
+            meaning="of the design's own stop; null where no number has bounds",
         ),
         Key(name="parameters", kind=PARAMETERS, many=ANY, meaning="each set that was used"),
         VERSION_KEY,

@@ -23,9 +23,7 @@ def scope(dossier: Dossier) -> str:
     grade = dossier.scenario.grade
     track = "straight level track" if grade == 0.0 else f"straight track, grade {1e3 * grade:g} permille"
     wanted = dossier.judgment.wanted
-    rails = (
-        numbers.listing(wanted.rails) if isinstance(wanted, Requirements) else rails_of(dossier.scenario)
-    )
+    rails = numbers.listing(wanted.rails) if isinstance(wanted, Requirements) else rails_of(dossier.scenario)
     disturbed = disturbances_of(dossier.scenario)
     return (
         f"{dossier.vehicle.name} on {rails}, {low} to {high} km/h, {track}, sample time {span}"
@@ -139,6 +137,6 @@ def made_by(dossier: Dossier) -> str:
     cut = sum(each.cut for each in dossier.certificates)
     versions = dict(made.versions)
     return (
-        f"wspd {versions['wspd-design']}, Python {versions['Python']}, inputs {made.input_hash[:12]}, seed {made.seed}, "
-        f"searches ended by their budget: {cut}"
+        f"wspd {versions['wspd-design']}, Python {versions['Python']}, inputs {made.input_hash[:12]}, "
+        f"seed {made.seed}, searches ended by their budget: {cut}"
     )

@@ -24,6 +24,7 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.template import BLANK, Template, template_text
 from wspd_design.studies.dossier import Dossier
 
 SECTIONS = (
@@ -46,7 +47,7 @@ MEDIA_TYPES = {"controller": "text/x-python"}
 """Of the user's own files that are not TOML."""
 
 
-def write_report(dossier: Dossier, *paths: str | Path) -> None:
+def write_report(dossier: Dossier, *paths: str | Path, template: Template = BLANK) -> None:
     """Write the report of a design to files; the ending of a name, ``.html`` or ``.pdf``, chooses its format.
 
     The date in the report is now, or that of the environment variable ``SOURCE_DATE_EPOCH`` [s]; all else
@@ -58,18 +59,20 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
         What :func:`wspd_design.studies.dossier.dossier` returned.
     *paths : str or Path
         One file for each format wanted.
+    template : Template, optional
+        Logo, names and numbers of a company, of :func:`wspd_design.reporting.template.read_template`.
 
     Raises
     ------
     UserError
         If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is not a number of seconds.
     """
-    document = report_document(dossier, report_time())
+    document = report_document(dossier, report_time(), template)
     for path in paths:
         write_document(document, path)
 
 
-def report_document(dossier: Dossier, timestamp: datetime) -> Document:
+def report_document(dossier: Dossier, timestamp: datetime, template: Template = BLANK) -> Document:
     """Return the report of a design, not yet rendered."""
     law = dossier.law
     version = dict(dossier.provenance.versions)["wspd-design"]
@@ -102,8 +105,25 @@ def report_document(dossier: Dossier, timestamp: datetime) -> Document:
                 description="all numbers of this report",
             ),
             *certificate_files(dossier),
+            *_template_file(template),
         ),
         timestamp=timestamp,
+        author=template.author or template.organization or f"wspd {version}",
+        keywords=("wheel slide protection", law.heading, dossier.vehicle.name, dossier.rail.name),
+        template=template,
+    )
+
+
+def _template_file(template: Template) -> tuple[Attachment, ...]:
+    if template == BLANK:
+        return ()
+    return (
+        Attachment(
+            name="template.toml",
+            media_type="application/toml",
+            content=template_text(template),
+            description="logo, names and numbers of this report, for wspd report --template",
+        ),
     )
 
 

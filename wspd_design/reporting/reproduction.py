@@ -70,6 +70,8 @@ def reproduction_document(made: Reproduction, timestamp: datetime) -> Document:
         provenance=_provenance(made),
         attachments=(),
         timestamp=timestamp,
+        author=f"wspd {version}",
+        keywords=("wheel slide protection", "reproduction", "ER24PC"),
     )
 
 

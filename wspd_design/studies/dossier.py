@@ -20,7 +20,7 @@ from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.case import specification_of
-from wspd_design.design.catalog import controller, controller_of, design_rail, is_design_file
+from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import design_text, read_design
 from wspd_design.design.industry import usual_table
 from wspd_design.design.own_controller import is_own_controller
@@ -33,7 +33,7 @@ from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.given import given_entries, given_in_python
-from wspd_design.parameters.laden import LADEN
+from wspd_design.parameters.laden import LADEN, laden
 from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
@@ -46,6 +46,7 @@ from wspd_design.studies.judgment import Judgment, judgment
 from wspd_design.studies.loop_growth import Growth, growth_of
 from wspd_design.studies.next_step import NextStep, next_step
 from wspd_design.studies.reported_law import ReportedLaw, reported_law
+from wspd_design.studies.uncertainty import Uncertainty, uncertainty
 
 POLE_SPEEDS = 60  # points of the pole map
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
@@ -103,6 +104,7 @@ class Dossier:
     judgment: Judgment  # by its requirements
     next_step: NextStep | None  # of a law that is not accepted
     robustness: Robustness | None  # where wheelsets differ
+    uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
     provenance: Provenance
 
@@ -116,6 +118,7 @@ def dossier(
     specification: Specification | None = None,
     baselines: Sequence[str] = (),
     command: str = "",
+    stop_command: str = "",
     written: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
@@ -140,6 +143,8 @@ def dossier(
         Controllers to compare with.
     command : str
         The command line, for the record; empty for a report that was made in Python.
+    stop_command : str
+        ``wspd simulate`` with what the command line says about the stop, so that drawn ones can be simulated again.
     written : str
         What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
         report.
@@ -248,6 +253,18 @@ def dossier(
             progress=progress,
         ),
         robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),
+        uncertainty=uncertainty(
+            of_vehicle,
+            own,
+            scenario,
+            trials[0],
+            slip_reference=asked.slip,
+            parameters=(vehicle_set, rail_set),
+            laden=vehicle_of(laden(vehicle_set)) if "laden.mass" in vehicle_set.entries else None,
+            plant=plant,
+            command=stop_command,
+            progress=progress,
+        ),
         scenario=scenario,
         provenance=Provenance(
             command=command,

@@ -64,7 +64,7 @@ class Requirement:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Judgment:
-    """The requirements of a design and what it reaches of them, on one stop or on drawn ones that no search has seen."""
+    """The requirements of a design and what it reaches of them, on one stop or on drawn ones."""
 
     name: str  # of the template, or of the table
     wanted: StopRequirements | Requirements
@@ -246,11 +246,10 @@ def _loop(found: Mapping[str, Certificate], growth: Growth | None) -> Requiremen
     check = found.get(LOOP)
     speaks = check is not None and check.status not in (Status.NOT_APPLICABLE, Status.VACUOUS)
     proofs = tuple(
-        each
-        for each in found.values()
-        if each.name in _PROOFS_OF_THE_LOOP and each.status is Status.PROVED
+        each for each in found.values() if each.name in _PROOFS_OF_THE_LOOP and each.status is Status.PROVED
     )
-    outcome, evidence, names, remark = Outcome.TOLD, "none", (), "no check speaks about this law"
+    outcome, evidence, remark = Outcome.TOLD, "none", "no check speaks about this law"
+    names: tuple[str, ...] = ()
     if check is not None and speaks:
         settled = {
             Status.REFUTED: Outcome.MISSED,

@@ -1,7 +1,7 @@
 """For which loop each theorem holds, from the equations alone to a whole stop: rungs of the ladder of evidence.
 
-A statement about an ideal brake, whose torque is what the law commands, says nothing about the brake of a vehicle: it is
-an argument for the law, and one that fails does not condemn a design.
+A statement about an ideal brake, whose torque is what the law commands, says nothing about the brake of a vehicle: it
+is an argument for the law, and one that fails does not condemn a design.
 """
 
 from collections.abc import Mapping

@@ -14,6 +14,7 @@ from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
 from wspd_design.cli.sensor_options import SensorOptions
+from wspd_design.cli.stop_command import stop_command
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Law
@@ -43,11 +44,20 @@ def report(
         Path, typer.Option("--output", "-o", metavar="FILE", help="Report to write, .html or .pdf.")
     ] = Path("report.html"),
     pdf: Annotated[bool, typer.Option("--pdf", help="Write the same content as PDF beside it, too.")] = False,
+    template: Annotated[
+        Path | None,
+        typer.Option(
+            "--template",
+            metavar="FILE.toml",
+            help="Logo, names, document number and issue of your company.",
+        ),
+    ] = None,
     force: options.ForceOption = False,
 ) -> None:
     """Write a report on a design or any other law: gains, poles, certificates, stops and sources."""
     from wspd_design.reporting.report import write_report
     from wspd_design.reporting.sections.summary import verdict
+    from wspd_design.reporting.template import BLANK, read_template
     from wspd_design.reporting.text import plain
     from wspd_design.studies.dossier import dossier
 
@@ -57,6 +67,7 @@ def report(
         if path.suffix.lower() not in (".html", ".pdf"):
             raise UserError(f"report {path} must end in .html or .pdf, which chooses the format")
         check_output(path, force=force)
+    letterhead = BLANK if template is None else read_template(template)
     chosen_name = chosen(name, controller)
     rail, disturbances = along_the_track(rail, disturbances)
     case = load_case(
@@ -75,6 +86,7 @@ def report(
             specification=None if isinstance(made, Design) else case.specification,
             baselines=[other for other in FAMILIES if other not in (made.name, chosen_name)],
             command=shlex.join(["wspd", *sys.argv[1:]]),
+            stop_command=stop_command(sys.argv[2:]),
             written="" if isinstance(made, Design) else chosen_name,
             plant=plant,
             stored=stored_beside(chosen_name),
@@ -82,7 +94,7 @@ def report(
             progress=tell,
         )
         tell("typesetting")
-        write_report(computed, *paths)
+        write_report(computed, *paths, template=letterhead)
     judged = verdict(computed)
     style = (
         "bold green"

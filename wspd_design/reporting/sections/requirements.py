@@ -69,7 +69,7 @@ def _sources(judgment: Judgment) -> Table:
             ColumnOf(title="Verified", read=lambda each: "yes" if each.verified else "no"),
             ColumnOf(title="Shown by", read=_shown_by),
         ),
-        caption="Where each limit comes from, whether somebody compared it with that source, and what shows the result.",
+        caption="Where each limit comes from, whether somebody compared it with that source, and what shows it.",
         anchor="requirement-sources",
     )
 
@@ -110,8 +110,8 @@ def _checks(dossier: Dossier) -> Table:
             ),
             ColumnOf(title="Margin", flush_right=True, read=lambda each: numbers.margin(each.margin)),
         ),
-        caption="All checks. A margin is positive where the claim holds, in the unit of the claim; ≤: sampling bounds it "
-        "from above only. What holds for an ideal brake is an argument for the law and says nothing about the brake of "
+        caption="All checks. A margin is positive where the claim holds, in the unit of the claim; ≤: sampling "
+        "bounds it from above only. What holds for an ideal brake is an argument for the law and says nothing about the brake of "
         "the vehicle.",
         anchor="checks",
     )

@@ -145,7 +145,11 @@ def _yardsticks(dossier: Dossier) -> Text:
         return f"{ideal}; no bound is proved"
     start = numbers.significant(dossier.specification.speeds[1] * KMH)
     link = Link(anchor=check_anchor(proved.certificate), text="proved bound")
-    return (f"{ideal}; ", link, f" of the nominal vehicle from {start} km/h: {rounded_down(proved.distance)} m")
+    return (
+        f"{ideal}; ",
+        link,
+        f" of the nominal vehicle from {start} km/h: {rounded_down(proved.distance)} m",
+    )
 
 
 def _loop(dossier: Dossier) -> KeyNumber:
@@ -158,7 +162,9 @@ def _loop(dossier: Dossier) -> KeyNumber:
             note=f"of a deviation near the reference, at {numbers.significant(growth.speed * KMH, 3)} km/h where it is "
             "largest; below 1 it dies out. Nominal, valve and sampling included",
         )
-    fastest = max(dossier.linearizations, key=lambda point: (_in_range(dossier, point.speed), point.slip_pole))
+    fastest = max(
+        dossier.linearizations, key=lambda point: (_in_range(dossier, point.speed), point.slip_pole)
+    )
     lag = numbers.decimals(1.0 / fastest.time_constant, 2)
     return KeyNumber(
         label="Slip pole, nominal",
@@ -237,8 +243,8 @@ def _requirements(judgment: Judgment) -> Table:
             ColumnOf(title="Evidence", read=lambda each: each.evidence),
             ColumnOf(title="Finding", read=finding),
         ),
-        caption=f"What is asked for ({judgment.name}) and what is reached on {stops_of(judgment)}; margin over the limit, "
-        f"positive where it is kept. {numbers.count(unverified, 'limit')} not verified against a source. Told: not "
+        caption=f"What is asked for ({judgment.name}) and what is reached on {stops_of(judgment)}; margin over the "
+        f"limit, positive where it is kept. {numbers.count(unverified, 'limit')} not verified against a source. Told: not "
         "required.",
         anchor="requirements-table",
     )
@@ -272,8 +278,8 @@ def _ladder(certificates: Sequence[Certificate], dossier: Dossier) -> Table:
             ColumnOf[str](title="Holds for", read=str),
             *(ColumnOf[str](title=title, flush_right=True, read=str) for title, _ in _COLUMNS),
         ),
-        caption=f"Ladder of evidence: checks that speak about this law, by what stands between it and the wheel (sampled "
-        f"every {span}). The requirements count from the rung that each of them needs; nothing was measured.",
+        caption=f"Ladder of evidence: checks that speak about this law, by what stands between it and the wheel "
+        f"(sampled every {span}). The requirements count from the rung that each of them needs; nothing was measured.",
         anchor="evidence-ladder",
     )
     return Table(columns=table.columns, rows=tuple(rows), caption=table.caption, anchor=table.anchor)

@@ -167,7 +167,7 @@ def loop(problem: Problem, speed: float, *, sample_time: float | None = None) ->
 
 
 def growth_per_sample(problem: Problem) -> tuple[float, float]:
-    """Return the largest magnitude of a pole of the sampled loop over the speeds of the check, and its speed [-, m/s]."""
+    """Return the largest magnitude of a sampled pole over the speeds of the check, and its speed [-, m/s]."""
     import numpy as np
 
     def magnitude(speed: float) -> float:
