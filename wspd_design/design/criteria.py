@@ -32,6 +32,11 @@ class Criterion:
     may_lack: bool = False  # a stop need not have the figure, and those without it do not count
     of_report: bool = False  # known of the stop of a report alone, not of campaigns
     unit: str = "-"  # in which people tell it
+    alone: str = ""  # title in a single stop, where it is another one
+
+    def title_of(self, *, one_stop: bool) -> str:
+        """Return the title over many stops, or in a single one."""
+        return self.alone if one_stop and self.alone else self.title
 
     def of(self, figures: FiguresOfStops) -> float | None:
         """Return the number over the stops; None for stops that have no such figure.
@@ -119,6 +124,7 @@ CRITERIA: dict[str, Criterion] = {
             at_least=True,
             scale=0.01,
             unit="%",
+            alone="efficiency",
         ),
         Criterion(
             name="stopping_distance",
@@ -128,6 +134,7 @@ CRITERIA: dict[str, Criterion] = {
             over_stops=_largest,
             scale=10.0,
             unit="m",
+            alone="stopping distance",
         ),
         Criterion(
             name="longest_lock",
@@ -146,6 +153,7 @@ CRITERIA: dict[str, Criterion] = {
             over_stops=_mean,
             scale=1.0,
             unit="1/s",
+            alone="valve switches per second and axle",
         ),
         Criterion(
             name="vented_air",
@@ -154,6 +162,7 @@ CRITERIA: dict[str, Criterion] = {
             figure="vented_air",
             over_stops=_mean,
             scale=1.0,
+            alone="brake cylinders vented per axle",
         ),
         Criterion(
             name="slip_band",

@@ -13,8 +13,6 @@ from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.judgment import Requirement
 from wspd_design.studies.next_step import Alternative, NextStep
 
-MOST_NAMED = 4  # alternatives
-
 
 def scope(dossier: Dossier) -> str:
     """Say for what the decision is made."""
@@ -40,7 +38,7 @@ def weakest(dossier: Dossier) -> str:
         return _loop(dossier, row)
     if dossier.judgment.accepted:
         return f"{row.id}, {against_limit(row)}: the smallest reserve, {margin(row)}"
-    return f"{row.id}, {against_limit(row)}."
+    return f"{row.id}, {against_limit(row)}"
 
 
 def _loop(dossier: Dossier, row: Requirement) -> str:
@@ -54,13 +52,13 @@ def _loop(dossier: Dossier, row: Requirement) -> str:
     ]
     times = lag_times(dossier.vehicle)
     lag = "" if times is None else f" of {numbers.significant(min(times))} s"
-    unstable = row.reached is not None and row.limit is not None and row.reached >= row.limit
     said = (
-        f"{row.id}, the loop near its reference: sampled every {span} behind a valve{lag} a deviation of the slip "
-        f"{'grows' if unstable else 'is multiplied'} by {numbers.significant(growth.factor, 3)} per sample at "
-        f"{numbers.significant(growth.speed * KMH, 3)} km/h, allowed below 1"
+        f"{row.id}, the loop near its reference: sampled every {span} behind a valve{lag} it is unstable at "
+        f"{growth.unstable} of {growth.speeds} speeds; a deviation of the slip is multiplied by "
+        f"{numbers.significant(growth.factor, 3)} per sample at {numbers.significant(growth.speed * KMH, 3)} km/h, "
+        "allowed below 1"
     )
-    return f"{said}; the slip pole reaches {numbers.significant(max(poles), 3)} 1/s (nominal)."
+    return f"{said}. The slip pole reaches {numbers.significant(max(poles), 2)} 1/s (nominal)"
 
 
 def next_words(dossier: Dossier) -> str:
@@ -75,20 +73,24 @@ def next_words(dossier: Dossier) -> str:
     if not found.tried:
         return "no other law has gains by rules for this vehicle"
     if found.clears:
-        named = [_alternative(each) for each in found.clears[:MOST_NAMED]]
-        more = len(found.clears) - len(named)
-        meets = f"{numbers.listing(named)}{f' and {more} more' if more else ''} meet everything"
-        return f"{meets} ({tried}). {_same_law(dossier, found)}".rstrip()
+        spans = dict.fromkeys(sorted((each.sample_time for each in found.clears), reverse=True))
+        named = [
+            f"sampled every {format_quantity(span, 'ms')} "
+            + numbers.listing([_alternative(each) for each in found.clears if each.sample_time == span])
+            for span in spans
+        ]
+        return f"these meet everything: {'; '.join(named)} ({tried}). {_same_law(dossier, found)}".rstrip()
     best = found.tried[0]
     return (
-        f"nothing meets everything ({tried}); closest is {_alternative(best)}, which misses {_missed(dossier, best)}. "
+        f"nothing meets everything ({tried}); closest is {_alternative(best)} sampled every "
+        f"{format_quantity(best.sample_time, 'ms')}, which misses {_missed(dossier, best)}. "
         f"{_same_law(dossier, found)}".rstrip()
     )
 
 
 def _alternative(each: Alternative) -> str:
-    distance = "" if each.distance is None else f", {numbers.decimals(each.distance, 0)} m"
-    return f"{each.law} ({format_quantity(each.sample_time, 'ms')}{distance})"
+    distance = "" if each.distance is None else f" ({numbers.decimals(each.distance, 0)} m)"
+    return f"{each.law}{distance}"
 
 
 def _missed(dossier: Dossier, each: Alternative) -> str:

@@ -186,7 +186,11 @@ def judged_stop(
     others = [name for name in wanted.not_refuted if name not in (*MODEL, LOOP)]
     model = tuple(name for name in wanted.not_refuted if name in MODEL)
     evidence = "one simulated stop"
-    judged = judged_by(wanted.limits, told)
+    by_name = {each.requirement: each for each in judged_by(wanted.limits, told)}
+    judged = [
+        replace(by_name[name], title=CRITERIA[name].title_of(one_stop=True))
+        for name in (*limits, *(name for name in by_name if name not in limits))
+    ]
     perfect = own.metrics.perfect_slip_rms
     rows = [
         *([_by_checks("sound", "equations and simulation are sound", model, found)] if model else []),

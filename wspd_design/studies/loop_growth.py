@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from wspd_design.certificates.checks.linear.margins import growth_per_sample
+from wspd_design.certificates.checks.linear.margins import growths_per_sample
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.setting.linear_loop import linear_law
 from wspd_design.design.stop_requirements import LOOP
@@ -15,6 +15,8 @@ class Growth:
 
     factor: float  # -, per sample
     speed: float  # m/s, where it is largest
+    unstable: int  # speeds at which it is above 1
+    speeds: int  # at which it was worked out, evenly spaced in the logarithm
 
 
 def growth_of(problem: Problem, certificates: Sequence[Certificate]) -> Growth | None:
@@ -23,5 +25,8 @@ def growth_of(problem: Problem, certificates: Sequence[Certificate]) -> Growth |
     check = next((each for each in certificates if each.name == LOOP), None)
     if check is None or check.status in silent or linear_law(problem):
         return None
-    factor, speed = growth_per_sample(problem)
-    return Growth(factor=factor, speed=speed)
+    found = growths_per_sample(problem)
+    factor, speed = max(found)
+    return Growth(
+        factor=factor, speed=speed, unstable=sum(each > 1.0 for each, _ in found), speeds=len(found)
+    )

@@ -111,8 +111,8 @@ def _checks(dossier: Dossier) -> Table:
             ColumnOf(title="Margin", flush_right=True, read=lambda each: numbers.margin(each.margin)),
         ),
         caption="All checks. A margin is positive where the claim holds, in the unit of the claim; ≤: sampling "
-        "bounds it from above only. What holds for an ideal brake is an argument for the law and says nothing about the brake of "
-        "the vehicle.",
+        "bounds it from above only. What holds for an ideal brake is an argument for the law and says nothing "
+        "about the brake of the vehicle.",
         anchor="checks",
     )
     if not silent:

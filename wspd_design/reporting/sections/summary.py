@@ -11,7 +11,7 @@ from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Block,
-    Cell,
+    Column,
     Definition,
     Definitions,
     KeyNumber,
@@ -22,7 +22,7 @@ from wspd_design.reporting.blocks import (
 )
 from wspd_design.reporting.decision_words import made_by, next_words, rank, scope, weakest
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.requirement_words import finding, limit, margin, reached
+from wspd_design.reporting.requirement_words import against_limit, finding, limit, margin, reached
 from wspd_design.reporting.sections.checks import check_anchor, is_bad_news
 from wspd_design.reporting.sections.requirements import REQUIREMENTS, decided_by, stops_of
 from wspd_design.reporting.sections.robustness import ROBUSTNESS, what_fails
@@ -46,7 +46,8 @@ def verdict(dossier: Dossier) -> Verdict:
     judgment = dossier.judgment
     count = len(judgment.limited)
     link = Link(anchor=REQUIREMENTS, text="requirements" if count != 1 else "requirement")
-    first = weakest(dossier)
+    row = judgment.weakest
+    first = "" if row is None else f"{row.id}, {against_limit(row)}"
     match judgment.verdict:
         case "accepted":
             spoken: tuple[Inline, ...] = (
@@ -58,13 +59,13 @@ def verdict(dossier: Dossier) -> Verdict:
             spoken = (
                 f"Rejected: it misses {_ids(judgment)} of {count} ",
                 link,
-                f" ({judgment.name}); first {first} ",
+                f" ({judgment.name}); first {first}. ",
             )
         case _:
             spoken = (
                 f"Not decided: {_ids(judgment)} of {count} ",
                 link,
-                f" ({judgment.name}) {'is' if len(judgment.open) == 1 else 'are'} open; first {first} ",
+                f" ({judgment.name}) {'is' if len(judgment.open) == 1 else 'are'} open; first {first}. ",
             )
     return Verdict(status=_VERDICTS[judgment.verdict], sentence=(*spoken, _stop(dossier)))
 
@@ -244,8 +245,8 @@ def _requirements(judgment: Judgment) -> Table:
             ColumnOf(title="Finding", read=finding),
         ),
         caption=f"What is asked for ({judgment.name}) and what is reached on {stops_of(judgment)}; margin over the "
-        f"limit, positive where it is kept. {numbers.count(unverified, 'limit')} not verified against a source. Told: not "
-        "required.",
+        f"limit, positive where it is kept. {numbers.count(unverified, 'limit')} not verified against a source. "
+        "Told: not required.",
         anchor="requirements-table",
     )
 
@@ -261,25 +262,24 @@ _COLUMNS = (
 def _ladder(certificates: Sequence[Certificate], dossier: Dossier) -> Table:
     """Count what is shown on each rung, from the equations to a measurement, of which there is none."""
 
-    def counted(rung: HoldsFor, statuses: tuple[Finding, ...]) -> Text | Cell:
+    def counted(rung: HoldsFor, statuses: tuple[Finding, ...]) -> str:
         group = [
             each for each in certificates if HOLDS_FOR.get(each.name) is rung and each.status in statuses
         ]
         return str(len(group)) if group else numbers.NONE
 
-    rows: list[tuple[Text | Cell, ...]] = [
+    rows: list[tuple[Text, ...]] = [
         (rung.value, *(counted(rung, statuses) for _, statuses in _COLUMNS)) for rung in HoldsFor
     ]
     rows.append(("measured on a vehicle", *[numbers.NONE] * len(_COLUMNS)))
     span = format_quantity(dossier.specification.sample_time, "ms")
-    table = build(
-        (),
-        (
-            ColumnOf[str](title="Holds for", read=str),
-            *(ColumnOf[str](title=title, flush_right=True, read=str) for title, _ in _COLUMNS),
+    return Table(
+        columns=(
+            Column(title="Holds for"),
+            *(Column(title=title, align="right") for title, _ in _COLUMNS),
         ),
+        rows=tuple(rows),
         caption=f"Ladder of evidence: checks that speak about this law, by what stands between it and the wheel "
         f"(sampled every {span}). The requirements count from the rung that each of them needs; nothing was measured.",
         anchor="evidence-ladder",
     )
-    return Table(columns=table.columns, rows=tuple(rows), caption=table.caption, anchor=table.anchor)
