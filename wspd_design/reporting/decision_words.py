@@ -133,12 +133,15 @@ def rank(dossier: Dossier) -> str:
     )
 
 
-def made_by(dossier: Dossier) -> str:
+def produced_by(dossier: Dossier) -> str:
     """Say what made the report; the rest stands under its provenance."""
     made = dossier.provenance
-    cut = sum(each.cut for each in dossier.certificates)
-    versions = dict(made.versions)
+    tree = (
+        f"{made.package_tree[:12]}{' and changes' if made.changed else ''}"
+        if made.package_tree
+        else "no clone"
+    )
     return (
-        f"wspd {versions['wspd-design']}, Python {versions['Python']}, inputs {made.input_hash[:12]}, "
-        f"seed {made.seed}, searches ended by their budget: {cut}"
+        f"wspd {made.program_version} ({tree}), package {made.package_sha256[:12]}, {made.compiler}, {made.platform}, "
+        f"inputs {made.input_hash[:12]}, seed {made.seed}, searches that were cut: {len(made.searches_cut)}"
     )

@@ -159,6 +159,13 @@ def judgment(
         )
     progress(f"requirements on {wanted.held_out.sets} stops")
     judged = judge_law(law, wanted, vehicle, vehicle_name, speeds)
+    return judged_drawn(wanted, judged, own, found)
+
+
+def judged_drawn(
+    wanted: Requirements, judged: Sequence[Judged], own: Trial, found: Mapping[str, Certificate]
+) -> Judgment:
+    """Put together what was reached on drawn stops and what checks say."""
     limits = {each.criterion: each for each in wanted.limits}
     evidence = f"{wanted.held_out.sets} simulated stops"
     rows = [

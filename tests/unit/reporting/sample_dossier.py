@@ -12,19 +12,35 @@ from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.design.requirements import DrawnSets, Limit, Requirements, judged_by
+from wspd_design.design.stop_requirements import MODEL, StopRequirements
 from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.draws import Choice, Draw
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Fault, Run, Sample, Scenario, Totals
 from wspd_design.simulation.self_check import StepCheck
-from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
+from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness
-from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.judgment import judged_drawn, judged_stop
+from wspd_design.studies.loop_growth import Growth
+from wspd_design.studies.provenance import InputFile, Provenance
 from wspd_design.studies.reported_law import ReportedLaw
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
+SAMPLE_PROVENANCE = Provenance(
+    command="wspd report design.toml --vehicle er24pc --rail polach-wet --seed 7",
+    seed=7,
+    inputs=(InputFile(name="design.toml", text="[gains]\n", meaning="the design"),),
+    searches_cut=("two",),
+    program_version="0.1.0",
+    package_sha256="fedcba9876543210" * 4,
+    package_tree="0123456789" * 4,
+    changed=False,
+    compiler="cc 1.2.3",
+    platform="Linux x86_64",
+    versions=(("Python", "3.11.7"), ("numpy", "2.4.6")),
+)
 
 
 def certificate(name: str, status: Status, **changes) -> Certificate:
@@ -158,21 +174,39 @@ def estimating(plain: Trial) -> Trial:
     return replace(plain, run=run, metrics=figures)
 
 
-def judgment(**reached: float) -> Judgment:
-    """Return a judgment by two limits and one number that is only told."""
+WANTED = StopRequirements(
+    name="sample",
+    not_refuted=("lyapunov_one",),
+    limits=(
+        Limit(criterion="slip_rms", value=0.1, source="a wish"),
+        Limit(criterion="longest_lock", value=0.6, source="contract 12", verified=True),
+    ),
+)
+SOUND = tuple(certificate(name, Status.PROVED) for name in MODEL)
+
+
+def judged(dossier: Dossier, wanted: StopRequirements = WANTED, growth: Growth | None = None) -> Dossier:
+    """Judge a dossier whose records were changed again."""
+    found = {each.name: each for each in dossier.certificates}
+    made = judged_stop(wanted, dossier.trials[0], found, growth=growth, full_adhesion=175.0)
+    return replace(dossier, judgment=made, growth=growth)
+
+
+def drawn(dossier: Dossier, **reached: float) -> Dossier:
+    """Judge a dossier by two limits on drawn stops, with checks that find equations and simulation sound."""
     limits = (Limit(criterion="efficiency_mean", value=0.975), Limit(criterion="longest_lock", value=0.1))
     numbers = {"efficiency_mean": 0.9812, "longest_lock": 0.04, "valve_switches": 12.3} | reached
-    return Judgment(
-        requirements=Requirements(
-            rails=("polach-wet", "polach-dry"),
-            within_bounds=("rail",),
-            held_out=DrawnSets(sets=200, seed=77),
-            limits=limits,
-            stop=(("stop.initial_speed", INITIAL_SPEED),),
-            draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
-        ),
-        judged=judged_by(limits, numbers),
+    wanted = Requirements(
+        rails=("polach-wet", "polach-dry"),
+        within_bounds=("rail",),
+        held_out=DrawnSets(sets=200, seed=77),
+        limits=limits,
+        stop=(("stop.initial_speed", INITIAL_SPEED),),
+        draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
     )
+    sound = replace(dossier, certificates=(*dossier.certificates, *SOUND))
+    found = {each.name: each for each in sound.certificates}
+    return replace(sound, judgment=judged_drawn(wanted, judged_by(limits, numbers), sound.trials[0], found))
 
 
 def faults(**changes) -> Robustness:
@@ -228,6 +262,7 @@ def sample_dossier(
             trial("none", rail),
         )
     names = ("lyapunov_one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+    checks = tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False))
     return Dossier(
         law=ReportedLaw(
             name="mine",
@@ -256,7 +291,6 @@ def sample_dossier(
         ),
         vehicle=load_entries("vehicle", "er24pc"),
         rail=load_entries("rail", rail),
-        own_files=(),
         other_parameters=(load_entries("constants", "constants"), load_entries("controller", "trenitalia")),
         compared_designs=(),
         brake=brake_sheet(load_vehicle("er24pc")),
@@ -264,19 +298,18 @@ def sample_dossier(
         linearizations=tuple(
             linearization(float(v), 2.0 - 8.0 / v) for v in np.geomspace(1.0, INITIAL_SPEED, 12)
         ),
-        certificates=tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False)),
+        certificates=checks,
         trials=trials,
         phase_plane=PhasePlane(
             integral=(0.0, 0.014, 0.02), error=(0.14, 0.06, -0.05), surface_rate=0.38, layer=0.025
         ),
-        judgment=None,
+        growth=None,
+        judgment=judged_stop(
+            WANTED, trials[0], {each.name: each for each in checks}, growth=None, full_adhesion=175.0
+        ),
+        next_step=None,
         robustness=None,
         uncertainty=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
-        provenance=Provenance(
-            command="wspd report mine.toml",
-            versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),
-            seed=7,
-            input_hash="fedcba9876543210" * 4,
-        ),
+        provenance=SAMPLE_PROVENANCE,
     )

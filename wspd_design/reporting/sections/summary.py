@@ -20,7 +20,7 @@ from wspd_design.reporting.blocks import (
     Table,
     Verdict,
 )
-from wspd_design.reporting.decision_words import made_by, next_words, rank, scope, weakest
+from wspd_design.reporting.decision_words import next_words, produced_by, rank, scope, weakest
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.requirement_words import against_limit, finding, limit, margin, reached
 from wspd_design.reporting.sections.checks import check_anchor, is_bad_news
@@ -98,7 +98,7 @@ def summary(dossier: Dossier) -> tuple[Block, ...]:
         Definitions(rows=_decision(dossier)),
         _requirements(dossier.judgment),
         _ladder(dossier.certificates, dossier),
-        Definitions(rows=(Definition(term="Made by", text=made_by(dossier)),)),
+        Definitions(rows=(Definition(term="Made by", text=produced_by(dossier)),)),
     )
 
 
@@ -201,10 +201,11 @@ def _told(dossier: Dossier) -> Text:
         if is_bad_news(each) and not decided_by(dossier.judgment, each.name)
     ]
     said: list[Inline] = []
-    for rung in HoldsFor:
+    for rung in (*HoldsFor, None):
         group = [each for each in named if HOLDS_FOR.get(each.name) is rung]
         if group:
-            said += ["; " if said else "", f"{rung.value}: ", *_links(group)]
+            holds_for = "" if rung is None else f"{rung.value}: "
+            said += [f"{'; ' if said else ''}{holds_for}", *_links(group)]
     return tuple(said)
 
 
