@@ -7,7 +7,15 @@ from datetime import UTC, datetime
 import pytest
 from jsonschema import Draft202012Validator
 
-from tests.unit.reporting.sample_dossier import certificate, drawn, faults, sample_dossier, trial
+from tests.unit.reporting.sample_dossier import (
+    WANTED,
+    certificate,
+    drawn,
+    faults,
+    judged,
+    sample_dossier,
+    trial,
+)
 from wspd_design.certificates.records import Status
 from wspd_design.controllers.family import designed
 from wspd_design.exchange.files import read_schema
@@ -287,5 +295,6 @@ def test_hostile_names_stay_text(tmp_path):
         rail=replace(dossier.rail, name="../my rail.toml"),
         certificates=(certificate("one", Status.REFUTED, title=hostile, claim=hostile),),
     )
+    dossier = judged(dossier, replace(WANTED, not_refuted=("one",)))
     write_report(dossier, tmp_path / "hostile.html", tmp_path / "hostile.pdf")
     assert "<script" not in (tmp_path / "hostile.html").read_text()

@@ -1,4 +1,4 @@
-"""Page one: the decision is that of the requirements, its first reason the first cause, its numbers those of records."""
+"""Page one: the decision is that of the requirements, its first reason the first cause, its numbers of records."""
 
 import math
 import re
