@@ -17,6 +17,7 @@ from wspd_design.exchange.common_keys import (
 from wspd_design.exchange.forms import Form, Key
 from wspd_design.exchange.search_forms import JUDGED
 from wspd_design.exchange.stop_forms import FAULT, STOP
+from wspd_design.exchange.uncertainty_forms import UNCERTAINTY
 
 LINEARIZATION_POINT = Form(
     name="linearization_point",
@@ -235,6 +236,12 @@ REPORT = Form(
             kind=FAULTED_STOP,
             many=ANY,
             meaning="of the design: each fault at the axle where it does most harm, and patches",
+        ),
+        Key(
+            name="uncertainty",
+            kind=UNCERTAINTY,
+            nullable=True,
+            meaning="of the design's own stop; null where no number has bounds",
         ),
         Key(name="parameters", kind=PARAMETERS, many=ANY, meaning="each set that was used"),
         VERSION_KEY,

@@ -1,5 +1,6 @@
 """The numbers of a report for programs: the attached ``report.json``, described in ``docs/json.md``."""
 
+import math
 from dataclasses import asdict
 from typing import Any
 
@@ -18,6 +19,8 @@ from wspd_design.exchange.study_forms import REPORT
 from wspd_design.exchange.version import program_version
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import FaultedStop, Robustness
+from wspd_design.studies.key_figures import Outcome
+from wspd_design.studies.uncertainty import Uncertainty
 
 
 def report_record(dossier: Dossier) -> dict[str, Any]:
@@ -58,11 +61,54 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
             "faulted_stops": []
             if dossier.robustness is None
             else [_faulted_stop(each, dossier.robustness) for each in dossier.robustness.stops],
+            "uncertainty": None if dossier.uncertainty is None else _uncertainty(dossier.uncertainty),
             "parameters": [parameters_object(each) for each in sets],
             "version": program_version(),
         }
     )
     return record
+
+
+def _uncertainty(found: Uncertainty) -> dict[str, Any]:
+    return {
+        "sets": found.sets,
+        "seed": found.seed,
+        "drawn": list(found.drawn),
+        "held": list(found.held),
+        "unstopped": found.unstopped,
+        "checked": found.checked,
+        "step_change": found.step_change,
+        "numerical_m": found.numerical,
+        "spreads": [
+            {
+                "name": each.name,
+                "nominal": each.nominal,
+                "low": each.low,
+                "high": each.high,
+                "p05": each.p05,
+                "p95": each.p95,
+                "worst": {**asdict(each.worst), "parameters": dict(each.worst.parameters)},
+            }
+            for each in found.spreads
+        ],
+        "effects": [
+            {
+                "name": each.name,
+                "bounds_si": [each.low, each.high],
+                "at_low": _known(each.at_low),
+                "at_high": _known(each.at_high),
+            }
+            for each in found.effects
+        ],
+        "variants": [
+            {"subject": each.subject, "words": each.words, "figures": _known(each.outcome)}
+            for each in found.variants
+        ],
+    }
+
+
+def _known(outcome: Outcome) -> dict[str, float]:
+    return {name: value for name, value in outcome if math.isfinite(value)}
 
 
 def _faulted_stop(stop: FaultedStop, found: Robustness) -> dict[str, Any]:

@@ -29,7 +29,7 @@ from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.given import given_entries, given_in_python
-from wspd_design.parameters.laden import LADEN
+from wspd_design.parameters.laden import LADEN, laden
 from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS
@@ -40,6 +40,7 @@ from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
 from wspd_design.studies.judgment import Judgment, judgment
 from wspd_design.studies.reported_law import ReportedLaw, reported_law
+from wspd_design.studies.uncertainty import Uncertainty, uncertainty
 
 POLE_SPEEDS = 60  # points of the pole map
 PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
@@ -95,6 +96,7 @@ class Dossier:
     phase_plane: PhasePlane | None  # of laws with a sliding surface
     judgment: Judgment | None  # of a design with requirements
     robustness: Robustness | None  # where wheelsets differ
+    uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
     provenance: Provenance
 
@@ -108,6 +110,7 @@ def dossier(
     specification: Specification | None = None,
     baselines: Sequence[str] = (),
     command: str = "",
+    stop_command: str = "",
     written: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
@@ -131,6 +134,8 @@ def dossier(
         Controllers to compare with.
     command : str
         The command line, for the record; empty for a report that was made in Python.
+    stop_command : str
+        ``wspd simulate`` with what the command line says about the stop, so that drawn ones can be simulated again.
     written : str
         What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
         report.
@@ -208,6 +213,18 @@ def dossier(
         if design is None
         else judgment(design, design_rail(design, of_rail), certificates, folder=folder, progress=progress),
         robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),
+        uncertainty=uncertainty(
+            of_vehicle,
+            own,
+            scenario,
+            trials[0],
+            slip_reference=asked.slip,
+            parameters=(vehicle_set, rail_set),
+            laden=vehicle_of(laden(vehicle_set)) if "laden.mass" in vehicle_set.entries else None,
+            plant=plant,
+            command=stop_command,
+            progress=progress,
+        ),
         scenario=scenario,
         provenance=Provenance(
             command=command,

@@ -271,6 +271,7 @@ def sample_dossier(
         ),
         judgment=None,
         robustness=None,
+        uncertainty=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
         provenance=Provenance(
             command="wspd report mine.toml",

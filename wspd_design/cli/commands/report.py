@@ -14,6 +14,7 @@ from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
 from wspd_design.cli.sensor_options import SensorOptions
+from wspd_design.cli.stop_command import stop_command
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Law
@@ -85,6 +86,7 @@ def report(
             specification=None if isinstance(made, Design) else case.specification,
             baselines=[other for other in FAMILIES if other not in (made.name, chosen_name)],
             command=shlex.join(["wspd", *sys.argv[1:]]),
+            stop_command=stop_command(sys.argv[2:]),
             written="" if isinstance(made, Design) else chosen_name,
             plant=plant,
             stored=stored_beside(chosen_name),

@@ -11,6 +11,7 @@ from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.campaign import Extent, simulate_runs
 from wspd_design.cli.console import console, print_json, progress
 from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.drawn_run import drawn_run, show_drawn
 from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
 from wspd_design.cli.json_objects import witness_object
 from wspd_design.cli.option_records import takes_records
@@ -58,6 +59,17 @@ def simulate(
             rich_help_panel=_MANY,
         ),
     ] = None,
+    only_run: Annotated[
+        int | None,
+        typer.Option(
+            "--only-run",
+            min=0,
+            metavar="NUMBER",
+            help="Simulate this one of the stops that --runs simulates, alone: the run of its table, from 0 on.",
+            show_default=False,
+            rich_help_panel=_MANY,
+        ),
+    ] = None,
     nominal: Annotated[
         bool,
         typer.Option(
@@ -91,6 +103,9 @@ def simulate(
         check_table(output, force=force)
     if nominal and runs is None:
         raise UserError("--nominal is about many stops; add --runs, for example --runs 1000")
+    if only_run is not None and (runs is not None or from_witness is not None):
+        other = "--runs" if runs is not None else "--from-witness"
+        raise UserError(f"--only-run is one stop with drawn numbers; leave {other} out")
     witness = None
     if from_witness is not None:
         draws = runs is not None and not nominal
@@ -128,6 +143,11 @@ def simulate(
             start=start,
         )
         return
+    drawn: dict[str, float] | None = None
+    if only_run is not None:
+        case, stop, drawn = drawn_run(case, stop, only_run, plant=plant)
+        if not as_json:
+            show_drawn(case, drawn, only_run)
     reference = case.specification.slip
     with progress() as tell:
         tell(f"stop with {case.controller.name}")
@@ -136,7 +156,7 @@ def simulate(
         write_table(output, [traces(made.run)], force=force)
     if as_json:
         named = None if start is None else witness_object(start, leaving_time(made.run, LEFT))
-        print_json(stop_object(made, stop, slip_reference=reference, witness=named))
+        print_json(stop_object(made, stop, slip_reference=reference, witness=named, drawn=drawn))
         return
     show_stop(made, stop, reference)
     if start is not None:
