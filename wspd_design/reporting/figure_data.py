@@ -50,20 +50,23 @@ def mark(figure: "Figure") -> MarkedFigure:
 def data(marked: MarkedFigure) -> str:
     """Return where the panels stand and what they scale, as JSON; empty for a figure without any.
 
+    Each axis is its name, its limits and whether it is logarithmic; y of a panel without a curve has no name.
+
     Call it when the figure has been drawn: only then nothing moves any more.
     """
     if not marked.panels:
         return ""
-    axis = [axes.get_ylabel() for axes in marked.panels]
-    told_apart = len(set(axis)) == len(axis) and all(axis)
+    names = [axes.get_ylabel() for axes in marked.panels]
+    if len(set(names)) < len(names) or not all(names):
+        names = [axes.get_title(loc="left") or axes.get_ylabel() for axes in marked.panels]
+    readable = [bool(_curves(axes)) for axes in marked.panels]
     panels = [
         {
-            "name": label if told_apart else axes.get_title(loc="left") or label,
             "box": _box(axes),
             "x": [_x_label(axes), *_limits(axes.get_xlim()), int(axes.get_xscale() == "log")],
-            "y": [*_limits(axes.get_ylim()), int(axes.get_yscale() == "log")],
+            "y": [name if is_read else "", *_limits(axes.get_ylim()), int(axes.get_yscale() == "log")],
         }
-        for axes, label in zip(marked.panels, axis, strict=True)
+        for axes, name, is_read in zip(marked.panels, names, readable, strict=True)
     ]
     return json.dumps({"lines": marked.names, "panels": panels}, ensure_ascii=False, separators=(",", ":"))
 

@@ -50,6 +50,7 @@ def render_html(document: Document) -> str:
         "figure": writer.figure,
         "equation": writer.equation,
         "data_uri": _data_uri,
+        "file_anchor": lambda name: f"File-{[each.name for each in document.attachments].index(name) + 1}",
     }
     environment.tests |= {"with_status": lambda cell: isinstance(cell, Cell)}
     return environment.get_template("report.html").render(

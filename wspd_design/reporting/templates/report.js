@@ -7,7 +7,7 @@
     element.append(text);
     return element;
   };
-  const button = (text, title, onclick) => create("button", text, { type: "button", title, onclick });
+  const button = (text, title, onclick) => create("button", text, { title, onclick });
   const draw = (parent, tag, attributes) => {
     const element = document.createElementNS(parent.namespaceURI, tag);
     for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
@@ -135,8 +135,9 @@
       tools.append(...this.lines.map((name, line) => {
         const curves = [...svg.querySelectorAll(`[data-curve="${line}"]`)];
         const toggle = button(name, "Show or hide", () => {
-          toggle.ariaPressed = toggle.ariaPressed !== "true";
-          for (const curve of curves) show(curve, toggle.ariaPressed === "true");
+          const on = toggle.ariaPressed === "false";
+          toggle.ariaPressed = on;
+          for (const curve of curves) show(curve, on);
         });
         toggle.ariaPressed = "true";
         toggle.style.borderColor = curves[0].querySelector("path").getAttribute("stroke");
@@ -174,12 +175,12 @@
       };
     }
     tell(axis) {
-      const panels = this.panels.filter((panel) => panel.axis === axis), row = (...cells) => {
+      const panels = this.panels.filter((panel) => panel.axis === axis && panel.y[0]), row = (...cells) => {
         const made = create("tr");
         made.append(...cells.map((cell, index) => create(index ? "td" : "th", cell)));
         return made;
       };
-      this.reading.replaceChildren(row(`${axis.whole[0]} ${shown(axis.cursor, axis.whole.slice(0, 3))}`, ...panels.map((panel) => panel.name)),
+      this.reading.replaceChildren(row(`${axis.whole[0]} ${shown(axis.cursor, axis.whole.slice(0, 3))}`, ...panels.map((panel) => panel.y[0])),
         ...this.lines.map((line, index) => row(line, ...panels.map((panel) => panel.read(index, axis.cursor)))));
     }
   }
@@ -195,17 +196,17 @@
     [...table.tHead.rows[0].cells].forEach((head, column) => {
       const key = (row) => words(row.cells[column]).replace(/^[^\p{L}\d-]+/u, "");
       const order = (one, other) => Number.parseFloat(one) - Number.parseFloat(other) || one.localeCompare(other);
-      const sort = create("button", "", { type: "button", title: "Sort", onclick: () => {
+      const sort = button("", "Sort", () => {
         const next = { ascending: "descending", descending: "none" }[head.ariaSort] ?? "ascending";
         for (const each of head.parentElement.cells) each.ariaSort = null;
         head.ariaSort = next;
         const sorted = next === "none" ? rows : rows.toSorted((one, other) => order(key(one), key(other)));
         body.append(...(next === "descending" ? sorted.reverse() : sorted));
-      } });
+      });
       sort.append(...head.childNodes);
       head.append(sort);
     });
-    const name = `${figure.querySelector(".label").textContent.replace(/\W+/g, "-").toLowerCase()}.csv`;
+    const name = `${figure.querySelector(".label").textContent}csv`; // "Table 2.csv"
     figure.querySelector("figcaption").append(" ", button("CSV", "Save this table", () => {
       const lines = [...table.rows].map((row) => [...row.cells].map((cell) => `"${words(cell).replaceAll('"', '""')}"`).join(","));
       create("a", "", { download: name, href: `data:text/csv;charset=utf-8,${encodeURIComponent(lines.join("\r\n"))}` }).click();
