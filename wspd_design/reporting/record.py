@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import asdict
+from datetime import datetime
 from typing import Any
 
 from wspd_design.exchange.objects import (
@@ -20,16 +21,19 @@ from wspd_design.exchange.version import program_version
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.key_figures import Outcome
+from wspd_design.studies.provenance import Provenance
 from wspd_design.studies.uncertainty import Uncertainty
 
 
-def report_record(dossier: Dossier) -> dict[str, Any]:
+def report_record(dossier: Dossier, made_at: datetime) -> dict[str, Any]:
     """Return everything that a report states as plain data; traces and curves are left out.
 
     Parameters
     ----------
     dossier : Dossier
         What the report is about.
+    made_at : datetime
+        Of the report.
 
     Returns
     -------
@@ -41,7 +45,7 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
     record: dict[str, Any] = finite(
         {
             "schema": REPORT.schema,
-            "provenance": {**asdict(dossier.provenance), "versions": dict(dossier.provenance.versions)},
+            "provenance": _provenance(dossier.provenance, made_at),
             "law": {
                 key: getattr(dossier.law, key)
                 for key in ("name", "title", "origin", "acts_on", "fingerprint")
@@ -67,6 +71,16 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
         }
     )
     return record
+
+
+def _provenance(made: Provenance, made_at: datetime) -> dict[str, Any]:
+    return {
+        **asdict(made),
+        "made_at": made_at.isoformat(),
+        "inputs": [{"name": each.name, "sha256": each.sha256} for each in made.inputs],
+        "input_hash": made.input_hash,
+        "versions": dict(made.versions),
+    }
 
 
 def _uncertainty(found: Uncertainty) -> dict[str, Any]:
