@@ -80,11 +80,5 @@ def look(index: int) -> tuple[str, Any]:
 
 def note(axes: "Axes", text: str, x: float, y: float, **options: Any) -> None:
     """Write beside a curve, a few points away from the data point (x, y)."""
-    placed: dict[str, Any] = {
-        "xytext": (0, 3),
-        "ha": "left",
-        "va": "bottom",
-        "fontsize": 7.5,
-        "gid": "note-0",
-    } | options
-    axes.annotate(text, (x, y), textcoords="offset points", **placed)
+    placed: dict[str, Any] = {"xytext": (0, 3), "ha": "left", "va": "bottom", "fontsize": 7.5} | options
+    axes.annotate(text, (x, y), textcoords="offset points", gid="note-0", **placed)
