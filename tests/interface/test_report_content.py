@@ -58,7 +58,7 @@ def test_the_page_needs_no_network(html):
     assert not re.findall(r"""(?:src|href|action)\s*=\s*["'](?!#|data:)""", html)
     assert not re.findall(r"url\((?!#)", html)
     assert "https://" not in html
-    assert "<script" not in html
+    assert html.count("<script") == 1
 
 
 def test_the_page_stays_small(html):
