@@ -69,6 +69,22 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
     return record
 
 
+def sets_table(found: Uncertainty) -> str:
+    """Return the drawn sets as CSV: a row each, with its number, what it draws and its key figures, in SI units."""
+    names = ["set", *found.drawn, *(each.name for each in found.spreads)]
+    rows = (
+        (number, *drawn, *(each.values[number] for each in found.spreads))
+        for number, drawn in enumerate(found.numbers)
+    )
+    return "".join(
+        ",".join(map(str, row)) + "\n" for row in (names, *([_short(each) for each in row] for row in rows))
+    )
+
+
+def _short(value: float) -> str:
+    return f"{value:.9g}"
+
+
 def _uncertainty(found: Uncertainty) -> dict[str, Any]:
     return {
         "sets": found.sets,

@@ -10,7 +10,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Attachment, Document
 from wspd_design.reporting.output import write_document
-from wspd_design.reporting.record import report_record
+from wspd_design.reporting.record import report_record, sets_table
 from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
 from wspd_design.reporting.sections.checks import certificate_files, checks
@@ -24,6 +24,7 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.sections.uncertainty import uncertainty
 from wspd_design.reporting.template import BLANK, Template, template_text
 from wspd_design.studies.dossier import Dossier
 
@@ -36,6 +37,7 @@ SECTIONS = (
     linearization,
     checks,
     stop,
+    uncertainty,
     robustness,
     comparison,
     sources,
@@ -104,6 +106,7 @@ def report_document(dossier: Dossier, timestamp: datetime, template: Template = 
                 content=f"{record}\n",
                 description="all numbers of this report",
             ),
+            *_sets(dossier),
             *certificate_files(dossier),
             *_template_file(template),
         ),
@@ -111,6 +114,19 @@ def report_document(dossier: Dossier, timestamp: datetime, template: Template = 
         author=template.author or template.organization or f"wspd {version}",
         keywords=("wheel slide protection", law.heading, dossier.vehicle.name, dossier.rail.name),
         template=template,
+    )
+
+
+def _sets(dossier: Dossier) -> tuple[Attachment, ...]:
+    if dossier.uncertainty is None:
+        return ()
+    return (
+        Attachment(
+            name="sets.csv",
+            media_type="text/csv",
+            content=sets_table(dossier.uncertainty),
+            description="the drawn sets of the uncertainty, a row each",
+        ),
     )
 
 

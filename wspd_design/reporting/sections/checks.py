@@ -240,6 +240,7 @@ def _details(certificate: Certificate) -> tuple[Definition, ...]:
         ("Left open", open_share if certificate.undecided else ""),
         ("Search", "ended by its budget" if certificate.cut else ""),
         ("Samples", certificate.remark),
+        ("Varied", ", ".join(certificate.varied)),
         ("Held", ", ".join(certificate.held)),
         ("Method", certificate.method),
         ("Reference", certificate.reference),
