@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from wspd_design.cli.stop_command import stop_command
+from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.report_call import ReportCall
 from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.parameters.loading import load_entries
 from wspd_design.simulation.comparison import trial
@@ -65,8 +66,17 @@ def test_exact_numbers_are_not_drawn(wspd):
 
 def test_the_command_of_the_worst_set_gives_its_number(wspd):
     """What a report prints, a reader can run: the same digits."""
-    command = stop_command((*CASE, "--output", "report.html", "--pdf", "--force"))
-    assert "report.html" not in command
+    call = ReportCall(
+        law="smc",
+        vehicle="er24pc",
+        rail="polach-dry",
+        speed="30 km/h",
+        seed=4,
+        template="template.toml",
+        disturbances=StopOptions(dead_time="20 ms"),
+    )
+    assert "template" in call.text
+    assert "template" not in call.simulation
     case = load_case("smc", CaseOptions(rail="polach-dry"))
     start = Scenario.stop(from_kmh=30.0, rail=case.rail, seed=4)
     stop = replace(start, sensing=Sensing(dead_time=0.02))
@@ -80,7 +90,7 @@ def test_the_command_of_the_worst_set_gives_its_number(wspd):
         parameters=(load_entries("vehicle", "er24pc"), load_entries("rail", "polach-dry")),
         laden=None,
         plant="planar",
-        command=command,
+        command=call.simulation,
         sets=16,
     )
     keys = {"distance": "distance_m", "efficiency": "efficiency", "slip_rms": "slip_rms"}
@@ -91,15 +101,3 @@ def test_the_command_of_the_worst_set_gives_its_number(wspd):
         assert program == "wspd"
         assert again[key] == worst.value
         assert again["drawn"] == dict(worst.parameters)
-
-
-@pytest.mark.parametrize(
-    ("words", "kept"),
-    [
-        ("a.toml --rail low-adhesion --output x.html --pdf", "a.toml --rail low-adhesion"),
-        ("-ox.html 'a b.toml' --pulses 100 --period-timing", "'a b.toml' --pulses 100 --period-timing"),
-        ("--output=x.html a -o y.pdf --seed 3 --force", "a --seed 3"),
-    ],
-)
-def test_the_options_of_a_report_alone_are_left_out(words, kept):
-    assert stop_command(shlex.split(words)) == f"wspd simulate {kept}"

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import asdict
+from datetime import datetime
 from typing import Any
 
 from wspd_design.exchange.objects import (
@@ -20,16 +21,19 @@ from wspd_design.exchange.version import program_version
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.key_figures import Outcome
+from wspd_design.studies.provenance import Provenance
 from wspd_design.studies.uncertainty import Uncertainty
 
 
-def report_record(dossier: Dossier) -> dict[str, Any]:
+def report_record(dossier: Dossier, made_at: datetime) -> dict[str, Any]:
     """Return everything that a report states as plain data; traces and curves are left out.
 
     Parameters
     ----------
     dossier : Dossier
         What the report is about.
+    made_at : datetime
+        Of the report.
 
     Returns
     -------
@@ -41,7 +45,7 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
     record: dict[str, Any] = finite(
         {
             "schema": REPORT.schema,
-            "provenance": {**asdict(dossier.provenance), "versions": dict(dossier.provenance.versions)},
+            "provenance": _provenance(dossier.provenance, made_at),
             "law": {
                 key: getattr(dossier.law, key)
                 for key in ("name", "title", "origin", "acts_on", "fingerprint")
@@ -69,20 +73,14 @@ def report_record(dossier: Dossier) -> dict[str, Any]:
     return record
 
 
-def sets_table(found: Uncertainty) -> str:
-    """Return the drawn sets as CSV: a row each, with its number, what it draws and its key figures, in SI units."""
-    names = ["set", *found.drawn, *(each.name for each in found.spreads)]
-    rows = (
-        (number, *drawn, *(each.values[number] for each in found.spreads))
-        for number, drawn in enumerate(found.numbers)
-    )
-    return "".join(
-        ",".join(map(str, row)) + "\n" for row in (names, *([_short(each) for each in row] for row in rows))
-    )
-
-
-def _short(value: float) -> str:
-    return f"{value:.9g}"
+def _provenance(made: Provenance, made_at: datetime) -> dict[str, Any]:
+    return {
+        **asdict(made),
+        "made_at": made_at.isoformat(),
+        "inputs": [{"name": each.name, "sha256": each.sha256} for each in made.inputs],
+        "input_hash": made.input_hash,
+        "versions": dict(made.versions),
+    }
 
 
 def _uncertainty(found: Uncertainty) -> dict[str, Any]:

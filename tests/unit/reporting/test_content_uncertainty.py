@@ -4,14 +4,16 @@ import csv
 import io
 import math
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import pytest
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier, uncertainty
 from wspd_design.certificates.records import Status
 from wspd_design.reporting import numbers
+from wspd_design.reporting.attachments import sets_text
 from wspd_design.reporting.blocks import Code, Figure, Paragraph, Table
-from wspd_design.reporting.record import report_record, sets_table
+from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
@@ -20,6 +22,7 @@ from wspd_design.reporting.text import plain
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
+DATE = datetime(2026, 1, 2, tzinfo=UTC)
 PLAIN = sample_dossier()
 DRAWN = replace(PLAIN, uncertainty=uncertainty())
 
@@ -136,7 +139,9 @@ def test_each_bound_says_who_varies_it_and_who_holds_it():
     blocks = sources(replace(DRAWN, certificates=made))
     vehicle, rail = _table(blocks, "sources-vehicle-er24pc"), _table(blocks, "sources-rail-polach-wet")
     assert vehicle["mass"][3] == "varied by the drawn sets and 2 checks"
-    assert vehicle["brake: fill time"][3] == "held by the drawn sets and 1 check"
+    assert (
+        vehicle["brake: fill time"][3] == "held by 1 check"
+    )  # the drawn sets of this dossier do not know it
     assert vehicle["wheel radius"][3] == "held by the drawn sets"
     assert vehicle["body height"][3].endswith("enters through the range of the axle load share")
     assert vehicle["wheelbase"][3] == ""  # has no bounds
@@ -151,7 +156,7 @@ def test_a_check_says_what_it_varies():
 
 
 def test_the_sets_travel_as_rows():
-    rows = list(csv.DictReader(io.StringIO(sets_table(DRAWN.uncertainty))))
+    rows = list(csv.DictReader(io.StringIO(sets_text(DRAWN.uncertainty))))
     assert [row["set"] for row in rows] == ["0", "1", "2", "3"]
     assert rows[2]["rail.mu0"] == "0.26"
     assert float(rows[2]["distance"]) == 240.9
@@ -159,9 +164,9 @@ def test_the_sets_travel_as_rows():
 
 
 def test_the_record_has_null_where_there_is_no_number():
-    record = report_record(DRAWN)["uncertainty"]
+    record = report_record(DRAWN, DATE)["uncertainty"]
     distance = record["spreads"][0]
     assert (distance["p95"], distance["high"], distance["worst"]["value"]) == (240.9, None, None)
     assert record["variants"][0]["figures"] == {"efficiency": 0.0}
     assert record["effects"][1]["at_low"]["distance"] == 230.0
-    assert report_record(PLAIN)["uncertainty"] is None
+    assert report_record(PLAIN, DATE)["uncertainty"] is None

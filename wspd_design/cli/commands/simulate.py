@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -24,11 +24,8 @@ from wspd_design.exchange.objects import stop_object
 from wspd_design.parameters.errors import UserError
 from wspd_design.simulation.campaign import CHECK_EVERY
 from wspd_design.simulation.comparison import trial
-from wspd_design.simulation.records import Run
 from wspd_design.simulation.start import leaving_time
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from wspd_design.simulation.traces import traces
 
 _MANY = "Many stops"
 
@@ -163,26 +160,3 @@ def simulate(
         show_leaving(made.run)
     if output is not None:
         console().print(f"Traces: {output}", markup=False, soft_wrap=True)
-
-
-def traces(run: Run) -> "NDArray[Any]":
-    """Return the traces of a stop as a table, one row a record, columns named with their unit."""
-    import numpy as np
-
-    columns = [("time_s", run.time), ("speed_m_s", run.speed), ("distance_m", run.distance)]
-    for name, trace in (
-        ("wheel_speed_rad_s", run.wheel_speed),
-        ("slip", run.slip),
-        ("torque_Nm", run.torque),
-        ("wheel_load_N", run.wheel_load),
-        ("dynamic_torque_Nm", run.dynamic_torque),
-        ("pad_temperature_K", run.pad_temperature),
-    ):
-        if trace is not None:
-            columns += [(f"{name}_{k + 1}", column) for k, column in enumerate(trace.T)]
-    if run.track_brake_force is not None:
-        columns.append(("track_brake_force_N", run.track_brake_force))
-    table = np.zeros(len(run.time), dtype=[(name, "f8") for name, _ in columns])
-    for name, column in columns:
-        table[name] = column
-    return table

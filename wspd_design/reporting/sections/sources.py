@@ -87,12 +87,13 @@ def _use(entry: Entry, kind: str, dossier: Dossier) -> str:
     if entry.bounds is None:
         return ""
     found, quantity = dossier.uncertainty, quantity_of(kind, entry.name)
-    drawn = found is not None and f"{kind}.{entry.name}" in found.drawn
-    name = "" if quantity is None else quantity.name
-    varied = sum(name in check.varied for check in dossier.certificates)
-    held = sum(name in check.held for check in dossier.certificates)
+    name = f"{kind}.{entry.name}"
+    drawn, kept_back = found is not None and name in found.drawn, found is not None and name in found.held
+    term = "" if quantity is None else quantity.name
+    varied = sum(term in check.varied for check in dossier.certificates)
+    held = sum(term in check.held for check in dossier.certificates)
     by = [*(["the drawn sets"] if drawn else []), *([numbers.count(varied, "check")] if varied else [])]
-    kept = [*([] if drawn else ["the drawn sets"]), *([numbers.count(held, "check")] if held else [])]
+    kept = [*(["the drawn sets"] if kept_back else []), *([numbers.count(held, "check")] if held else [])]
     said = [
         *([f"varied by {numbers.listing(by)}"] if by else []),
         *([f"held by {numbers.listing(kept)}"] if kept else []),

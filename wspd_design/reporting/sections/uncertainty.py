@@ -19,7 +19,6 @@ from wspd_design.reporting.figures.uncertainty import (
 from wspd_design.reporting.sections.other_conditions import other_conditions
 from wspd_design.reporting.spreads import capitalized, entries_of, scaled, shown, titled, unit_of, words_of
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.key_figures import KEY_FIGURES
 from wspd_design.studies.uncertainty import Effect, Spread, Uncertainty, WorstSet
@@ -243,9 +242,8 @@ def _worst_sets(found: Uncertainty, entries: dict[str, Entry]) -> tuple[Block, .
     return (
         table,
         Paragraph(
-            text=rich(
-                "These commands simulate the worst sets again, each alone; they give the numbers above."
-            )
+            text="Beside the attached files, these commands simulate the worst sets again, each alone, and give the "
+            "numbers above."
         ),
         Code(text="\n".join(commands)),
     )
