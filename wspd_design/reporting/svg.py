@@ -19,10 +19,11 @@ _COORDINATE = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 _VERTEX = re.compile(rf"([MLz])\s*(?:({_COORDINATE})\s+({_COORDINATE})\s*)?")
 _POLYLINE = re.compile(rf"(?:[ML]\s*{_COORDINATE}\s+{_COORDINATE}\s*|z\s*)+")
 _REFERENCE = re.compile(r"#([\w.-]+)")
+_PART = re.compile(r"(?P<kind>panel|curve|xtick|note)[-_](?P<number>\d+)")
 _FONT = re.compile(r"(?:(italic|oblique) )?(?:(bold|\d00) )?([\d.]+px) (.+)")
 
 
-def canonical(svg: str, font_family: str) -> str:
+def canonical(svg: str, font_family: str, data: str = "") -> str:
     """Turn Matplotlib's SVG into one with plain attributes, one font family and no metadata.
 
     Parameters
@@ -31,6 +32,8 @@ def canonical(svg: str, font_family: str) -> str:
         SVG document as Matplotlib writes it with ``svg.fonttype = "none"``.
     font_family : str
         Font family of all text.
+    data : str
+        What the script of a page is told about the figure, of :func:`wspd_design.reporting.figure_data.data`.
 
     Returns
     -------
@@ -57,11 +60,21 @@ def canonical(svg: str, font_family: str) -> str:
             element.set("href", reference)
         if element.text:
             element.text = printable(element.text)
+    if data:
+        root.set("data-figure", printable(data))
+        _mark_parts(root)
     _drop_unused_ids(root)
     # What Matplotlib says in the style sheet, for all elements.
     root.set("stroke-linejoin", "round")
     root.set("stroke-linecap", "butt")
     return _serialize(root)
+
+
+def _mark_parts(root: ElementTree.Element) -> None:
+    """Name the parts of a figure that a script moves: panels, curves, ticks of x and notes at places of the data."""
+    for element in root.iter():
+        if part := _PART.fullmatch(element.get("id", "")):
+            element.set(f"data-{part['kind']}", part["number"] if part["kind"] in ("panel", "curve") else "")
 
 
 def _drop_unused_ids(root: ElementTree.Element) -> None:

@@ -67,7 +67,7 @@ def curve(
     color, style = look(index)
     if style == ":" and "linewidth" in options:
         options["linewidth"] *= INK_OF_DOTS
-    axes.plot(thin_x, thin_y, color=color, linestyle=style, **options)
+    axes.plot(thin_x, thin_y, color=color, linestyle=style, gid=f"look-{index}", **options)
 
 
 def look(index: int) -> tuple[str, Any]:
@@ -81,4 +81,4 @@ def look(index: int) -> tuple[str, Any]:
 def note(axes: "Axes", text: str, x: float, y: float, **options: Any) -> None:
     """Write beside a curve, a few points away from the data point (x, y)."""
     placed: dict[str, Any] = {"xytext": (0, 3), "ha": "left", "va": "bottom", "fontsize": 7.5} | options
-    axes.annotate(text, (x, y), textcoords="offset points", **placed)
+    axes.annotate(text, (x, y), textcoords="offset points", gid="note-0", **placed)

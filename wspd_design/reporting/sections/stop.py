@@ -21,6 +21,7 @@ from wspd_design.simulation.description import held_slip, rails_of
 from wspd_design.simulation.law_memory import reference_range, releases, speed_estimate
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
+from wspd_design.simulation.traces import trace_name
 from wspd_design.studies.dossier import Dossier
 
 EXACT = 1e-4  # relative error of a speed that is told, below which none is
@@ -55,6 +56,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             "Bars at the upper edge of the slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
+            data=trace_name(0, run.controller),
         ),
         *_estimate(own, None if dossier.law.own else specification.sensors),
         *_further_brakes(run),
@@ -148,6 +150,7 @@ def _further_brakes(run: Run) -> tuple[Block, ...]:
                 (f"{len(shown)} panels over {run.time[-1]:.2f} s.", *(panel.words for panel in shown))
             ),
             anchor="stop-further-brakes",
+            data=trace_name(0, run.controller),
         ),
     )
 
