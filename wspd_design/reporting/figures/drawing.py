@@ -52,15 +52,18 @@ def tell_what_is_cut(axes: "Axes") -> None:
         cut = points[sign * (points[:, 1] - edge) > beyond]
         if not cut.size:
             continue
-        x, y = cut[np.argmax(sign * cut[:, 1])]
-        axes.text(
-            x,
-            height,
-            f"{arrow} {significant(float(y), 3)}",
-            transform=axes.get_xaxis_transform(),
-            ha="right" if x > (left + right) / 2.0 else "left",
+        # Beside the stretch that is cut, on the side with more room.
+        first, last = cut[:, 0].min(), cut[:, 0].max()
+        before = first - left > right - last
+        axes.annotate(
+            f"{arrow} to {significant(float(sign * np.max(sign * cut[:, 1])), 3)}",
+            (first if before else last, height),
+            xycoords=axes.get_xaxis_transform(),
+            xytext=(-3 if before else 3, 0),
+            textcoords="offset points",
+            ha="right" if before else "left",
             va="center",
-            fontsize=7.0,
+            fontsize=7.5,
             gid="note-0",
         )
 
