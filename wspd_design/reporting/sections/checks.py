@@ -58,7 +58,12 @@ def is_bad_news(certificate: Certificate) -> bool:
 
 def check_anchor(certificate: Certificate) -> str:
     """Return the anchor of the section of a check."""
-    return f"check-{certificate.name.replace('_', '-')}"
+    return anchor_of(certificate.name)
+
+
+def anchor_of(name: str) -> str:
+    """Return the anchor of the section of a check by its name."""
+    return f"check-{name.replace('_', '-')}"
 
 
 def finding_anchor(status: Status) -> str:
