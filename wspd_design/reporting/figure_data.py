@@ -86,7 +86,7 @@ def _curves(axes: "Axes") -> list["Line2D"]:
         and np.all(np.diff(x[np.isfinite(x)]) >= 0.0)
         and x[-1] > x[0]
     ]
-    return lines if any(len(line.get_xdata()) > 2 for line in lines) else []
+    return lines if any(np.size(line.get_xdata()) > 2 for line in lines) else []
 
 
 def _look(line: "Line2D") -> tuple[Any, ...]:
