@@ -118,6 +118,11 @@ def outside_claims(kind: str, entry: str) -> str:
     )
 
 
+def is_working_name(name: str) -> bool:
+    """Tell whether a variable of a claim is a means of its formula or a known number of a design model."""
+    return name in ("nominal mass", "unit of speed") or name.startswith("model ")
+
+
 _TRANSFER = "enters through the range of the axle load share"
 _PADS = "the vibration of the pads at the onset of braking is part of no claim"
 _OTHER_BRAKES: tuple[tuple[Record, type, str], ...] = (

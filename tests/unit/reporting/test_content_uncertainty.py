@@ -14,7 +14,6 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.attachments import sets_text
 from wspd_design.reporting.blocks import Code, Figure, Paragraph, Table
 from wspd_design.reporting.record import report_record
-from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.uncertainty import uncertainty as section
@@ -146,13 +145,6 @@ def test_each_bound_says_who_varies_it_and_who_holds_it():
     assert vehicle["body height"][3].endswith("enters through the range of the axle load share")
     assert vehicle["wheelbase"][3] == ""  # has no bounds
     assert rail["mu0"][3] == "varied by the drawn sets and 1 check; held by 1 check"
-
-
-def test_a_check_says_what_it_varies():
-    made = (certificate("one", Status.PROVED, varied=("mass", "mu0"), held=("fill time",)),)
-    rows = [row for each in checks(replace(PLAIN, certificates=made)) for row in getattr(each, "rows", ())]
-    told = {row.term: row.text for row in rows if hasattr(row, "term")}
-    assert (told["Varied"], told["Held"]) == ("mass, mu0", "fill time")
 
 
 def test_the_sets_travel_as_rows():
