@@ -29,6 +29,7 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
         Over speed.
     """
     import numpy as np
+    from matplotlib.artist import Artist
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
     from matplotlib.patheffects import AbstractPathEffect, withStroke
@@ -42,7 +43,7 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
     bar = figure.colorbar(filled, ax=axes, pad=0.02, aspect=14)
     bar.set_label(axis_label(shown.value_label))
     bar.outline.set_visible(False)
-    handles = []
+    handles: list[Artist] = []
     if shown.worst is not None:
         handles += axes.plot(
             *shown.worst,

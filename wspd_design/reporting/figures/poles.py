@@ -85,7 +85,7 @@ def pole_map(
     top = max(1.25 * highest, drawn.max() + 0.15 * np.ptp(drawn))
     bottom = min(-0.5 * highest, nominal.min() - 0.05 * np.ptp(nominal))
     axes.fill_between(speed, limit, top, color=SERIES[1], alpha=0.12, linewidth=0)
-    axes.plot(speed, limit, color=SERIES[1], linestyle="--", linewidth=1.0)
+    axes.plot(speed, limit, color=SERIES[1], linestyle="--", linewidth=1.0, label="_1/τ")
     if times and times[0] != times[1]:
         for name, time in zip(("fill", "vent"), times, strict=True):
             axes.axhline(1.0 / time, color=SERIES[1], linestyle=":", linewidth=0.8)

@@ -54,7 +54,6 @@ def stop_traces(
         5, 1, sharex=True, height_ratios=(3.2, 2.4, 2.2, 1.6, 1.6)
     )
     slip_panel(slip, run, specification, top=_slip_top(trial, specification))
-    _mark_beyond(slip, trial, specification)
     slip.set_title("Slip", pad=16.0)
     wheelset_legend(slip, run)
     speed_panel(speed, run, wheel_radius)
@@ -116,7 +115,7 @@ def _reference(axes: "Axes", run: Run, specification: Specification) -> None:
     low, high = held.min(axis=1) - tolerance, held.max(axis=1) + tolerance
     axes.fill_between(times, low, high, color=SERIES[2], alpha=0.15, linewidth=0)
     for course in np.unique(held, axis=1).T:  # one line where all wheelsets hold the same
-        axes.plot(*thinned(times, course, MOST), color=INK, linestyle="--", linewidth=0.8)
+        axes.plot(*thinned(times, course, MOST), color=INK, linestyle="--", linewidth=0.8, label="_reference")
 
 
 def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:
@@ -226,22 +225,6 @@ def stop_alt(trial: Trial, specification: Specification) -> str:
         f"{figures.lock_time:.2f} s. Braking torque and load: {slips}. Filling share of each of the "
         f"{len(run.samples)} samples; {100.0 * figures.saturated_share:.0f} % of them fill or vent throughout."
     )
-
-
-def slip_beyond(trial: Trial, specification: Specification) -> float | None:
-    """Return the largest slip where it leaves the picture of :func:`stop_traces` [-]; else nothing."""
-    most = float(trial.run.slip.max())
-    return most if most > _slip_top(trial, specification) else None
-
-
-def _mark_beyond(axes: "Axes", trial: Trial, specification: Specification) -> None:
-    """Say at the upper edge that the slip goes on, and how far."""
-    most = slip_beyond(trial, specification)
-    if most is None:
-        return
-    top = _slip_top(trial, specification)
-    first = float(trial.run.time[trial.run.slip.max(axis=1) > top][0])
-    note(axes, f"up to {most:.2f} ↑", first, top, ha="right", va="top", xytext=(-3, -12))
 
 
 def _slip_top(trial: Trial, specification: Specification) -> float:

@@ -4,15 +4,15 @@ from functools import partial
 
 from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE, ERROR_SPEED
 from wspd_design.controllers.observers.sensors import Sensors
-from wspd_design.design.records import Specification
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import KMH, picture
 from wspd_design.reporting.figures.estimate import estimate_alt, estimate_panels
 from wspd_design.reporting.figures.further_brakes import further_brakes, height, panels
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
-from wspd_design.reporting.figures.stop import name, slip_beyond, stop_alt, stop_traces
+from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.running_gear import axle_shares
+from wspd_design.reporting.spreads import distance_of_stop
 from wspd_design.reporting.text import Link, escape, rich
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.comparison import Trial
@@ -40,8 +40,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         Paragraph(
             text=rich(
                 f"The stop of {escape(run.train)} from {start} km/h on {escape(rails_of(dossier.scenario))}, sampled "
-                f"every {run.sample_time * 1e3:g} ms: {run.ending.value}, after "
-                f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
+                f"every {run.sample_time * 1e3:g} ms: {run.ending.value}, after {distance_of_stop(dossier)} m and "
                 f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
                 f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
                 f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
@@ -55,8 +54,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             svg=picture(draw, height=8.6),
             caption=f"The stop over time, {run.train}. Green: tolerance about the reference, "
             f"{held_slip(run, specification.slip)} (dashed). Gray: below {judged} km/h, where the slip is not judged. "
-            "Bars at the upper edge of the slip mark locked wheels, the front wheelset on top."
-            f"{_beyond(own, specification)}",
+            "Bars at the upper edge of the slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
             data=trace_name(0, run.controller),
@@ -77,16 +75,6 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",
         ),
-    )
-
-
-def _beyond(own: Trial, specification: Specification) -> str:
-    """Say that the slip leaves the picture, where it does."""
-    most = slip_beyond(own, specification)
-    return (
-        ""
-        if most is None
-        else f" The slip leaves the picture at its arrow, up to {numbers.decimals(most, 2)}."
     )
 
 
