@@ -55,7 +55,7 @@ def test_limit_and_tightest_point_are_drawn_with_their_values():
     assert _lines(figure) == [3.5]
     (cross,) = figure.axes[0].lines
     assert (cross.get_xdata()[0], cross.get_ydata()[0]) == SHOWN.worst
-    assert _legend(figure) == ["tightest: 6 m/s² at 90 km/h, slip 0.2", "limit 3.5 m/s²"]
+    assert _legend(figure) == ["tightest: 6 m/s² at 90 km/h, slip 0.2", "the claim fails", "limit 3.5 m/s²"]
     assert "Hatched: there the claim fails." in map_caption(SHOWN)
     assert map_alt(SHOWN) == (
         "Map of gain that is needed over speed and slip: between 1 and 6 m/s²; the limit, 3.5 m/s², is a line "
