@@ -6,6 +6,7 @@ from functools import partial
 from wspd_design.certificates.kernel.file import certificate_text, file_name
 from wspd_design.certificates.records import Certificate, Map
 from wspd_design.certificates.records import Status as Finding
+from wspd_design.certificates.theorems.register import cited
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Attachment,
@@ -205,7 +206,7 @@ def _details(certificate: Certificate) -> tuple[Definition, ...]:
         ("Margin", "" if certificate.margin is None else numbers.margin(certificate.margin)),
         ("Tightest point", numbers.point(certificate.worst_point)),
         ("Witness", numbers.point(certificate.witness)),
-        ("Assumptions", "; ".join(certificate.assumptions)),
+        ("Assumptions", "; ".join(map(cited, certificate.assumptions))),
         ("Left open", open_share if certificate.undecided else ""),
         ("Search", "ended by its budget" if certificate.cut else ""),
         ("Samples", certificate.remark),

@@ -23,6 +23,7 @@ from wspd_design.reporting.blocks import (
 from wspd_design.reporting.decision_words import next_words, produced_by, rank, scope, weakest
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.requirement_words import against_limit, finding, limit, margin, reached
+from wspd_design.reporting.sections.assumptions import ASSUMPTIONS, deciding_words
 from wspd_design.reporting.sections.checks import check_anchor, is_bad_news
 from wspd_design.reporting.sections.requirements import REQUIREMENTS, decided_by, stops_of
 from wspd_design.reporting.sections.robustness import ROBUSTNESS, what_fails
@@ -189,6 +190,7 @@ def _decision(dossier: Dossier) -> tuple[Definition, ...]:
         ("Against the others", rank(dossier)),
         ("Refuted, not required", _told(dossier)),
         ("With a fault", _fails_with(dossier)),
+        ("Assumptions that decide", _assumed(dossier)),
     )
     return tuple(Definition(term=term, text=text) for term, text in rows if text)
 
@@ -220,6 +222,10 @@ def _links(certificates: Sequence[Certificate]) -> list[Inline]:
 def _lowered(title: str) -> str:
     """Begin a title in lower case, unless it begins with a symbol or a name in capitals."""
     return title if title[1:2].isupper() or not title[1:2].isalpha() else title[0].lower() + title[1:]
+
+
+def _assumed(dossier: Dossier) -> Text:
+    return (f"{deciding_words(dossier)} ", Link(anchor=ASSUMPTIONS, text="(register)"))
 
 
 def _fails_with(dossier: Dossier) -> Text:
