@@ -14,6 +14,7 @@ class Registered:
     """One assumption."""
 
     id: str
+    short: str  # for page one
     title: str
     clauses: tuple[str, ...] = ()  # words by which theorems state it; none of one that everything rests on
     broken: str  # where it does not hold in reality
@@ -24,6 +25,7 @@ class Registered:
 REGISTER: Final[tuple[Registered, ...]] = (
     Registered(
         id="A1",
+        short="ideal torque",
         title="the torque is what the law commands",
         clauses=("T = u",),
         broken="every air brake: cylinders fill and vent in tenths of a second",
@@ -32,6 +34,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A2",
+        short="no sampling",
         title="the law runs without sampling",
         clauses=("no sampling", "continuous adaptation"),
         broken="every programmed law",
@@ -40,6 +43,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A3",
+        short="no saturation",
         title="no limit of the brake torque is met",
         clauses=(
             "no limit of the brake",
@@ -54,6 +58,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A4",
+        short="valves without delay",
         title="valves open and close in pulses of any length, without delay",
         clauses=("averaged valve", "without ripple", "exact pulses", "pulses of filling", "pulses begin"),
         broken="dead times and shortest pulses of some 10 ms",
@@ -62,6 +67,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A5",
+        short="frozen speed",
         title="the train speed stands still while the slip moves",
         clauses=("frozen train speed", "slow change of the equilibrium", "p - a/v constant"),
         broken="every stop, most of all at low speed, where the slip is fast and the speed falls fast",
@@ -70,6 +76,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A6",
+        short="nominal numbers",
         title="the numbers of the vehicle and the rail are the nominal ones, and constant",
         clauses=(
             "nominal parameters",
@@ -83,6 +90,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A7",
+        short="static load",
         title="the wheel load is static, and all axles are alike",
         clauses=("static load", "static wheel load", "quarter model", "load transfer", "loads add up"),
         broken="braking loads the front axles; wheels meet the rail that others left",
@@ -91,6 +99,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A8",
+        short="exact measurement",
         title="speeds and torque are measured exactly and at once",
         clauses=(
             "exact measurement",
@@ -105,6 +114,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A9",
+        short="constant reference",
         title="the slip reference is constant",
         clauses=("slip reference constant",),
         broken="laws that look for the best slip",
@@ -113,6 +123,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A10",
+        short="full supply",
         title="the air supply is full",
         clauses=("full supply pressure", "full pressure is demanded"),
         broken="long slides, leaks, a short main pipe",
@@ -121,6 +132,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A11",
+        short="near the reference",
         title="the loop is already near what the statement speaks about",
         clauses=(
             "the slip stood at its reference",
@@ -141,6 +153,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A12",
+        short="level track",
         title="the track is level and nothing but the brake and the running resistance acts",
         clauses=("level track", "no other brake", "no pad vibration", "rolling wheels and empty cylinders"),
         broken="grades, other brakes of the train, vibration of pads",
@@ -149,6 +162,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A13",
+        short="law as in the theorem",
         title="the law has the form of the theorem, without what its program adds",
         clauses=(
             "differentiable",
@@ -165,6 +179,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A14",
+        short="little slip is harmless",
         title="too little slip does no harm",
         clauses=("a deviation below the reference is benign",),
         broken="it costs distance",
@@ -173,6 +188,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A15",
+        short="Polach's friction along the track",
         title="friction falls with the sliding speed as Polach's law says, the same along the track",
         clauses=("the model of the slip",),
         broken="films, leaves, water, and adhesion that comes back behind a sliding wheel",
@@ -181,6 +197,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A16",
+        short="numbers of the sources",
         title="vehicle and rail have the numbers that the sources state, of which many are assumed",
         broken="nobody has compared them with a vehicle",
         dropped="",
@@ -188,6 +205,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
     ),
     Registered(
         id="A17",
+        short="straight track, round wheels",
         title="the train moves straight on, its wheelsets round and true",
         broken="curves, flats, suspension, lateral creep",
         dropped="",

@@ -85,4 +85,4 @@ def _held(dossier: Dossier, assumption: Registered) -> bool:
 def deciding_words(dossier: Dossier) -> str:
     """Name the assumptions that decide, for page one."""
     told = ["the law is told the train speed"] if dossier.specification.sensors.speed == TOLD.speed else []
-    return "; ".join([*(f"{each.id} {each.title}" for each in decisive(dossier)), *told])
+    return "; ".join([*(f"{each.id} {each.short}" for each in decisive(dossier)), *told])

@@ -66,12 +66,18 @@ def _sources(judgment: Judgment) -> Table:
             ColumnOf(title="Requirement", read=lambda each: each.title),
             ColumnOf(title="Limit", flush_right=True, read=limit),
             ColumnOf(title="Source of the limit", read=lambda each: each.source),
-            ColumnOf(title="Verified", read=lambda each: "yes" if each.verified else "no"),
+            ColumnOf(title="Verified", read=_verified),
             ColumnOf(title="Shown by", read=_shown_by),
         ),
         caption="Where each limit comes from, whether somebody compared it with that source, and what shows it.",
         anchor="requirement-sources",
     )
+
+
+def _verified(row: Requirement) -> str:
+    if row.limit is None:
+        return numbers.NONE
+    return "yes" if row.verified else "no"
 
 
 def _shown_by(row: Requirement) -> Text:
