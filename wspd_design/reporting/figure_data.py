@@ -72,12 +72,12 @@ def data(marked: MarkedFigure) -> str:
 
 
 def _curves(axes: "Axes") -> list["Line2D"]:
-    """Return the lines that have one y for each x, drawn in the coordinates of the data."""
+    """Return the lines over x that are drawn in the coordinates of the data, if one of them is no straight line."""
     import numpy as np
 
     if axes.get_xscale() not in _SCALES or axes.get_yscale() not in _SCALES:
         return []
-    return [
+    lines = [
         line
         for line in axes.get_lines()
         if line.get_transform() == axes.transData
@@ -86,6 +86,7 @@ def _curves(axes: "Axes") -> list["Line2D"]:
         and np.all(np.diff(x[np.isfinite(x)]) >= 0.0)
         and x[-1] > x[0]
     ]
+    return lines if any(np.size(line.get_xdata()) > 2 for line in lines) else []
 
 
 def _look(line: "Line2D") -> tuple[Any, ...]:
@@ -99,9 +100,13 @@ def _label(line: "Line2D") -> str:
 
 
 def _x_label(axes: "Axes") -> str:
-    """Return what stands under the lowest of the panels that share the axis."""
-    shared = (axes, *axes.get_shared_x_axes().get_siblings(axes))
-    return next((label for each in shared if (label := each.get_xlabel())), "")
+    """Return what stands under the lowest of the panels that share the axis, or under the figure."""
+    shared = (axes, *axes.get_shared_x_axes().get_siblings(axes), axes.get_figure())
+    return next((label for each in shared if (label := _written_below(each))), "")
+
+
+def _written_below(place: Any) -> str:
+    return str(place.get_xlabel() if hasattr(place, "get_xlabel") else place.get_supxlabel())
 
 
 def _box(axes: "Axes") -> list[float]:

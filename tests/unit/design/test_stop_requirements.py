@@ -98,5 +98,5 @@ def test_what_is_wrong_is_said_in_one_sentence(tmp_path, text, sentence):
 
 
 def test_a_name_that_is_no_template_is_refused():
-    with pytest.raises(UserError, match="neither a template .*paper, en-15595-like.* nor a .toml file"):
+    with pytest.raises(UserError, match=r"neither a template .*paper, en-15595-like.* nor a .toml file"):
         named_requirements("en15595", SPECIFICATION)

@@ -65,7 +65,7 @@ def test_lines_of_one_look_and_two_names_are_two():
     with figure_style():
         figure = new_figure(height=2.0)
         for axes, name in zip(figure.subplots(1, 2), ("V", "pole"), strict=True):
-            curve(axes, [0.0, 1.0], [0.0, 1.0], 0, label=name)
+            curve(axes, [0.0, 1.0, 2.0], [0.0, 1.0, 0.0], 0, label=name)
     svg, record = told(figure)
     assert record["lines"] == ["V", "pole"]
     assert re.findall(r'data-curve="(\d)"', svg) == ["0", "1"]
@@ -75,7 +75,7 @@ def test_a_panel_without_a_curve_moves_with_the_others_and_is_not_read():
     with figure_style():
         figure = new_figure(height=2.0)
         upper, lower = figure.subplots(2, 1, sharex=True)
-        curve(upper, [0.0, 1.0], [0.0, 1.0], 0)
+        curve(upper, [0.0, 1.0, 2.0], [0.0, 1.0, 0.0], 0)
         lower.fill_between([0.0, 1.0], 0.0, 1.0)
         lower.set(ylabel="fill [-]")
     _, record = told(figure)
@@ -94,3 +94,31 @@ def test_what_is_no_curve_over_x_says_nothing():
     svg, record = told(figure)
     assert record is None
     assert "data-" not in svg
+
+
+def test_the_name_of_x_may_stand_under_the_whole_figure():
+    with figure_style():
+        figure = new_figure(height=2.0)
+        for axes in figure.subplots(1, 2, sharex=True):
+            curve(axes, [0.0, 1.0, 2.0], [0.0, 1.0, 0.0], 0)
+        figure.supxlabel("time [s]")
+    _, record = told(figure)
+    assert [panel["x"][0] for panel in record["panels"]] == ["time [s]", "time [s]"]
+
+
+def test_what_a_collection_draws_stands_at_its_coordinates():
+    """Matplotlib defines it far outside and moves it; a script that zooms must find it in place."""
+    with figure_style():
+        figure = new_figure(height=2.0)
+        axes = figure.subplots()
+        curve(axes, [0.0, 5.0, 10.0], [0.0, 1.0, 0.0], 0)
+        axes.broken_barh(
+            [(2.0, 3.0)], (0.9, 0.1), transform=axes.get_xaxis_transform(), color="#0072b2", linewidth=0
+        )
+        axes.set(xlim=(0.0, 10.0))
+    svg, record = told(figure)
+    left, top, right, _ = record["panels"][0]["box"]
+    (drawn,) = re.finditer(r'<path d="M([\d.]+) ([\d.]+)[^>]*fill="#0072b2"[^>]*clip-path=', svg)
+    assert float(drawn[1]) == np.round(left + 0.2 * (right - left), 2)
+    assert top <= float(drawn[2])
+    assert "used elsewhere" not in svg
