@@ -75,7 +75,7 @@ def test_a_table_with_held_out_sets_is_judged_on_them(tmp_path):
     [
         (
             "[requirements.limits]\nlongest_lok = '1 s'",
-            "unknown key requirements.limits.longest_lok .* longest_lock",
+            r"unknown key requirements\.limits\.longest_lok .* mean requirements\.limits\.longest_lock\?",
         ),
         (
             "[requirements]\nnot_refuted = ['margin']\n[requirements.limits]",
