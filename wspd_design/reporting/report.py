@@ -26,6 +26,7 @@ from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
 from wspd_design.reporting.sections.theory import theory
+from wspd_design.reporting.sections.uncertainty import uncertainty
 from wspd_design.reporting.sections.words import words
 from wspd_design.reporting.template import BLANK, Template
 from wspd_design.studies.dossier import Dossier
@@ -41,6 +42,7 @@ SECTIONS = (
     linearization,
     checks,
     stop,
+    uncertainty,
     robustness,
     comparison,
     sources,
