@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 
 import pytest
 
-from tests.unit.reporting.sample_dossier import certificate, estimating, faults, sample_dossier
+from tests.unit.reporting.sample_dossier import certificate, estimating, faults, sample_dossier, uncertainty
 from tests.unit.reporting.test_maps import SHOWN
 from wspd_design.certificates.records import Role, Series, Status
 from wspd_design.reporting.blocks import Figure, Heading, Paragraph, Table
@@ -26,7 +26,9 @@ def dossiers():
     plain = sample_dossier()
     checked = certificate("pole", Status.REFUTED, maps=(SHOWN,), series=(pole("nominal", (1.0, 2.0)),))
     yield plain
-    yield replace(plain, robustness=faults(), certificates=(*plain.certificates, checked))
+    yield replace(
+        plain, robustness=faults(), uncertainty=uncertainty(), certificates=(*plain.certificates, checked)
+    )
     yield replace(plain, trials=(estimating(plain.trials[0]), *plain.trials[1:]), phase_plane=None)
     yield sample_dossier(rail="table10-dry")
 
