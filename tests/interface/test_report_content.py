@@ -103,7 +103,9 @@ def test_the_first_pdf_page_is_enough_to_decide(made, pdf):
     for each in made.certificates:
         assert each.name in first
     assert f"{made.trials[0].metrics.distance:.1f}" in first
-    assert "Provenance" in first  # the contents end on the first page
+    second = re.sub(r"\s+", " ", pdf.pages[1].extract_text())
+    assert "Role Name Signature Date" in first + second
+    assert "Provenance" in second  # the contents end there
 
 
 def test_the_files_travel_with_the_report(made, pdf):

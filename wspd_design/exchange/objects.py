@@ -1,6 +1,7 @@
 """Records of a stop, a check, a design and a set of parameters as plain data, in the forms of the vocabulary."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -22,9 +23,14 @@ if TYPE_CHECKING:
 
 
 def stop_object(
-    trial: Trial, scenario: Scenario, *, slip_reference: float, witness: dict[str, Any] | None = None
+    trial: Trial,
+    scenario: Scenario,
+    *,
+    slip_reference: float,
+    witness: dict[str, Any] | None = None,
+    drawn: Mapping[str, float] | None = None,
 ) -> dict[str, Any]:
-    """Return the figures of one stop; the witness is there if it starts at one."""
+    """Return the figures of one stop; the witness is there if it starts at one, and numbers if it draws some."""
     run, figures, check = trial.run, trial.metrics, trial.check
     held = reference_range(run)
     return {
@@ -37,6 +43,7 @@ def stop_object(
         "initial_speed_m_s": run.initial_speed,
         "scenario": scenario_object(scenario, dead_time=run.dead_time, shortest_pulse=run.shortest_pulse),
         "witness": witness,
+        "drawn": None if drawn is None else dict(drawn),
         "slip_reference": slip_reference,
         "ending": run.ending.name.lower(),
         "distance_m": figures.distance,

@@ -169,6 +169,13 @@ STOP = Form(
         *CASE_KEYS,
         Key(name="scenario", kind=SCENARIO, meaning="where the stop starts and what disturbs it"),
         Key(name="witness", kind=WITNESS, nullable=True, meaning="the witness that the stop starts at"),
+        Key(
+            name="drawn",
+            kind="number",
+            by_name=True,
+            nullable=True,
+            meaning="numbers that --only-run drew from their bounds, in SI units; null for a stop with nominal ones",
+        ),
         REFERENCE_KEY,
         Key(
             name="ending",

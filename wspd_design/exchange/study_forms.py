@@ -17,6 +17,7 @@ from wspd_design.exchange.common_keys import (
 from wspd_design.exchange.forms import Form, Key
 from wspd_design.exchange.search_forms import JUDGED
 from wspd_design.exchange.stop_forms import FAULT, STOP
+from wspd_design.exchange.uncertainty_forms import UNCERTAINTY
 
 LINEARIZATION_POINT = Form(
     name="linearization_point",
@@ -162,13 +163,50 @@ PARAMETERS = Form(
         Key(name="entries", kind=ENTRY, many=ANY, meaning="its numbers"),
     ),
 )
+INPUT = Form(
+    name="input",
+    keys=(
+        Key(name="name", kind="text", meaning="of the attachment"),
+        Key(name="sha256", kind="text", meaning="of its content"),
+    ),
+)
 PROVENANCE = Form(
     name="provenance",
     keys=(
-        Key(name="command", kind="text", meaning="the command line"),
-        Key(name="versions", kind="value", meaning="object: package to version"),
+        Key(
+            name="command",
+            kind="text",
+            meaning="makes the report again from its attachments; empty where only a program in Python does",
+        ),
+        Key(name="made_at", kind="text", meaning="date and time, UTC, ISO 8601"),
         SEED_KEY,
-        Key(name="input_hash", kind="text", meaning="SHA-256 of design, vehicle, rail and scenario"),
+        Key(name="inputs", kind=INPUT, many=ANY, meaning="files that the report was made from"),
+        Key(name="input_hash", kind="text", meaning="SHA-256 of what sha256sum prints for the inputs"),
+        Key(
+            name="searches_cut",
+            kind="text",
+            many=ANY,
+            meaning="checks of which a search was ended by its budget of counted work",
+        ),
+        Key(name="program_version", kind="text", meaning="of wspd_design"),
+        Key(
+            name="package_sha256",
+            kind="text",
+            meaning="SHA-256 of what sha256sum prints for the sorted files of the package",
+        ),
+        Key(
+            name="package_tree",
+            kind="text",
+            meaning="name that git gives the folder of the package: its revision, whatever the commit",
+        ),
+        Key(
+            name="changed",
+            kind="flag",
+            meaning="whether the package is known not to be that of the last commit of its clone",
+        ),
+        Key(name="compiler", kind="text", meaning="of the machine, in its own words"),
+        Key(name="platform", kind="text", meaning="operating system, processor family and C library"),
+        Key(name="versions", kind="value", meaning="object: package to version"),
     ),
 )
 FAULTED_STOP = Form(
@@ -235,6 +273,12 @@ REPORT = Form(
             kind=FAULTED_STOP,
             many=ANY,
             meaning="of the design: each fault at the axle where it does most harm, and patches",
+        ),
+        Key(
+            name="uncertainty",
+            kind=UNCERTAINTY,
+            nullable=True,
+            meaning="of the design's own stop; null where no number has bounds",
         ),
         Key(name="parameters", kind=PARAMETERS, many=ANY, meaning="each set that was used"),
         VERSION_KEY,

@@ -9,6 +9,7 @@ from datetime import datetime
 from enum import Enum
 from typing import Literal, TypeAlias
 
+from wspd_design.reporting.template import Template
 from wspd_design.reporting.text import Text
 
 
@@ -178,6 +179,11 @@ class KeyNumber:
     unit: str = ""
     note: Text = ""
 
+    @property
+    def unbroken(self) -> str:
+        """The value for a narrow column: no line begins behind a ±."""
+        return self.value.replace("± ", "±\N{NO-BREAK SPACE}")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeyNumbers:
@@ -207,9 +213,10 @@ class Attachment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Document:
-    """A whole report: first page (title, verdict, summary, contents), blocks, and where it comes from.
+    """A whole report: first page (title, verdict, summary, signatures, contents), blocks, and where it comes from.
 
-    ``timestamp`` is the only date in the output; the same document gives the same bytes.
+    ``timestamp`` is the only date in the output; the same document gives the same bytes. Author and keywords are for
+    catalogs. With a template the document is one to sign.
     """
 
     title: str
@@ -221,3 +228,6 @@ class Document:
     provenance: tuple[Definition, ...]
     attachments: tuple[Attachment, ...]
     timestamp: datetime
+    author: str
+    keywords: tuple[str, ...]
+    template: Template | None = None

@@ -11,7 +11,8 @@ from wspd_design.reporting.equations import FormulaSet, typeset
 from wspd_design.reporting.figure_style import GRID, INK, MUTED, SERIES
 from wspd_design.reporting.numbering import CONTENTS, PROVENANCE, Numbering, formulas, number
 from wspd_design.reporting.svg import inline
-from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, Text, printable, spans
+from wspd_design.reporting.template import ROLES
+from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, Text, plain, printable, spans
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -56,6 +57,9 @@ def render_html(document: Document) -> str:
         numbering=numbering,
         contents=CONTENTS,
         provenance=PROVENANCE,
+        roles=ROLES,
+        keywords=", ".join(document.keywords),
+        description=plain(document.verdict.sentence),
         style=style,
         style_hash=base64.b64encode(hashlib.sha256(style.encode()).digest()).decode(),
         glyphs=_trusted(formula_set.glyphs),

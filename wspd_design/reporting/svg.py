@@ -8,6 +8,8 @@ import re
 from collections.abc import Mapping
 from xml.etree import ElementTree
 
+from wspd_design.reporting.text import printable
+
 _SVG = "{http://www.w3.org/2000/svg}"
 _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 _SCREEN_SCALE = 1.6  # CSS pixels per point: a fifth larger than on paper
@@ -53,6 +55,8 @@ def canonical(svg: str, font_family: str) -> str:
             element.set("font-family", font_family)
         if reference := element.attrib.pop(_XLINK_HREF, ""):
             element.set("href", reference)
+        if element.text:
+            element.text = printable(element.text)
     _drop_unused_ids(root)
     # What Matplotlib says in the style sheet, for all elements.
     root.set("stroke-linejoin", "round")

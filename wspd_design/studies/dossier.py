@@ -1,13 +1,8 @@
 """Everything that a report shows about a design, computed once."""
 
-import hashlib
-import platform
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
-from typing import Literal
-from urllib.parse import quote
 
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
 from wspd_design.analysis.linearization import Linearization, linearize
@@ -19,40 +14,31 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.case import specification_of
 from wspd_design.design.catalog import controller, controller_of, design_rail, is_design_file
-from wspd_design.design.file import design_text, read_design
+from wspd_design.design.file import read_design
 from wspd_design.design.industry import usual_table
 from wspd_design.design.own_controller import is_own_controller
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.selection import named_design
-from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
-from wspd_design.parameters.given import given_entries, given_in_python
-from wspd_design.parameters.laden import LADEN
+from wspd_design.parameters.given import given_entries
+from wspd_design.parameters.laden import laden
 from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
-from wspd_design.parameters.schema import PRESETS
+from wspd_design.parameters.schema import PRESETS, Kind
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
+from wspd_design.studies.inputs import design_input, law_inputs, parameter_inputs, python_input, side_by_side
 from wspd_design.studies.judgment import Judgment, judgment
+from wspd_design.studies.provenance import InputFile, Provenance, provenance
 from wspd_design.studies.reported_law import ReportedLaw, reported_law
+from wspd_design.studies.uncertainty import Uncertainty, uncertainty
 
 POLE_SPEEDS = 60  # points of the pole map
-PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Provenance:
-    """How to compute a report again."""
-
-    command: str
-    versions: tuple[tuple[str, str], ...]
-    seed: int
-    input_hash: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,16 +52,6 @@ class PhasePlane:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnFile:
-    """A vehicle, rail or law of the user's own, which no one else has."""
-
-    kind: str  # vehicle, rail or controller
-    name: str  # of the file, without its folder
-    variant: str  # what follows it in options, such as :laden, or the name of a law in it
-    text: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Dossier:
     """A law, the numbers it rests on, its linearizations, certificates and simulated stops."""
 
@@ -84,7 +60,6 @@ class Dossier:
     design: Design | None  # None for a law without gains that were chosen
     vehicle: ParameterSet
     rail: ParameterSet
-    own_files: tuple[OwnFile, ...]  # of law, vehicle and rail, where they do not ship with the program
     other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
     brake: BrakeSheet  # on full adhesion
@@ -95,6 +70,7 @@ class Dossier:
     phase_plane: PhasePlane | None  # of laws with a sliding surface
     judgment: Judgment | None  # of a design with requirements
     robustness: Robustness | None  # where wheelsets differ
+    uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
     provenance: Provenance
 
@@ -108,6 +84,8 @@ def dossier(
     specification: Specification | None = None,
     baselines: Sequence[str] = (),
     command: str = "",
+    inputs: Sequence[InputFile] = (),
+    stop_command: str = "",
     written: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
@@ -130,7 +108,11 @@ def dossier(
     baselines : sequence of str
         Controllers to compare with.
     command : str
-        The command line, for the record; empty for a report that was made in Python.
+        That makes the report from the input files; empty for a report that was made in Python.
+    inputs : sequence of InputFile
+        What the command makes it from; without a command, the design and the vehicle, rail and law of one's own.
+    stop_command : str
+        ``wspd simulate`` with what the command says about the stop, so that drawn ones can be simulated again.
     written : str
         What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
         report.
@@ -156,8 +138,7 @@ def dossier(
     import numpy as np
 
     design = made if isinstance(made, Design) else None
-    vehicle_set, own_vehicle = _stated("vehicle", vehicle)
-    rail_set, own_rail = _stated("rail", rail)
+    vehicle_set, rail_set = _stated("vehicle", vehicle), _stated("rail", rail)
     of_vehicle = vehicle_of(vehicle_set) if isinstance(vehicle, Vehicle) else load_vehicle(vehicle)
     of_rail = rail if isinstance(rail, Rail) else load_rail(rail)
     own = controller_of(made, of_vehicle, of_rail) if isinstance(made, Design) else made
@@ -179,15 +160,16 @@ def dossier(
         progress=progress,
     )
     told = reported_law(own, design, written=written)
-    inputs = "\n".join(
-        (
-            told.fingerprint if design is None else design_text(design),
-            repr(of_vehicle),
-            repr(of_rail),
-            repr(scenario),
-            plant,
+    if not command:
+        inputs = side_by_side(
+            (
+                *([] if design is None else [design_input(design)]),
+                *parameter_inputs("vehicle", vehicle),
+                *parameter_inputs("rail", rail),
+                *law_inputs(written),
+                python_input(own, scenario, plant),
+            )
         )
-    )
     named = [written] if written and design is None and not is_own_controller(written) else []
     return Dossier(
         law=told,
@@ -195,7 +177,6 @@ def dossier(
         design=design,
         vehicle=vehicle_set,
         rail=rail_set,
-        own_files=(*own_vehicle, *own_rail, *_own_law(written)),
         other_parameters=_other_parameters(design, of_vehicle, of_rail, [*named, *baselines]),
         compared_designs=tuple(each for _, each in others if each is not None),
         brake=brake_sheet(of_vehicle),
@@ -208,13 +189,20 @@ def dossier(
         if design is None
         else judgment(design, design_rail(design, of_rail), certificates, folder=folder, progress=progress),
         robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),
-        scenario=scenario,
-        provenance=Provenance(
-            command=command,
-            versions=versions(),
-            seed=scenario.seed,
-            input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
+        uncertainty=uncertainty(
+            of_vehicle,
+            own,
+            scenario,
+            trials[0],
+            slip_reference=asked.slip,
+            parameters=(vehicle_set, rail_set),
+            laden=vehicle_of(laden(vehicle_set)) if "laden.mass" in vehicle_set.entries else None,
+            plant=plant,
+            command=stop_command,
+            progress=progress,
         ),
+        scenario=scenario,
+        provenance=provenance(command=command, seed=scenario.seed, inputs=inputs, certificates=certificates),
     )
 
 
@@ -227,41 +215,9 @@ def _asked(made: Design | Law, specification: Specification | None) -> Specifica
     return made.specification
 
 
-def _stated(
-    kind: Literal["vehicle", "rail"], given: Vehicle | Rail | Path | str
-) -> tuple[ParameterSet, tuple[OwnFile, ...]]:
-    """Return what is stated about a vehicle or rail, and the file of one that does not ship with the program."""
-    if isinstance(given, Vehicle | Rail):
-        found = given_entries(given)
-        if not given_in_python(found):
-            return found, ()
-        text = parameter_file(
-            found.title, ("Written from a record that was made in Python.",), found.entries.values()
-        )
-        return found, (OwnFile(kind=kind, name=f"{quote(found.name, safe=' ')}.toml", variant="", text=text),)
-    return load_entries(kind, given), _own_file(kind, str(given))
-
-
-def _own_file(kind: str, written: str) -> tuple[OwnFile, ...]:
-    path = Path(written.removesuffix(LADEN))
-    if path.suffix != ".toml":
-        return ()
-    text = path.read_text(encoding="utf-8-sig")
-    return (OwnFile(kind=kind, name=path.name, variant=written.removeprefix(str(path)), text=text),)
-
-
-def _own_law(written: str) -> tuple[OwnFile, ...]:
-    """Return the file of a law of the user's own."""
-    if not is_own_controller(written):
-        return ()
-    file, _, name = written.rpartition(":")
-    text = Path(file).read_text(encoding="utf-8")
-    return (OwnFile(kind="controller", name=Path(file).name, variant=f":{name}", text=text),)
-
-
-def versions() -> tuple[tuple[str, str], ...]:
-    """Return the versions of Python and of the packages that numbers depend on."""
-    return (("Python", platform.python_version()), *((name, version(name)) for name in PACKAGES))
+def _stated(kind: Kind, given: Vehicle | Rail | Path | str) -> ParameterSet:
+    """Return what is stated about a vehicle or rail."""
+    return given_entries(given) if isinstance(given, Vehicle | Rail) else load_entries(kind, given)
 
 
 def phase_plane(run: Run, law: Surface) -> PhasePlane:

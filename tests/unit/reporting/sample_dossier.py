@@ -18,13 +18,27 @@ from wspd_design.simulation.draws import Choice, Draw
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Fault, Run, Sample, Scenario, Totals
 from wspd_design.simulation.self_check import StepCheck
-from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
+from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.provenance import InputFile, Provenance
 from wspd_design.studies.reported_law import ReportedLaw
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
+SAMPLE_PROVENANCE = Provenance(
+    command="wspd report design.toml --vehicle er24pc --rail polach-wet --seed 7",
+    seed=7,
+    inputs=(InputFile(name="design.toml", text="[gains]\n", meaning="the design"),),
+    searches_cut=("two",),
+    program_version="0.1.0",
+    package_sha256="fedcba9876543210" * 4,
+    package_tree="0123456789" * 4,
+    changed=False,
+    compiler="cc 1.2.3",
+    platform="Linux x86_64",
+    versions=(("Python", "3.11.7"), ("numpy", "2.4.6")),
+)
 
 
 def certificate(name: str, status: Status, **changes) -> Certificate:
@@ -256,7 +270,6 @@ def sample_dossier(
         ),
         vehicle=load_entries("vehicle", "er24pc"),
         rail=load_entries("rail", rail),
-        own_files=(),
         other_parameters=(load_entries("constants", "constants"), load_entries("controller", "trenitalia")),
         compared_designs=(),
         brake=brake_sheet(load_vehicle("er24pc")),
@@ -271,11 +284,7 @@ def sample_dossier(
         ),
         judgment=None,
         robustness=None,
+        uncertainty=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
-        provenance=Provenance(
-            command="wspd report mine.toml",
-            versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),
-            seed=7,
-            input_hash="fedcba9876543210" * 4,
-        ),
+        provenance=SAMPLE_PROVENANCE,
     )

@@ -1,6 +1,5 @@
 """Every check in full: claim, finding, margin, worst point, hypotheses, assumptions, method and curves."""
 
-import shlex
 from collections.abc import Sequence
 from functools import partial
 
@@ -12,7 +11,6 @@ from wspd_design.reporting.blocks import (
     Attachment,
     Block,
     Cell,
-    Code,
     Definition,
     Definitions,
     Figure,
@@ -31,7 +29,7 @@ from wspd_design.reporting.figures.series import (
     series_caption,
 )
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import escape, rich
+from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 
 MAP_HEIGHT = 2.6  # in
@@ -91,10 +89,12 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
     found: list[Block] = [
         Heading(text="Stability checks", anchor="stability-checks"),
         Paragraph(
-            text="Each check states a claim with its domain and the numbers that it varies and holds, under the "
-            "assumptions that it names. The worst findings stand first."
+            text=rich(
+                "Each check states a claim with its domain and the numbers that it varies and holds, under the "
+                "assumptions that it names. The worst findings stand first. Nobody has to trust the programs that "
+                "found the proofs: [one command](#replay) lets the checkers decide again about all of them."
+            )
         ),
-        *_replay(dossier),
     ]
     for status, meaning in MEANINGS.items():
         group = [each for each in dossier.certificates if status_of(each) is status]
@@ -123,42 +123,6 @@ def _not_applicable(group: Sequence[Certificate]) -> Table:
         ),
         caption="Checks that say nothing here.",
         anchor="not-applicable",
-    )
-
-
-def _replay(dossier: Dossier) -> tuple[Block, ...]:
-    """Say how to have a proof decided again; the checker needs the vehicle and the rail that were certified."""
-    kept, called = _kept(dossier), dossier.law.called
-    if not kept:
-        return ()
-    if not called:
-        text = (
-            "The attached file of a check is decided again where the law was made: by `wspd_design.check`, with the "
-            "problem that `wspd_design.stability_problem` makes of law, vehicle, rail and specification."
-        )
-        return (Paragraph(text=rich(text)),)
-    example = next((each for each in kept if each.status is Finding.PROVED), kept[0])
-    stated = {"vehicle": dossier.vehicle.name, "rail": dossier.rail.name}
-    stated |= {own.kind: own.name + own.variant for own in dossier.own_files if own.kind in stated}
-    case = [word for kind, name in stated.items() for word in (f"--{kind}", name)]
-    names = [
-        *(["design.toml"] if dossier.design is not None else []),
-        *(own.name for own in dossier.own_files),
-    ]
-    files = "".join(f"`{escape(name)}`, " for name in names).removesuffix(", ")
-    both = (
-        f"{files} and the attached file of a check into one folder"
-        if files
-        else "the attached file of a check"
-    )
-    return (
-        Paragraph(
-            text=rich(
-                f"Nobody has to trust the prover. Save {both}. The command below decides again about its proofs, or "
-                "about the witness of what is refuted, without the program that found them."
-            )
-        ),
-        Code(text=shlex.join(("wspd", "check", file_name(example), "--design", called, *case))),
     )
 
 
