@@ -89,7 +89,8 @@ THEOREMS = (
         title="What holds the reference, and what goes beyond it",
         statement="slip' = G (T - T_h) with the torque T_h = -F/G that holds the slip and G > 0. Where T_h >= 0 no "
         "slip grows at a vented brake. Where T_h at the reference exceeds T_max, a slip that lies below it stays "
-        "there, whatever the law does. How far the slip goes beyond its reference under a law is seen in a simulated stop.",
+        "there, whatever the law does. How far the slip goes beyond its reference under a law is seen in a "
+        "simulated stop.",
         hypotheses=("v > 0", "T = u for what is said about a vented or full brake"),
         sketch="(19) is affine in the torque and G > 0.",
         not_said="That the law vents, or fills: what it does is seen in the stop. That another start, rail or vehicle "

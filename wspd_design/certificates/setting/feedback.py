@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-HISTORIES = 60  # tried for two that differ in one measurement
+HISTORIES = 60  # pairs that are tried
 SAMPLES = 4  # of a history
 OF_WHEELSET = ("train speed", "wheel speed", "torque", "sensor health", "pressure")
 OF_VEHICLE = ("acceleration", "demand", "reservoir pressure")
@@ -99,8 +99,8 @@ def _paths(function: Any) -> list[set[int]]:
     return outputs
 
 
-def depends_on(law: TracedLaw, wheelset: int, place: int) -> bool:
-    """Tell whether two histories were found that differ in one measurement and in the command of a wheelset.
+def differs(law: TracedLaw, wheelset: int, place: int, number: int) -> bool:
+    """Tell whether a pair of histories that differ in one measurement gives a wheelset different commands.
 
     Parameters
     ----------
@@ -110,19 +110,16 @@ def depends_on(law: TracedLaw, wheelset: int, place: int) -> bool:
         Whose command, counted from 0.
     place : int
         Of the measurement in the input of the graph.
+    number : int
+        Of the pair: each number gives another one.
     """
     count, states = law.wheelsets or 1, law.states
     mine = (states + wheelset, states + count + wheelset)
-    for number in range(HISTORIES):
-        plain = list(_history(law, number))
-        other = [each if k == 0 else _changed(each, place, (number, k)) for k, each in enumerate(plain)]
-        if any(
-            one[k] != two[k]
-            for one, two in zip(_run(law, plain), _run(law, other), strict=True)
-            for k in mine
-        ):
-            return True
-    return False
+    plain = list(_history(law, number))
+    other = [each if k == 0 else _changed(each, place, (number, k)) for k, each in enumerate(plain)]
+    return any(
+        one[k] != two[k] for one, two in zip(_run(law, plain), _run(law, other), strict=True) for k in mine
+    )
 
 
 def _history(law: TracedLaw, number: int) -> "Iterator[Array]":

@@ -1,19 +1,22 @@
 """Theorem about what a law reads: the command of every wheelset with a brake must depend on how its own wheel turns."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
 
-from wspd_design.certificates.kernel.obligation import Condition, Obligation
-from wspd_design.certificates.memory import recall
+from wspd_design.certificates.kernel.checker import FORMAT, Refused, Work
+from wspd_design.certificates.kernel.obligation import Condition, Numbers, Obligation, Special
 from wspd_design.certificates.records import Certificate, Problem, Status
-from wspd_design.certificates.setting.feedback import Measured, depends_on, measured, read_by_commands
-from wspd_design.certificates.setting.fingerprint import model_hash
+from wspd_design.certificates.setting.feedback import HISTORIES, Measured, differs, measured, read_by_commands
 from wspd_design.certificates.setting.traced_law import TracedLaw, trace
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothesis
 
 WHEEL_SPEED = "wheel speed"
+WORK = 20_000
 
 
-def _traced(problem: Problem) -> TracedLaw:
+def traced(problem: Problem) -> TracedLaw:
+    """Return the graph of the law of a problem that the theorem speaks about."""
     law = trace(problem.controller)
     assert not isinstance(law, str)
     return law
@@ -24,7 +27,7 @@ def _can_be_traced(problem: Problem) -> str:
     return f"is not judged: {law}" if isinstance(law, str) else ""
 
 
-def _wheelsets(problem: Problem, law: TracedLaw) -> tuple[int, ...]:
+def wheelsets_of(problem: Problem, law: TracedLaw) -> tuple[int, ...]:
     """Wheelsets that the law commands and that have a brake, counted from 1; a law of one stands for all."""
     if law.wheelsets is None:
         return (1,)
@@ -36,30 +39,46 @@ def _title(law: TracedLaw, wheelset: int) -> str:
 
 
 def _obligations(problem: Problem) -> tuple[Obligation, ...]:
-    law = _traced(problem)
-    read, told = read_by_commands(law), measured(law)
-
-    def work_out() -> dict[int, bool]:
-        places = {each: told.index(_own(law, each)) for each in _wheelsets(problem, law)}
-        return {each: depends_on(law, each - 1, place) for each, place in places.items()}
-
-    shown = recall(["commands that follow their own wheel", model_hash(problem)], work_out)
+    law = traced(problem)
+    read = read_by_commands(law)
     return tuple(
-        condition
-        for each in _wheelsets(problem, law)
-        for condition in (
+        obligation
+        for each in wheelsets_of(problem, law)
+        for obligation in (
             Condition(
                 key=f"path, {each}",
                 text=f"a path leads from the speed of its own wheel to the command of {_title(law, each)}",
                 holds=_own(law, each) in read[each - 1],
             ),
-            Condition(
+            Special(
                 key=f"histories, {each}",
                 text="two histories that differ in the speed of this wheel alone give different commands",
-                holds=shown[each],
+                check=partial(_differ, law, each),
             ),
         )
     )
+
+
+def _differ(law: TracedLaw, wheelset: int, proof: Mapping[str, Any], work: Work) -> Numbers:
+    """Run the two histories that a proof names."""
+    work.spend(WORK)
+    number = proof.get("pair")
+    if not isinstance(number, int) or proof != pair_of_histories(number):
+        raise Refused("the proof must name one pair of histories by its number")
+    if not differs(law, wheelset - 1, measured(law).index(_own(law, wheelset)), number):
+        raise Refused("these two histories give the same commands")
+    return {"pair": float(number)}
+
+
+def pair_of_histories(number: int) -> dict[str, Any]:
+    """Return the proof that a pair of histories gives different commands."""
+    return {"format": FORMAT, "pair": number}
+
+
+def found_pair(law: TracedLaw, wheelset: int) -> int | None:
+    """Return the number of the first pair of histories that shows it, if there is one among those tried."""
+    place = measured(law).index(_own(law, wheelset))
+    return next((k for k in range(HISTORIES) if differs(law, wheelset - 1, place, k)), None)
 
 
 def _own(law: TracedLaw, wheelset: int) -> Measured:
@@ -67,8 +86,8 @@ def _own(law: TracedLaw, wheelset: int) -> Measured:
 
 
 def _tell(problem: Problem, findings: Findings) -> Certificate:
-    law = _traced(problem)
-    wheelsets = _wheelsets(problem, law)
+    law = traced(problem)
+    wheelsets = wheelsets_of(problem, law)
     blind = [each for each in wheelsets if findings[f"path, {each}"].status is Status.REFUTED]
     shown = all(findings[f"histories, {each}"].status is Status.PROVED for each in wheelsets)
     status = Status.REFUTED if blind else Status.PROVED if shown else Status.UNDECIDED

@@ -127,7 +127,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         claim=f"At those of {len(found)} sampled frozen speeds from {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h at which the loop rests near slip {problem.slip:g}, small deviations die "
         f"out: the step of {problem.controller.name} as it runs, sampled every {problem.sample_time * 1e3:g} ms, with "
-        "the pulses of its valves and the nominal parameters.",
+        "the nominal parameters and the pulses of its valves.",
         status=status,
         explanation=_said(findings, resting, len(found)),
         margin=Range(low=None, high=1.0 - shown["radius"], unit="-") if shown else None,
