@@ -96,6 +96,12 @@ VEHICLE = tuple(quantity.name for quantity in TABLE if quantity.record == "vehic
 PLANT = (*STATE, *VEHICLE, *CONTACT, *RAIL)
 """What (19) depends on at an axle with the static load."""
 
+
+def is_working_name(name: str) -> bool:
+    """Tell whether a variable of a claim is a means of its formula or a known number of a design model."""
+    return name in ("nominal mass", "unit of speed") or name.startswith("model ")
+
+
 _TRANSFER = "enters through the range of the axle load share"
 _PADS = "the vibration of the pads at the onset of braking is part of no claim"
 _OTHER_BRAKES: tuple[tuple[Record, type, str], ...] = (

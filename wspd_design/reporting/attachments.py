@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import re
 from datetime import datetime
 from pathlib import PurePath
 
@@ -14,7 +13,7 @@ from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.checks import certificate_files
 from wspd_design.reporting.template import BLANK, Template, template_text
 from wspd_design.simulation.records import Run
-from wspd_design.simulation.traces import on_a_grid, traces
+from wspd_design.simulation.traces import on_a_grid, trace_name, traces
 from wspd_design.studies.dossier import Dossier
 
 RECORD, TEMPLATE, SUMS = "report.json", "template.toml", "SHA256SUMS"
@@ -104,12 +103,6 @@ def _traces(dossier: Dossier) -> tuple[Attachment, ...]:
         )
         for number, trial in enumerate(dossier.trials)
     )
-
-
-def trace_name(number: int, controller: str) -> str:
-    """Return the name of the traces of a stop, which is that of the design if its number is 0."""
-    plain = re.sub(r"[^a-z0-9]+", "-", controller.lower()).strip("-")
-    return f"stop-{number + 1}{plain and '-'}{plain}.csv"
 
 
 def trace_text(run: Run, interval: float) -> str:

@@ -28,7 +28,13 @@ def significant(value: float, digits: int = 4) -> str:
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
     if _SMALLEST <= abs(value) < _LARGEST:
         return _minus(_trimmed(f"{value:.{max(digits - 1 - int(exponent), 0)}f}"))
-    return _minus(f"{_trimmed(mantissa)}·10") + str(int(exponent)).translate(_SUPERSCRIPTS)
+    return scientific(_trimmed(mantissa), int(exponent))
+
+
+def scientific(mantissa: str, exponent: int) -> str:
+    """Write a number that comes as mantissa and power of ten; a mantissa of 1 is left out."""
+    power = f"10{str(exponent).translate(_SUPERSCRIPTS)}"
+    return power if mantissa == "1" else _minus(f"{mantissa}·") + power
 
 
 def uncertain(value: float, spread: float, places: int) -> str:

@@ -248,6 +248,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "label": numbered.label,
                 "caption": _text(block.caption),
                 "anchor": block.anchor,
+                "data": printable(block.data),
             }
         case Table():
             return {

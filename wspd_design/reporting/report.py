@@ -23,6 +23,8 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.sections.theory import theory
+from wspd_design.reporting.sections.words import words
 from wspd_design.reporting.template import BLANK, Template
 from wspd_design.studies.dossier import Dossier
 
@@ -40,6 +42,7 @@ SECTIONS = (
     sources,
     limits,
     replay,
+    theory,
 )
 
 
@@ -72,6 +75,7 @@ def report_document(dossier: Dossier, timestamp: datetime, template: Template = 
     """Return the report of a design, not yet rendered."""
     law, origin = dossier.law, dossier.provenance
     speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
+    blocks = tuple(block for section in SECTIONS for block in section(dossier))
     return Document(
         title=f"Wheel slide protection: {law.name}",
         subtitle=f"{law.heading}, for {dossier.vehicle.name} on {dossier.rail.name}, from {speed}",
@@ -79,7 +83,7 @@ def report_document(dossier: Dossier, timestamp: datetime, template: Template = 
         f"inputs {origin.input_hash[:12]}",
         verdict=verdict(dossier),
         summary=summary(dossier),
-        blocks=tuple(block for section in SECTIONS for block in section(dossier)),
+        blocks=(*blocks, *words(blocks)),
         provenance=provenance(dossier),
         attachments=attachments(dossier, timestamp, template),
         timestamp=timestamp,

@@ -12,6 +12,7 @@ from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.design.requirements import DrawnSets, Limit, Requirements, judged_by
+from wspd_design.design.stop_requirements import MODEL, StopRequirements
 from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.draws import Choice, Draw
@@ -20,7 +21,8 @@ from wspd_design.simulation.records import Ending, Fault, Run, Sample, Scenario,
 from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness
-from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.judgment import judged_drawn, judged_stop
+from wspd_design.studies.loop_growth import Growth
 from wspd_design.studies.provenance import InputFile, Provenance
 from wspd_design.studies.reported_law import ReportedLaw
 
@@ -172,21 +174,39 @@ def estimating(plain: Trial) -> Trial:
     return replace(plain, run=run, metrics=figures)
 
 
-def judgment(**reached: float) -> Judgment:
-    """Return a judgment by two limits and one number that is only told."""
+WANTED = StopRequirements(
+    name="sample",
+    not_refuted=("lyapunov_one",),
+    limits=(
+        Limit(criterion="slip_rms", value=0.1, source="a wish"),
+        Limit(criterion="longest_lock", value=0.6, source="contract 12", verified=True),
+    ),
+)
+SOUND = tuple(certificate(name, Status.PROVED) for name in MODEL)
+
+
+def judged(dossier: Dossier, wanted: StopRequirements = WANTED, growth: Growth | None = None) -> Dossier:
+    """Judge a dossier whose records were changed again."""
+    found = {each.name: each for each in dossier.certificates}
+    made = judged_stop(wanted, dossier.trials[0], found, growth=growth, full_adhesion=175.0)
+    return replace(dossier, judgment=made, growth=growth)
+
+
+def drawn(dossier: Dossier, **reached: float) -> Dossier:
+    """Judge a dossier by two limits on drawn stops, with checks that find equations and simulation sound."""
     limits = (Limit(criterion="efficiency_mean", value=0.975), Limit(criterion="longest_lock", value=0.1))
     numbers = {"efficiency_mean": 0.9812, "longest_lock": 0.04, "valve_switches": 12.3} | reached
-    return Judgment(
-        requirements=Requirements(
-            rails=("polach-wet", "polach-dry"),
-            within_bounds=("rail",),
-            held_out=DrawnSets(sets=200, seed=77),
-            limits=limits,
-            stop=(("stop.initial_speed", INITIAL_SPEED),),
-            draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
-        ),
-        judged=judged_by(limits, numbers),
+    wanted = Requirements(
+        rails=("polach-wet", "polach-dry"),
+        within_bounds=("rail",),
+        held_out=DrawnSets(sets=200, seed=77),
+        limits=limits,
+        stop=(("stop.initial_speed", INITIAL_SPEED),),
+        draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
     )
+    sound = replace(dossier, certificates=(*dossier.certificates, *SOUND))
+    found = {each.name: each for each in sound.certificates}
+    return replace(sound, judgment=judged_drawn(wanted, judged_by(limits, numbers), sound.trials[0], found))
 
 
 def faults(**changes) -> Robustness:
@@ -242,6 +262,7 @@ def sample_dossier(
             trial("none", rail),
         )
     names = ("lyapunov_one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+    checks = tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False))
     return Dossier(
         law=ReportedLaw(
             name="mine",
@@ -277,12 +298,16 @@ def sample_dossier(
         linearizations=tuple(
             linearization(float(v), 2.0 - 8.0 / v) for v in np.geomspace(1.0, INITIAL_SPEED, 12)
         ),
-        certificates=tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False)),
+        certificates=checks,
         trials=trials,
         phase_plane=PhasePlane(
             integral=(0.0, 0.014, 0.02), error=(0.14, 0.06, -0.05), surface_rate=0.38, layer=0.025
         ),
-        judgment=None,
+        growth=None,
+        judgment=judged_stop(
+            WANTED, trials[0], {each.name: each for each in checks}, growth=None, full_adhesion=175.0
+        ),
+        next_step=None,
         robustness=None,
         uncertainty=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),

@@ -25,7 +25,6 @@ from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.figures.series import (
     axis_label,
     certificate_curves,
-    lyapunov_functions,
     series_alt,
     series_caption,
 )
@@ -53,8 +52,7 @@ DRAWN = {
     "phase planes": lambda figure: phase_planes(
         figure, DOSSIER.trials[0].run, DOSSIER.phase_plane, SPECIFICATION
     ),
-    "series": lambda figure: certificate_curves(figure, DOSSIER.certificates[0]),
-    "lyapunov": lambda figure: lyapunov_functions(figure, DOSSIER.certificates[:2]),
+    "series": lambda figure: certificate_curves(figure, DOSSIER.certificates[0].series),
     "slips": lambda figure: slip_of_all(figure, DOSSIER.trials, SPECIFICATION),
 }
 UNIT = re.compile(r".+ \[(-|%|[A-Za-z0-9/ ^²]+)\]$")
@@ -212,9 +210,7 @@ def test_a_lyapunov_function_over_decades_is_drawn_on_a_logarithmic_scale():
     steep = _series("V", "V [-]", x=(0.0, 1.0), y=(1e-3, 10.0), role=Role.LYAPUNOV)
     flat = _series("Vexing speed", "V of the train [km/h]", x=(0.0, 1.0), y=(1e-3, 10.0))
     with figure_style():
-        figure = certificate_curves(
-            new_figure(height=4.0), certificate("one", Status.PROVED, series=(steep, flat))
-        )
+        figure = certificate_curves(new_figure(height=4.0), (steep, flat))
     assert [axes.get_yscale() for axes in figure.axes] == ["log", "linear"]
 
 
@@ -227,11 +223,9 @@ def test_below_its_limit_a_lyapunov_function_may_vanish():
     assert axes.get_ylim() == pytest.approx((1e-4, 2.0))
 
 
-def _curves(*series, title="Check one"):
+def _curves(*series):
     with figure_style():
-        figure = certificate_curves(
-            new_figure(height=4.0), certificate("one", Status.PROVED, series=series, title=title)
-        )
+        figure = certificate_curves(new_figure(height=4.0), series)
         figure.draw_without_rendering()
     return figure
 
@@ -257,7 +251,7 @@ def test_panels_over_the_same_quantity_share_its_axis():
     other = _curves(_series("slip", "slip [-]"), _series("slip", "slip [-]", x_label="speed [km/h]"))
     assert [axes.get_xlabel() for axes in other.axes] == ["time [s]", "speed [km/h]"]
     curves = (_series("a", "slip [-]"), _series("b", "torque [kN m]"), _series("c", "k [1/s]", "c [1/s]"))
-    caption = series_caption(certificate("one", Status.PROVED, series=curves))
+    caption = series_caption("Check one", curves)
     assert caption == "Check one: slip and torque over time and k over c."
 
 
