@@ -46,6 +46,20 @@ def uncertain(value: float, spread: float, places: int) -> str:
     return f"{decimals(value, places)} ± {decimals(half, places)}"
 
 
+def settled(value: float, spread: float, places: int) -> str:
+    """Write a number with at most so many decimals, and none that half of a spread which is not zero moves."""
+    if spread and math.isfinite(spread):
+        places = min(max(-math.floor(math.log10(spread / 2.0)) - 1, 0), places)
+    return decimals(value, places)
+
+
+def resolved(value: float, width: float) -> str:
+    """Write a number with the digits that matter beside a width over which it spreads: a twentieth of it."""
+    if not width > 0.0 or not math.isfinite(width):
+        return significant(value, 3)
+    return decimals(value, max(-math.floor(math.log10(width / 20.0)), 0))
+
+
 def unit(spelling: str) -> str:
     """Write a unit with superscripts: ``m/s^2`` and ``m/s2`` become ``m/s²``; a ratio has none.
 

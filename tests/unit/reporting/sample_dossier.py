@@ -25,6 +25,7 @@ from wspd_design.studies.judgment import judged_drawn, judged_stop
 from wspd_design.studies.loop_growth import Growth
 from wspd_design.studies.provenance import InputFile, Provenance
 from wspd_design.studies.reported_law import ReportedLaw
+from wspd_design.studies.uncertainty import Effect, Spread, Uncertainty, Variant, WorstSet
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
@@ -230,6 +231,71 @@ def faults(**changes) -> Robustness:
         most_adhesion=(24e3, 31e3),
     )
     return replace(plain, **changes)
+
+
+def uncertainty(**changes) -> Uncertainty:
+    """Return an uncertainty of four sets; the distance of the last has no end."""
+
+    def spread(name: str, nominal: float, *values: float, worst: int) -> Spread:
+        ordered = sorted(values)
+        return Spread(
+            name=name,
+            nominal=nominal,
+            low=ordered[0],
+            high=ordered[-1],
+            p05=ordered[0],
+            p95=ordered[2],
+            worst=WorstSet(
+                number=worst,
+                value=values[worst],
+                parameters=(("vehicle.mass", 80e3), ("rail.mu0", 0.25)),
+                command=f"wspd simulate mine.toml --only-run {worst}",
+            ),
+            values=values,
+        )
+
+    plain = (("distance", 187.65), ("efficiency", 0.93), ("slip_rms", 0.0707), ("longest_lock", 0.0))
+    found = Uncertainty(
+        sets=4,
+        seed=7,
+        drawn=("vehicle.mass", "rail.mu0"),
+        held=("vehicle.wheel_radius",),
+        unstopped=1,
+        checked=1,
+        step_change=2e-4,
+        numerical=0.4,
+        numbers=((70e3, 0.3), (76e3, 0.28), (75e3, 0.26), (80e3, 0.25)),
+        spreads=(
+            spread("distance", 187.65, 181.2, 176.4, 240.9, math.inf, worst=3),
+            spread("efficiency", 0.93, 0.95, 0.912, 0.881, 0.0, worst=3),
+            spread("slip_rms", 0.0707, 0.06, 0.08, 0.1041, 0.09, worst=2),
+            spread("longest_lock", 0.0, 0.0, 0.0, 0.0, 0.0, worst=0),
+        ),
+        effects=(
+            Effect(
+                name="vehicle.mass",
+                low=61473.0,
+                high=92209.0,
+                at_low=(("distance", 185.0), ("efficiency", 0.92)),
+                at_high=(("distance", 190.5), ("efficiency", 0.94)),
+            ),
+            Effect(
+                name="rail.mu0",
+                low=0.24,
+                high=0.36,
+                at_low=(("distance", 230.0), ("efficiency", 0.9), ("slip_rms", 0.09)),
+                at_high=(("distance", 170.0), ("efficiency", 0.94), ("slip_rms", 0.06)),
+            ),
+        ),
+        variants=(
+            Variant(
+                subject="rail", words="low-adhesion", outcome=(("distance", math.inf), ("efficiency", 0.0))
+            ),
+            Variant(subject="sensors", words="torque error -10 %", outcome=plain),
+            Variant(subject="sensors", words="accelerometer bias 0.05 m/s2", outcome=(("distance", 201.4),)),
+        ),
+    )
+    return replace(found, **changes)
 
 
 def linearization(speed: float, pole: float) -> Linearization:

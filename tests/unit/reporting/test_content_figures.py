@@ -29,6 +29,7 @@ from wspd_design.reporting.figures.series import (
     series_caption,
 )
 from wspd_design.reporting.figures.stop import LOCK_BAR, stop_traces
+from wspd_design.reporting.figures.uncertainty import Bar, Panel, distributions, tornado
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.simulation.law_memory import speed_estimate
 from wspd_design.studies.paper.published import load_table10
@@ -41,6 +42,11 @@ WITH_FURTHER_BRAKES = replace(
     track_brake_force=np.linspace(3e4, 0.0, len(DOSSIER.trials[0].run.time)),
     pad_temperature=np.abs(DOSSIER.trials[0].run.slip) * 100.0,
 )
+PANEL = Panel(
+    label="stopping distance [m]", values=(280.0, 300.0, 305.0, 340.0), nominal=300.0, p05=280.0, p95=340.0
+)
+BAR = Bar(name="mu0", low="0.24", high="0.36", at_low=360.0, at_high=250.0)
+ENDLESS = Bar(name="brake: max torque", low="51 kN m", high="69 kN m", at_low=math.inf, at_high=300.0)
 TELLING = estimating(DOSSIER.trials[0]).run
 DRAWN = {
     "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds, (0.6, 0.6)),
@@ -52,6 +58,7 @@ DRAWN = {
     "phase planes": lambda figure: phase_planes(
         figure, DOSSIER.trials[0].run, DOSSIER.phase_plane, SPECIFICATION
     ),
+    "distributions": lambda figure: distributions(figure, [PANEL, PANEL]),
     "series": lambda figure: certificate_curves(figure, DOSSIER.certificates[0].series),
     "slips": lambda figure: slip_of_all(figure, DOSSIER.trials, SPECIFICATION),
 }
@@ -352,3 +359,14 @@ def test_wheelsets_of_any_number_have_curves_of_their_own(number):
         box = legend.get_window_extent()
         assert 0.0 <= box.x0 < box.x1 <= each.bbox.width
         assert 0.0 <= box.y0 < box.y1 <= each.bbox.height
+
+
+def test_a_bound_at_which_no_train_stops_is_told():
+    with figure_style():
+        figure = tornado(new_figure(height=2.0), [BAR, ENDLESS], 300.0, 0.5, "stopping distance [m]")
+    texts = figure.findobj(Text)
+    words = [text.get_text() for text in texts]
+    assert "51 kN m: no standstill" in words
+    assert {"0.24", "0.36", "stopping distance [m]"} <= set(words)
+    assert "69 kN m" not in words  # its bar has no length
+    assert min(text.get_fontsize() for text in texts) >= 7.0

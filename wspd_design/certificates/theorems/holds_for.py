@@ -12,11 +12,11 @@ from typing import Final
 class HoldsFor(Enum):
     """What stands between the law and the wheel in a statement; the value says it in words."""
 
-    EQUATIONS = "the equations, whatever the law"
-    IDEAL_BRAKE = "an ideal brake"
-    VALVE = "with the valve"
-    SAMPLED = "with valve and sampling"
-    STOP = "a full stop"
+    EQUATIONS = "equations"
+    IDEAL_BRAKE = "ideal brake"
+    VALVE = "valve"
+    SAMPLED = "valve, sampled"
+    STOP = "full stop"
 
 
 HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {

@@ -12,6 +12,7 @@ from wspd_design.reporting.figures.further_brakes import further_brakes, height,
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.running_gear import axle_shares
+from wspd_design.reporting.spreads import distance_of_stop
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip, rails_of
@@ -38,9 +39,9 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         Paragraph(
             text=f"The stop of {run.train} from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
             f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
-            f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
-            f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
-            f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
+            f"{distance_of_stop(dossier)} m and {numbers.decimals(figures.stopping_time, 2)} s. "
+            f"{ideal_sentence(figures)} Above {judged} km/h the mean slip is "
+            f"{numbers.decimals(figures.slip_mean, 3)} and the largest "
             f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
             f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
             f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
