@@ -71,7 +71,9 @@ def build(
         For links to it.
     """
     return Table(
-        columns=tuple(Column(title=each.title, unit=unbroken(each.unit), align=each.align) for each in columns),
+        columns=tuple(
+            Column(title=each.title, unit=unbroken(each.unit), align=each.align) for each in columns
+        ),
         rows=tuple(tuple(column.cell(item) for column in columns) for item in items),
         caption=caption,
         anchor=anchor,
