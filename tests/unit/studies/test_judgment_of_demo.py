@@ -1,0 +1,120 @@
+"""The two designs of the demo: the paper's law is rejected for its loop, the protection accepted for what it shows."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.unit.reporting.sample_dossier import SOUND
+from wspd_design.certificates.records import Status
+from wspd_design.certificates.suite import verify
+from wspd_design.controllers.family import FAMILIES
+from wspd_design.design.catalog import controller_of
+from wspd_design.design.file import read_design
+from wspd_design.design.problem import stability_problem
+from wspd_design.design.requirements import judged_by
+from wspd_design.design.stop_requirements import LOOP, MODEL, paper_requirements
+from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.simulation.comparison import trial
+from wspd_design.simulation.records import Scenario
+from wspd_design.studies import next_step as studied
+from wspd_design.studies.judgment import judged_drawn, judged_stop, judgment
+from wspd_design.studies.loop_growth import growth_of
+from wspd_design.studies.next_step import next_step
+
+REPORTS = Path(__file__).parents[3] / "reports"
+RAIL = load_rail("polach-wet")
+STOP = Scenario.stop(from_kmh=120.0, rail=RAIL)
+
+
+def _judged(er24pc, design):
+    """Judge a design by what the paper asks, taking the equations as sound."""
+    law = controller_of(design, er24pc, RAIL)
+    problem = stability_problem(er24pc, RAIL, law, design.specification)
+    checked = (*SOUND, *verify(problem, only=(LOOP,), figures=False))
+    own = trial(er24pc, law, STOP, slip_reference=design.specification.slip)
+    return judged_stop(
+        paper_requirements(design.specification),
+        own,
+        {each.name: each for each in checked},
+        growth=growth_of(problem, checked),
+        full_adhesion=173.0,
+    )
+
+
+@pytest.fixture(scope="module")
+def paper(er24pc):
+    design = read_design(str(REPORTS / "er24pc-polach-wet" / "design.toml"))
+    return design, _judged(er24pc, design)
+
+
+def test_the_papers_law_is_rejected_for_its_loop_first(paper):
+    _, judged = paper
+    assert judged.verdict == "rejected"
+    first = judged.missed[0]
+    assert (first.name, first.checks) == ("loop", (LOOP,))
+    assert first.reached > first.limit == 1.0
+    assert [each.name for each in judged.missed] == ["loop", "slip_rms", "slip_overshoot"]
+    assert judged.rows[0].checks == MODEL
+
+
+def test_what_is_said_to_clear_it_does(paper, er24pc, monkeypatch):
+    design, judged = paper
+    monkeypatch.setattr(studied, "RULES", dict.fromkeys(("super-twisting", "integral-smc")))
+    found = next_step(
+        judged,
+        law=design.law,
+        vehicle=er24pc,
+        vehicle_name="er24pc",
+        rail=RAIL,
+        asked=design.specification,
+        scenario=STOP,
+        plant="planar",
+        certificates=SOUND,
+        full_adhesion=173.0,
+    )
+    assert len(found.tried) == 4
+    for each in found.tried:
+        specification = replace(design.specification, sample_time=each.sample_time)
+        made = studied.design_controller(er24pc, RAIL, specification, law=each.law)
+        again = _judged(er24pc, made)
+        assert tuple(row.name for row in (*again.missed, *again.open)) == each.missed
+    best = found.clears[0]
+    assert (best.law, best.silent) == ("super-twisting", ("loop",))
+    assert FAMILIES[best.law].reference is not None  # a law of the vehicle, of which no check judges the loop
+
+
+@pytest.mark.slow
+def test_the_protection_is_accepted_for_what_it_reaches_on_drawn_stops():
+    folder = REPORTS / "protection-polach-wet"
+    design = read_design(str(folder / "design.toml"))
+    vehicle = load_vehicle("er24pc")
+    law = controller_of(design, vehicle, RAIL)
+    wanted = design.requirements
+
+    own = trial(vehicle, law, STOP, slip_reference=0.14)
+    accepted = judgment(
+        law,
+        wanted,
+        vehicle=vehicle,
+        vehicle_name="er24pc",
+        speeds=design.specification.speeds,
+        own=own,
+        certificates=SOUND,
+        growth=None,
+        full_adhesion=173.0,
+    )
+    assert accepted.verdict == "accepted"
+    assert accepted.weakest.name == "efficiency_mean"
+    found = {each.name: each for each in SOUND}
+    reached = {each.name: each.reached for each in accepted.rows if each.reached is not None}
+
+    def again(limits, found=found):
+        return judged_drawn(wanted, judged_by(limits, reached), own, found)
+
+    broken = {name: replace(each, status=Status.REFUTED) for name, each in found.items()}
+    assert again(wanted.limits, broken).missed[0].name == "sound"
+    stricter = tuple(
+        replace(each, value=0.99) if each.criterion == "efficiency_mean" else each for each in wanted.limits
+    )
+    assert [each.name for each in again(stricter).missed] == ["efficiency_mean"]
