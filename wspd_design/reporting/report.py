@@ -11,6 +11,7 @@ from wspd_design.reporting.blocks import Document
 from wspd_design.reporting.output import write_document
 from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
+from wspd_design.reporting.sections.changes import changes
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
@@ -23,6 +24,7 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.sections.tool import tool
 from wspd_design.reporting.template import BLANK, Template
 from wspd_design.studies.dossier import Dossier
 
@@ -40,6 +42,8 @@ SECTIONS = (
     sources,
     limits,
     replay,
+    tool,
+    changes,
 )
 
 

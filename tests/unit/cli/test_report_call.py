@@ -49,7 +49,9 @@ def test_every_option_is_one_of_the_command():
         for name in (*option.opts, *option.secondary_opts)
     }
     records = {ReportCall: ("law", "sensors", "disturbances"), SensorOptions: (), StopOptions: ()}
-    names = {each.name for record, left in records.items() for each in fields(record) if each.name not in left}
+    names = {
+        each.name for record, left in records.items() for each in fields(record) if each.name not in left
+    }
     assert {known[f"--{name.replace('_', '-')}"].name for name in names} == names
     written = {option.name for option in known.values()}
     own = {"name", "controller", "output", "pdf", "force"}  # of the files that are written, and the law
@@ -89,7 +91,14 @@ def test_only_attached_files_are_opened(name, field):
 
 
 def test_names_lose_their_folders_alone():
-    names = ("a/b/coach.toml:laden", "../law.py:Law", "polach-wet", "er24pc:laden", "afsmc", "knorr-bremse:textbook")
+    names = (
+        "a/b/coach.toml:laden",
+        "../law.py:Law",
+        "polach-wet",
+        "er24pc:laden",
+        "afsmc",
+        "knorr-bremse:textbook",
+    )
     assert tuple(map(attached_name, names)) == (
         "coach.toml:laden",
         "law.py:Law",
