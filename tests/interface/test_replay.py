@@ -46,6 +46,7 @@ def short_reports():
         patch.setattr(dossier_module, "verify", partial(suite.verify, only=QUICK))
         patch.setattr(dossier_module, "uncertainty", lambda *_, **__: None)
         patch.setattr(dossier_module, "robustness", lambda *_, **__: None)
+        patch.setattr(dossier_module, "next_step", lambda *_, **__: None)
         patch.setattr(report_call, "FAMILIES", {"none": FAMILIES["none"]} | {"smc": FAMILIES["smc"]})
         patch.setattr("wspd_design.reporting.figures.drawing.figure_svg", lambda _figure: BLANK)
         patch.setenv("COLUMNS", "200")

@@ -96,7 +96,7 @@ def test_the_opposite_law_is_another_one_and_is_not_fit(in_memory, vehicle):
     )
     assert wrong.law.fingerprint != in_memory.law.fingerprint
     assert wrong.provenance.input_hash != in_memory.provenance.input_hash
-    assert plain(verdict(wrong).sentence).startswith("Not fit")
+    assert plain(verdict(wrong).sentence).startswith("Rejected")
 
 
 def test_a_design_keeps_its_specification():

@@ -18,6 +18,7 @@ from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
 from wspd_design.design.records import Design
 from wspd_design.design.selection import named_design
+from wspd_design.design.stop_requirements import named_requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.studies.inputs import (
     COMMAND,
@@ -30,6 +31,7 @@ from wspd_design.studies.inputs import (
     law_inputs,
     parameter_inputs,
     required_rails,
+    requirement_inputs,
     side_by_side,
 )
 from wspd_design.studies.previous import PREVIOUS, Previous, previous
@@ -57,6 +59,7 @@ class ReportCall:
     seed: int = 0
     template: str | None = None
     diff: str | None = None  # record of an older report
+    requirements: str | None = None  # name of a template of requirements, or a file
     sensors: SensorOptions = _UNSAID
     disturbances: StopOptions = _CALM
 
@@ -83,6 +86,7 @@ class ReportCall:
             law=name(self.law),
             vehicle=name(self.vehicle),
             rail=name(self.rail),
+            requirements=None if self.requirements is None else name(self.requirements),
             disturbances=with_rail_names(self.disturbances, name),
         )
 
@@ -94,7 +98,7 @@ class ReportCall:
     @property
     def simulation(self) -> str:
         """The command line that simulates the stop of the report."""
-        return replace(self, template=None, diff=None)._after("wspd", "simulate")
+        return replace(self, template=None, diff=None, requirements=None)._after("wspd", "simulate")
 
     def _after(self, *head: str) -> str:
         plain = ReportCall(vehicle="", rail="")
@@ -215,8 +219,10 @@ def over_attachments(
         )
         call = replace(call, law=DESIGN, slip=None, sample_time=None, sensors=SensorOptions())
         law_files = (design_input(attached),)
+    wanted = None if call.requirements is None else named_requirements(call.requirements, case.specification)
     files = (
         *law_files,
+        *requirement_inputs(call.requirements, wanted),
         *parameter_inputs("vehicle", case.vehicle_name),
         *(file for rail in rails for file in parameter_inputs("rail", rail)),
     )
@@ -231,7 +237,7 @@ def check_names(call: ReportCall, inputs: Sequence[InputFile]) -> None:
     there = {each.name for each in inputs}
     if call.diff is not None and call.diff not in there:
         raise UserError(f"{COMMAND} names {call.diff!a}, which is not attached; {_AS_WRITTEN}")
-    for name in (call.law, call.vehicle, *call.rails):
+    for name in (call.law, call.vehicle, *call.rails, *filter(None, [call.requirements])):
         path = file_of(name)
         if path is not None and str(path) not in there:
             raise UserError(f"{COMMAND} names {name!a}, which is not attached; {_AS_WRITTEN}")
@@ -298,5 +304,8 @@ def compute(
             written="" if isinstance(made, Design) else call.law,
             plant=call.plant,
             stored=stored,
+            requirements=None
+            if call.requirements is None
+            else named_requirements(call.requirements, case.specification),
             progress=progress,
         )

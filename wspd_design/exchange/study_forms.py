@@ -15,7 +15,6 @@ from wspd_design.exchange.common_keys import (
     nullable,
 )
 from wspd_design.exchange.forms import Form, Key
-from wspd_design.exchange.search_forms import JUDGED
 from wspd_design.exchange.stop_forms import FAULT, STOP
 from wspd_design.exchange.uncertainty_forms import UNCERTAINTY
 
@@ -238,6 +237,35 @@ REPORTED_LAW = Form(
         Key(name="fingerprint", kind="text", meaning="SHA-256 of all that decides what it does"),
     ),
 )
+REQUIREMENT = Form(
+    name="requirement",
+    keys=(
+        Key(name="id", kind="text", meaning="R1, R2, ..."),
+        Key(name="requirement", kind="text", meaning="name of the criterion, or of what is asked of checks"),
+        Key(name="title", kind="text", meaning="in words"),
+        nullable("limit", "in SI units; null where a check decides or nothing is required"),
+        nullable("reached", "in SI units; null where there is no such figure"),
+        nullable("perfect", "what a perfect law reaches in the same stop; null where that is not known"),
+        nullable("margin", "distance from the limit over the limit, positive where it is kept"),
+        Key(
+            name="outcome", kind="text", words=("met", "missed", "open", "told"), meaning="told: not required"
+        ),
+        Key(name="evidence", kind="text", meaning="what shows it"),
+        Key(name="checks", kind="text", many=ANY, meaning="names of those that decide it"),
+        Key(name="source", kind="text", meaning="of the limit"),
+        Key(name="verified", kind="flag", meaning="whether somebody compared the limit with its source"),
+        Key(name="remark", kind="text", meaning="what the outcome rests on"),
+    ),
+)
+ALTERNATIVE = Form(
+    name="alternative",
+    keys=(
+        Key(name="law", kind="text", meaning="family, with gains by its rules"),
+        SAMPLE_TIME_KEY,
+        Key(name="missed", kind="text", many=ANY, meaning="names of the requirements that it does not meet"),
+        nullable("distance_m", "of the same stop; null where drawn stops are judged"),
+    ),
+)
 REPORT = Form(
     name="report",
     schema="wspd-report/3",
@@ -263,9 +291,21 @@ REPORT = Form(
         Key(name="checks", kind=CHECK, many=ANY, meaning="one object for each claim"),
         Key(
             name="requirements",
-            kind=JUDGED,
+            kind=REQUIREMENT,
+            many=(1, None),
+            meaning="what is asked for, what is reached and what shows it, causes before effects",
+        ),
+        Key(
+            name="verdict",
+            kind="text",
+            words=("accepted", "rejected", "undecided"),
+            meaning="accepted if every requirement is met, rejected if one is missed",
+        ),
+        Key(
+            name="alternatives",
+            kind=ALTERNATIVE,
             many=ANY,
-            meaning="what the design reaches of them on held-out stops; empty for a design without",
+            meaning="that were tried in place of a design that is not accepted, the best first",
         ),
         Key(name="stops", kind=STOP, many=(1, None), meaning="the design's own stop first"),
         Key(

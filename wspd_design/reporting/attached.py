@@ -15,7 +15,9 @@ from typing import NoReturn
 from wspd_design.parameters.errors import UserError
 
 MOST_BYTES, MOST_FILES, LONGEST_NAME = 64_000_000, 300, 200
-_LINK = re.compile(rb'<a download="([^"<>]{1,1200})" href="data:[a-z/+.-]{1,60};base64,([A-Za-z0-9+/=]*)">')
+_LINK = re.compile(
+    rb'<a (?:id="[^"<>]{1,1200}" )?download="([^"<>]{1,1200})" href="data:[a-z/+.-]{1,60};base64,([A-Za-z0-9+/=]*)">'
+)
 _FORBIDDEN = re.compile(r'[\x00-\x1f\x7f/\\:*?"<>|]')
 _ISOLATES = {
     ord("\N{FIRST STRONG ISOLATE}"): None,
@@ -99,7 +101,7 @@ def _of_pdf(content: bytes, path: Path) -> list[tuple[str, bytes]]:
         for each in pypdf.PdfReader(io.BytesIO(content)).attachment_list:
             if len(found) == MOST_FILES or sum(len(made) for _, made in found) > MOST_BYTES:
                 break
-            found.append((each.name, each.content))
+            found.append((each.alternative_name or each.name, each.content))
     except Exception as error:  # a damaged file makes the library fail in any way
         _refuse(path, f"its attachments cannot be read ({type(error).__name__})")
     return found

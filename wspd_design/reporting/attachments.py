@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import re
 from datetime import datetime
 from pathlib import PurePath
 
@@ -14,8 +13,9 @@ from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.checks import certificate_files
 from wspd_design.reporting.template import BLANK, Template, template_text
 from wspd_design.simulation.records import Run
-from wspd_design.simulation.traces import on_a_grid, traces
+from wspd_design.simulation.traces import on_a_grid, trace_name, traces
 from wspd_design.studies.dossier import Dossier
+from wspd_design.studies.uncertainty import Uncertainty
 
 RECORD, TEMPLATE, SUMS = "report.json", "template.toml", "SHA256SUMS"
 OWN_INTERVAL, OTHER_INTERVAL = 0.02, 0.1  # s, between the rows of traces
@@ -40,6 +40,7 @@ def attachments(dossier: Dossier, made_at: datetime, template: Template = BLANK)
             description="all numbers of this report",
         ),
         *_traces(dossier),
+        *_sets(dossier),
         *certificate_files(dossier),
         *_template_file(template),
     )
@@ -106,15 +107,31 @@ def _traces(dossier: Dossier) -> tuple[Attachment, ...]:
     )
 
 
-def trace_name(number: int, controller: str) -> str:
-    """Return the name of the traces of a stop, which is that of the design if its number is 0."""
-    plain = re.sub(r"[^a-z0-9]+", "-", controller.lower()).strip("-")
-    return f"stop-{number + 1}{plain and '-'}{plain}.csv"
-
-
 def trace_text(run: Run, interval: float) -> str:
     """Return the traces of a stop as CSV with six digits, columns named with their unit."""
     table = on_a_grid(traces(run), interval)
     lines = [",".join(table.dtype.names or ())]
     lines += [",".join(f"{value:.6g}" for value in row) for row in table.tolist()]
+    return "\n".join(lines) + "\n"
+
+
+def _sets(dossier: Dossier) -> tuple[Attachment, ...]:
+    if dossier.uncertainty is None:
+        return ()
+    return (
+        Attachment(
+            name="sets.csv",
+            media_type="text/csv",
+            content=sets_text(dossier.uncertainty),
+            description="the drawn sets of the uncertainty: numbers and key figures, a row each, in SI units",
+        ),
+    )
+
+
+def sets_text(found: Uncertainty) -> str:
+    """Return the drawn sets as CSV with nine digits: the number of each, what it draws and its key figures."""
+    lines = [",".join(("set", *found.drawn, *(each.name for each in found.spreads)))]
+    for number, drawn in enumerate(found.numbers):
+        row = (*drawn, *(each.values[number] for each in found.spreads))
+        lines.append(",".join((str(number), *(f"{value:.9g}" for value in row))))
     return "\n".join(lines) + "\n"

@@ -24,8 +24,10 @@ class Status(Enum):
     VACUOUS = ("∅", "vacuous", "neutral")
     NOT_APPLICABLE = ("–", "not applicable", "neutral")
     ACCEPTED = ("✓", "accepted", "good")
+    REJECTED = ("✗", "rejected", "bad")
     MET = ("✓", "met", "good")
     MISSED = ("✗", "not met", "bad")
+    OPEN = ("?", "open", "open")
     HOLDS = ("✓", "holds", "good")
     PARTLY = ("±", "holds in part", "open")
     FAILS = ("✗", "does not hold", "bad")
@@ -115,13 +117,15 @@ class Equation:
 class Figure:
     """A picture as SVG, as :func:`wspd_design.reporting.figure_style.figure_svg` returns it.
 
-    ``alt`` says in words what the picture shows, ``caption`` what to conclude from it.
+    ``alt`` says in words what the picture shows, ``caption`` what to conclude from it; ``data`` is the name of the
+    attachment that holds its numbers.
     """
 
     svg: str
     caption: Text
     alt: str
     anchor: str = ""
+    data: str = ""
 
     def __post_init__(self) -> None:
         if not self.alt.strip():

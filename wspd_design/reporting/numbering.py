@@ -53,6 +53,12 @@ def number(document: Document) -> Numbering:
     for part in parts(document):
         if isinstance(part, Link) and part.anchor not in labels:
             raise ValueError(f"link to #{part.anchor}: the document has no such anchor")
+    attached = [each.name for each in document.attachments]
+    for numbered in summary + blocks:
+        if isinstance(numbered.block, Figure) and numbered.block.data not in ("", *attached):
+            raise ValueError(
+                f"{numbered.label}: its numbers are in {numbered.block.data}, which is not attached"
+            )
     headings = tuple(each for each in blocks if isinstance(each.block, Heading))
     return Numbering(summary=summary, blocks=blocks, labels=labels, headings=headings)
 

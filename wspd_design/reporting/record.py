@@ -20,7 +20,9 @@ from wspd_design.exchange.study_forms import REPORT
 from wspd_design.exchange.version import program_version
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import FaultedStop, Robustness
+from wspd_design.studies.judgment import Requirement
 from wspd_design.studies.key_figures import Outcome
+from wspd_design.studies.next_step import Alternative
 from wspd_design.studies.provenance import Provenance
 from wspd_design.studies.uncertainty import Uncertainty
 
@@ -56,9 +58,11 @@ def report_record(dossier: Dossier, made_at: datetime) -> dict[str, Any]:
             "brake": brake_object(dossier.brake),
             "linearizations": [linearization_point_object(point) for point in dossier.linearizations],
             "checks": [check_object(each) for each in dossier.certificates],
-            "requirements": []
-            if dossier.judgment is None
-            else [asdict(each) for each in dossier.judgment.judged],
+            "requirements": [_requirement(each) for each in dossier.judgment.rows],
+            "verdict": dossier.judgment.verdict,
+            "alternatives": []
+            if dossier.next_step is None
+            else [_alternative(each) for each in dossier.next_step.tried],
             "stops": [
                 stop_object(trial, dossier.scenario, slip_reference=reference) for trial in dossier.trials
             ],
@@ -71,6 +75,33 @@ def report_record(dossier: Dossier, made_at: datetime) -> dict[str, Any]:
         }
     )
     return record
+
+
+def _requirement(row: Requirement) -> dict[str, Any]:
+    return {
+        "id": row.id,
+        "requirement": row.name,
+        "title": row.title,
+        "limit": row.limit,
+        "reached": row.reached,
+        "perfect": row.perfect,
+        "margin": row.margin,
+        "outcome": row.outcome.name.lower(),
+        "evidence": row.evidence,
+        "checks": list(row.checks),
+        "source": row.source,
+        "verified": row.verified,
+        "remark": row.remark,
+    }
+
+
+def _alternative(tried: Alternative) -> dict[str, Any]:
+    return {
+        "law": tried.law,
+        "sample_time_s": tried.sample_time,
+        "missed": list(tried.missed),
+        "distance_m": tried.distance,
+    }
 
 
 def _provenance(made: Provenance, made_at: datetime) -> dict[str, Any]:

@@ -9,12 +9,14 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.attachments import attachments
 from wspd_design.reporting.blocks import Document
 from wspd_design.reporting.output import write_document
+from wspd_design.reporting.sections.assumptions import assumptions
 from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
 from wspd_design.reporting.sections.changes import changes
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
+from wspd_design.reporting.sections.hazards import hazards
 from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.linearization import linearization
 from wspd_design.reporting.sections.replay import provenance, replay
@@ -24,23 +26,30 @@ from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.sections.theory import theory
 from wspd_design.reporting.sections.tool import tool
+from wspd_design.reporting.sections.uncertainty import uncertainty
+from wspd_design.reporting.sections.words import words
 from wspd_design.reporting.template import BLANK, Template
 from wspd_design.studies.dossier import Dossier
 
 SECTIONS = (
-    case,
     requirements,
+    assumptions,
+    hazards,
+    case,
     brake,
     slip_equation,
     design,
     linearization,
     checks,
     stop,
+    uncertainty,
     robustness,
     comparison,
     sources,
     limits,
+    theory,
     replay,
     tool,
     changes,
@@ -76,6 +85,7 @@ def report_document(dossier: Dossier, timestamp: datetime, template: Template = 
     """Return the report of a design, not yet rendered."""
     law, origin = dossier.law, dossier.provenance
     speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
+    blocks = tuple(block for section in SECTIONS for block in section(dossier))
     return Document(
         title=f"Wheel slide protection: {law.name}",
         subtitle=f"{law.heading}, for {dossier.vehicle.name} on {dossier.rail.name}, from {speed}",
@@ -83,7 +93,7 @@ def report_document(dossier: Dossier, timestamp: datetime, template: Template = 
         f"inputs {origin.input_hash[:12]}",
         verdict=verdict(dossier),
         summary=summary(dossier),
-        blocks=tuple(block for section in SECTIONS for block in section(dossier)),
+        blocks=(*blocks, *words(blocks)),
         provenance=provenance(dossier),
         attachments=attachments(dossier, timestamp, template),
         timestamp=timestamp,

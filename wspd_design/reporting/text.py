@@ -132,13 +132,14 @@ def printable(text: str) -> str:
 _SPOKEN = (
     (r'"', ""),
     (r"\b(dot|hat|tilde|overline)\(([^()]*)\)", r"\2 \1"),
+    (r"\\/", " over "),
     (r"<=", " at most "),
     (r">=", " at least "),
     (r"\^2\b", " squared"),
     (r"\^", " to the power "),
     (r"/", " over "),
     (r"=", " equals "),
-    (r"[_(),]", " "),
+    (r"_", " "),
     (r"\s+", " "),
 )
 

@@ -1,5 +1,6 @@
 """Traces of a stop as a table, in full or on a grid of times."""
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.simulation.records import Run
@@ -41,3 +42,9 @@ def on_a_grid(table: "NDArray[Any]", interval: float) -> "NDArray[Any]":
     for name in table.dtype.names or ():
         found[name] = np.interp([*grid, time[-1]], time, table[name])
     return found
+
+
+def trace_name(number: int, controller: str) -> str:
+    """Return the name of the file with the traces of a stop of several; number 0 is that of the design."""
+    plain = re.sub(r"[^a-z0-9]+", "-", controller.lower()).strip("-")
+    return f"stop-{number + 1}{plain and '-'}{plain}.csv"

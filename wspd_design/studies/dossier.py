@@ -1,11 +1,13 @@
 """Everything that a report shows about a design, computed once."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
 from wspd_design.analysis.linearization import Linearization, linearize
+from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
@@ -13,13 +15,15 @@ from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.case import specification_of
-from wspd_design.design.catalog import controller, controller_of, design_rail, is_design_file
+from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import read_design
 from wspd_design.design.industry import usual_table
 from wspd_design.design.own_controller import is_own_controller
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
+from wspd_design.design.requirements import Requirements, seen_from_here
 from wspd_design.design.selection import named_design
+from wspd_design.design.stop_requirements import StopRequirements, paper_requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.given import given_entries
@@ -34,6 +38,8 @@ from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
 from wspd_design.studies.inputs import design_input, law_inputs, parameter_inputs, python_input, side_by_side
 from wspd_design.studies.judgment import Judgment, judgment
+from wspd_design.studies.loop_growth import Growth, growth_of
+from wspd_design.studies.next_step import NextStep, next_step
 from wspd_design.studies.previous import Previous
 from wspd_design.studies.provenance import InputFile, Provenance, provenance
 from wspd_design.studies.reported_law import ReportedLaw, reported_law
@@ -69,7 +75,9 @@ class Dossier:
     certificates: tuple[Certificate, ...]
     trials: tuple[Trial, ...]  # the design's own stop first
     phase_plane: PhasePlane | None  # of laws with a sliding surface
-    judgment: Judgment | None  # of a design with requirements
+    growth: Growth | None  # near the reference; None where no check of the loop speaks about the law
+    judgment: Judgment  # by its requirements
+    next_step: NextStep | None  # of a law that is not accepted
     robustness: Robustness | None  # where wheelsets differ
     uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
@@ -93,6 +101,7 @@ def dossier(
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
     folder: Path = Path(),
+    requirements: StopRequirements | Requirements | None = None,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
     """Compute everything about a law.
@@ -127,6 +136,8 @@ def dossier(
         Folder of certificate files; what the checkers accept of it for this design is not searched again.
     folder : Path
         Of the design file, from which the rails of its requirements are seen.
+    requirements : StopRequirements or Requirements, optional
+        That the law is judged by: those of the design by default, and what the paper asks for of one without.
     progress : callable, optional
         Told each stage before it starts.
 
@@ -153,6 +164,7 @@ def dossier(
     linearizations = tuple(linearize(of_vehicle, of_rail, slip=asked.slip, speed=float(v)) for v in speeds)
     problem = stability_problem(of_vehicle, of_rail, own, asked, seed=scenario.seed)
     certificates = verify(problem, progress=progress, stored=stored)
+    growth = growth_of(problem, certificates)
     shared = replace(asked, reference=None)  # which is for the law of the report alone
     others = [_baseline(name, of_vehicle, of_rail, shared) for name in baselines]
     controllers = [own, *(law for law, _ in others)]
@@ -162,6 +174,20 @@ def dossier(
         scenario,
         slip_reference=asked.slip,
         plant=plant,
+        progress=progress,
+    )
+    vehicle_name = "" if isinstance(vehicle, Vehicle) else str(vehicle)
+    full_adhesion = _full_adhesion(of_vehicle, scenario)
+    judged = judgment(
+        own,
+        requirements or _own_requirements(design, folder) or paper_requirements(asked),
+        vehicle=of_vehicle,
+        vehicle_name=vehicle_name,
+        speeds=asked.speeds,
+        own=trials[0],
+        certificates=certificates,
+        growth=growth,
+        full_adhesion=full_adhesion,
         progress=progress,
     )
     told = reported_law(own, design, written=written)
@@ -190,9 +216,23 @@ def dossier(
         certificates=certificates,
         trials=trials,
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
-        judgment=None
-        if design is None
-        else judgment(design, design_rail(design, of_rail), certificates, folder=folder, progress=progress),
+        growth=growth,
+        judgment=judged,
+        next_step=None
+        if judged.accepted
+        else next_step(
+            judged,
+            law=None if design is None else design.law,
+            vehicle=of_vehicle,
+            vehicle_name=vehicle_name,
+            rail=of_rail,
+            asked=shared,
+            scenario=scenario,
+            plant=plant,
+            certificates=certificates,
+            full_adhesion=full_adhesion,
+            progress=progress,
+        ),
         robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),
         uncertainty=uncertainty(
             of_vehicle,
@@ -210,6 +250,20 @@ def dossier(
         previous=previous,
         provenance=provenance(command=command, seed=scenario.seed, inputs=inputs, certificates=certificates),
     )
+
+
+def _full_adhesion(vehicle: Vehicle, scenario: Scenario) -> float:
+    """Return the distance while no wheel slides [m]; NaN on a grade that the brake does not hold."""
+    try:
+        return full_adhesion_stop(vehicle, scenario.initial_speed, grade=scenario.grade).distance
+    except UserError:
+        return math.nan
+
+
+def _own_requirements(design: Design | None, folder: Path) -> Requirements | None:
+    if design is None or design.requirements is None:
+        return None
+    return seen_from_here(design.requirements, folder)
 
 
 def _asked(made: Design | Law, specification: Specification | None) -> Specification:

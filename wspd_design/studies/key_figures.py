@@ -25,6 +25,7 @@ class KeyFigure:
 
     name: str
     title: str
+    short: str
     unit: str
     column: str  # of a campaign; where there is one for each axle, the largest of them counts
     alone: Callable[[Trial], float]
@@ -40,6 +41,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="distance",
             title="stopping distance",
+            short="distance",
             unit="m",
             column="distance_m",
             alone=lambda made: made.metrics.distance,
@@ -48,6 +50,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="time",
             title="stopping time",
+            short="time",
             unit="s",
             column="stopping_time_s",
             alone=lambda made: made.metrics.stopping_time,
@@ -56,6 +59,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="efficiency",
             title="efficiency",
+            short="efficiency",
             unit="-",
             column="efficiency",
             alone=lambda made: made.metrics.efficiency,
@@ -65,6 +69,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="slip_rms",
             title="slip rms about the reference",
+            short="slip rms",
             unit="-",
             column="slip_rms",
             alone=lambda made: made.metrics.slip_rms,
@@ -72,6 +77,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="slip_max",
             title="largest slip above 10 km/h",
+            short="largest slip",
             unit="-",
             column="slip_max",
             alone=lambda made: made.metrics.slip_max,
@@ -79,6 +85,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="longest_lock",
             title="longest lock above 10 km/h",
+            short="lock",
             unit="s",
             column="longest_lock_s",
             alone=lambda made: made.metrics.judged_lock,
@@ -86,6 +93,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="speed_error",
             title="error of the train speed",
+            short="speed error",
             unit="-",
             column="speed_error",
             alone=lambda made: made.metrics.speed_error,
@@ -93,6 +101,7 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         KeyFigure(
             name="vented_air",
             title="air vented per wheelset",
+            short="air",
             unit="cylinders",
             column="vented_air",
             alone=lambda made: made.metrics.vented_air,

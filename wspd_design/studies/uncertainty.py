@@ -56,8 +56,8 @@ class Spread:
 
     @property
     def width(self) -> float:
-        """What lies between the percentiles: the digits of the figure follow from it."""
-        return self.p95 - self.p05
+        """What lies between the percentiles, or all sets if nothing does: the digits of the figure follow from it."""
+        return self.p95 - self.p05 or self.high - self.low
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

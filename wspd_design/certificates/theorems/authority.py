@@ -205,6 +205,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         else (),
         hypotheses=tuple(hypotheses),
         assumptions=("T = u: no valve lag, no sampling", "slip reference constant"),
+        domain=said.domain,
         varied=said.varied,
         held=said.held,
         method="interval branch and bound on the edges of the box where the adhesion is extreme, replayed by the "

@@ -113,6 +113,8 @@ def _show(name: str, about: str, found: Replayed) -> None:
         out.print(Padding(Text(found.reason), (0, 0, 0, 2)))
     else:
         out.print(Padding(claim_text(found.certificate), (0, 0, 0, 2)))
+        for proof in found.certificate.proofs:
+            out.print(Padding(Text(f"proved: {proof.text}", style="dim"), (0, 0, 0, 4)))
 
 
 def _printable(name: str) -> str:

@@ -19,6 +19,7 @@ from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_options import along_the_track
 from wspd_design.design.case import load_case
 from wspd_design.design.certification import stored_beside
+from wspd_design.design.stop_requirements import TEMPLATES
 from wspd_design.parameters.errors import UserError
 from wspd_design.studies.inputs import DESIGN
 
@@ -47,6 +48,15 @@ def report(
         Path, typer.Option("--output", "-o", metavar="FILE", help="Report to write, .html or .pdf.")
     ] = Path("report.html"),
     pdf: Annotated[bool, typer.Option("--pdf", help="Write the same content as PDF beside it, too.")] = False,
+    requirements: Annotated[
+        str | None,
+        typer.Option(
+            "--requirements",
+            metavar="TEMPLATE|FILE.toml",
+            help=f"Judge by these in place of those of the design: {', '.join(TEMPLATES)}, or a table of your own "
+            "(docs/requirements.md).",
+        ),
+    ] = None,
     template: Annotated[
         Path | None,
         typer.Option(
@@ -86,7 +96,7 @@ def report(
     from wspd_design.reporting.text import plain
 
     if replay is not None:
-        others = (controller, vehicle, rail, speed, slip, sample_time, template, diff)
+        others = (controller, vehicle, rail, speed, slip, sample_time, template, diff, requirements)
         set_otherwise = (plant, seed, sensors, disturbances) != (
             options.PLANT,
             0,
@@ -117,6 +127,7 @@ def report(
         sample_time=sample_time,
         seed=seed,
         template=None if letterhead == BLANK else TEMPLATE,
+        requirements=requirements,
         sensors=sensors,
         disturbances=disturbances,
     )

@@ -61,7 +61,7 @@ def distance_bars(
                 alpha=0.45,
                 label=names[1],
             )
-            said = f"{numbers.uncertain(distance, trial.check.spread, 1)} m"
+            said = f"{numbers.settled(distance, trial.check.spread, 1)} m"
             note(axes, said, end, row, xytext=(4, 0), va="center")
         else:
             axes.barh(row, distance, color=SERIES[6], height=0.6, alpha=0.4)

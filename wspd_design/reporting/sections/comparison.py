@@ -146,8 +146,8 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
             ColumnOf(
                 title="Distance",
                 unit="m",
-                decimals=1,
-                read=lambda each: Uncertain(value=each.metrics.distance, spread=each.check.spread),
+                flush_right=True,
+                read=lambda each: numbers.settled(each.metrics.distance, each.check.spread, 1),
             ),
             ColumnOf(
                 title="Efficiency", unit="%", decimals=1, read=lambda each: 100.0 * each.metrics.efficiency

@@ -1,5 +1,6 @@
 """The same design with one sensor lost, one valve stuck, and on patches."""
 
+from wspd_design.design.stop_requirements import LONGEST_LOCK
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Heading, Paragraph, Status, Table
 from wspd_design.reporting.figures.drawing import KILO, KMH
@@ -7,7 +8,7 @@ from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.studies.dossier import Dossier
-from wspd_design.studies.faults import LONGEST_LOCK, PATCHES, SINCE, FaultedStop, Robustness
+from wspd_design.studies.faults import PATCHES, SINCE, FaultedStop, Robustness
 
 ROBUSTNESS = "robustness"
 """Anchor of the section."""

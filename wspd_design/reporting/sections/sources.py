@@ -1,5 +1,6 @@
 """Where every number comes from."""
 
+from wspd_design.certificates.quantities import outside_claims, quantity_of
 from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.reporting import numbers
@@ -21,11 +22,12 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
         Paragraph(
             text=f"All {len(entries)} numbers of the vehicle, the rails, the compared controllers and the "
             f"constants; {weak} of them are calibrated or assumed. A number without bounds is taken as "
-            "exactly known; the checks vary mass, inertia and friction within their bounds and hold the rest "
-            "at its value."
+            "exactly known. Of a number with bounds the tables say who varies it over all of them, and who holds "
+            "it at its value."
         ),
     ]
-    found += [_table(each) for each in sets]
+    own = dossier.vehicle, dossier.rail
+    found += [_table(each, dossier if each in own else None) for each in sets]
     found += [
         gain_table(made, caption=f"Gains of {made.name}, compared.", anchor=f"gains-{index}")
         for index, made in enumerate(dossier.compared_designs, start=1)
@@ -53,7 +55,13 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
     return tuple(found)
 
 
-def _table(parameters: ParameterSet) -> Table:
+def _table(parameters: ParameterSet, dossier: Dossier | None) -> Table:
+    """List the numbers of a set; of those that the checks and the drawn sets go by, say how they take the bounds."""
+    used: list[ColumnOf[Entry]] = []
+    if dossier is not None:
+        used.append(
+            ColumnOf(title="Within its bounds", read=lambda entry: _use(entry, parameters.kind, dossier))
+        )
     return build(
         parameters.entries.values(),
         (
@@ -61,6 +69,7 @@ def _table(parameters: ParameterSet) -> Table:
             ColumnOf(title="Value", read=lambda entry: _value(entry.value, entry.unit)),
             ColumnOf(title="Bounds", read=lambda entry: _bounds(entry)),
             ColumnOf(title="Unit", read=lambda entry: numbers.unit(entry.unit) or "-"),
+            *used,
             ColumnOf(title="Status", read=lambda entry: entry.status),
             ColumnOf(
                 title="Source, place",
@@ -71,6 +80,26 @@ def _table(parameters: ParameterSet) -> Table:
         f"{parameters.title}.",
         anchor=_anchor(parameters),
     )
+
+
+def _use(entry: Entry, kind: str, dossier: Dossier) -> str:
+    """Say who varies a number within its bounds and who holds it."""
+    if entry.bounds is None:
+        return ""
+    found, quantity = dossier.uncertainty, quantity_of(kind, entry.name)
+    name = f"{kind}.{entry.name}"
+    drawn, kept_back = found is not None and name in found.drawn, found is not None and name in found.held
+    term = "" if quantity is None else quantity.name
+    varied = sum(term in check.varied for check in dossier.certificates)
+    held = sum(term in check.held for check in dossier.certificates)
+    by = [*(["the drawn sets"] if drawn else []), *([numbers.count(varied, "check")] if varied else [])]
+    kept = [*(["the drawn sets"] if kept_back else []), *([numbers.count(held, "check")] if held else [])]
+    said = [
+        *([f"varied by {numbers.listing(by)}"] if by else []),
+        *([f"held by {numbers.listing(kept)}"] if kept else []),
+        *([outside_claims(kind, entry.name)] if quantity is None else []),
+    ]
+    return "; ".join(filter(None, said))
 
 
 def _name(key: str) -> str:

@@ -1,8 +1,7 @@
-"""The stop of this design: traces, Lyapunov functions and phase planes."""
+"""The stop of this design: traces and phase planes."""
 
 from functools import partial
 
-from wspd_design.certificates.records import Certificate
 from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE, ERROR_SPEED
 from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.reporting import numbers
@@ -11,15 +10,16 @@ from wspd_design.reporting.figures.drawing import KMH, picture
 from wspd_design.reporting.figures.estimate import estimate_alt, estimate_panels
 from wspd_design.reporting.figures.further_brakes import further_brakes, height, panels
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
-from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.running_gear import axle_shares
+from wspd_design.reporting.spreads import distance_of_stop
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip, rails_of
 from wspd_design.simulation.law_memory import reference_range, releases, speed_estimate
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
+from wspd_design.simulation.traces import trace_name
 from wspd_design.studies.dossier import Dossier
 
 EXACT = 1e-4  # relative error of a speed that is told, below which none is
@@ -39,9 +39,9 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
         Paragraph(
             text=f"The stop of {run.train} from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
             f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
-            f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
-            f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
-            f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
+            f"{distance_of_stop(dossier)} m and {numbers.decimals(figures.stopping_time, 2)} s. "
+            f"{ideal_sentence(figures)} Above {judged} km/h the mean slip is "
+            f"{numbers.decimals(figures.slip_mean, 3)} and the largest "
             f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
             f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
             f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
@@ -54,6 +54,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             "Bars at the upper edge of the slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
+            data=trace_name(0, run.controller),
         ),
         *_estimate(own, None if dossier.law.own else specification.sensors),
         *_further_brakes(run),
@@ -71,7 +72,6 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",
         ),
-        *_lyapunov(dossier.certificates),
     )
 
 
@@ -147,20 +147,6 @@ def _further_brakes(run: Run) -> tuple[Block, ...]:
                 (f"{len(shown)} panels over {run.time[-1]:.2f} s.", *(panel.words for panel in shown))
             ),
             anchor="stop-further-brakes",
-        ),
-    )
-
-
-def _lyapunov(certificates: tuple[Certificate, ...]) -> tuple[Block, ...]:
-    shown = [each for each in certificates if lyapunov_series(each)]
-    if not shown:
-        return ()
-    return (
-        Figure(
-            svg=picture(partial(lyapunov_functions, certificates=shown), height=2.8),
-            caption="Lyapunov functions over time, each in the setting of its proof, not in the stop above. "
-            "Each check says where its function must not rise.",
-            alt=" ".join(series_alt(lyapunov_series(each)[:1]) for each in shown),
-            anchor="lyapunov",
+            data=trace_name(0, run.controller),
         ),
     )

@@ -166,6 +166,17 @@ def loop(problem: Problem, speed: float, *, sample_time: float | None = None) ->
     return Loop(whole, enters, leaves, sample_time or 0.0)
 
 
+def growths_per_sample(problem: Problem) -> list[tuple[float, float]]:
+    """Return the largest magnitude of a sampled pole at each speed of the check, and the speed [-, m/s]."""
+    import numpy as np
+
+    def magnitude(speed: float) -> float:
+        opened = loop(problem, speed, sample_time=problem.sample_time)
+        return float(np.abs(np.linalg.eigvals(opened.A - opened.B @ opened.C)).max())
+
+    return [(magnitude(float(speed)), float(speed)) for speed in np.geomspace(*problem.speeds, SPEEDS)]
+
+
 def margins(opened: Loop) -> Margins:
     """Margins of a loop, from its poles before and after feedback [factors, rad, s]."""
     import numpy as np
