@@ -106,11 +106,11 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     asked += [f"histories, {each}" for each in wheelsets if each not in blind]
     return Certificate(
         claim=f"The command of {'its wheelset' if law.wheelsets is None else 'every wheelset with a brake'} by "
-        f"{problem.controller.name} depends on the speed of its own wheel, at the same sample or later.",
+        f"{problem.controller.name} depends on the speed of its own wheel, at the same sample or later; what the "
+        "law reads before its first sample does not count.",
         status=status,
         explanation=f"{meaning} {_said(law, [read[each - 1] for each in wheelsets])}",
         hypotheses=tuple(hypothesis(findings[each].asked, findings[each]) for each in asked),
-        assumptions=("what the law reads once, before its first sample, does not count",),
         method="paths of the graph of the step, followed through its memory; pairs of histories in doubles",
         reference="docs/theory.md#traced-loop",
     )

@@ -115,7 +115,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         assumptions=(
             "nominal parameters",
             "exact measurement",
-            "a slip below the reference costs distance and is judged by it, not here",
+            "a deviation below the reference is benign: it costs distance, by which it is judged",
         ),
         method="simulation of one stop, valve edge to valve edge",
         reference="docs/theory.md#holding",

@@ -121,7 +121,6 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         if shown
         else ()
     )
-    held = tuple(dict.fromkeys(name for each in resting for name in each.without_effect))
     uncertain = domain.uncertain(problem)
     return Certificate(
         claim=f"At those of {len(found)} sampled frozen speeds from {problem.speeds[0] * KMH:.3g} to "
@@ -135,15 +134,26 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         witness=where if refuted else (),
         hypotheses=tuple(hypothesis(each.asked, each) for each in (poles, bears) if each.numbers),
         assumptions=(
-            "frozen train speed, and measured without error",
+            "frozen train speed",
+            "exact measurement, no computing time",
             "nominal parameters, axle at static load, all axles alike",
-            "within a sample the slip pole is that at the sampled slip; no computing time",
-            *(f"{name} stays: it has no slope there, and nothing follows it to first order" for name in held),
+            "exact pulses; within a sample the slip pole is that at the sampled slip",
+            "small deviations from where the loop rests, at the speeds that were tried",
+            *_kept(resting),
         ),
         held=tuple(each for each in (*PLANT, *BRAKE) if each in uncertain),
         method="the graph of the step, differentiated by CasADi where Newton's method finds the loop at rest; slopes "
         "compared with small moves to both sides; poles in doubles",
         reference="eqs. (9), (19); docs/theory.md#traced-loop",
+    )
+
+
+def _kept(resting: list[Rest]) -> tuple[str, ...]:
+    """Name the memory that is held, since it has no slope and none other has one in it."""
+    names = dict.fromkeys(name for each in resting for name in each.without_effect)
+    return tuple(
+        f"{name} stays: it is not differentiable there, and nothing follows it to first order"
+        for name in names
     )
 
 
