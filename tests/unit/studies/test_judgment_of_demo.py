@@ -71,7 +71,7 @@ def test_what_is_said_to_clear_it_does(paper, er24pc, monkeypatch):
         certificates=SOUND,
         full_adhesion=173.0,
     )
-    assert len(found.tried) == 1
+    assert len(found.tried) == 2
     for each in found.tried:
         specification = replace(design.specification, sample_time=each.sample_time)
         made = studied.design_controller(er24pc, RAIL, specification, law=each.law)
