@@ -259,7 +259,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "columns": [
                     {
                         "title": _text(column.title),
-                        "unit": printable(column.unit),
+                        "unit": printable(column.unit).replace(" ", "\N{NO-BREAK SPACE}"),
                         "align": column.align,
                         "share": share,
                     }
@@ -276,7 +276,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                     {
                         "label": printable(each.label),
                         "value": printable(each.unbroken),
-                        "unit": printable(each.unit),
+                        "unit": printable(each.unit).replace(" ", "\N{NO-BREAK SPACE}"),
                         "note": _text(each.note),
                     }
                     for each in block.numbers
