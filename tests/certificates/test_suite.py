@@ -35,9 +35,11 @@ def certificates(request):
 def test_order(certificates):
     assert NAMES == (
         "derivation",
+        "feedback",
         "surface_hurwitz",
         "gain_positive",
         "well_posed",
+        "holding_torque",
         "sliding_exists",
         "reaching",
         "boundary_layer",
@@ -52,10 +54,12 @@ def test_order(certificates):
         "sampling",
         "routh_lag",
         "margins",
+        "traced_loop",
         "lpv_lyapunov",
         "sampled_invariance",
         "slip_band",
         "tracking",
+        "overshoot",
         "conservation",
         "stop_bound",
     )
@@ -157,9 +161,11 @@ def test_printed_law_on_dry_rail(printed):
     verdicts = {c.name: c.status for c in printed}
     assert verdicts == {
         "derivation": Status.PROVED,
+        "feedback": Status.PROVED,
         "surface_hurwitz": Status.PROVED,
         "gain_positive": Status.PROVED,
         "well_posed": Status.PROVED,
+        "holding_torque": Status.PROVED,
         "sliding_exists": Status.REFUTED,  # of some axle, with the weakest brake of the bounds
         "reaching": Status.NOT_APPLICABLE,
         "boundary_layer": Status.NOT_APPLICABLE,
@@ -174,10 +180,12 @@ def test_printed_law_on_dry_rail(printed):
         "sampling": Status.REFUTED,
         "routh_lag": Status.REFUTED,
         "margins": Status.REFUTED,
+        "traced_loop": Status.REFUTED,
         "lpv_lyapunov": Status.NOT_APPLICABLE,
         "sampled_invariance": Status.NOT_APPLICABLE,
         "slip_band": Status.NOT_APPLICABLE,
         "tracking": Status.REFUTED,
+        "overshoot": Status.REFUTED,
         "conservation": Status.EVIDENCE,
         "stop_bound": Status.PROVED,
     }

@@ -17,6 +17,7 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.records import Design
 from wspd_design.design.selection import named_design
+from wspd_design.design.stop_requirements import named_requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.studies.inputs import COMMAND, DESIGN, file_of
 from wspd_design.studies.provenance import InputFile
@@ -42,6 +43,7 @@ class ReportCall:
     sample_time: str | None = None
     seed: int = 0
     template: str | None = None
+    requirements: str | None = None  # name of a template of requirements, or a file
     sensors: SensorOptions = _UNSAID
     disturbances: StopOptions = _CALM
 
@@ -68,6 +70,7 @@ class ReportCall:
             law=name(self.law),
             vehicle=name(self.vehicle),
             rail=name(self.rail),
+            requirements=None if self.requirements is None else name(self.requirements),
             disturbances=with_rail_names(self.disturbances, name),
         )
 
@@ -79,7 +82,7 @@ class ReportCall:
     @property
     def simulation(self) -> str:
         """The command line that simulates the stop of the report."""
-        return replace(self, template=None)._after("wspd", "simulate")
+        return replace(self, template=None, requirements=None)._after("wspd", "simulate")
 
     def _after(self, *head: str) -> str:
         plain = ReportCall(vehicle="", rail="")
@@ -172,7 +175,7 @@ def reported(name: str, case: Case) -> Design | Law:
 def check_names(call: ReportCall, inputs: Sequence[InputFile]) -> None:
     """Refuse a call for a file that is not among the inputs, which stand in the folder that this runs in."""
     there = {each.name for each in inputs}
-    for name in (call.law, call.vehicle, *call.rails):
+    for name in (call.law, call.vehicle, *call.rails, *filter(None, [call.requirements])):
         path = file_of(name)
         if path is not None and str(path) not in there:
             raise UserError(f"{COMMAND} names {name!a}, which is not attached; {_AS_WRITTEN}")
@@ -237,5 +240,8 @@ def compute(
             written="" if isinstance(made, Design) else call.law,
             plant=call.plant,
             stored=stored,
+            requirements=None
+            if call.requirements is None
+            else named_requirements(call.requirements, case.specification),
             progress=progress,
         )

@@ -17,6 +17,7 @@ from wspd_design.design.requirements import (
     check_keys,
     read_limits,
     read_requirements,
+    seen_from_here,
     table_of,
     texts,
 )
@@ -90,7 +91,7 @@ def named_requirements(written: str, specification: Specification) -> StopRequir
     document = read_toml(path, written)
     table = document.get("requirements")
     if isinstance(table, dict) and "held_out" in table:
-        return read_requirements(table, written)
+        return seen_from_here(read_requirements(table, written), path.parent)
     return read_stop_requirements(path, written)
 
 

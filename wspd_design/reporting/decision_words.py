@@ -79,13 +79,21 @@ def next_words(dossier: Dossier) -> str:
             + numbers.listing([_alternative(each) for each in found.clears if each.sample_time == span])
             for span in spans
         ]
-        return f"these meet everything: {'; '.join(named)} ({tried}). {_same_law(dossier, found)}".rstrip()
+        met = f"these meet everything: {'; '.join(named)} ({tried}{_silent(dossier, found)})"
+        return f"{met}. {_same_law(dossier, found)}".rstrip()
     best = found.tried[0]
     return (
         f"nothing meets everything ({tried}); closest is {_alternative(best)} sampled every "
         f"{format_quantity(best.sample_time, 'ms')}, which misses {_missed(dossier, best)}. "
         f"{_same_law(dossier, found)}".rstrip()
     )
+
+
+def _silent(dossier: Dossier, found: NextStep) -> str:
+    """Say which requirement no check judges for some of the alternatives that meet the others."""
+    names = {name for each in found.clears for name in each.silent}
+    ids = [row.id for row in dossier.judgment.rows if row.name in names]
+    return f"; of some of them no check judges {numbers.listing(ids)}" if ids else ""
 
 
 def _alternative(each: Alternative) -> str:

@@ -9,11 +9,13 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.attachments import attachments
 from wspd_design.reporting.blocks import Document
 from wspd_design.reporting.output import write_document
+from wspd_design.reporting.sections.assumptions import assumptions
 from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
+from wspd_design.reporting.sections.hazards import hazards
 from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.linearization import linearization
 from wspd_design.reporting.sections.replay import provenance, replay
@@ -30,8 +32,10 @@ from wspd_design.reporting.template import BLANK, Template
 from wspd_design.studies.dossier import Dossier
 
 SECTIONS = (
-    case,
     requirements,
+    assumptions,
+    hazards,
+    case,
     brake,
     slip_equation,
     design,

@@ -11,6 +11,8 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.file import design_text
 from wspd_design.design.own_controller import is_own_controller
 from wspd_design.design.records import Design
+from wspd_design.design.requirements import Requirements
+from wspd_design.design.stop_requirements import StopRequirements
 from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import beside
@@ -115,6 +117,20 @@ def parameter_inputs(
         return (InputFile(name=f"{quote(found.name, safe=' ')}.toml", text=text, meaning=meaning),)
     path = file_of(str(given))
     return () if path is None else (_file(path, f"a {kind}, a file of its own"),)
+
+
+def requirement_inputs(
+    written: str | None, wanted: StopRequirements | Requirements | None
+) -> tuple[InputFile, ...]:
+    """Return the file of requirements of one's own, with the rails beside it that it names."""
+    path = None if written is None else file_of(written)
+    if path is None:
+        return ()
+    rails = wanted.rails if isinstance(wanted, Requirements) else ()
+    return (
+        _file(path, "the requirements, a file of its own"),
+        *(file for rail in rails for file in parameter_inputs("rail", rail)),
+    )
 
 
 def python_input(law: Law, scenario: Scenario, plant: str) -> InputFile:

@@ -20,7 +20,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.records import Scenario
-from wspd_design.studies.judgment import Judgment, judged_stop
+from wspd_design.studies.judgment import Judgment, Outcome, judged_stop
 from wspd_design.studies.loop_growth import growth_of
 
 FASTER = 5.0  # times, that the law is sampled as often in an alternative
@@ -35,6 +35,7 @@ class Alternative:
     sample_time: float  # s
     missed: tuple[str, ...]  # names of the requirements that it does not meet
     distance: float | None  # m, of the same stop; None on drawn stops
+    silent: tuple[str, ...] = ()  # requirements that no check judges for this law
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,7 +121,17 @@ def next_step(
             wanted, stop, found, growth=growth_of(problem, checked), full_adhesion=full_adhesion
         )
         unmet = tuple(each.name for each in (*result.missed, *result.open))
-        tried.append(Alternative(law=name, sample_time=span, missed=unmet, distance=stop.metrics.distance))
+        tried.append(
+            Alternative(
+                law=name,
+                sample_time=span,
+                missed=unmet,
+                distance=stop.metrics.distance,
+                silent=tuple(
+                    each.name for each in result.rows if each.outcome is Outcome.TOLD and each.name == "loop"
+                ),
+            )
+        )
     return NextStep(
         tried=tuple(sorted(tried, key=lambda each: (len(each.missed), each.distance or 0.0))),
         stops=wanted.held_out.sets if isinstance(wanted, Requirements) else 1,

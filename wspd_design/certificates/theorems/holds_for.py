@@ -12,18 +12,20 @@ from typing import Final
 class HoldsFor(Enum):
     """What stands between the law and the wheel in a statement; the value says it in words."""
 
-    EQUATIONS = "the equations, whatever the law"
-    IDEAL_BRAKE = "an ideal brake"
-    VALVE = "with the valve"
-    SAMPLED = "with valve and sampling"
-    STOP = "a full stop"
+    EQUATIONS = "equations"
+    IDEAL_BRAKE = "ideal brake"
+    VALVE = "valve"
+    SAMPLED = "valve, sampled"
+    STOP = "full stop"
 
 
 HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "derivation": HoldsFor.EQUATIONS,
+    "feedback": HoldsFor.EQUATIONS,
     "surface_hurwitz": HoldsFor.IDEAL_BRAKE,
     "gain_positive": HoldsFor.EQUATIONS,
     "well_posed": HoldsFor.EQUATIONS,
+    "holding_torque": HoldsFor.IDEAL_BRAKE,
     "sliding_exists": HoldsFor.IDEAL_BRAKE,
     "reaching": HoldsFor.IDEAL_BRAKE,
     "boundary_layer": HoldsFor.IDEAL_BRAKE,
@@ -38,10 +40,12 @@ HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "sampling": HoldsFor.SAMPLED,
     "routh_lag": HoldsFor.VALVE,
     "margins": HoldsFor.SAMPLED,
+    "traced_loop": HoldsFor.SAMPLED,
     "lpv_lyapunov": HoldsFor.SAMPLED,
     "sampled_invariance": HoldsFor.SAMPLED,
     "slip_band": HoldsFor.SAMPLED,
     "tracking": HoldsFor.STOP,
+    "overshoot": HoldsFor.STOP,
     "conservation": HoldsFor.STOP,
     "stop_bound": HoldsFor.STOP,
 }

@@ -20,6 +20,7 @@ from wspd_design.design.case import Case, load_case
 from wspd_design.design.catalog import is_design_file
 from wspd_design.design.certification import stored_beside
 from wspd_design.design.records import Design
+from wspd_design.design.stop_requirements import TEMPLATES, named_requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.studies.inputs import (
     DESIGN,
@@ -30,6 +31,7 @@ from wspd_design.studies.inputs import (
     law_inputs,
     parameter_inputs,
     required_rails,
+    requirement_inputs,
     side_by_side,
 )
 from wspd_design.studies.provenance import InputFile
@@ -53,6 +55,15 @@ def report(
         Path, typer.Option("--output", "-o", metavar="FILE", help="Report to write, .html or .pdf.")
     ] = Path("report.html"),
     pdf: Annotated[bool, typer.Option("--pdf", help="Write the same content as PDF beside it, too.")] = False,
+    requirements: Annotated[
+        str | None,
+        typer.Option(
+            "--requirements",
+            metavar="TEMPLATE|FILE.toml",
+            help=f"Judge by these in place of those of the design: {', '.join(TEMPLATES)}, or a table of your own "
+            "(docs/requirements.md).",
+        ),
+    ] = None,
     template: Annotated[
         Path | None,
         typer.Option(
@@ -89,6 +100,7 @@ def report(
         sample_time=sample_time,
         seed=seed,
         template=None if letterhead == BLANK else TEMPLATE,
+        requirements=requirements,
         sensors=sensors,
         disturbances=disturbances,
     )
@@ -132,8 +144,10 @@ def _asked(name: str, case: Case, call: ReportCall) -> tuple[ReportCall, tuple[I
         )
         call = replace(call, law=DESIGN, slip=None, sample_time=None, sensors=SensorOptions())
         law_files = (design_input(attached),)
+    wanted = None if call.requirements is None else named_requirements(call.requirements, case.specification)
     files = (
         *law_files,
+        *requirement_inputs(call.requirements, wanted),
         *parameter_inputs("vehicle", case.vehicle_name),
         *(file for rail in rails for file in parameter_inputs("rail", rail)),
     )

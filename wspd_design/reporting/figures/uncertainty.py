@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 BINS = 24
 BAR, NOMINAL = 0.36, 1.2  # share of a row, width of a line [pt]
+TICK = 0.04  # of the height of the axes
 SEEN = 1e-3  # of the axis; a shorter bar is none
 
 
@@ -58,10 +59,17 @@ def distributions(figure: "Figure", panels: Sequence[Panel]) -> "Figure":
                 axes.axvline(percentile, color=SERIES[1], linestyle="--", linewidth=NOMINAL)
         if math.isfinite(panel.nominal):
             axes.axvline(panel.nominal, color=INK, linewidth=NOMINAL)
-        axes.plot(panel.values, [0.0] * len(panel.values), "|", color=MUTED, markersize=7.0, clip_on=False)
+        _ticks(axes, panel.values)
         axes.set(xlabel=panel.label, ylabel="sets [-]")
         axes.label_outer()
     return figure
+
+
+def _ticks(axes: "Axes", values: Sequence[float]) -> None:
+    """Mark each value at the foot of the axes, all with one path, which keeps the page small."""
+    places = [place for value in values for place in (value, value, math.nan)]
+    heights = [0.0, TICK, math.nan] * len(values)
+    axes.plot(places, heights, color=MUTED, linewidth=0.6, transform=axes.get_xaxis_transform())
 
 
 def tornado(figure: "Figure", bars: Sequence[Bar], nominal: float, numerical: float, label: str) -> "Figure":

@@ -8,6 +8,7 @@ from functools import partial
 from wspd_design.certificates.kernel.file import certificate_text, file_name
 from wspd_design.certificates.records import Certificate, Map, Proof
 from wspd_design.certificates.records import Status as Finding
+from wspd_design.certificates.theorems.register import cited
 from wspd_design.certificates.theorems.simulated_stop import TRACKING
 from wspd_design.plants.quarter import Quarter
 from wspd_design.reporting import numbers
@@ -283,7 +284,7 @@ class _Shown:
             ("Tightest point", with_formulas(numbers.point(certificate.worst_point))),
             ("Witness", _witness(certificate)),
             ("Domain", self._domain(certificate)),
-            ("Assumptions", self._words("; ".join(certificate.assumptions))),
+            ("Assumptions", self._words("; ".join(map(cited, certificate.assumptions)))),
             ("Does not say", self._not_said(certificate)),
             ("Left open", open_share if certificate.undecided else ""),
             ("Search", "ended by its budget" if certificate.cut else ""),

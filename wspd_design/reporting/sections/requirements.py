@@ -6,7 +6,7 @@ from wspd_design.design.requirements import Requirements
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Heading, Paragraph, Status, Table
 from wspd_design.reporting.requirement_words import limit
-from wspd_design.reporting.sections.checks import anchor_of, finding_anchor, status_of
+from wspd_design.reporting.sections.checks import anchor_of, finding_anchor, status_of, worst_first
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text, escape, rich
 from wspd_design.studies.dossier import Dossier
@@ -66,12 +66,18 @@ def _sources(judgment: Judgment) -> Table:
             ColumnOf(title="Requirement", read=lambda each: each.title),
             ColumnOf(title="Limit", flush_right=True, read=limit),
             ColumnOf(title="Source of the limit", read=lambda each: each.source),
-            ColumnOf(title="Verified", read=lambda each: "yes" if each.verified else "no"),
+            ColumnOf(title="Verified", read=_verified),
             ColumnOf(title="Shown by", read=_shown_by),
         ),
         caption="Where each limit comes from, whether somebody compared it with that source, and what shows it.",
         anchor="requirement-sources",
     )
+
+
+def _verified(row: Requirement) -> str:
+    if row.limit is None:
+        return numbers.NONE
+    return "yes" if row.verified else "no"
 
 
 def _shown_by(row: Requirement) -> Text:
@@ -99,7 +105,7 @@ def _checks(dossier: Dossier) -> Table:
         return numbers.NONE if found is None else found.value
 
     table = build(
-        [each for each in dossier.certificates if each not in silent],
+        [each for each in worst_first(dossier.certificates) if each not in silent],
         (
             ColumnOf(title="Check", read=lambda each: (Link(anchor=anchor_of(each.name), text=each.name),)),
             ColumnOf(title="Finding", read=lambda each: Cell(status=status_of(each))),

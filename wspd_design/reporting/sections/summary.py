@@ -7,6 +7,7 @@ from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.records import Status as Finding
 from wspd_design.certificates.theorems.holds_for import HOLDS_FOR, HoldsFor
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import rounded_down
+from wspd_design.design.requirements import Requirements
 from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
@@ -22,7 +23,8 @@ from wspd_design.reporting.blocks import (
 )
 from wspd_design.reporting.decision_words import next_words, produced_by, rank, scope, weakest
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.requirement_words import against_limit, finding, limit, margin, reached
+from wspd_design.reporting.requirement_words import against_limit, figure, finding, limit, margin, reached
+from wspd_design.reporting.sections.assumptions import ASSUMPTIONS, deciding_words
 from wspd_design.reporting.sections.checks import check_anchor, is_bad_news
 from wspd_design.reporting.sections.requirements import REQUIREMENTS, decided_by, stops_of
 from wspd_design.reporting.sections.robustness import ROBUSTNESS, what_fails
@@ -32,7 +34,16 @@ from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
-from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.judgment import Judgment, Requirement
+
+_SPREADS = {
+    "stopping_distance": "distance",
+    "efficiency_worst": "efficiency",
+    "longest_lock": "longest_lock",
+    "vented_air": "vented_air",
+    "speed_error": "speed_error",
+}
+"""Figures that the spread over the bounds has under these names."""
 
 _VERDICTS = {
     "accepted": Status.ACCEPTED,
@@ -96,7 +107,7 @@ def summary(dossier: Dossier) -> tuple[Block, ...]:
     return (
         KeyNumbers(numbers=_key_numbers(dossier)),
         Definitions(rows=_decision(dossier)),
-        _requirements(dossier.judgment),
+        _requirements(dossier),
         _ladder(dossier.certificates, dossier),
         Definitions(rows=(Definition(term="Made by", text=produced_by(dossier)),)),
     )
@@ -114,7 +125,8 @@ def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
             label="Stopping distance" if stopped else "Distance, still moving",
             value=numbers.decimals(figures.distance, 0),
             unit="m",
-            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 1)} s{_build_up(dossier)}",
+            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 1)} s{_build_up(dossier)}"
+            f"{_spread(dossier)}",
         ),
         KeyNumber(
             label="Efficiency",
@@ -136,6 +148,19 @@ def _build_up(dossier: Dossier) -> str:
     if not math.isfinite(build_up):
         return ""
     return f"; brake built up after {numbers.decimals(build_up, 1)} s"
+
+
+def _spread(dossier: Dossier) -> str:
+    """Say how far the distance spreads over the bounds."""
+    found = dossier.uncertainty
+    spread = None if found is None else found.spread_of("distance")
+    if found is None or spread is None:
+        return ""
+    low, high = (
+        f"{numbers.decimals(each, 0)} m" if math.isfinite(each) else "no stop"
+        for each in (spread.low, spread.high)
+    )
+    return f". {low} to {high} over the bounds ({found.sets} sets)"
 
 
 def _yardsticks(dossier: Dossier) -> Text:
@@ -160,8 +185,8 @@ def _loop(dossier: Dossier) -> KeyNumber:
         return KeyNumber(
             label="Growth per sample",
             value=numbers.significant(growth.factor, 3),
-            note=f"of a deviation near the reference, at {numbers.significant(growth.speed * KMH, 3)} km/h where it is "
-            "largest; below 1 it dies out. Nominal, valve and sampling included",
+            note=f"of a deviation near the reference, largest at {numbers.significant(growth.speed * KMH, 3)} km/h; "
+            "nominal, with valve and sampling",
         )
     fastest = max(
         dossier.linearizations, key=lambda point: (_in_range(dossier, point.speed), point.slip_pole)
@@ -171,8 +196,8 @@ def _loop(dossier: Dossier) -> KeyNumber:
         label="Slip pole, nominal",
         value=numbers.significant(fastest.slip_pole, 2),
         unit="1/s",
-        note=f"near {numbers.significant(fastest.speed * KMH, 2)} km/h; the valve has {lag} 1/s there. No check of the "
-        "loop near a reference speaks about this law",
+        note=f"near {numbers.significant(fastest.speed * KMH, 2)} km/h, the valve has {lag} 1/s; no check of the loop "
+        "speaks about this law",
     )
 
 
@@ -189,6 +214,7 @@ def _decision(dossier: Dossier) -> tuple[Definition, ...]:
         ("Against the others", rank(dossier)),
         ("Refuted, not required", _told(dossier)),
         ("With a fault", _fails_with(dossier)),
+        ("Assumptions that decide", _assumed(dossier)),
     )
     return tuple(Definition(term=term, text=text) for term, text in rows if text)
 
@@ -222,6 +248,10 @@ def _lowered(title: str) -> str:
     return title if title[1:2].isupper() or not title[1:2].isalpha() else title[0].lower() + title[1:]
 
 
+def _assumed(dossier: Dossier) -> Text:
+    return (f"{deciding_words(dossier)} ", Link(anchor=ASSUMPTIONS, text="(register)"))
+
+
 def _fails_with(dossier: Dossier) -> Text:
     """Name the faults with which a design does not hold."""
     found = dossier.robustness
@@ -232,7 +262,26 @@ def _fails_with(dossier: Dossier) -> Text:
     return ("it does not hold ", Link(anchor=ROBUSTNESS, text="with"), f": {named}")
 
 
-def _requirements(judgment: Judgment) -> Table:
+def _over_the_bounds(dossier: Dossier) -> ColumnOf[Requirement] | None:
+    """Return the column with the spread over the bounds of all numbers, where one stop is judged."""
+    found = dossier.uncertainty
+    if found is None or isinstance(dossier.judgment.wanted, Requirements):
+        return None
+
+    def read(row: Requirement) -> str:
+        spread = found.spread_of(_SPREADS[row.name]) if row.name in _SPREADS else None
+        if spread is None:
+            return numbers.NONE
+        low, high = (
+            figure(row, each) if math.isfinite(each) else "no stop" for each in (spread.low, spread.high)
+        )
+        return f"{low.removesuffix(f' {row.unit}')} to {high}"
+
+    return ColumnOf(title="Over the bounds", flush_right=True, read=read)
+
+
+def _requirements(dossier: Dossier) -> Table:
+    judgment = dossier.judgment
     unverified = sum(each.limit is not None and not each.verified for each in judgment.limited)
     return build(
         judgment.rows,
@@ -242,6 +291,7 @@ def _requirements(judgment: Judgment) -> Table:
             ColumnOf(title="Limit", flush_right=True, read=limit),
             ColumnOf(title="Reached", flush_right=True, read=reached),
             ColumnOf(title="Margin", flush_right=True, read=margin),
+            *([over] if (over := _over_the_bounds(dossier)) else []),
             ColumnOf(title="Evidence", read=lambda each: each.evidence),
             ColumnOf(title="Finding", read=finding),
         ),
