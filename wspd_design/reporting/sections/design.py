@@ -3,6 +3,7 @@
 from wspd_design.design.records import Design, GainValue
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Heading, Paragraph, Table
+from wspd_design.reporting.formula_text import with_formulas
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
@@ -20,8 +21,8 @@ def design(dossier: Dossier) -> tuple[Block, ...]:
         Heading(text="The design", anchor="design"),
         Paragraph(
             text=rich(
-                "The gains, each with the rule that chose it. The attached `design.toml` holds the same "
-                "numbers in full length and stands in place of a controller's name in every command."
+                "[](#gains) lists the gains, each with the rule that chose it. The attached `design.toml` holds the "
+                "same numbers in full length and stands in place of a controller's name in every command."
             )
         ),
         gain_table(
@@ -55,7 +56,7 @@ def gain_table(design: Design, *, caption: str, anchor: str) -> Table:
             ColumnOf(title="Gain", read=lambda gain: gain.name.replace("_", " ")),
             ColumnOf(title="Value", read=lambda gain: value_text(gain.value)),
             ColumnOf(title="Unit", read=lambda gain: numbers.unit(gain.unit) or "-"),
-            ColumnOf(title="Why", read=lambda gain: gain.why),
+            ColumnOf(title="Why", read=lambda gain: with_formulas(gain.why)),
         ),
         caption=caption,
         anchor=anchor,

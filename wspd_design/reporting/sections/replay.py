@@ -42,11 +42,13 @@ def replay(dossier: Dossier) -> tuple[Block, ...]:
             text=rich(
                 "By hand: save all attachments into one folder. `sha256sum --check SHA256SUMS` tells whether they are "
                 "whole, the command in `command.txt` makes the report from them, and `report.json` holds its numbers "
-                "in full length. Of what the report says of itself, only the date does not follow from the attached "
-                "files and from what it was made by; `SOURCE_DATE_EPOCH` sets it."
+                "in full length; [](#input-files) lists what it was made from. Of what the report says of itself, only "
+                "the date does not follow from the attached files and from what it was made by; "
+                "`SOURCE_DATE_EPOCH` sets it."
                 if made.command
                 else "By hand: save all attachments into one folder. `sha256sum --check SHA256SUMS` tells whether they "
-                "are whole, and `report.json` holds the numbers in full length."
+                "are whole, `report.json` holds the numbers in full length, and [](#input-files) lists what it was "
+                "made from."
             )
         ),
         _inputs(made),
