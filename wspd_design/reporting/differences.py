@@ -62,8 +62,8 @@ def _differences(before: object, after: object, where: tuple[str, ...]) -> Itera
         for key in dict.fromkeys((*old, *new)):
             yield from _differences(old.get(key, _NOTHING), new.get(key, _NOTHING), (*where, key))
     elif (judged := _judged(before) or _judged(after)) and _NOTHING in (before, after):
-        old, new = (each[judged] if isinstance(each, dict) else each for each in (before, after))
-        yield from _differences(old, new, (*where, judged))
+        was, now = (each[judged] if isinstance(each, dict) else each for each in (before, after))
+        yield from _differences(was, now, (*where, judged))
     elif type(before) is not type(after) or before != after:
         yield Difference(
             where=where, kind=_kind(before, after, where), before=_said(before), after=_said(after)
