@@ -32,6 +32,8 @@ MODEL = (*(name for name, rung in HOLDS_FOR.items() if rung is HoldsFor.EQUATION
 """Checks without which no other evidence counts."""
 LOOP = "margins"
 """The check that tells whether the loop is stable near its reference, sampled and with its valve."""
+TRACED_LOOP = "traced_loop"
+"""The same from the step of any law, where no form of the law is known."""
 _OURS = "ours; the paper states none"
 
 

@@ -17,7 +17,7 @@ from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.figures_of_stop import figures_of_stop
-from wspd_design.studies.loop_growth import Growth
+from wspd_design.studies.loop_growth import Growth, check_of_loop
 
 _HARMLESS = (Status.PROVED, Status.EVIDENCE, Status.NOT_APPLICABLE, Status.VACUOUS, Status.LIMITATION)
 _PROOFS_OF_THE_LOOP = ("lpv_lyapunov", "sampled_invariance", "slip_band")
@@ -254,20 +254,20 @@ def _by_checks(name: str, title: str, names: Sequence[str], found: Mapping[str, 
 
 def _loop(found: Mapping[str, Certificate], growth: Growth | None) -> Requirement:
     """Judge the loop near its reference by the check of its sampled poles; else by a proof about the sampled loop."""
-    check = found.get(LOOP)
-    speaks = check is not None and check.status not in (Status.NOT_APPLICABLE, Status.VACUOUS)
+    check = check_of_loop(found)
+    speaks = check is not None
     proofs = tuple(
         each for each in found.values() if each.name in _PROOFS_OF_THE_LOOP and each.status is Status.PROVED
     )
     outcome, evidence, remark = Outcome.TOLD, "none", "no check speaks about this law"
     names: tuple[str, ...] = ()
-    if check is not None and speaks:
+    if check is not None:
         settled = {
             Status.REFUTED: Outcome.MISSED,
             Status.UNDECIDED: Outcome.OPEN,
         }
         outcome, evidence = settled.get(check.status, Outcome.MET), evidence_of([check])
-        names, remark = (LOOP,), "nominal parameters"
+        names, remark = (check.name,), "nominal parameters"
     elif proofs:
         outcome, evidence, names, remark = Outcome.MET, "proof", tuple(each.name for each in proofs), ""
     return Requirement(
