@@ -78,6 +78,9 @@ def _drawable() -> frozenset[str]:
     return frozenset(map(chr, font.get_charmap())) | {"\n", "\t"}
 
 
+_AS_IT_IS = ("content", "stored")  # of an attachment: what no page shows
+
+
 def spelled(value: Any, missing: set[str]) -> Any:
     """Return data for the template with code points in place of what no font of ours can draw.
 
@@ -101,7 +104,7 @@ def spelled(value: Any, missing: set[str]) -> Any:
         case list():
             return [spelled(each, missing) for each in value]
         case dict():
-            return {key: each if key == "content" else spelled(each, missing) for key, each in value.items()}
+            return {key: each if key in _AS_IT_IS else spelled(each, missing) for key, each in value.items()}
     return value
 
 
@@ -130,6 +133,7 @@ def _document(document: Document) -> dict[str, Any]:
         "attachments": [
             {
                 "name": printable(each.name),
+                "stored": each.name,
                 "media-type": each.media_type,
                 "content": each.content,
                 "description": printable(each.description),

@@ -21,7 +21,7 @@ class HoldsFor(Enum):
 
 HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "derivation": HoldsFor.EQUATIONS,
-    "feedback": HoldsFor.STOP,
+    "feedback": HoldsFor.EQUATIONS,
     "surface_hurwitz": HoldsFor.IDEAL_BRAKE,
     "gain_positive": HoldsFor.EQUATIONS,
     "well_posed": HoldsFor.EQUATIONS,
