@@ -87,7 +87,7 @@ def design_input(design: Design) -> InputFile:
 def law_inputs(written: str) -> tuple[InputFile, ...]:
     """Return the file of a law of one's own that was loaded, and what it imported from its folder."""
     path = file_of(written)
-    if path is None:
+    if path is None or not is_own_controller(written):
         return ()
     folder = path.parent.resolve()
     beside_it = {
@@ -95,7 +95,9 @@ def law_inputs(written: str) -> tuple[InputFile, ...]:
         for module in list(sys.modules.values())
         if (file := getattr(module, "__file__", None)) and file.endswith(".py")
     }
-    imported = sorted(each for each in beside_it if each.parent == folder and each != path.resolve())
+    imported = sorted(
+        each for each in beside_it if each.parent == folder and each != path.resolve() and each.is_file()
+    )
     return (
         _file(path, "the law, a file of its own"),
         *(_file(each, f"what {path.name} imports") for each in imported),

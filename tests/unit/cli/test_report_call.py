@@ -54,7 +54,7 @@ def test_every_option_is_one_of_the_command():
     }
     assert {known[f"--{name.replace('_', '-')}"].name for name in names} == names
     written = {option.name for option in known.values()}
-    own = {"name", "controller", "output", "pdf", "force"}  # of the files that are written, and the law
+    own = {"name", "controller", "output", "pdf", "force", "replay"}  # of the law and of files
     assert written - names == own
 
 

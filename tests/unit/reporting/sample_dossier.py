@@ -377,5 +377,6 @@ def sample_dossier(
         robustness=None,
         uncertainty=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
+        previous=None,
         provenance=SAMPLE_PROVENANCE,
     )
