@@ -33,12 +33,14 @@ from derivations import (
     wheel_filter,
 )
 from derivations.equation_map import equations
-from derivations.map_files import equations_toml, nomenclature, readme, theory
+from derivations.map_files import equations_toml, nomenclature, readme, symbols_toml, theorems_toml, theory
 from derivations.notation import NOMENCLATURE, Generated
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = Path("wspd_design/model/generated")
 EQUATIONS = Path("wspd_design/data/equations.toml")
+SYMBOLS = Path("wspd_design/data/symbols.toml")
+THEOREMS = Path("wspd_design/data/theorems.toml")
 README = Path("derivations/README.md")
 NOMENCLATURE_PAGE = Path("docs/nomenclature.md")
 THEORY_PAGE = Path("docs/theory.md")
@@ -179,6 +181,8 @@ def sources() -> dict[Path, str]:
     files[README] = readme(found)
     files[NOMENCLATURE_PAGE] = nomenclature()
     files[THEORY_PAGE] = theory()
+    files[SYMBOLS] = symbols_toml()
+    files[THEOREMS] = theorems_toml()
     return files
 
 

@@ -35,9 +35,11 @@ def certificates(request):
 def test_order(certificates):
     assert NAMES == (
         "derivation",
+        "feedback",
         "surface_hurwitz",
         "gain_positive",
         "well_posed",
+        "holding_torque",
         "sliding_exists",
         "reaching",
         "boundary_layer",
@@ -52,10 +54,12 @@ def test_order(certificates):
         "sampling",
         "routh_lag",
         "margins",
+        "traced_loop",
         "lpv_lyapunov",
         "sampled_invariance",
         "slip_band",
         "tracking",
+        "overshoot",
         "conservation",
         "stop_bound",
     )
@@ -71,6 +75,35 @@ def test_only_a_checker_proves(certificates):
             assert finding.leaves > 0
             assert finding.shown
         assert len(certificate_text(certificate)) < 1_000_000
+
+
+def test_the_domain_of_a_claim_stands_in_its_sentence(certificates):
+    """So that a report may name it once; a claim without one varies nothing, or says itself what it is about."""
+    for each in certificates:
+        if each.domain is not None:
+            assert f"n {each.domain.text}" in each.claim  # on it, or On it
+            named = {interval.name for interval in each.domain.held}
+            assert named == set(each.held) or "numbers of vehicle and rail nominal" in each.claim, each.name
+        elif each.status is not Status.NOT_APPLICABLE:
+            assert not each.varied, each.name
+
+
+def test_proofs_say_what_they_hold_on(sliding):
+    """Two bounds of one quantity must not contradict each other: each has its own part of the domain."""
+    for each in sliding:
+        for proof in each.proofs:
+            if proof.domain is None:
+                continue
+            assert proof.text == f"{proof.statement} on {proof.domain.text}"
+            if each.domain is None:
+                continue
+            whole = {interval.name: interval for interval in (*each.domain.varied, *each.domain.held)}
+            for part in (*proof.domain.varied, *proof.domain.held):
+                if part.name in whole:
+                    assert whole[part.name].low <= part.low <= part.high <= whole[part.name].high
+    edges = [proof.text for each in sliding if each.name == "sliding_exists" for proof in each.proofs]
+    assert len(set(edges)) == len(edges) > 3
+    assert "mu0 0.24" in edges[0]
 
 
 def test_what_the_claims_vary_and_hold_stands_in_the_sentence(sliding, make_problem, make_controller):
@@ -128,9 +161,11 @@ def test_printed_law_on_dry_rail(printed):
     verdicts = {c.name: c.status for c in printed}
     assert verdicts == {
         "derivation": Status.PROVED,
+        "feedback": Status.PROVED,
         "surface_hurwitz": Status.PROVED,
         "gain_positive": Status.PROVED,
         "well_posed": Status.PROVED,
+        "holding_torque": Status.PROVED,
         "sliding_exists": Status.REFUTED,  # of some axle, with the weakest brake of the bounds
         "reaching": Status.NOT_APPLICABLE,
         "boundary_layer": Status.NOT_APPLICABLE,
@@ -145,10 +180,12 @@ def test_printed_law_on_dry_rail(printed):
         "sampling": Status.REFUTED,
         "routh_lag": Status.REFUTED,
         "margins": Status.REFUTED,
+        "traced_loop": Status.REFUTED,
         "lpv_lyapunov": Status.NOT_APPLICABLE,
         "sampled_invariance": Status.NOT_APPLICABLE,
         "slip_band": Status.NOT_APPLICABLE,
         "tracking": Status.REFUTED,
+        "overshoot": Status.REFUTED,
         "conservation": Status.EVIDENCE,
         "stop_bound": Status.PROVED,
     }

@@ -24,7 +24,7 @@ def test_a_stop_says_where_it_starts_and_when_the_slip_has_left(wspd, witness_fi
     assert "which hold the slip there." in shown
     assert "about other numbers than this case" in shown  # the certificate in this test has no fingerprint
     assert "er24pc (quarter), from 36 km/h" in shown
-    assert "lag of the brake" not in shown
+    assert "build-up of the brake" not in shown
     (left, at) = re.search(
         r"0.05 away from where it began after ([\d.]+) s, at ([\d.]+) km/h", shown
     ).groups()

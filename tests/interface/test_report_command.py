@@ -6,6 +6,7 @@ from wspd_design.controllers.family import FAMILIES
 from wspd_design.reporting import report as report_module
 from wspd_design.reporting.blocks import Status, Verdict
 from wspd_design.reporting.sections import summary as summary_module
+from wspd_design.reporting.template import BLANK
 from wspd_design.studies import dossier as dossier_module
 
 
@@ -18,8 +19,9 @@ def calls(monkeypatch):
         recorded["design"], recorded["options"] = made, options
         return "dossier"
 
-    def write_report(computed, *paths):
+    def write_report(computed, *paths, template):
         assert computed == "dossier"
+        recorded["template"] = template
         recorded["paths"] = [path.name for path in paths]
         for path in paths:
             path.write_text("new")
@@ -43,7 +45,7 @@ def test_report_of_a_design_file(wspd, smc_file, calls):
     assert "Something else" not in outcome.out
     assert calls["design"].name == "smc-er24pc-polach-wet"
     options = calls["options"]
-    assert (options["vehicle_name"], options["rail_name"], options["scenario"].seed) == (
+    assert (options["vehicle"], options["rail"], options["scenario"].seed) == (
         "er24pc",
         "polach-wet",
         4,
@@ -58,6 +60,22 @@ def test_report_of_a_named_controller_compares_it_with_the_others(wspd, calls):
     assert (calls["design"].name, calls["design"].rail) == ("smc", "polach-dry")
     assert calls["design"].specification.slip == 0.1
     assert calls["options"]["baselines"] == [name for name in FAMILIES if name != "smc"]
+
+
+def test_a_report_takes_the_template_of_a_company(wspd, smc_file, tmp_path, calls):
+    (tmp_path / "company.toml").write_text('document_number = "WSP-0042"\n')
+    assert wspd("report", smc_file.name, "--template", "company.toml", "-o", "a.html").code == 0
+    assert calls["template"].document_number == "WSP-0042"
+    assert wspd("report", smc_file.name, "-o", "b.html").code == 0
+    assert calls["template"] == BLANK
+
+
+def test_a_wrong_template_is_told_before_anything_is_computed(wspd, smc_file, tmp_path, calls):
+    (tmp_path / "company.toml").write_text('auther = "A"\n')
+    outcome = wspd("report", smc_file.name, "--template", "company.toml", "-o", "a.html")
+    assert (outcome.code, calls) == (2, {})
+    assert "unknown key auther in company.toml; did you mean author?" in " ".join(outcome.err.split())
+    assert not (tmp_path / "a.html").exists()
 
 
 @pytest.mark.usefixtures("calls")

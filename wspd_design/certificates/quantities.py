@@ -27,10 +27,10 @@ class Quantity:
     @property
     def positive(self) -> bool:
         """Whether zero is not allowed either."""
-        return self.record in ("state", "axle") or not _schema(self.record)[self._entry].low_is_allowed
+        return self.record in ("state", "axle") or not _schema(self.record)[self.entry].low_is_allowed
 
     @property
-    def _entry(self) -> str:
+    def entry(self) -> str:
         """Name of the entry in the parameter file."""
         return f"{self.record}.{self.field}" if self.record in ("brake", "contact") else self.field
 
@@ -95,6 +95,33 @@ STATE, CONTACT, RAIL, BRAKE, AXLE = (
 VEHICLE = tuple(quantity.name for quantity in TABLE if quantity.record == "vehicle")
 PLANT = (*STATE, *VEHICLE, *CONTACT, *RAIL)
 """What (19) depends on at an axle with the static load."""
+
+
+def quantity_of(kind: str, entry: str) -> Quantity | None:
+    """Return what claims call a number of a vehicle or rail file; None for one that stands in no claim."""
+    return next(
+        (
+            each
+            for each in TABLE
+            if each.record not in ("state", "axle") and (each.record == "rail") == (kind == "rail")
+            if each.entry == entry
+        ),
+        None,
+    )
+
+
+def outside_claims(kind: str, entry: str) -> str:
+    """Return why a number of a vehicle or rail file stands in no claim; empty for one that does."""
+    record, _, field = entry.rpartition(".")
+    return next(
+        (why for (of, name), why in OUTSIDE_CLAIMS.items() if (of, name) == (record or kind, field)), ""
+    )
+
+
+def is_working_name(name: str) -> bool:
+    """Tell whether a variable of a claim is a means of its formula or a known number of a design model."""
+    return name in ("nominal mass", "unit of speed") or name.startswith("model ")
+
 
 _TRANSFER = "enters through the range of the axle load share"
 _PADS = "the vibration of the pads at the onset of braking is part of no claim"

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, cast
 
-from wspd_design.certificates.quantities import QUANTITIES, STATE
+from wspd_design.certificates.quantities import QUANTITIES, STATE, is_working_name
 from wspd_design.controllers.protocol import Controller, Law
 from wspd_design.parameters.bounds import Bounds, Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.kernel.finding import Finding
@@ -44,6 +45,63 @@ class Point:
     name: str
     value: float
     unit: str
+
+
+SHOWN = {"m/s": (KMH, "km/h")}
+"""Factor and unit in which people read a quantity, where it is not the SI unit."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Interval:
+    """A quantity with its range [SI units]; both ends of a number that is held are the same."""
+
+    name: str
+    low: float
+    high: float
+    unit: str
+
+    @property
+    def numbers(self) -> tuple[str, str]:
+        """The range without its unit, and the unit in which people read it; a ratio has none."""
+        factor, unit = SHOWN.get(self.unit, (1.0, self.unit))
+        digits = 3 if self.name == "speed" else 6
+        low, high = (f"{end * factor:.{digits}g}" for end in (self.low, self.high))
+        return low if low == high else f"{low} to {high}", unit.removeprefix("-")
+
+    @property
+    def text(self) -> str:
+        """Name, range and unit; a speed goes without its name."""
+        numbers, unit = self.numbers
+        said = f"{numbers} {unit}".rstrip()
+        return said if self.name == "speed" else f"{self.name} {said}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Domain:
+    """On what a statement holds: for all values of what varies, with the rest of the numbers with bounds held."""
+
+    varied: tuple[Interval, ...]
+    held: tuple[Interval, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The domain in words, as it stands in claims."""
+        varied, held = (", ".join(each.text for each in part) for part in (self.varied, self.held))
+        return "; ".join(filter(None, (varied, f"held: {held}" if held else "")))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Proof:
+    """What a checker accepted: a statement, on what it holds, and in how many boxes it was decided."""
+
+    statement: str
+    domain: Domain | None  # none where the statement says all of it
+    boxes: int
+
+    @property
+    def text(self) -> str:
+        """The whole statement in words."""
+        return self.statement if self.domain is None else f"{self.statement} on {self.domain.text}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,6 +170,7 @@ class Certificate:
     witness: tuple[Point, ...] = ()
     hypotheses: tuple[Hypothesis, ...] = ()
     assumptions: tuple[str, ...] = ()
+    domain: Domain | None = None  # whose words stand in the claim; none where the claim varies no number
     varied: tuple[str, ...] = ()  # numbers with bounds that the claim speaks about on all of their range
     held: tuple[str, ...] = ()  # numbers with bounds that it depends on, but takes as known
     reference: str = ""
@@ -133,6 +192,25 @@ class Certificate:
         return {
             key: each for key, each in self.findings.items() if each.shown and each.stated.proof is not None
         }
+
+    @property
+    def proofs(self) -> tuple[Proof, ...]:
+        """What was proved, each with what it holds on: of the numbers with bounds, as its own statement has them."""
+        return tuple(
+            Proof(statement=each.shown, domain=self._domain_of(each.ranges), boxes=each.leaves)
+            for each in self.proved.values()
+        )
+
+    def _domain_of(self, ranges: tuple[Interval, ...]) -> Domain | None:
+        uncertain = {*STATE, *self.varied, *self.held}
+        varied = tuple(each for each in ranges if each.low < each.high)
+        held = tuple(
+            each
+            for each in ranges
+            if each.low == each.high
+            and (each.name in uncertain or not (each.name in QUANTITIES or is_working_name(each.name)))
+        )
+        return Domain(varied=varied, held=held) if varied or held else None
 
     @property
     def undecided(self) -> float:

@@ -20,11 +20,10 @@ from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import Case
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries
-from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.campaign import Campaign, simulate_many
 from wspd_design.simulation.description import disturbances_of, rails_of
-from wspd_design.simulation.draws import Draw, within_bounds
+from wspd_design.simulation.draws import Draw, within_bounds_of_stop
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.self_check import DISTANCE_TOLERANCE, SLIP_TOLERANCE
 
@@ -144,7 +143,7 @@ def simulate_runs(
     start : WitnessStart or None
         The witness that the stops start at.
     """
-    draws = () if nominal else within_bounds(*_bounds(case, scenario))
+    draws = () if nominal else drawn_by_runs(case, scenario)
     series = [Series(case=case, scenario=scenario, draws=draws)]
     what = f"{extent.count} stops with {case.controller.name}"
     (summary,) = simulate_series(series, extent, _usual_executor, what=what)
@@ -219,12 +218,10 @@ def _say_rows(path: Path) -> None:
     console().print(f"Rows: {path}", markup=False, soft_wrap=True)
 
 
-def _bounds(case: Case, scenario: Scenario) -> tuple[ParameterSet, ...]:
-    """Parameter files to draw from; rails of single axles stay, or they would all become the same rail."""
-    vehicle = load_entries("vehicle", case.vehicle_name)
-    if scenario.axle_rails is not None:
-        return (vehicle,)
-    return vehicle, load_entries("rail", case.rail_name)
+def drawn_by_runs(case: Case, scenario: Scenario) -> tuple[Draw, ...]:
+    """Return what many stops of a case draw: all numbers with bounds of its files."""
+    files = load_entries("vehicle", case.vehicle_name), load_entries("rail", case.rail_name)
+    return within_bounds_of_stop(scenario, files)
 
 
 def show(summary: Summary, series: Series) -> None:

@@ -42,12 +42,15 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     shown.add_row("ideal stop, best slip held", *_ideal_stop(figures))
     shown.add_row("efficiency, ideal stop over distance", number(100.0 * figures.efficiency, ".1f"), "%")
     shown.add_row("time", f"{figures.stopping_time:.2f}", "s")
-    if figures.lag == figures.lag:
-        shown.add_row("lag of the brake build-up", f"{figures.lag:.2f}", "s")
-        shown.add_row("deceleration after it", f"{figures.plateau:.3f}", "m/s^2")
+    if figures.build_up == figures.build_up:
+        shown.add_row("build-up of the brake, 90 % of its torque", f"{figures.build_up:.2f}", "s")
     shown.add_row("torque integral, all wheelsets", f"{figures.torque_integral / 1e3:.1f}", "kN m s")
     shown.add_row("adhesion utilization", number(100.0 * figures.adhesion_utilization, ".1f"), "%")
     shown.add_row(f"slip rms about {held_slip(run, reference)}", number(figures.slip_rms, ".3f"), "-")
+    shown.add_row("the same once it is reached", number(figures.held_slip_rms, ".3f"), "-")
+    shown.add_row("the same of a perfect law", number(figures.perfect_slip_rms, ".3f"), "-")
+    shown.add_row("slip overshoot, once reached", number(figures.slip_overshoot, ".3f"), "-")
+    shown.add_row("slip undershoot, likewise", number(figures.slip_undershoot, ".3f"), "-")
     shown.add_row("slip mean", number(figures.slip_mean, ".3f"), "-")
     shown.add_row("slip maximum", number(figures.slip_max, ".3f"), "-")
     for row in _of_law(figures):

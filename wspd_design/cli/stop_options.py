@@ -1,6 +1,7 @@
 """From the options of a stop to its scenario."""
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -153,14 +154,35 @@ def _fault(text: str, vehicle: Vehicle) -> Fault:
     return Fault(axle=axle, kind=kind, since=_amount(found["since"], "time", "start of the fault"))
 
 
+def rail_names(disturbances: StopOptions) -> tuple[str, ...]:
+    """Return the rails that the options name."""
+    below = () if disturbances.axle_rails is None else _axle_rail_names(disturbances.axle_rails)
+    return (*below, *(_patch_parts(text)[1] for text in disturbances.patch or ()))
+
+
+def with_rail_names(disturbances: StopOptions, named: Callable[[str], str]) -> StopOptions:
+    """Return the options with other names of the same rails."""
+    patches = [f"{start} {named(rail)}" for start, rail in map(_patch_parts, disturbances.patch or ())]
+    below = disturbances.axle_rails
+    return replace(
+        disturbances,
+        axle_rails=None if below is None else ",".join(map(named, _axle_rail_names(below))),
+        patch=patches or None,
+    )
+
+
 def _axle_rails(text: str) -> tuple[Rail, ...]:
+    return tuple(map(load_rail, _axle_rail_names(text)))
+
+
+def _axle_rail_names(text: str) -> tuple[str, ...]:
     """Read rails between commas; where a part is no rail, the comma belongs to the name of a file."""
-    found: list[Rail] = []
+    found: list[str] = []
     name = ""
     for part in text.split(","):
         name += part
         if name.strip() in available("rail") or Path(name.strip()).is_file():
-            found.append(load_rail(name.strip()))
+            found.append(name.strip())
             name = ""
         else:
             name += ","
@@ -170,13 +192,17 @@ def _axle_rails(text: str) -> tuple[Rail, ...]:
 
 
 def _patch(text: str) -> Patch:
+    start, rail = _patch_parts(text)
+    return Patch(start=parse_quantity(start, "length", what="start of the patch"), rail=load_rail(rail))
+
+
+def _patch_parts(text: str) -> tuple[str, str]:
     found = _PATCH.fullmatch(text)
     if found is None:
         raise UserError(
             f'--patch "{text}" must be a distance with its unit and a rail, such as "50 m polach-wet"'
         )
-    start = parse_quantity(found["start"], "length", what="start of the patch")
-    return Patch(start=start, rail=load_rail(found["rail"]))
+    return found["start"], found["rail"]
 
 
 def parse_grade(text: str) -> float:

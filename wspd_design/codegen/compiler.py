@@ -53,6 +53,18 @@ def find_compiler() -> tuple[str, ...] | None:
     return (sys.executable, "-m", "ziglang", "cc") if find_spec("ziglang") else None
 
 
+def compiler_version() -> str:
+    """Return the first line that the compiler of this machine says about itself, "none" without one."""
+    compiler = find_compiler()
+    if compiler is None:
+        return "none"
+    try:
+        told = subprocess.run([*compiler, "--version"], capture_output=True, text=True, check=False).stdout
+    except OSError:
+        told = ""
+    return next(iter(told.splitlines()), "version unknown")
+
+
 def cache_folder() -> Path:
     """Return the user's cache folder for compiled code."""
     base = os.environ.get("XDG_CACHE_HOME")

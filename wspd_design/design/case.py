@@ -73,6 +73,9 @@ class CaseOptions:
     sensors: SensorWords = UNSAID
 
 
+NO_OPTIONS = CaseOptions()
+
+
 def specification(options: CaseOptions, base: Specification | None = None) -> Specification:
     """Return the specification that the user asks for.
 
@@ -137,7 +140,7 @@ def load_case(name: str, options: CaseOptions, base: Specification | None = None
     controller: Law
     if is_own_controller(name):
         controller = _own_controller(name, vehicle, rail, wanted, options)
-        wanted = _specification_of(controller, options, base)
+        wanted = specification_of(controller, options, base)
     else:
         controller = build_controller(name, vehicle, rail, wanted)
     return Case(
@@ -270,7 +273,9 @@ def _own_controller(
     return seen_by(wanted.sensors, made, vehicle)
 
 
-def _specification_of(made: Law, options: CaseOptions, base: Specification | None) -> Specification:
+def specification_of(
+    made: Law, options: CaseOptions = NO_OPTIONS, base: Specification | None = None
+) -> Specification:
     """Return the specification with the slip that a law holds, if it says which, and its sample time."""
     held = slip_reference_of(made)
     slip = options.slip if held is None else repr(held)

@@ -30,6 +30,13 @@ class Criterion:
     at_least: bool = False  # a limit is the least allowed, not the largest
     scale: float  # SI, difference that counts as one when a limit is missed
     may_lack: bool = False  # a stop need not have the figure, and those without it do not count
+    of_report: bool = False  # known of the stop of a report alone, not of campaigns
+    unit: str = "-"  # in which people tell it
+    alone: str = ""  # title in a single stop, where it is another one
+
+    def title_of(self, *, one_stop: bool) -> str:
+        """Return the title over many stops, or in a single one."""
+        return self.alone if one_stop and self.alone else self.title
 
     def of(self, figures: FiguresOfStops) -> float | None:
         """Return the number over the stops; None for stops that have no such figure.
@@ -96,6 +103,7 @@ CRITERIA: dict[str, Criterion] = {
             over_stops=_mean,
             at_least=True,
             scale=0.01,
+            unit="%",
         ),
         Criterion(
             name="efficiency_p05",
@@ -105,6 +113,7 @@ CRITERIA: dict[str, Criterion] = {
             over_stops=_quantile(0.05),
             at_least=True,
             scale=0.01,
+            unit="%",
         ),
         Criterion(
             name="efficiency_worst",
@@ -114,6 +123,8 @@ CRITERIA: dict[str, Criterion] = {
             over_stops=_smallest,
             at_least=True,
             scale=0.01,
+            unit="%",
+            alone="efficiency",
         ),
         Criterion(
             name="stopping_distance",
@@ -122,6 +133,8 @@ CRITERIA: dict[str, Criterion] = {
             figure="distance_m",
             over_stops=_largest,
             scale=10.0,
+            unit="m",
+            alone="stopping distance",
         ),
         Criterion(
             name="longest_lock",
@@ -130,6 +143,7 @@ CRITERIA: dict[str, Criterion] = {
             figure="longest_lock_s",
             over_stops=_largest,
             scale=0.1,
+            unit="s",
         ),
         Criterion(
             name="valve_switches",
@@ -138,6 +152,8 @@ CRITERIA: dict[str, Criterion] = {
             figure="valve_switches_per_s",
             over_stops=_mean,
             scale=1.0,
+            unit="1/s",
+            alone="valve switches per second and axle",
         ),
         Criterion(
             name="vented_air",
@@ -146,6 +162,7 @@ CRITERIA: dict[str, Criterion] = {
             figure="vented_air",
             over_stops=_mean,
             scale=1.0,
+            alone="brake cylinders vented per axle",
         ),
         Criterion(
             name="slip_band",
@@ -163,6 +180,7 @@ CRITERIA: dict[str, Criterion] = {
             figure="speed_error",
             over_stops=_quantile(0.95),
             scale=0.01,
+            unit="%",
         ),
         Criterion(
             name="speed_error",
@@ -171,6 +189,7 @@ CRITERIA: dict[str, Criterion] = {
             figure="speed_error",
             over_stops=_largest,
             scale=0.01,
+            unit="%",
         ),
         Criterion(
             name="distance_error",
@@ -179,6 +198,64 @@ CRITERIA: dict[str, Criterion] = {
             figure="distance_error",
             over_stops=_largest,
             scale=0.1,
+        ),
+        Criterion(
+            name="slip_rms",
+            title="slip off its reference once reached, rms",
+            dimension="ratio",
+            figure="held_slip_rms",
+            over_stops=_largest,
+            of_report=True,
+            scale=0.01,
+        ),
+        Criterion(
+            name="slip_overshoot",
+            title="overshoot of the slip once its reference is reached",
+            dimension="ratio",
+            figure="slip_overshoot",
+            over_stops=_largest,
+            of_report=True,
+            scale=0.01,
+        ),
+        Criterion(
+            name="slip_undershoot",
+            title="undershoot of the slip, likewise",
+            dimension="ratio",
+            figure="slip_undershoot",
+            over_stops=_largest,
+            of_report=True,
+            scale=0.01,
+        ),
+        Criterion(
+            name="adhesion_used",
+            title="adhesion used over the whole stop",
+            dimension="ratio",
+            figure="adhesion_utilization",
+            over_stops=_smallest,
+            at_least=True,
+            of_report=True,
+            scale=0.01,
+            unit="%",
+        ),
+        Criterion(
+            name="extension",
+            title="longer than the stop on full adhesion",
+            dimension="ratio",
+            figure="extension",
+            over_stops=_largest,
+            of_report=True,
+            scale=0.01,
+            unit="%",
+        ),
+        Criterion(
+            name="longest_release",
+            title="longest time that a wheelset hardly brakes",
+            dimension="time",
+            figure="longest_release_s",
+            over_stops=_largest,
+            of_report=True,
+            scale=1.0,
+            unit="s",
         ),
     )
 }

@@ -56,9 +56,15 @@ def judge(design: Design, rail: Rail, *, folder: Path = Path()) -> tuple[Judged,
     wanted = seen_from_here(design.requirements, folder)
     name = beside(design.vehicle_file, folder) if design.vehicle_file else design.vehicle
     vehicle = load_vehicle(name)
-    law, speeds = design.build(vehicle, rail), design.specification.speeds
+    return judge_law(design.build(vehicle, rail), wanted, vehicle, name, design.specification.speeds)
+
+
+def judge_law(
+    law: Law, wanted: Requirements, vehicle: Vehicle, vehicle_name: str, speeds: Ends
+) -> tuple[Judged, ...]:
+    """Compare a law with requirements on drawn stops; paths of rails as seen from here."""
     with threads() as pool:
-        (figures,) = held_out([law], wanted, vehicle, name, pool)
+        (figures,) = held_out([law], wanted, vehicle, vehicle_name, pool)
     return (
         *judged_by(wanted.limits, score(figures).reached),
         *judged_stability(law, wanted, vehicle, speeds),

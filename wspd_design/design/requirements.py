@@ -27,6 +27,8 @@ class Limit:
 
     criterion: str
     value: float  # SI
+    source: str = ""  # where the limit comes from; empty: the author of the table chose it
+    verified: bool = False  # whether somebody has compared it with that source
 
     @property
     def rule(self) -> Criterion:
@@ -35,7 +37,7 @@ class Limit:
 
     def with_reserve(self) -> "Limit":
         """Return the limit that a search keeps so that stops that it has not seen keep this one."""
-        return Limit(criterion=self.criterion, value=self.rule.with_reserve(self.value))
+        return replace(self, value=self.rule.with_reserve(self.value))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,7 +132,7 @@ def read_requirements(table: object, where: str) -> Requirements:
             table_of(stated.get("stable_within", {}), "requirements.stable_within", where), where
         ),
         held_out=read_sets(stated["held_out"], "requirements.held_out", where),
-        limits=_limits(table_of(stated["limits"], "requirements.limits", where), where),
+        limits=read_limits(table_of(stated["limits"], "requirements.limits", where), where, over_many=True),
         stop=stop,
         draws=draws,
     )
@@ -147,10 +149,7 @@ def requirements_text(requirements: Requirements) -> str:
         f"held_out = {{ sets = {held_out.sets}, seed = {held_out.seed} }}",
         "",
         "[requirements.limits]",
-        *(
-            f"{limit.criterion} = {quantity_text(limit.value, limit.rule.dimension)}"
-            for limit in requirements.limits
-        ),
+        *(_limit_text(limit) for limit in requirements.limits),
         "",
         "[requirements.stop]",
     ]
@@ -188,19 +187,66 @@ def read_sets(table: object, what: str, where: str) -> DrawnSets:
     )
 
 
-def _limits(table: dict[str, Any], where: str) -> tuple[Limit, ...]:
-    check_keys(table, tuple(CRITERIA), "requirements.limits.", where)
+def _limit_text(limit: Limit) -> str:
+    """Return the line of a limit, short where nothing is known about its source."""
+    value = quantity_text(limit.value, limit.rule.dimension)
+    if not limit.source and not limit.verified:
+        return f"{limit.criterion} = {value}"
+    source, verified = json.dumps(limit.source, ensure_ascii=False), str(limit.verified).lower()
+    return f"{limit.criterion} = {{ limit = {value}, source = {source}, verified = {verified} }}"
+
+
+def read_limits(table: dict[str, Any], where: str, *, over_many: bool) -> tuple[Limit, ...]:
+    """Read the limits by their criteria, each a quantity or a table with the source of the limit.
+
+    Parameters
+    ----------
+    table : dict
+        What TOML gives.
+    where : str
+        The file, in sentences.
+    over_many : bool
+        Whether they are limits of many drawn stops: some criteria are known of the stop of a report alone.
+
+    Raises
+    ------
+    UserError
+        If a criterion is unknown or a limit impossible.
+    """
+    known = tuple(name for name, rule in CRITERIA.items() if not (over_many and rule.of_report))
+    for name in table:
+        if name in CRITERIA and name not in known:
+            raise UserError(
+                f"requirements.limits.{name} in {where} is known of a single stop alone; leave it out, or leave out "
+                "rails, held_out and stop, so that the stop of a report is judged"
+            )
+    check_keys(table, known, "requirements.limits.", where)
     limits = []
-    for name, given in table.items():
+    for name, written in table.items():
         rule = CRITERIA[name]
         place = f"requirements.limits.{name} in {where}"
+        given, source, verified = _sourced(written, f"requirements.limits.{name}", where)
         value = number_of(given, rule.dimension, place)
         least = 0.0 if rule.dimension != "ratio" or not rule.at_least else 1e-3
         if not least <= value < float("inf") or (rule.at_least and value >= 1.0):
             allowed = "lie in (0, 1), such as 0.95 or 95 %" if rule.at_least else "be finite and not negative"
             raise UserError(f"{place} = {given} must {allowed}")
-        limits.append(Limit(criterion=name, value=value))
+        limits.append(Limit(criterion=name, value=value, source=source, verified=verified))
     return tuple(limits)
+
+
+def _sourced(written: object, name: str, where: str) -> tuple[Any, str, bool]:
+    """Part a limit into its quantity, the source of it, and whether that was verified."""
+    if not isinstance(written, dict):
+        return written, "", False
+    check_keys(written, ("limit", "source", "verified"), f"{name}.", where, needed=("limit",))
+    source, verified = written.get("source", ""), written.get("verified", False)
+    if not isinstance(source, str) or not isinstance(verified, bool) or (verified and not source.strip()):
+        raise UserError(
+            f"{name} in {where} must have a source in quotes and verified = true or false, and what is verified has a "
+            'source, such as { limit = "0.4 s", source = "contract 12, section 3", verified = true }'
+        )
+    return written["limit"], source, verified
 
 
 def _stable(table: dict[str, Any], where: str) -> tuple[tuple[str, float], ...]:

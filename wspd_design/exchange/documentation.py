@@ -36,6 +36,8 @@ def _table(form: Form) -> str:
 def _type(key: Key) -> str:
     one = f"object `{key.kind.name}`" if isinstance(key.kind, Form) else _TYPES[key.kind]
     many = one if key.many is None else f"list of {'two ' * (key.many == (2, 2))}{_plural(one)}"
+    if key.by_name:
+        many = f"{_plural(one)} by name"
     return f"{many} or null" if key.nullable else many
 
 

@@ -1,13 +1,14 @@
 """Records of a stop, a check, a design and a set of parameters as plain data, in the forms of the vocabulary."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.certificates.kernel.file import file_name
 from wspd_design.certificates.kernel.finding import Finding
 from wspd_design.certificates.records import Certificate
-from wspd_design.design.records import Design
+from wspd_design.design.records import Design, Specification
 from wspd_design.exchange.stop_forms import STOP
 from wspd_design.exchange.study_forms import BRAKE
 from wspd_design.exchange.version import program_version
@@ -22,9 +23,14 @@ if TYPE_CHECKING:
 
 
 def stop_object(
-    trial: Trial, scenario: Scenario, *, slip_reference: float, witness: dict[str, Any] | None = None
+    trial: Trial,
+    scenario: Scenario,
+    *,
+    slip_reference: float,
+    witness: dict[str, Any] | None = None,
+    drawn: Mapping[str, float] | None = None,
 ) -> dict[str, Any]:
-    """Return the figures of one stop; the witness is there if it starts at one."""
+    """Return the figures of one stop; the witness is there if it starts at one, and numbers if it draws some."""
     run, figures, check = trial.run, trial.metrics, trial.check
     held = reference_range(run)
     return {
@@ -37,6 +43,7 @@ def stop_object(
         "initial_speed_m_s": run.initial_speed,
         "scenario": scenario_object(scenario, dead_time=run.dead_time, shortest_pulse=run.shortest_pulse),
         "witness": witness,
+        "drawn": None if drawn is None else dict(drawn),
         "slip_reference": slip_reference,
         "ending": run.ending.name.lower(),
         "distance_m": figures.distance,
@@ -47,10 +54,17 @@ def stop_object(
         "efficiency": figures.efficiency,
         "released_below_m_s": figures.released_below,
         "adhesion_utilization": figures.adhesion_utilization,
+        "build_up_s": figures.build_up,
+        "build_up_distance_m": figures.build_up_distance,
         "lag_s": figures.lag,
         "lag_distance_m": run.initial_speed * figures.lag,
         "plateau_m_s2": figures.plateau,
         "slip_rms": figures.slip_rms,
+        "slip_reached_s": figures.slip_reached,
+        "held_slip_rms": figures.held_slip_rms,
+        "slip_overshoot": figures.slip_overshoot,
+        "slip_undershoot": figures.slip_undershoot,
+        "perfect_slip_rms": figures.perfect_slip_rms,
         "slips_held": None if held is None else list(held),
         "slip_band": figures.slip_band,
         "speed_error": figures.speed_error,
@@ -200,21 +214,25 @@ def brake_object(sheet: "BrakeSheet") -> dict[str, Any]:
 
 def design_object(design: Design) -> dict[str, Any]:
     """Return a design with its specification and the reasons of its gains."""
-    wanted = design.specification
     return {
         "name": design.name,
         "law": design.law,
         "vehicle": design.vehicle,
         "vehicle_hash": design.vehicle_hash,
         "rail": design.rail,
-        "specification": {
-            "slip_reference": wanted.slip,
-            "slip_tolerance": wanted.slip_tolerance,
-            "slips": list(wanted.slips),
-            "speeds_m_s": list(wanted.speeds),
-            "sample_time_s": wanted.sample_time,
-        },
+        "specification": specification_object(design.specification),
         "gains": [asdict(gain) for gain in design.gains],
+    }
+
+
+def specification_object(wanted: Specification) -> dict[str, Any]:
+    """Return what is asked of a law."""
+    return {
+        "slip_reference": wanted.slip,
+        "slip_tolerance": wanted.slip_tolerance,
+        "slips": list(wanted.slips),
+        "speeds_m_s": list(wanted.speeds),
+        "sample_time_s": wanted.sample_time,
     }
 
 

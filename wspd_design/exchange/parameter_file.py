@@ -6,9 +6,9 @@ from fractions import Fraction
 from typing import Any
 
 from wspd_design.parameters.records import Entry
-from wspd_design.parameters.units import factor
+from wspd_design.parameters.units import factor, to_si
 
-_DIGITS = 12  # enough that what is read again is what was meant
+_DIGITS = 12  # that people read; a number that needs more gets all that it has
 
 
 def parameter_file(title: str, comments: Iterable[str], entries: Iterable[Entry]) -> str:
@@ -46,7 +46,8 @@ def _value(value: Any, unit: str) -> str:
         case tuple():
             return f"[{', '.join(_value(item, unit) for item in value)}]"
     number = float(Fraction(repr(float(value))) / Fraction(repr(factor(unit))))
-    return f"{number:.{_DIGITS}g}"
+    short = f"{number:.{_DIGITS}g}"
+    return short if to_si(float(short), unit) == value else repr(number)
 
 
 def _text(text: str) -> str:

@@ -169,6 +169,13 @@ STOP = Form(
         *CASE_KEYS,
         Key(name="scenario", kind=SCENARIO, meaning="where the stop starts and what disturbs it"),
         Key(name="witness", kind=WITNESS, nullable=True, meaning="the witness that the stop starts at"),
+        Key(
+            name="drawn",
+            kind="number",
+            by_name=True,
+            nullable=True,
+            meaning="numbers that --only-run drew from their bounds, in SI units; null for a stop with nominal ones",
+        ),
         REFERENCE_KEY,
         Key(
             name="ending",
@@ -204,10 +211,30 @@ STOP = Form(
             "for a second or more; null where the brake was not released",
         ),
         nullable("adhesion_utilization", "impulse of the creep forces over that of the adhesion peak"),
-        nullable("lag_s", "2 d/v0 - t: what the build-up of the brake costs"),
+        nullable(
+            "build_up_s", "until the torque of all wheelsets first reaches 90 % of its median above 10 km/h"
+        ),
+        nullable("build_up_distance_m", "distance until then"),
+        nullable(
+            "lag_s",
+            "2 d/v0 - t: distance and time of a stop in another form, negative where the deceleration falls",
+        ),
         nullable("lag_distance_m", "initial speed times lag"),
         nullable("plateau_m_s2", "v0/(2 (t - d/v0)): deceleration after the build-up"),
-        nullable("slip_rms", "above 10 km/h, about the reference, or about the slips that the law tells"),
+        nullable(
+            "slip_rms",
+            "above 10 km/h, about the reference, or about the slips that the law tells; the build-up counts",
+        ),
+        nullable(
+            "slip_reached_s", "until the first wheelset has 90 % of its slip reference; null if none has"
+        ),
+        nullable("held_slip_rms", "as slip_rms, each wheelset from that moment on"),
+        nullable("slip_overshoot", "likewise, largest excess over the reference"),
+        nullable("slip_undershoot", "likewise, largest shortfall"),
+        nullable(
+            "perfect_slip_rms",
+            "held_slip_rms of a brake that fills and then holds the reference; null for a law with its own references",
+        ),
         Key(
             name="slips_held",
             kind="number",

@@ -15,8 +15,8 @@ from wspd_design.exchange.common_keys import (
     nullable,
 )
 from wspd_design.exchange.forms import Form, Key
-from wspd_design.exchange.search_forms import JUDGED
 from wspd_design.exchange.stop_forms import FAULT, STOP
+from wspd_design.exchange.uncertainty_forms import UNCERTAINTY
 
 LINEARIZATION_POINT = Form(
     name="linearization_point",
@@ -162,13 +162,50 @@ PARAMETERS = Form(
         Key(name="entries", kind=ENTRY, many=ANY, meaning="its numbers"),
     ),
 )
+INPUT = Form(
+    name="input",
+    keys=(
+        Key(name="name", kind="text", meaning="of the attachment"),
+        Key(name="sha256", kind="text", meaning="of its content"),
+    ),
+)
 PROVENANCE = Form(
     name="provenance",
     keys=(
-        Key(name="command", kind="text", meaning="the command line"),
-        Key(name="versions", kind="value", meaning="object: package to version"),
+        Key(
+            name="command",
+            kind="text",
+            meaning="makes the report again from its attachments; empty where only a program in Python does",
+        ),
+        Key(name="made_at", kind="text", meaning="date and time, UTC, ISO 8601"),
         SEED_KEY,
-        Key(name="input_hash", kind="text", meaning="SHA-256 of design, vehicle, rail and scenario"),
+        Key(name="inputs", kind=INPUT, many=ANY, meaning="files that the report was made from"),
+        Key(name="input_hash", kind="text", meaning="SHA-256 of what sha256sum prints for the inputs"),
+        Key(
+            name="searches_cut",
+            kind="text",
+            many=ANY,
+            meaning="checks of which a search was ended by its budget of counted work",
+        ),
+        Key(name="program_version", kind="text", meaning="of wspd_design"),
+        Key(
+            name="package_sha256",
+            kind="text",
+            meaning="SHA-256 of what sha256sum prints for the sorted files of the package",
+        ),
+        Key(
+            name="package_tree",
+            kind="text",
+            meaning="name that git gives the folder of the package: its revision, whatever the commit",
+        ),
+        Key(
+            name="changed",
+            kind="flag",
+            meaning="whether the package is known not to be that of the last commit of its clone",
+        ),
+        Key(name="compiler", kind="text", meaning="of the machine, in its own words"),
+        Key(name="platform", kind="text", meaning="operating system, processor family and C library"),
+        Key(name="versions", kind="value", meaning="object: package to version"),
     ),
 )
 FAULTED_STOP = Form(
@@ -190,13 +227,59 @@ FAULTED_STOP = Form(
         ),
     ),
 )
+REPORTED_LAW = Form(
+    name="reported_law",
+    keys=(
+        Key(name="name", kind="text", meaning="in tables and figures"),
+        Key(name="title", kind="text", meaning="what it is"),
+        Key(name="origin", kind="text", meaning="where it comes from"),
+        Key(name="acts_on", kind="text", meaning="one wheelset, or all wheelsets of the vehicle together"),
+        Key(name="fingerprint", kind="text", meaning="SHA-256 of all that decides what it does"),
+    ),
+)
+REQUIREMENT = Form(
+    name="requirement",
+    keys=(
+        Key(name="id", kind="text", meaning="R1, R2, ..."),
+        Key(name="requirement", kind="text", meaning="name of the criterion, or of what is asked of checks"),
+        Key(name="title", kind="text", meaning="in words"),
+        nullable("limit", "in SI units; null where a check decides or nothing is required"),
+        nullable("reached", "in SI units; null where there is no such figure"),
+        nullable("perfect", "what a perfect law reaches in the same stop; null where that is not known"),
+        nullable("margin", "distance from the limit over the limit, positive where it is kept"),
+        Key(
+            name="outcome", kind="text", words=("met", "missed", "open", "told"), meaning="told: not required"
+        ),
+        Key(name="evidence", kind="text", meaning="what shows it"),
+        Key(name="checks", kind="text", many=ANY, meaning="names of those that decide it"),
+        Key(name="source", kind="text", meaning="of the limit"),
+        Key(name="verified", kind="flag", meaning="whether somebody compared the limit with its source"),
+        Key(name="remark", kind="text", meaning="what the outcome rests on"),
+    ),
+)
+ALTERNATIVE = Form(
+    name="alternative",
+    keys=(
+        Key(name="law", kind="text", meaning="family, with gains by its rules"),
+        SAMPLE_TIME_KEY,
+        Key(name="missed", kind="text", many=ANY, meaning="names of the requirements that it does not meet"),
+        nullable("distance_m", "of the same stop; null where drawn stops are judged"),
+    ),
+)
 REPORT = Form(
     name="report",
-    schema="wspd-report/2",
+    schema="wspd-report/3",
     keys=(
         SCHEMA_KEY,
         Key(name="provenance", kind=PROVENANCE, meaning="how to make the report again"),
-        Key(name="design", kind=DESIGN, meaning="what the report is about"),
+        Key(name="law", kind=REPORTED_LAW, meaning="what the report is about"),
+        Key(
+            name="design",
+            kind=DESIGN,
+            nullable=True,
+            meaning="of this law; null for one without gains that were chosen",
+        ),
+        Key(name="specification", kind=SPECIFICATION, meaning="what is asked of the law"),
         Key(
             name="compared_designs",
             kind=DESIGN,
@@ -208,9 +291,21 @@ REPORT = Form(
         Key(name="checks", kind=CHECK, many=ANY, meaning="one object for each claim"),
         Key(
             name="requirements",
-            kind=JUDGED,
+            kind=REQUIREMENT,
+            many=(1, None),
+            meaning="what is asked for, what is reached and what shows it, causes before effects",
+        ),
+        Key(
+            name="verdict",
+            kind="text",
+            words=("accepted", "rejected", "undecided"),
+            meaning="accepted if every requirement is met, rejected if one is missed",
+        ),
+        Key(
+            name="alternatives",
+            kind=ALTERNATIVE,
             many=ANY,
-            meaning="what the design reaches of them on held-out stops; empty for a design without",
+            meaning="that were tried in place of a design that is not accepted, the best first",
         ),
         Key(name="stops", kind=STOP, many=(1, None), meaning="the design's own stop first"),
         Key(
@@ -218,6 +313,12 @@ REPORT = Form(
             kind=FAULTED_STOP,
             many=ANY,
             meaning="of the design: each fault at the axle where it does most harm, and patches",
+        ),
+        Key(
+            name="uncertainty",
+            kind=UNCERTAINTY,
+            nullable=True,
+            meaning="of the design's own stop; null where no number has bounds",
         ),
         Key(name="parameters", kind=PARAMETERS, many=ANY, meaning="each set that was used"),
         VERSION_KEY,

@@ -91,6 +91,11 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
     return _parameter_set(kind, text, document, schema, _with_first_rail(entries, Path(), source), source)
 
 
+def data_text(kind: Kind, name: str) -> str:
+    """Return the text of a shipped parameter file."""
+    return data_file(_FOLDERS[kind], f"{name}.toml").read_text(encoding="utf-8")
+
+
 def read_toml(file: Traversable | Path, where: str) -> dict[str, Any]:
     """Read a TOML file; whatever is wrong with it becomes one sentence about ``where``."""
     text = ""

@@ -9,6 +9,7 @@ from datetime import datetime
 from enum import Enum
 from typing import Literal, TypeAlias
 
+from wspd_design.reporting.template import Template
 from wspd_design.reporting.text import Text
 
 
@@ -23,8 +24,10 @@ class Status(Enum):
     VACUOUS = ("∅", "vacuous", "neutral")
     NOT_APPLICABLE = ("–", "not applicable", "neutral")
     ACCEPTED = ("✓", "accepted", "good")
+    REJECTED = ("✗", "rejected", "bad")
     MET = ("✓", "met", "good")
     MISSED = ("✗", "not met", "bad")
+    OPEN = ("?", "open", "open")
     HOLDS = ("✓", "holds", "good")
     PARTLY = ("±", "holds in part", "open")
     FAILS = ("✗", "does not hold", "bad")
@@ -114,13 +117,15 @@ class Equation:
 class Figure:
     """A picture as SVG, as :func:`wspd_design.reporting.figure_style.figure_svg` returns it.
 
-    ``alt`` says in words what the picture shows, ``caption`` what to conclude from it.
+    ``alt`` says in words what the picture shows, ``caption`` what to conclude from it; ``data`` is the name of the
+    attachment that holds its numbers.
     """
 
     svg: str
     caption: Text
     alt: str
     anchor: str = ""
+    data: str = ""
 
     def __post_init__(self) -> None:
         if not self.alt.strip():
@@ -178,6 +183,11 @@ class KeyNumber:
     unit: str = ""
     note: Text = ""
 
+    @property
+    def unbroken(self) -> str:
+        """The value for a narrow column: no line begins behind a ±."""
+        return self.value.replace("± ", "±\N{NO-BREAK SPACE}")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeyNumbers:
@@ -207,9 +217,10 @@ class Attachment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Document:
-    """A whole report: first page (title, verdict, summary, contents), blocks, and where it comes from.
+    """A whole report: first page (title, verdict, summary, signatures, contents), blocks, and where it comes from.
 
-    ``timestamp`` is the only date in the output; the same document gives the same bytes.
+    ``timestamp`` is the only date in the output; the same document gives the same bytes. Author and keywords are for
+    catalogs. With a template the document is one to sign.
     """
 
     title: str
@@ -221,3 +232,6 @@ class Document:
     provenance: tuple[Definition, ...]
     attachments: tuple[Attachment, ...]
     timestamp: datetime
+    author: str
+    keywords: tuple[str, ...]
+    template: Template | None = None

@@ -1,6 +1,7 @@
 """Formulas as SVG for the HTML page, set by Typst and therefore the same as in the PDF."""
 
 import json
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from xml.etree import ElementTree
@@ -10,6 +11,7 @@ from wspd_design.reporting.text import Math
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
+_LONG_NUMBER = re.compile(r"-?\d+\.\d{3,}")
 _FONT_SIZE = 11.0  # pt
 _MARKER = "#010203"
 _SOURCE = f"""
@@ -80,14 +82,39 @@ def _image(page: bytes, glyphs: dict[str, str]) -> FormulaImage:
                 parent.remove(child)
             elif child.tag == f"{_SVG}defs":
                 for symbol in child:
+                    symbol.set("id", _short(symbol.attrib["id"]))
                     glyphs.setdefault(symbol.attrib["id"], _markup(symbol))
                 parent.remove(child)
+            elif child.tag == f"{_SVG}use":
+                child.set(_XLINK_HREF, f"#{_short(child.attrib[_XLINK_HREF].removeprefix('#'))}")
+                for place in ("x", "y"):
+                    if child.get(place) == "0":
+                        del child.attrib[place]
+    _tidy(root)
     root.attrib.clear()
     root.set("viewBox", f"0 0 {width:.3f} {height:.3f}")
     root.set("width", f"{width / _FONT_SIZE:.3f}em")
     root.set("height", f"{height / _FONT_SIZE:.3f}em")
     root.set("aria-hidden", "true")
     return FormulaImage(svg=_markup(root), depth=round(depth / _FONT_SIZE, 2))
+
+
+def _short(name: str) -> str:
+    """Shorten the name of a glyph, a hash: a page holds hundreds of formulas, and each of them names its glyphs."""
+    return name[:10]
+
+
+def _tidy(root: ElementTree.Element) -> None:
+    """Drop groups without content, and digits of places that no one sees."""
+    for parent in list(root.iter()):
+        for child in list(parent):
+            if child.tag == f"{_SVG}g" and not len(child):
+                parent.remove(child)
+        if "transform" in parent.attrib:
+            parent.set(
+                "transform",
+                _LONG_NUMBER.sub(lambda found: f"{float(found[0]):.2f}", parent.attrib["transform"]),
+            )
 
 
 def _markup(root: ElementTree.Element) -> str:

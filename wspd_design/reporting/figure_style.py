@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
+from wspd_design.reporting.figure_data import data, mark
 from wspd_design.reporting.svg import canonical
 
 if TYPE_CHECKING:
@@ -108,5 +109,6 @@ def figure_svg(figure: "Figure") -> str:
         if layout is not None:
             layout.execute(figure)
             figure.set_layout_engine("none")
+        marked = mark(figure)
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    return canonical(buffer.getvalue(), FONT_FAMILY)
+    return canonical(buffer.getvalue(), FONT_FAMILY, data(marked))

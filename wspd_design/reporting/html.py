@@ -1,4 +1,4 @@
-"""A document as one HTML file that needs no network, no script and no file beside it."""
+"""A document as one HTML file that needs no network and no file beside it, and no script to be read."""
 
 import base64
 import hashlib
@@ -11,7 +11,8 @@ from wspd_design.reporting.equations import FormulaSet, typeset
 from wspd_design.reporting.figure_style import GRID, INK, MUTED, SERIES
 from wspd_design.reporting.numbering import CONTENTS, PROVENANCE, Numbering, formulas, number
 from wspd_design.reporting.svg import inline
-from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, Text, printable, spans
+from wspd_design.reporting.template import ROLES
+from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, Text, plain, printable, spans
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -27,14 +28,14 @@ _COLORS = {color: f"var(--series-{index})" for index, color in enumerate(SERIES,
 def render_html(document: Document) -> str:
     """Return a document as HTML text.
 
-    The page allows itself nothing but its own style sheet, known by its hash, and embedded images. Colors
-    follow the light or dark scheme of the reader; on paper the style sheet for print applies.
+    The page allows itself nothing but its own style sheet and script, known by their hashes, and embedded images.
+    Colors follow the light or dark scheme of the reader; on paper the style sheet for print applies.
     """
     import jinja2
 
     numbering = number(document)
     formula_set = typeset(formulas(document))
-    style = _style_sheet(formula_set)
+    style, script = _style_sheet(formula_set), _script()
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("wspd_design.reporting"),
         autoescape=True,
@@ -49,6 +50,7 @@ def render_html(document: Document) -> str:
         "figure": writer.figure,
         "equation": writer.equation,
         "data_uri": _data_uri,
+        "file_anchor": lambda name: f"File-{[each.name for each in document.attachments].index(name) + 1}",
     }
     environment.tests |= {"with_status": lambda cell: isinstance(cell, Cell)}
     return environment.get_template("report.html").render(
@@ -56,8 +58,13 @@ def render_html(document: Document) -> str:
         numbering=numbering,
         contents=CONTENTS,
         provenance=PROVENANCE,
+        roles=ROLES,
+        keywords=", ".join(document.keywords),
+        description=plain(document.verdict.sentence),
         style=style,
-        style_hash=base64.b64encode(hashlib.sha256(style.encode()).digest()).decode(),
+        script=script,
+        script_hash=_hash(script),
+        style_hash=_hash(style),
         glyphs=_trusted(formula_set.glyphs),
     )
 
@@ -75,6 +82,17 @@ def _style_sheet(formula_set: FormulaSet) -> "Markup":
     baselines = "".join(f".{_depth_class(depth)} {{ vertical-align: {-depth:.2f}em }}\n" for depth in depths)
     sheet = files("wspd_design.reporting").joinpath("templates/report.css").read_text(encoding="utf-8")
     return _trusted(sheet + baselines)
+
+
+def _script() -> "Markup":
+    """Return the script of the page without indentation and comments that fill a line."""
+    source = files("wspd_design.reporting").joinpath("templates/report.js").read_text(encoding="utf-8")
+    lines = map(str.strip, source.splitlines())
+    return _trusted("".join(f"{line}\n" for line in lines if not line.startswith("//")))
+
+
+def _hash(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
 
 
 def _depth_class(depth: float) -> str:

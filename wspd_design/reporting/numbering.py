@@ -53,6 +53,12 @@ def number(document: Document) -> Numbering:
     for part in parts(document):
         if isinstance(part, Link) and part.anchor not in labels:
             raise ValueError(f"link to #{part.anchor}: the document has no such anchor")
+    attached = [each.name for each in document.attachments]
+    for numbered in summary + blocks:
+        if isinstance(numbered.block, Figure) and numbered.block.data not in ("", *attached):
+            raise ValueError(
+                f"{numbered.label}: its numbers are in {numbered.block.data}, which is not attached"
+            )
     headings = tuple(each for each in blocks if isinstance(each.block, Heading))
     return Numbering(summary=summary, blocks=blocks, labels=labels, headings=headings)
 
@@ -93,6 +99,22 @@ def parts(record: object) -> Iterator[object]:
     elif is_dataclass(record):
         for field in fields(record):
             yield from parts(getattr(record, field.name))
+
+
+def unreferenced(document: Document) -> tuple[str, ...]:
+    """Return the labels of figures and tables to which no text of the document refers."""
+    referred = {
+        part.anchor
+        for block in (document.verdict, *document.summary, *document.blocks, *document.provenance)
+        for part in parts(block)
+        if isinstance(part, Link)
+    }
+    numbering = number(document)
+    return tuple(
+        each.label
+        for each in numbering.summary + numbering.blocks
+        if isinstance(each.block, Figure | Table) and each.block.anchor not in referred
+    )
 
 
 def formulas(document: Document) -> tuple[Math | Equation, ...]:

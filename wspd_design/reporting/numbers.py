@@ -28,7 +28,13 @@ def significant(value: float, digits: int = 4) -> str:
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
     if _SMALLEST <= abs(value) < _LARGEST:
         return _minus(_trimmed(f"{value:.{max(digits - 1 - int(exponent), 0)}f}"))
-    return _minus(f"{_trimmed(mantissa)}·10") + str(int(exponent)).translate(_SUPERSCRIPTS)
+    return scientific(_trimmed(mantissa), int(exponent))
+
+
+def scientific(mantissa: str, exponent: int) -> str:
+    """Write a number that comes as mantissa and power of ten; a mantissa of 1 is left out."""
+    power = f"10{str(exponent).translate(_SUPERSCRIPTS)}"
+    return power if mantissa == "1" else _minus(f"{mantissa}·") + power
 
 
 def uncertain(value: float, spread: float, places: int) -> str:
@@ -38,6 +44,20 @@ def uncertain(value: float, spread: float, places: int) -> str:
     half = spread / 2.0
     places = min(max(-math.floor(math.log10(half)), 0), places + 2)
     return f"{decimals(value, places)} ± {decimals(half, places)}"
+
+
+def settled(value: float, spread: float, places: int) -> str:
+    """Write a number with at most so many decimals, and none that half of a spread which is not zero moves."""
+    if spread and math.isfinite(spread):
+        places = min(max(-math.floor(math.log10(spread / 2.0)) - 1, 0), places)
+    return decimals(value, places)
+
+
+def resolved(value: float, width: float) -> str:
+    """Write a number with the digits that matter beside a width over which it spreads: a twentieth of it."""
+    if not width > 0.0 or not math.isfinite(width):
+        return significant(value, 3)
+    return decimals(value, max(-math.floor(math.log10(width / 20.0)), 0))
 
 
 def unit(spelling: str) -> str:

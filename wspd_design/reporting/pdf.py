@@ -1,4 +1,4 @@
-"""A document as PDF through Typst: tagged for screen readers (PDF/UA-1), with its files attached.
+"""A document as PDF through Typst: for screen readers (PDF/UA-1) and archives (PDF/A-3a), with its files attached.
 
 The template gets the document as data, never as source: no text can turn into Typst markup.
 """
@@ -31,6 +31,7 @@ from wspd_design.reporting.blocks import (
 from wspd_design.reporting.figure_style import FONT_FAMILY
 from wspd_design.reporting.numbering import PROVENANCE, NumberedBlock, number
 from wspd_design.reporting.svg import size
+from wspd_design.reporting.template import ROLES, Template
 from wspd_design.reporting.text import CodeSpan, Emphasis, Inline, Link, Math, Text, plain, printable, spans
 
 
@@ -56,7 +57,7 @@ def render_pdf(document: Document) -> bytes:
         format="pdf",
         font_paths=typst.Fonts(include_system_fonts=False, font_paths=[_font_folder()]),
         sys_inputs={"document": json.dumps(content), "fallback": FONT_FAMILY},
-        pdf_standards="ua-1",
+        pdf_standards=["ua-1", "a-3a"],  # Typst refuses a document that breaks either
         timestamp=int(document.timestamp.timestamp()),
     )
     return pdf
@@ -75,6 +76,9 @@ def _drawable() -> frozenset[str]:
 
     font = FT2Font(str(_font_folder() / f"{FONT_FAMILY.replace(' ', '')}.ttf"))
     return frozenset(map(chr, font.get_charmap())) | {"\n", "\t"}
+
+
+_AS_IT_IS = ("content", "stored")  # of an attachment: what no page shows
 
 
 def spelled(value: Any, missing: set[str]) -> Any:
@@ -100,7 +104,7 @@ def spelled(value: Any, missing: set[str]) -> Any:
         case list():
             return [spelled(each, missing) for each in value]
         case dict():
-            return {key: each if key == "content" else spelled(each, missing) for key, each in value.items()}
+            return {key: each if key in _AS_IT_IS else spelled(each, missing) for key, each in value.items()}
     return value
 
 
@@ -114,6 +118,10 @@ def _document(document: Document) -> dict[str, Any]:
         "title": printable(document.title),
         "subtitle": printable(document.subtitle),
         "status-line": printable(document.status_line),
+        "author": printable(document.author),
+        "keywords": [printable(each) for each in document.keywords],
+        "description": printable(plain(document.verdict.sentence)),
+        "template": _template(document.template),
         "verdict": _verdict(document.verdict),
         "summary": [_block(each) for each in numbering.summary],
         "blocks": [_block(each) for each in numbering.blocks],
@@ -125,11 +133,27 @@ def _document(document: Document) -> dict[str, Any]:
         "attachments": [
             {
                 "name": printable(each.name),
+                "stored": each.name,
                 "media-type": each.media_type,
                 "content": each.content,
                 "description": printable(each.description),
             }
             for each in document.attachments
+        ],
+    }
+
+
+def _template(template: Template | None) -> dict[str, Any] | None:
+    if template is None:
+        return None
+    logo = template.logo
+    return {
+        "organization": printable(template.organization),
+        "document-number": printable(template.document_number),
+        "issue": printable(template.issue),
+        "logo": None if logo is None else {"format": logo.format, "content": list(logo.content)},
+        "signatures": [
+            {"role": role.capitalize(), "name": printable(getattr(template, role))} for role in ROLES
         ],
     }
 
@@ -228,6 +252,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "label": numbered.label,
                 "caption": _text(block.caption),
                 "anchor": block.anchor,
+                "data": printable(block.data),
             }
         case Table():
             return {
@@ -254,7 +279,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "numbers": [
                     {
                         "label": printable(each.label),
-                        "value": printable(each.value),
+                        "value": printable(each.unbroken),
                         "unit": printable(each.unit),
                         "note": _text(each.note),
                     }

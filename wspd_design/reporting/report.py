@@ -1,49 +1,62 @@
 """The report of a design: a dossier in, one HTML or PDF file out."""
 
-import json
 import os
 from datetime import UTC, datetime
 from pathlib import Path
 
-from wspd_design.controllers.family import designed_family
-from wspd_design.design.file import design_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Attachment, Document
+from wspd_design.reporting.attachments import attachments
+from wspd_design.reporting.blocks import Document
 from wspd_design.reporting.output import write_document
-from wspd_design.reporting.record import report_record
+from wspd_design.reporting.sections.assumptions import assumptions
 from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
-from wspd_design.reporting.sections.checks import certificate_files, checks
+from wspd_design.reporting.sections.changes import changes
+from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
-from wspd_design.reporting.sections.limits import limits, provenance
+from wspd_design.reporting.sections.hazards import hazards
+from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.linearization import linearization
+from wspd_design.reporting.sections.replay import provenance, replay
 from wspd_design.reporting.sections.requirements import requirements
 from wspd_design.reporting.sections.robustness import robustness
 from wspd_design.reporting.sections.slip_equation import slip_equation
 from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
+from wspd_design.reporting.sections.theory import theory
+from wspd_design.reporting.sections.tool import tool
+from wspd_design.reporting.sections.uncertainty import uncertainty
+from wspd_design.reporting.sections.words import words
+from wspd_design.reporting.template import BLANK, Template
 from wspd_design.studies.dossier import Dossier
 
 SECTIONS = (
-    case,
     requirements,
+    assumptions,
+    hazards,
+    case,
     brake,
     slip_equation,
     design,
     linearization,
     checks,
     stop,
+    uncertainty,
     robustness,
     comparison,
     sources,
     limits,
+    theory,
+    replay,
+    tool,
+    changes,
 )
 
 
-def write_report(dossier: Dossier, *paths: str | Path) -> None:
+def write_report(dossier: Dossier, *paths: str | Path, template: Template = BLANK) -> None:
     """Write the report of a design to files; the ending of a name, ``.html`` or ``.pdf``, chooses its format.
 
     The date in the report is now, or that of the environment variable ``SOURCE_DATE_EPOCH`` [s]; all else
@@ -55,58 +68,38 @@ def write_report(dossier: Dossier, *paths: str | Path) -> None:
         What :func:`wspd_design.studies.dossier.dossier` returned.
     *paths : str or Path
         One file for each format wanted.
+    template : Template, optional
+        Logo, names and numbers of a company, of :func:`wspd_design.reporting.template.read_template`.
 
     Raises
     ------
     UserError
         If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is not a number of seconds.
     """
-    document = report_document(dossier, report_time())
+    document = report_document(dossier, report_time(), template)
     for path in paths:
         write_document(document, path)
 
 
-def report_document(dossier: Dossier, timestamp: datetime) -> Document:
+def report_document(dossier: Dossier, timestamp: datetime, template: Template = BLANK) -> Document:
     """Return the report of a design, not yet rendered."""
-    made = dossier.design
-    version = dict(dossier.provenance.versions)["wspd-design"]
+    law, origin = dossier.law, dossier.provenance
     speed = numbers.quantity_in(dossier.scenario.initial_speed, "km/h")
-    record = json.dumps(report_record(dossier), indent=1, ensure_ascii=False, allow_nan=False)
+    blocks = tuple(block for section in SECTIONS for block in section(dossier))
     return Document(
-        title=f"Wheel slide protection: {made.name}",
-        subtitle=f"{designed_family(made.law).heading}, for {dossier.vehicle.name} on {dossier.rail.name}, "
-        f"from {speed}",
-        status_line=f"wspd {version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {dossier.provenance.seed} · "
-        f"inputs {dossier.provenance.input_hash[:12]}",
+        title=f"Wheel slide protection: {law.name}",
+        subtitle=f"{law.heading}, for {dossier.vehicle.name} on {dossier.rail.name}, from {speed}",
+        status_line=f"wspd {origin.program_version} · {timestamp:%Y-%m-%d %H:%M} UTC · seed {origin.seed} · "
+        f"inputs {origin.input_hash[:12]}",
         verdict=verdict(dossier),
         summary=summary(dossier),
-        blocks=tuple(block for section in SECTIONS for block in section(dossier)),
+        blocks=(*blocks, *words(blocks)),
         provenance=provenance(dossier),
-        attachments=(
-            Attachment(
-                name="design.toml",
-                media_type="application/toml",
-                content=design_text(made),
-                description="the design, which every command takes in place of a controller's name",
-            ),
-            *(
-                Attachment(
-                    name=own.name,
-                    media_type="application/toml",
-                    content=own.text,
-                    description=f"the {own.kind}, a file of its own",
-                )
-                for own in dossier.own_files
-            ),
-            Attachment(
-                name="report.json",
-                media_type="application/json",
-                content=f"{record}\n",
-                description="all numbers of this report",
-            ),
-            *certificate_files(dossier),
-        ),
+        attachments=attachments(dossier, timestamp, template),
         timestamp=timestamp,
+        author=template.author or template.organization or f"wspd {origin.program_version}",
+        keywords=("wheel slide protection", law.heading, dossier.vehicle.name, dossier.rail.name),
+        template=template,
     )
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from wspd_design.parameters.errors import UserError
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Document, Heading
+from wspd_design.reporting.made_by import made_by
 from wspd_design.reporting.output import write_document
 from wspd_design.reporting.paper.figures import figures
 from wspd_design.reporting.paper.parts import parts
@@ -58,18 +59,20 @@ def write_reproduction(folder: Path, progress: Callable[[str], object]) -> tuple
 
 def reproduction_document(made: Reproduction, timestamp: datetime) -> Document:
     """Return the page about the paper, not yet rendered."""
-    version = dict(made.provenance.versions)["wspd-design"]
     return Document(
         title="The paper, computed again",
         subtitle="Section 7: an adaptive fuzzy sliding-mode law beside three rule tables on the ER24PC, four-axle "
         "locomotive, from 120 km/h",
-        status_line=f"wspd {version} · {timestamp:%Y-%m-%d %H:%M} UTC · inputs {made.provenance.input_hash[:12]}",
+        status_line=f"wspd {made.provenance.program_version} · {timestamp:%Y-%m-%d %H:%M} UTC · "
+        f"package {made.provenance.package_sha256[:12]}",
         verdict=verdict(made),
         summary=summary(made),
         blocks=(*(block for section in SECTIONS for block in section(made)), *_limits(made)),
         provenance=_provenance(made),
         attachments=(),
         timestamp=timestamp,
+        author=f"wspd {made.provenance.program_version}",
+        keywords=("wheel slide protection", "reproduction", "ER24PC"),
     )
 
 
@@ -101,11 +104,10 @@ def _provenance(made: Reproduction) -> tuple[Definition, ...]:
         Definition(
             term="To make it again",
             text=rich(
-                "Run the command with the versions below. With `SOURCE_DATE_EPOCH` set, the same inputs give the "
-                "same file, byte for byte."
+                "Run the command with the program and the packages below; everything else ships with the program. With "
+                "`SOURCE_DATE_EPOCH` set, it gives the same file, byte for byte."
             ),
         ),
-        Definition(term="Versions", text=", ".join(f"{name} {number}" for name, number in origin.versions)),
+        *made_by(origin),
         Definition(term="Seed of the track", text=str(origin.seed)),
-        Definition(term="Inputs, sha256", text=origin.input_hash),
     )

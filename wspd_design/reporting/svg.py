@@ -5,8 +5,11 @@ page, and ids that collide as soon as two figures share a page.
 """
 
 import re
+from collections import Counter
 from collections.abc import Mapping
 from xml.etree import ElementTree
+
+from wspd_design.reporting.text import printable
 
 _SVG = "{http://www.w3.org/2000/svg}"
 _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
@@ -17,10 +20,13 @@ _COORDINATE = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 _VERTEX = re.compile(rf"([MLz])\s*(?:({_COORDINATE})\s+({_COORDINATE})\s*)?")
 _POLYLINE = re.compile(rf"(?:[ML]\s*{_COORDINATE}\s+{_COORDINATE}\s*|z\s*)+")
 _REFERENCE = re.compile(r"#([\w.-]+)")
+_START = re.compile(r"M(-?[\d.]+) (-?[\d.]+)")
+_EMPTY = "used elsewhere"
+_PART = re.compile(r"(?P<kind>panel|curve|xtick|note)[-_](?P<number>\d+)")
 _FONT = re.compile(r"(?:(italic|oblique) )?(?:(bold|\d00) )?([\d.]+px) (.+)")
 
 
-def canonical(svg: str, font_family: str) -> str:
+def canonical(svg: str, font_family: str, data: str = "") -> str:
     """Turn Matplotlib's SVG into one with plain attributes, one font family and no metadata.
 
     Parameters
@@ -29,6 +35,8 @@ def canonical(svg: str, font_family: str) -> str:
         SVG document as Matplotlib writes it with ``svg.fonttype = "none"``.
     font_family : str
         Font family of all text.
+    data : str
+        What the script of a page is told about the figure, of :func:`wspd_design.reporting.figure_data.data`.
 
     Returns
     -------
@@ -53,11 +61,60 @@ def canonical(svg: str, font_family: str) -> str:
             element.set("font-family", font_family)
         if reference := element.attrib.pop(_XLINK_HREF, ""):
             element.set("href", reference)
+        if element.text:
+            element.text = printable(element.text)
+    _place_single_uses(root)
+    if data:
+        root.set("data-figure", printable(data))
+        _mark_parts(root)
     _drop_unused_ids(root)
     # What Matplotlib says in the style sheet, for all elements.
     root.set("stroke-linejoin", "round")
     root.set("stroke-linecap", "butt")
     return _serialize(root)
+
+
+def _place_single_uses(root: ElementTree.Element) -> None:
+    """Draw a path where it is used if that is at one place: then its coordinates are those of the figure.
+
+    Matplotlib writes collections of paths as definitions far outside the picture, moved by their use.
+    """
+    references = Counter(element.get("href") for element in root.iter(f"{_SVG}use"))
+    paths = {f"#{path.get('id')}": path for path in root.iter(f"{_SVG}path") if path.get("id")}
+    for use in root.iter(f"{_SVG}use"):
+        path = paths.get(use.get("href", ""))
+        if path is None or references[use.get("href")] > 1 or use.get("x") != "0":
+            continue
+        moved = _moved_down(path.attrib["d"], float(use.attrib["y"]))
+        if moved is None:
+            continue
+        use.tag = f"{_SVG}path"
+        for name in ("x", "y", "href"):
+            use.attrib.pop(name)
+        use.attrib = {**path.attrib, **use.attrib, "d": moved}
+        use.attrib.pop("id")
+        path.tag = _EMPTY
+    for parent in root.iter():
+        for child in [each for each in parent if each.tag == _EMPTY]:
+            parent.remove(child)
+        if len(parent) == 1 and parent[0].tag == f"{_SVG}path" and "clip-path" in parent.attrib:
+            parent[0].set("clip-path", parent.attrib.pop("clip-path"))
+
+
+def _moved_down(path: str, by: float) -> str | None:
+    """Move a path as :func:`_path` writes it; None for any other, whose coordinates may all be absolute."""
+    if re.search(r"[^Mlz\d\s.-]", path):
+        return None
+    return _START.sub(
+        lambda start: f"M{start[1]} {_written(round(_HUNDREDTHS * (float(start[2]) + by)))}", path
+    )
+
+
+def _mark_parts(root: ElementTree.Element) -> None:
+    """Name the parts of a figure that a script moves: panels, curves, ticks of x and notes at places of the data."""
+    for element in root.iter():
+        if part := _PART.fullmatch(element.get("id", "")):
+            element.set(f"data-{part['kind']}", part["number"] if part["kind"] in ("panel", "curve") else "")
 
 
 def _drop_unused_ids(root: ElementTree.Element) -> None:

@@ -5,6 +5,7 @@ need no escaping. Emphasis, code, mathematics and links come from :func:`rich`.
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -84,6 +85,15 @@ def _append(spans: list[Inline], text: str) -> None:
         spans.append(text)
 
 
+def references(anchors: Sequence[str]) -> tuple[Inline, ...]:
+    """Refer to several anchors by their labels: ``Table 1, Table 2 and Figure 1``."""
+    found: list[Inline] = []
+    for place, anchor in enumerate(anchors):
+        found += [] if place == 0 else [" and " if place == len(anchors) - 1 else ", "]
+        found.append(Link(anchor=anchor))
+    return tuple(found)
+
+
 def escape(text: str) -> str:
     """Return markup that :func:`rich` shows as exactly this text."""
     return re.sub(r"([\\*`$\[\]])", r"\\\1", text)
@@ -111,23 +121,35 @@ def _words(span: Inline) -> str:
             return span.text
 
 
+_UNPRINTABLE = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_TURNING = re.compile(r"[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+_RIGHT_TO_LEFT = r"\u0590-\u08ff\ufb1d-\ufdff\ufe70-\ufefc"
+_WORDS_FROM_THE_RIGHT = re.compile(rf"[{_RIGHT_TO_LEFT}]+(?: +[{_RIGHT_TO_LEFT}]+)*")
+
+
 def printable(text: str) -> str:
-    """Return the text without control characters, which neither HTML nor PDF can hold."""
-    return re.sub(
-        r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]", "\N{REPLACEMENT CHARACTER}", text
-    )
+    """Return the text as every reader shows it, whoever wrote it.
+
+    Control characters, which neither HTML nor PDF can hold, are replaced. Characters that turn the direction of
+    what follows are spelled by their code points: with them "evil" would be shown as "live". Words that are written
+    from right to left are isolated, so that no number beside them changes its place.
+    """
+    text = _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
+    text = _TURNING.sub(lambda turning: f"[U+{ord(turning[0]):04X}]", text)
+    return _WORDS_FROM_THE_RIGHT.sub("\N{FIRST STRONG ISOLATE}\\g<0>\N{POP DIRECTIONAL ISOLATE}", text)
 
 
 _SPOKEN = (
     (r'"', ""),
     (r"\b(dot|hat|tilde|overline)\(([^()]*)\)", r"\2 \1"),
+    (r"\\/", " over "),
     (r"<=", " at most "),
     (r">=", " at least "),
     (r"\^2\b", " squared"),
     (r"\^", " to the power "),
     (r"/", " over "),
     (r"=", " equals "),
-    (r"[_(),]", " "),
+    (r"_", " "),
     (r"\s+", " "),
 )
 

@@ -186,6 +186,11 @@ def within_bounds(*parameters: ParameterSet) -> tuple[Draw, ...]:
     )
 
 
+def within_bounds_of_stop(scenario: Scenario, parameters: Sequence[ParameterSet]) -> tuple[Draw, ...]:
+    """Draw every number with bounds; rails of single axles stay, or they would all become the same rail."""
+    return within_bounds(*(each for each in parameters if each.kind != "rail" or scenario.axle_rails is None))
+
+
 class Deck:
     """The stops of a campaign: nominal records, and the draws in their places."""
 

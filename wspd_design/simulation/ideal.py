@@ -21,9 +21,9 @@ from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.peak import best_slips, log_speeds
-from wspd_design.simulation.records import Ending, Scenario, Start
+from wspd_design.simulation.records import Ending, Run, Scenario, Start
 from wspd_design.simulation.runaway import runs_away
-from wspd_design.simulation.stop import run_loop
+from wspd_design.simulation.stop import run_loop, run_record, traced
 
 if TYPE_CHECKING:
     import numpy as np
@@ -126,6 +126,16 @@ def ideal_stop(
         distance=float(output.stop_totals["distance"][0]) if stopped else math.nan,
         stopping_time=float(output.stop_totals["time"][0]) if stopped else math.nan,
     )
+
+
+def ideal_run(vehicle: Vehicle, scenario: Scenario, *, slip: float, plant: str = DEFAULT_PLANT) -> Run | None:
+    """Return the traces of the stop whose slip is not exceeded; None where none is known."""
+    if scenario.start != Start() or scenario.patches or runs_away(vehicle, scenario):
+        return None
+    braked = plant_of(plant, vehicle)
+    calm = replace(scenario, faults=())
+    output, engine = run_loop(braked, FILLING, calm, traced(ideal_input([(braked, calm)], slip=slip)))
+    return run_record(braked, FILLING, calm, output, engine)
 
 
 def ideal_input(cases: Sequence[tuple[Plant, Scenario]], *, slip: float | None = None) -> LoopInput:

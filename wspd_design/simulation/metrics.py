@@ -9,6 +9,7 @@ from wspd_design.model.valve_flow import ATMOSPHERE
 from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Vehicle
+from wspd_design.simulation.held_slip import build_up, held_slip_of, perfect_hold
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.law_memory import rms_about_references
 from wspd_design.simulation.peak import peak_adhesion
@@ -26,11 +27,20 @@ class Metrics:
     distance: float  # m
     stopping_time: float  # s
     torque_integral: float  # N m s, sum over wheelsets of the transmitted torque
-    lag: float  # s, 2 d / v0 - t: what the build-up of the brake costs
-    plateau: float  # m/s2, v0 / (2 (t - d / v0)): deceleration after the build-up
+    build_up: float  # s, until the torque first reaches 90 % of what it then holds
+    build_up_distance: float  # m, until then
+    lag: float  # s, 2 d / v0 - t: with the plateau the two numbers of Table 10 in another form, no time of the brake
+    plateau: float  # m/s2, v0 / (2 (t - d / v0))
     slip_mean: float  # -
     slip_max: float  # -
-    slip_rms: float  # -, about the reference, or the slips that the law holds
+    slip_rms: float  # -, about the reference, or the slips that the law holds, with the build-up before it is reached
+    slip_reached: float  # s, until the first wheelset has 90 % of its reference; NaN if none has
+    held_slip_rms: float  # -, each wheelset from then on
+    slip_overshoot: float  # -, likewise, largest excess over the reference
+    slip_undershoot: float  # -, likewise, largest shortfall
+    perfect_slip_rms: (
+        float  # -, held_slip_rms of a brake that fills and then holds the reference; NaN if not known
+    )
     lock_time: float  # s
     judged_lock: float  # s, longest lock of a wheelset without a break, above 10 km/h
     slip_band: (
@@ -89,11 +99,20 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
     ideal_distance = math.nan if ideal is None else ideal.distance
     parted = stopped and known and moved
+    held = held_slip_of(run, slip_reference)
+    perfect = (
+        perfect_hold(vehicle, scenario, slip=slip_reference, plant=run.plant)
+        if known and own is None
+        else None
+    )
+    built_up, built_up_distance = build_up(run) if known else (math.nan, math.nan)
     commands = [(sample.fill, sample.vent) for samples in run.axle_samples for sample in samples]
     return Metrics(
         distance=totals.distance,
         stopping_time=time,
         torque_integral=totals.torque,
+        build_up=built_up,
+        build_up_distance=built_up_distance,
         lag=2.0 * totals.distance / run.initial_speed - time if parted else math.nan,
         plateau=run.initial_speed / (2.0 * (time - totals.distance / run.initial_speed))
         if parted
@@ -101,6 +120,11 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
         slip_mean=mean,
         slip_max=run.slip_max,
         slip_rms=math.sqrt(max(square, 0.0)) if own is None else own,
+        slip_reached=held.reached,
+        held_slip_rms=held.rms,
+        slip_overshoot=held.overshoot,
+        slip_undershoot=held.undershoot,
+        perfect_slip_rms=math.nan if perfect is None else perfect.rms,
         lock_time=totals.lock_time,
         judged_lock=totals.judged_lock,
         slip_band=totals.slip_band,

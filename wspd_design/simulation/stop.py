@@ -71,8 +71,7 @@ def simulate(
 
 def simulate_on(plant: Plant, controller: Law, scenario: Scenario, *, refinement: int = 1) -> Run:
     """Brake a plant from the initial speed to standstill; otherwise as :func:`simulate`."""
-    given = loop_input([(plant, scenario)], controller, refinement=refinement)
-    given = replace(given, trace_rows=math.ceil(1.1 * constants().time_limit / RECORD_INTERVAL))
+    given = traced(loop_input([(plant, scenario)], controller, refinement=refinement))
     output, engine = run_loop(plant, controller, scenario, given)
     if output.result == BAD_COMMAND:
         time, fill, vent = output.bad_command
@@ -80,7 +79,12 @@ def simulate_on(plant: Plant, controller: Law, scenario: Scenario, *, refinement
             f"controller {controller.name} commanded fill = {fill:g}, vent = {vent:g} at t = {time:.3f} s; "
             "both must lie in [0, 1] and their sum must not exceed 1: limit the command in its step function"
         )
-    return _run_record(plant, controller, scenario, output, engine)
+    return run_record(plant, controller, scenario, output, engine)
+
+
+def traced(given: LoopInput) -> LoopInput:
+    """Return the numbers of a stop that records its traces up to the time limit."""
+    return replace(given, trace_rows=math.ceil(1.1 * constants().time_limit / RECORD_INTERVAL))
 
 
 def run_loop(plant: Plant, controller: Law, scenario: Scenario, given: LoopInput) -> tuple[LoopOutput, str]:
@@ -111,7 +115,8 @@ def run_loop(plant: Plant, controller: Law, scenario: Scenario, given: LoopInput
         return output, "CasADi virtual machine"
 
 
-def _run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOutput, engine: str) -> Run:
+def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOutput, engine: str) -> Run:
+    """Return what became of a single stop that was run with traces."""
     import numpy as np
 
     axles, magnets = plant.axles, plant.vehicle.track_brake

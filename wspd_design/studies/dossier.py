@@ -1,50 +1,51 @@
 """Everything that a report shows about a design, computed once."""
 
-import hashlib
-import platform
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from importlib.metadata import version
 from pathlib import Path
 
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
 from wspd_design.analysis.linearization import Linearization, linearize
+from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.adhesion_use import adhesion_sentence
-from wspd_design.design.catalog import controller, controller_of, design_rail, is_design_file
-from wspd_design.design.file import design_text, read_design
+from wspd_design.design.case import specification_of
+from wspd_design.design.catalog import controller, controller_of, is_design_file
+from wspd_design.design.file import read_design
 from wspd_design.design.industry import usual_table
+from wspd_design.design.own_controller import is_own_controller
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
+from wspd_design.design.requirements import Requirements, seen_from_here
 from wspd_design.design.selection import named_design
+from wspd_design.design.stop_requirements import StopRequirements, paper_requirements
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
-from wspd_design.parameters.laden import LADEN
-from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.given import given_entries
+from wspd_design.parameters.laden import laden
+from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
-from wspd_design.parameters.schema import PRESETS
+from wspd_design.parameters.schema import PRESETS, Kind
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
+from wspd_design.studies.inputs import design_input, law_inputs, parameter_inputs, python_input, side_by_side
 from wspd_design.studies.judgment import Judgment, judgment
+from wspd_design.studies.loop_growth import Growth, growth_of
+from wspd_design.studies.next_step import NextStep, next_step
+from wspd_design.studies.previous import Previous
+from wspd_design.studies.provenance import InputFile, Provenance, provenance
+from wspd_design.studies.reported_law import ReportedLaw, reported_law
+from wspd_design.studies.uncertainty import Uncertainty, uncertainty
 
 POLE_SPEEDS = 60  # points of the pole map
-PACKAGES = ("wspd-design", "numpy", "scipy", "sympy", "casadi", "control", "matplotlib", "typst")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Provenance:
-    """How to compute a report again."""
-
-    command: str
-    versions: tuple[tuple[str, str], ...]
-    seed: int
-    input_hash: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,23 +59,14 @@ class PhasePlane:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnFile:
-    """A vehicle or rail of the user's own, which no one else has."""
-
-    kind: str  # vehicle or rail
-    name: str  # of the file, without its folder
-    variant: str  # what follows it in options, such as :laden
-    text: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Dossier:
-    """A design, the numbers it rests on, its linearizations, certificates and simulated stops."""
+    """A law, the numbers it rests on, its linearizations, certificates and simulated stops."""
 
-    design: Design
+    law: ReportedLaw
+    specification: Specification  # what is asked of it
+    design: Design | None  # None for a law without gains that were chosen
     vehicle: ParameterSet
     rail: ParameterSet
-    own_files: tuple[OwnFile, ...]  # of those two, where they do not ship with the program
     other_parameters: tuple[ParameterSet, ...]  # constants, the design rail if another, and the baselines
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
     brake: BrakeSheet  # on full adhesion
@@ -82,47 +74,70 @@ class Dossier:
     linearizations: tuple[Linearization, ...]  # over speed, at the slip reference
     certificates: tuple[Certificate, ...]
     trials: tuple[Trial, ...]  # the design's own stop first
-    lag_distances: tuple[float, ...]  # m, of each trial: the part of the distance that the build-up costs
     phase_plane: PhasePlane | None  # of laws with a sliding surface
-    judgment: Judgment | None  # of a design with requirements
+    growth: Growth | None  # near the reference; None where no check of the loop speaks about the law
+    judgment: Judgment  # by its requirements
+    next_step: NextStep | None  # of a law that is not accepted
     robustness: Robustness | None  # where wheelsets differ
+    uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
+    previous: Previous | None  # report to compare with
     provenance: Provenance
 
 
 def dossier(
-    made: Design,
+    made: Design | Law,
     *,
-    vehicle_name: str,
-    rail_name: str,
+    vehicle: Vehicle | Path | str,
+    rail: Rail | Path | str,
     scenario: Scenario,
-    baselines: Sequence[str],
-    command: str,
+    specification: Specification | None = None,
+    baselines: Sequence[str] = (),
+    command: str = "",
+    inputs: Sequence[InputFile] = (),
+    stop_command: str = "",
+    previous: Previous | None = None,
+    written: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
     folder: Path = Path(),
+    requirements: StopRequirements | Requirements | None = None,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
-    """Compute everything about a design.
+    """Compute everything about a law.
 
     Parameters
     ----------
-    made : Design
-        The design.
-    vehicle_name, rail_name : str
-        Names or paths of the vehicle and of the rail of the stops.
+    made : Design or Law
+        The design; or any controller of a wheelset or of a vehicle, which needs no design.
+    vehicle, rail : Vehicle, Rail, Path or str
+        Of the stops: records, shipped names or files.
     scenario : Scenario
         The stops, on this rail; its seed is that of the sampled checks, too.
+    specification : Specification, optional
+        What is asked of a law that is no design; by default the paper's case with the slip and the sample time of the
+        law.
     baselines : sequence of str
         Controllers to compare with.
     command : str
-        The command line, for the record.
+        That makes the report from the input files; empty for a report that was made in Python.
+    inputs : sequence of InputFile
+        What the command makes it from; without a command, the design and the vehicle, rail and law of one's own.
+    stop_command : str
+        ``wspd simulate`` with what the command says about the stop, so that drawn ones can be simulated again.
+    previous : Previous, optional
+        An older report; the changes since then are told.
+    written : str
+        What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
+        report.
     plant : {"planar", "quarter"}
         Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
         Folder of certificate files; what the checkers accept of it for this design is not searched again.
     folder : Path
         Of the design file, from which the rails of its requirements are seen.
+    requirements : StopRequirements or Requirements, optional
+        That the law is judged by: those of the design by default, and what the paper asks for of one without.
     progress : callable, optional
         Told each stage before it starts.
 
@@ -130,66 +145,139 @@ def dossier(
     -------
     Dossier
         Records only.
+
+    Raises
+    ------
+    UserError
+        If a name is unknown, a number of vehicle or rail is impossible, or the law fails.
     """
     import numpy as np
 
-    vehicle, rail = load_vehicle(vehicle_name), load_rail(rail_name)
-    own = controller_of(made, vehicle, rail)
-    specification = made.specification
+    design = made if isinstance(made, Design) else None
+    vehicle_set, rail_set = _stated("vehicle", vehicle), _stated("rail", rail)
+    of_vehicle = vehicle_of(vehicle_set) if isinstance(vehicle, Vehicle) else load_vehicle(vehicle)
+    of_rail = rail if isinstance(rail, Rail) else load_rail(rail)
+    own = controller_of(made, of_vehicle, of_rail) if isinstance(made, Design) else made
+    asked = _asked(made, specification)
     progress("linearization")
-    speeds = np.geomspace(1.0, max(specification.speeds[1], scenario.initial_speed), POLE_SPEEDS)
-    linearizations = tuple(linearize(vehicle, rail, slip=specification.slip, speed=float(v)) for v in speeds)
-    problem = stability_problem(vehicle, rail, own, specification, seed=scenario.seed)
+    speeds = np.geomspace(1.0, max(asked.speeds[1], scenario.initial_speed), POLE_SPEEDS)
+    linearizations = tuple(linearize(of_vehicle, of_rail, slip=asked.slip, speed=float(v)) for v in speeds)
+    problem = stability_problem(of_vehicle, of_rail, own, asked, seed=scenario.seed)
     certificates = verify(problem, progress=progress, stored=stored)
-    shared = replace(specification, reference=None)  # which is for the law of the design alone
-    others = [_baseline(name, vehicle, rail, shared) for name in baselines]
+    growth = growth_of(problem, certificates)
+    shared = replace(asked, reference=None)  # which is for the law of the report alone
+    others = [_baseline(name, of_vehicle, of_rail, shared) for name in baselines]
     controllers = [own, *(law for law, _ in others)]
     trials = compare(
-        vehicle,
+        of_vehicle,
         controllers,
         scenario,
-        slip_reference=specification.slip,
+        slip_reference=asked.slip,
         plant=plant,
         progress=progress,
     )
-    inputs = "\n".join((design_text(made), repr(vehicle), repr(rail), repr(scenario), plant))
+    vehicle_name = "" if isinstance(vehicle, Vehicle) else str(vehicle)
+    full_adhesion = _full_adhesion(of_vehicle, scenario)
+    judged = judgment(
+        own,
+        requirements or _own_requirements(design, folder) or paper_requirements(asked),
+        vehicle=of_vehicle,
+        vehicle_name=vehicle_name,
+        speeds=asked.speeds,
+        own=trials[0],
+        certificates=certificates,
+        growth=growth,
+        full_adhesion=full_adhesion,
+        progress=progress,
+    )
+    told = reported_law(own, design, written=written)
+    if not command:
+        inputs = side_by_side(
+            (
+                *([] if design is None else [design_input(design)]),
+                *parameter_inputs("vehicle", vehicle),
+                *parameter_inputs("rail", rail),
+                *law_inputs(written),
+                python_input(own, scenario, plant),
+            )
+        )
+    named = [written] if written and design is None and not is_own_controller(written) else []
     return Dossier(
-        design=made,
-        vehicle=load_entries("vehicle", vehicle_name),
-        rail=load_entries("rail", rail_name),
-        own_files=(*_own_file("vehicle", vehicle_name), *_own_file("rail", rail_name)),
-        other_parameters=_other_parameters(made, vehicle, rail, baselines),
-        compared_designs=tuple(design for _, design in others if design is not None),
-        brake=brake_sheet(vehicle),
-        adhesion_use=adhesion_sentence(vehicle, rail, specification.speeds),
+        law=told,
+        specification=asked,
+        design=design,
+        vehicle=vehicle_set,
+        rail=rail_set,
+        other_parameters=_other_parameters(design, of_vehicle, of_rail, [*named, *baselines]),
+        compared_designs=tuple(each for _, each in others if each is not None),
+        brake=brake_sheet(of_vehicle),
+        adhesion_use=adhesion_sentence(of_vehicle, of_rail, asked.speeds),
         linearizations=linearizations,
         certificates=certificates,
         trials=trials,
-        lag_distances=tuple(scenario.initial_speed * each.metrics.lag for each in trials),
         phase_plane=phase_plane(trials[0].run, own) if isinstance(own, Surface) else None,
-        judgment=judgment(made, design_rail(made, rail), certificates, folder=folder, progress=progress),
-        robustness=robustness(vehicle, own, scenario, plant=plant, progress=progress),
-        scenario=scenario,
-        provenance=Provenance(
-            command=command,
-            versions=versions(),
-            seed=scenario.seed,
-            input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
+        growth=growth,
+        judgment=judged,
+        next_step=None
+        if judged.accepted
+        else next_step(
+            judged,
+            law=None if design is None else design.law,
+            vehicle=of_vehicle,
+            vehicle_name=vehicle_name,
+            rail=of_rail,
+            asked=shared,
+            scenario=scenario,
+            plant=plant,
+            certificates=certificates,
+            full_adhesion=full_adhesion,
+            progress=progress,
         ),
+        robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),
+        uncertainty=uncertainty(
+            of_vehicle,
+            own,
+            scenario,
+            trials[0],
+            slip_reference=asked.slip,
+            parameters=(vehicle_set, rail_set),
+            laden=vehicle_of(laden(vehicle_set)) if "laden.mass" in vehicle_set.entries else None,
+            plant=plant,
+            command=stop_command,
+            progress=progress,
+        ),
+        scenario=scenario,
+        previous=previous,
+        provenance=provenance(command=command, seed=scenario.seed, inputs=inputs, certificates=certificates),
     )
 
 
-def _own_file(kind: str, written: str) -> tuple[OwnFile, ...]:
-    path = Path(written.removesuffix(LADEN))
-    if path.suffix != ".toml":
-        return ()
-    text = path.read_text(encoding="utf-8-sig")
-    return (OwnFile(kind=kind, name=path.name, variant=written.removeprefix(str(path)), text=text),)
+def _full_adhesion(vehicle: Vehicle, scenario: Scenario) -> float:
+    """Return the distance while no wheel slides [m]; NaN on a grade that the brake does not hold."""
+    try:
+        return full_adhesion_stop(vehicle, scenario.initial_speed, grade=scenario.grade).distance
+    except UserError:
+        return math.nan
 
 
-def versions() -> tuple[tuple[str, str], ...]:
-    """Return the versions of Python and of the packages that numbers depend on."""
-    return (("Python", platform.python_version()), *((name, version(name)) for name in PACKAGES))
+def _own_requirements(design: Design | None, folder: Path) -> Requirements | None:
+    if design is None or design.requirements is None:
+        return None
+    return seen_from_here(design.requirements, folder)
+
+
+def _asked(made: Design | Law, specification: Specification | None) -> Specification:
+    """Return what is asked of a law."""
+    if not isinstance(made, Design):
+        return specification or specification_of(made)
+    if specification is not None:
+        raise UserError(f"design {made.name} has its own specification; leave specification out")
+    return made.specification
+
+
+def _stated(kind: Kind, given: Vehicle | Rail | Path | str) -> ParameterSet:
+    """Return what is stated about a vehicle or rail."""
+    return given_entries(given) if isinstance(given, Vehicle | Rail) else load_entries(kind, given)
 
 
 def phase_plane(run: Run, law: Surface) -> PhasePlane:
@@ -223,12 +311,13 @@ def _baseline(
 
 
 def _other_parameters(
-    made: Design, vehicle: Vehicle, rail: Rail, baselines: Sequence[str]
+    made: Design | None, vehicle: Vehicle, rail: Rail, laws: Sequence[str]
 ) -> tuple[ParameterSet, ...]:
+    """Return the constants, the design rail if it is another one, and the tables of laws."""
     found = [load_entries("constants", "constants")]
-    if not made.made_on(rail):
+    if made is not None and not made.made_on(rail):
         found.append(load_entries("rail", made.rail))
-    for written in baselines:
+    for written in dict.fromkeys(laws):
         name, _, preset = written.partition(":")
         if name in available("controller"):
             parameters = load_entries("controller", name)

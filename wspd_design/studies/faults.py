@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Law
+from wspd_design.design.stop_requirements import LONGEST_LOCK
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import load_rail, load_rail_profile
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SINCE = 3.0  # s, after the brake was applied: it is built up, and the wheels slide where they will
-LONGEST_LOCK = 0.5  # s, above the judging speed, that a wheelset may be locked for
+
 PATCHES = "patchy"
 _STUCK_FULL = "valve-fills"
 

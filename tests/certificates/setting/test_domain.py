@@ -75,9 +75,9 @@ def test_a_number_without_bounds_is_known(make_problem, make_controller, er24pc)
 
 def test_words_name_what_varies_and_what_is_held(make_problem, make_controller):
     problem = make_problem(make_controller("smc"), rail="polach-wet")
-    assert domain.described(
+    assert domain.domain_of(
         problem, ("slip", "speed", "mu0", "vent time"), ("wheel radius", "friction ratio")
-    ) == (
+    ).text == (
         "slip 0.02 to 0.6, 10 to 120 km/h, mu0 0.24 to 0.36, vent time 0.3 to 0.9 s; "
         "held: wheel radius 0.55 m, friction ratio 0.4"
     )

@@ -8,21 +8,40 @@ import numpy as np
 from wspd_design.analysis.brake_sheet import brake_sheet
 from wspd_design.analysis.linearization import Linearization
 from wspd_design.certificates.records import Certificate, Hypothesis, Point, Range, Role, Series, Status
+from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.design.records import Design, Gain, Specification
 from wspd_design.design.requirements import DrawnSets, Limit, Requirements, judged_by
+from wspd_design.design.stop_requirements import MODEL, StopRequirements
 from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.draws import Choice, Draw
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.simulation.records import Ending, Fault, Run, Sample, Scenario, Totals
 from wspd_design.simulation.self_check import StepCheck
-from wspd_design.studies.dossier import Dossier, PhasePlane, Provenance
+from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness
-from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.judgment import judged_drawn, judged_stop
+from wspd_design.studies.loop_growth import Growth
+from wspd_design.studies.provenance import InputFile, Provenance
+from wspd_design.studies.reported_law import ReportedLaw
+from wspd_design.studies.uncertainty import Effect, Spread, Uncertainty, Variant, WorstSet
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
 INITIAL_SPEED = 120.0 / 3.6
+SAMPLE_PROVENANCE = Provenance(
+    command="wspd report design.toml --vehicle er24pc --rail polach-wet --seed 7",
+    seed=7,
+    inputs=(InputFile(name="design.toml", text="[gains]\n", meaning="the design"),),
+    searches_cut=("two",),
+    program_version="0.1.0",
+    package_sha256="fedcba9876543210" * 4,
+    package_tree="0123456789" * 4,
+    changed=False,
+    compiler="cc 1.2.3",
+    platform="Linux x86_64",
+    versions=(("Python", "3.11.7"), ("numpy", "2.4.6")),
+)
 
 
 def certificate(name: str, status: Status, **changes) -> Certificate:
@@ -101,11 +120,18 @@ def trial(
         distance=187.65,
         stopping_time=10.0,
         torque_integral=1.5678e6,
+        build_up=1.2,
+        build_up_distance=38.5,
         lag=1.259,
         plateau=3.8135,
         slip_mean=0.1412,
         slip_max=0.2399,
         slip_rms=0.0707,
+        slip_reached=2.1,
+        held_slip_rms=0.0612,
+        slip_overshoot=0.0999,
+        slip_undershoot=0.1001,
+        perfect_slip_rms=0.0012,
         lock_time=0.975,
         judged_lock=0.5,
         slip_band=math.nan,
@@ -149,21 +175,39 @@ def estimating(plain: Trial) -> Trial:
     return replace(plain, run=run, metrics=figures)
 
 
-def judgment(**reached: float) -> Judgment:
-    """Return a judgment by two limits and one number that is only told."""
+WANTED = StopRequirements(
+    name="sample",
+    not_refuted=("lyapunov_one",),
+    limits=(
+        Limit(criterion="slip_rms", value=0.1, source="a wish"),
+        Limit(criterion="longest_lock", value=0.6, source="contract 12", verified=True),
+    ),
+)
+SOUND = tuple(certificate(name, Status.PROVED) for name in MODEL)
+
+
+def judged(dossier: Dossier, wanted: StopRequirements = WANTED, growth: Growth | None = None) -> Dossier:
+    """Judge a dossier whose records were changed again."""
+    found = {each.name: each for each in dossier.certificates}
+    made = judged_stop(wanted, dossier.trials[0], found, growth=growth, full_adhesion=175.0)
+    return replace(dossier, judgment=made, growth=growth)
+
+
+def drawn(dossier: Dossier, **reached: float) -> Dossier:
+    """Judge a dossier by two limits on drawn stops, with checks that find equations and simulation sound."""
     limits = (Limit(criterion="efficiency_mean", value=0.975), Limit(criterion="longest_lock", value=0.1))
     numbers = {"efficiency_mean": 0.9812, "longest_lock": 0.04, "valve_switches": 12.3} | reached
-    return Judgment(
-        requirements=Requirements(
-            rails=("polach-wet", "polach-dry"),
-            within_bounds=("rail",),
-            held_out=DrawnSets(sets=200, seed=77),
-            limits=limits,
-            stop=(("stop.initial_speed", INITIAL_SPEED),),
-            draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
-        ),
-        judged=judged_by(limits, numbers),
+    wanted = Requirements(
+        rails=("polach-wet", "polach-dry"),
+        within_bounds=("rail",),
+        held_out=DrawnSets(sets=200, seed=77),
+        limits=limits,
+        stop=(("stop.initial_speed", INITIAL_SPEED),),
+        draws=(Draw(name="stop.sensing.dead_time", distribution=Choice(values=(0.0, 0.02))),),
     )
+    sound = replace(dossier, certificates=(*dossier.certificates, *SOUND))
+    found = {each.name: each for each in sound.certificates}
+    return replace(sound, judgment=judged_drawn(wanted, judged_by(limits, numbers), sound.trials[0], found))
 
 
 def faults(**changes) -> Robustness:
@@ -187,6 +231,71 @@ def faults(**changes) -> Robustness:
         most_adhesion=(24e3, 31e3),
     )
     return replace(plain, **changes)
+
+
+def uncertainty(**changes) -> Uncertainty:
+    """Return an uncertainty of four sets; the distance of the last has no end."""
+
+    def spread(name: str, nominal: float, *values: float, worst: int) -> Spread:
+        ordered = sorted(values)
+        return Spread(
+            name=name,
+            nominal=nominal,
+            low=ordered[0],
+            high=ordered[-1],
+            p05=ordered[0],
+            p95=ordered[2],
+            worst=WorstSet(
+                number=worst,
+                value=values[worst],
+                parameters=(("vehicle.mass", 80e3), ("rail.mu0", 0.25)),
+                command=f"wspd simulate mine.toml --only-run {worst}",
+            ),
+            values=values,
+        )
+
+    plain = (("distance", 187.65), ("efficiency", 0.93), ("slip_rms", 0.0707), ("longest_lock", 0.0))
+    found = Uncertainty(
+        sets=4,
+        seed=7,
+        drawn=("vehicle.mass", "rail.mu0"),
+        held=("vehicle.wheel_radius",),
+        unstopped=1,
+        checked=1,
+        step_change=2e-4,
+        numerical=0.4,
+        numbers=((70e3, 0.3), (76e3, 0.28), (75e3, 0.26), (80e3, 0.25)),
+        spreads=(
+            spread("distance", 187.65, 181.2, 176.4, 240.9, math.inf, worst=3),
+            spread("efficiency", 0.93, 0.95, 0.912, 0.881, 0.0, worst=3),
+            spread("slip_rms", 0.0707, 0.06, 0.08, 0.1041, 0.09, worst=2),
+            spread("longest_lock", 0.0, 0.0, 0.0, 0.0, 0.0, worst=0),
+        ),
+        effects=(
+            Effect(
+                name="vehicle.mass",
+                low=61473.0,
+                high=92209.0,
+                at_low=(("distance", 185.0), ("efficiency", 0.92)),
+                at_high=(("distance", 190.5), ("efficiency", 0.94)),
+            ),
+            Effect(
+                name="rail.mu0",
+                low=0.24,
+                high=0.36,
+                at_low=(("distance", 230.0), ("efficiency", 0.9), ("slip_rms", 0.09)),
+                at_high=(("distance", 170.0), ("efficiency", 0.94), ("slip_rms", 0.06)),
+            ),
+        ),
+        variants=(
+            Variant(
+                subject="rail", words="low-adhesion", outcome=(("distance", math.inf), ("efficiency", 0.0))
+            ),
+            Variant(subject="sensors", words="torque error -10 %", outcome=plain),
+            Variant(subject="sensors", words="accelerometer bias 0.05 m/s2", outcome=(("distance", 201.4),)),
+        ),
+    )
+    return replace(found, **changes)
 
 
 def linearization(speed: float, pole: float) -> Linearization:
@@ -215,11 +324,23 @@ def sample_dossier(
     if trials is None:
         trials = (
             trial("mine", rail),
-            trial("trenitalia", rail, distance=201.75, lag=2.0),
+            trial("trenitalia", rail, distance=201.75, build_up_distance=62.0),
             trial("none", rail),
         )
     names = ("lyapunov_one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+    checks = tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False))
     return Dossier(
+        law=ReportedLaw(
+            name="mine",
+            title="adaptive fuzzy sliding mode",
+            origin="eqs. (29) to (42)",
+            own=False,
+            called="design.toml",
+            equations=FAMILIES["afsmc"].equations,
+            acts_on="one wheelset",
+            fingerprint="123abc" * 10 + "1234",
+        ),
+        specification=Specification(),
         design=Design(
             name="mine",
             law="afsmc",
@@ -236,7 +357,6 @@ def sample_dossier(
         ),
         vehicle=load_entries("vehicle", "er24pc"),
         rail=load_entries("rail", rail),
-        own_files=(),
         other_parameters=(load_entries("constants", "constants"), load_entries("controller", "trenitalia")),
         compared_designs=(),
         brake=brake_sheet(load_vehicle("er24pc")),
@@ -244,19 +364,19 @@ def sample_dossier(
         linearizations=tuple(
             linearization(float(v), 2.0 - 8.0 / v) for v in np.geomspace(1.0, INITIAL_SPEED, 12)
         ),
-        certificates=tuple(certificate(name, status) for name, status in zip(names, statuses, strict=False)),
+        certificates=checks,
         trials=trials,
-        lag_distances=tuple(INITIAL_SPEED * each.metrics.lag for each in trials),
         phase_plane=PhasePlane(
             integral=(0.0, 0.014, 0.02), error=(0.14, 0.06, -0.05), surface_rate=0.38, layer=0.025
         ),
-        judgment=None,
-        robustness=None,
-        scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
-        provenance=Provenance(
-            command="wspd report mine.toml",
-            versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),
-            seed=7,
-            input_hash="fedcba9876543210" * 4,
+        growth=None,
+        judgment=judged_stop(
+            WANTED, trials[0], {each.name: each for each in checks}, growth=None, full_adhesion=175.0
         ),
+        next_step=None,
+        robustness=None,
+        uncertainty=None,
+        scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
+        previous=None,
+        provenance=SAMPLE_PROVENANCE,
     )

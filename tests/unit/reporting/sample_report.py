@@ -24,12 +24,15 @@ from wspd_design.reporting.blocks import (
     Verdict,
 )
 from wspd_design.reporting.figure_style import figure_style, figure_svg, new_figure
+from wspd_design.reporting.template import Logo, Template
 from wspd_design.reporting.text import rich
 
 HOSTILE = (
     "#import \"x\" <script>alert('1')</script> $ \\ @a *b* _c_ `d` [e](#f) & © "
     "\N{PILE OF POO} \x00 ]] }} {{ </style>"
 )
+
+LOGO = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 30"><rect width="90" height="30"/></svg>'
 
 
 def slip_figure() -> str:
@@ -186,4 +189,13 @@ def sample(note: str = "nothing hostile") -> Document:
             ),
         ),
         timestamp=datetime(2026, 11, 22, 12, 0, tzinfo=UTC),
+        author="A. Author",
+        keywords=("wheel slide protection", "ER24PC"),
+        template=Template(
+            organization="Example Rail",
+            document_number="WSP-0042",
+            issue="3",
+            author="A. Author",
+            logo=Logo(format="svg", content=LOGO),
+        ),
     )

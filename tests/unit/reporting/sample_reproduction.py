@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from tests.unit.reporting.sample_dossier import INITIAL_SPEED, trial
+from tests.unit.reporting.sample_dossier import INITIAL_SPEED, SAMPLE_PROVENANCE, trial
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_track_spectrum, load_vehicle
-from wspd_design.studies.dossier import Provenance
 from wspd_design.studies.paper.conclusions import conclusions
 from wspd_design.studies.paper.disturbances import CHANNELS, Disturbance, TrackChannel
 from wspd_design.studies.paper.evidence import (
@@ -165,10 +164,5 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
             for rail in RAILS
         ),
         ideal_changes=(0.01, -0.02, 0.03, 0.0),
-        provenance=Provenance(
-            command="wspd reproduce -o reports/paper",
-            versions=(("Python", "3.11.7"), ("wspd-design", "0.1.0")),
-            seed=1,
-            input_hash="fedcba9876543210" * 4,
-        ),
+        provenance=replace(SAMPLE_PROVENANCE, command="wspd reproduce -o reports/paper", seed=1, inputs=()),
     )

@@ -72,6 +72,7 @@ def test_references_show_the_label(document: Document) -> None:
         ((Heading(text="a", anchor="x", level=2),), "skips a level"),
         ((Heading(text="a", anchor="x"), Heading(text="b", anchor="y", level=3)), "skips a level"),
         ((Paragraph(text=rich("[](#nowhere)")),), "no such anchor"),
+        ((Figure(svg="<svg/>", caption="c", alt="a", data="none.csv"),), "none.csv, which is not attached"),
     ],
 )
 def test_broken_structure_is_refused(document: Document, blocks: tuple[Block, ...], message: str) -> None:

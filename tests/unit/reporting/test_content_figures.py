@@ -25,11 +25,11 @@ from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.figures.series import (
     axis_label,
     certificate_curves,
-    lyapunov_functions,
     series_alt,
     series_caption,
 )
 from wspd_design.reporting.figures.stop import LOCK_BAR, stop_traces
+from wspd_design.reporting.figures.uncertainty import Bar, Panel, distributions, tornado
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.simulation.law_memory import speed_estimate
 from wspd_design.studies.paper.published import load_table10
@@ -42,6 +42,11 @@ WITH_FURTHER_BRAKES = replace(
     track_brake_force=np.linspace(3e4, 0.0, len(DOSSIER.trials[0].run.time)),
     pad_temperature=np.abs(DOSSIER.trials[0].run.slip) * 100.0,
 )
+PANEL = Panel(
+    label="stopping distance [m]", values=(280.0, 300.0, 305.0, 340.0), nominal=300.0, p05=280.0, p95=340.0
+)
+BAR = Bar(name="mu0", low="0.24", high="0.36", at_low=360.0, at_high=250.0)
+ENDLESS = Bar(name="brake: max torque", low="51 kN m", high="69 kN m", at_low=math.inf, at_high=300.0)
 TELLING = estimating(DOSSIER.trials[0]).run
 DRAWN = {
     "pole map": lambda figure: pole_map(figure, DOSSIER.linearizations, SPECIFICATION.speeds, (0.6, 0.6)),
@@ -53,8 +58,8 @@ DRAWN = {
     "phase planes": lambda figure: phase_planes(
         figure, DOSSIER.trials[0].run, DOSSIER.phase_plane, SPECIFICATION
     ),
-    "series": lambda figure: certificate_curves(figure, DOSSIER.certificates[0]),
-    "lyapunov": lambda figure: lyapunov_functions(figure, DOSSIER.certificates[:2]),
+    "distributions": lambda figure: distributions(figure, [PANEL, PANEL]),
+    "series": lambda figure: certificate_curves(figure, DOSSIER.certificates[0].series),
     "slips": lambda figure: slip_of_all(figure, DOSSIER.trials, SPECIFICATION),
 }
 UNIT = re.compile(r".+ \[(-|%|[A-Za-z0-9/ ^²]+)\]$")
@@ -124,14 +129,12 @@ def test_a_moving_reference_is_drawn_as_the_law_holds_it():
 
 def test_distances_show_both_parts_and_the_paper():
     with figure_style():
-        figure = distance_bars(
-            new_figure(height=3.0), DOSSIER.trials, DOSSIER.lag_distances, load_table10().on("table10-dry")
-        )
+        figure = distance_bars(new_figure(height=3.0), DOSSIER.trials, load_table10().on("table10-dry"))
     axes = figure.axes[0]
     assert axes.get_xlabel() == "distance [m]"
     widths = [patch.get_width() for patch in axes.patches]
-    for index, (trial, lag) in enumerate(zip(DOSSIER.trials, DOSSIER.lag_distances, strict=True)):
-        assert widths[2 * index] == pytest.approx(lag)
+    for index, trial in enumerate(DOSSIER.trials):
+        assert widths[2 * index] == pytest.approx(trial.metrics.build_up_distance)
         assert widths[2 * index] + widths[2 * index + 1] == pytest.approx(trial.metrics.distance)
     mark, ideal = axes.get_lines()
     assert set(mark.get_xdata()) == {184.63}
@@ -139,14 +142,16 @@ def test_distances_show_both_parts_and_the_paper():
 
 
 def test_distances_without_parts_are_whole_bars():
-    unknown = [math.nan] * len(DOSSIER.trials)
+    unknown = [
+        replace(each, metrics=replace(each.metrics, build_up_distance=math.nan)) for each in DOSSIER.trials
+    ]
     with figure_style():
-        axes = distance_bars(new_figure(height=3.0), DOSSIER.trials, unknown, {}).axes[0]
+        axes = distance_bars(new_figure(height=3.0), unknown, {}).axes[0]
     assert [patch.get_width() for patch in axes.patches if patch.get_width()] == pytest.approx(
         [trial.metrics.distance for trial in DOSSIER.trials]
     )
     assert axes.get_legend_handles_labels()[1] == ["ideal stop"]
-    assert "nan" not in distances_alt(DOSSIER.trials, unknown)
+    assert "nan" not in distances_alt(unknown)
 
 
 @pytest.mark.parametrize("count", [2, 8])
@@ -212,9 +217,7 @@ def test_a_lyapunov_function_over_decades_is_drawn_on_a_logarithmic_scale():
     steep = _series("V", "V [-]", x=(0.0, 1.0), y=(1e-3, 10.0), role=Role.LYAPUNOV)
     flat = _series("Vexing speed", "V of the train [km/h]", x=(0.0, 1.0), y=(1e-3, 10.0))
     with figure_style():
-        figure = certificate_curves(
-            new_figure(height=4.0), certificate("one", Status.PROVED, series=(steep, flat))
-        )
+        figure = certificate_curves(new_figure(height=4.0), (steep, flat))
     assert [axes.get_yscale() for axes in figure.axes] == ["log", "linear"]
 
 
@@ -227,11 +230,9 @@ def test_below_its_limit_a_lyapunov_function_may_vanish():
     assert axes.get_ylim() == pytest.approx((1e-4, 2.0))
 
 
-def _curves(*series, title="Check one"):
+def _curves(*series):
     with figure_style():
-        figure = certificate_curves(
-            new_figure(height=4.0), certificate("one", Status.PROVED, series=series, title=title)
-        )
+        figure = certificate_curves(new_figure(height=4.0), series)
         figure.draw_without_rendering()
     return figure
 
@@ -257,7 +258,7 @@ def test_panels_over_the_same_quantity_share_its_axis():
     other = _curves(_series("slip", "slip [-]"), _series("slip", "slip [-]", x_label="speed [km/h]"))
     assert [axes.get_xlabel() for axes in other.axes] == ["time [s]", "speed [km/h]"]
     curves = (_series("a", "slip [-]"), _series("b", "torque [kN m]"), _series("c", "k [1/s]", "c [1/s]"))
-    caption = series_caption(certificate("one", Status.PROVED, series=curves))
+    caption = series_caption("Check one", curves)
     assert caption == "Check one: slip and torque over time and k over c."
 
 
@@ -358,3 +359,14 @@ def test_wheelsets_of_any_number_have_curves_of_their_own(number):
         box = legend.get_window_extent()
         assert 0.0 <= box.x0 < box.x1 <= each.bbox.width
         assert 0.0 <= box.y0 < box.y1 <= each.bbox.height
+
+
+def test_a_bound_at_which_no_train_stops_is_told():
+    with figure_style():
+        figure = tornado(new_figure(height=2.0), [BAR, ENDLESS], 300.0, 0.5, "stopping distance [m]")
+    texts = figure.findobj(Text)
+    words = [text.get_text() for text in texts]
+    assert "51 kN m: no standstill" in words
+    assert {"0.24", "0.36", "stopping distance [m]"} <= set(words)
+    assert "69 kN m" not in words  # its bar has no length
+    assert min(text.get_fontsize() for text in texts) >= 7.0

@@ -4,19 +4,22 @@ from dataclasses import replace
 
 import pytest
 
-from tests.unit.reporting.sample_dossier import estimating, faults, judgment, sample_dossier
+from tests.unit.reporting.sample_dossier import certificate, drawn, estimating, faults, judged, sample_dossier
+from wspd_design.certificates.records import Status as Finding
+from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.controllers.observers.sensors import Sensors
-from wspd_design.design.requirements import Judged
+from wspd_design.design.stop_requirements import LOOP, MODEL, paper_requirements
 from wspd_design.reporting.blocks import Cell, Figure, Paragraph, Status, Table
 from wspd_design.reporting.sections.requirements import requirements
 from wspd_design.reporting.sections.robustness import robustness
 from wspd_design.reporting.sections.stop import stop
-from wspd_design.reporting.text import plain
+from wspd_design.reporting.sections.summary import summary
+from wspd_design.reporting.text import Link, plain
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 
 PLAIN = sample_dossier()
-JUDGED = replace(PLAIN, judgment=judgment(longest_lock=0.2))
+JUDGED = drawn(PLAIN, longest_lock=0.2)
 FAULTED = replace(PLAIN, robustness=faults())
 
 
@@ -29,28 +32,56 @@ def _said(blocks):
     return " ".join(plain(each.text) for each in blocks if isinstance(each, Paragraph))
 
 
-def test_a_design_without_requirements_has_no_such_section():
-    assert requirements(PLAIN) == ()
+def _table(blocks, anchor):
+    return next(each for each in blocks if isinstance(each, Table) and each.anchor == anchor)
+
+
+def test_every_report_has_a_table_of_requirements():
+    assert _table(requirements(PLAIN), "requirement-sources").rows
     assert robustness(PLAIN) == ()
 
 
 def test_limits_and_what_was_reached_stand_side_by_side():
-    mean, lock, switches = _rows(requirements(JUDGED))
-    assert mean[:3] == ["mean efficiency", "≥ 97.5 %", "98.1 %"]
-    assert lock[:3] == ["longest lock above 10 km/h", "≤ 0.1 s", "0.2 s"]
-    assert switches[1:] == ["–", "12.3 1/s", ""]
-    assert [mean[3].status, lock[3].status] == [Status.MET, Status.MISSED]
-
-
-def test_a_certificate_is_proved_and_a_quadratic_function_has_a_number():
-    more = (
-        Judged(requirement="margins", title="margins", limit=None, reached=None, met=False),
-        Judged(requirement="stable_within", title="state left per sample", limit=1.0, reached=0.97, met=True),
+    rows = {row[1]: row for row in _table(summary(JUDGED), "requirements-table").rows}
+    mean, lock, switches = (
+        rows[title]
+        for title in (
+            "mean efficiency",
+            "longest lock above 10 km/h",
+            "valve switches per second and axle, mean",
+        )
     )
-    made = replace(JUDGED, judgment=replace(JUDGED.judgment, judged=more))
-    proof, stable = _rows(requirements(made))
-    assert (proof[1:3], proof[3].status) == (["proved", "–"], Status.MISSED)
-    assert (stable[1:3], stable[3].status) == (["< 1", "0.97"], Status.MET)
+    assert mean[2:5] == ("≥ 97.5 %", "98.1 %", "+0.64 %")
+    assert lock[2:5] == ("≤ 0.1 s", "0.2 s", "−100 %")
+    assert switches[2:] == ("–", "12.3 1/s", "–", "200 simulated stops", "told")
+    assert [mean[6].status, lock[6].status] == [Status.MET, Status.MISSED]
+
+
+def test_the_source_of_a_limit_and_whether_it_was_verified_are_told():
+    rows = {row[0]: row for row in _table(requirements(PLAIN), "requirement-sources").rows}
+    assert rows["R2"][3:5] == ("a wish", "no")
+    assert rows["R3"][3:5] == ("contract 12", "yes")
+
+
+def test_requirements_checks_and_evidence_are_traced_both_ways():
+    wanted = paper_requirements(PLAIN.specification)
+    every = replace(PLAIN, certificates=tuple(certificate(name, Finding.PROVED) for name in THEOREMS))
+    dossier = judged(every, wanted)
+    blocks = requirements(dossier)
+    decides = {plain(row[0]): row[4] for row in _table(blocks, "checks").rows}
+    assert sorted(decides) == sorted(THEOREMS)
+    shown = {
+        row[0]: [part.text for part in row[5] if isinstance(part, Link)]
+        if isinstance(row[5], tuple)
+        else row[5]
+        for row in _table(blocks, "requirement-sources").rows
+    }
+    for row in dossier.judgment.limited:
+        assert shown[row.id] == (list(row.checks) or "one simulated stop")  # no requirement without evidence
+        for name in row.checks:
+            assert row.id in decides[name]
+    deciding = {name for row in dossier.judgment.limited for name in row.checks}
+    assert {name for name, ids in decides.items() if ids != "told only"} == deciding == {*MODEL, LOOP}
 
 
 def test_the_stops_are_named_with_their_seed_and_what_is_drawn():
@@ -101,10 +132,8 @@ def test_a_law_that_is_told_the_speed_says_so():
 
 
 def _with_sensors(own, **sensors):
-    made = replace(
-        PLAIN.design, specification=replace(PLAIN.design.specification, sensors=Sensors(**sensors))
-    )
-    return replace(PLAIN, design=made, trials=(own, *PLAIN.trials[1:]))
+    asked = replace(PLAIN.specification, sensors=Sensors(**sensors))
+    return replace(PLAIN, specification=asked, trials=(own, *PLAIN.trials[1:]))
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import Any, Literal, TypeAlias
 
 from wspd_design.certificates.kernel.term import Step, Terms, steps, text
+from wspd_design.certificates.records import Interval
 from wspd_design.model.number import Number
 
 Expression: TypeAlias = Callable[[Mapping[str, Number]], Number]
@@ -81,6 +82,15 @@ class Claim:
         margin = "<" in self.name or ">" in self.name
         said = f"{self.name}, with a margin of at least" if margin else f"{self.name} {self.relation}"
         return f"{said} {float(self.bound):.6g} {self.unit}".removesuffix(" -")
+
+    def ranges(self) -> tuple[Interval, ...]:
+        """Return the ranges of the variables that the expression depends on, rounded to doubles."""
+        used = {step[1] for step in formula(self.expression, self.variables) if step[0] == "x"}
+        return tuple(
+            Interval(name=each.name, low=float(each.low), high=float(each.high), unit=each.unit)
+            for each in self.variables
+            if each.name in used
+        )
 
     def statement(self) -> dict[str, Any]:
         """Return everything that is claimed as the JSON object that the stand-alone checker decides about."""

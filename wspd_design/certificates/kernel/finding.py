@@ -10,7 +10,7 @@ from fractions import Fraction
 from math import inf, isfinite, nextafter
 from typing import Any
 
-from wspd_design.certificates.records import Range, Status
+from wspd_design.certificates.records import Interval, Range, Status
 
 Place = Mapping[str, float]
 """Value of each free quantity by its name [SI units]."""
@@ -56,6 +56,7 @@ class Finding:
     numbers: Mapping[str, float] = field(
         default_factory=dict
     )  # that a checker computed, or that samples gave
+    ranges: tuple[Interval, ...] = ()  # of all that the statement which was shown uses
     leaves: int = 0  # boxes that the checker decided
     stated: Stated = field(default_factory=Stated)
 

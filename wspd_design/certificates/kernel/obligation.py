@@ -16,7 +16,7 @@ from wspd_design.certificates.kernel.checker import FORMAT, Refused, Work
 from wspd_design.certificates.kernel.claim import Claim, steps_of
 from wspd_design.certificates.kernel.finding import Finding, Place, Stated, above, below
 from wspd_design.certificates.kernel.term import text
-from wspd_design.certificates.records import Status
+from wspd_design.certificates.records import Interval, Status
 
 Ends: TypeAlias = tuple[float, float]
 Numbers: TypeAlias = Mapping[str, float]
@@ -245,13 +245,14 @@ def _exact(asked: str, statement: Mapping[str, Any], stated: Stated, work: Work)
 def _decide(claim: Claim, asked: str, stated: Stated, work: Work) -> Finding:
     """Decide about an inequality from its proof and the place of its tightest value."""
     low, high, shown, leaves = -float("inf"), float("inf"), "", 0
+    ranges: tuple[Interval, ...] = ()
     enough = denied = False
     if stated.proof is not None:
         proved = _with_bound(claim, stated.proof)
         if stated.proof.get("statement") != proved.statement():
             raise Refused(f"the proof belongs to another statement than: {asked}")
         leaves = checker.decide(dict(stated.proof), work).leaves
-        shown = proved.in_words()
+        shown, ranges = proved.in_words(), proved.ranges()
         enough = proved.bound <= claim.bound if claim.relation == "<=" else proved.bound >= claim.bound
         if claim.relation == "<=":
             high = above(proved.bound)
@@ -282,6 +283,7 @@ def _decide(claim: Claim, asked: str, stated: Stated, work: Work) -> Finding:
         values={v.name: stated.place.get(v.name, float(v.low)) for v in claim.variables}
         if stated.place
         else {},
+        ranges=ranges,
         leaves=leaves,
         stated=stated,
     )

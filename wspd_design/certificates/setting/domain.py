@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, cast
 
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import AXLE, QUANTITIES, STATE
-from wspd_design.certificates.records import Point, Problem
+from wspd_design.certificates.records import SHOWN as SHOWN
+from wspd_design.certificates.records import Domain, Interval, Point, Problem
 from wspd_design.certificates.setting import axle
 from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.bounds import Ends
@@ -26,9 +27,6 @@ PARAMETERS = BASIC[2:]
 
 SLIP, SPEED, MASS, INERTIA, MU0 = range(5)
 """Columns of an array of points of :data:`BASIC`, in SI units; the inertia is that of a wheelset."""
-
-SHOWN = {"m/s": (KMH, "km/h")}
-"""Factor and unit in which people read a quantity, where it is not the SI unit."""
 
 
 def span(problem: Problem, name: str) -> Ends:
@@ -101,8 +99,8 @@ def readable(point: "Array", names: Sequence[str] = BASIC) -> tuple[Point, ...]:
     return tuple(found)
 
 
-def described(problem: Problem, names: Iterable[str] = BASIC, held: Iterable[str] = ()) -> str:
-    """The domain in words.
+def domain_of(problem: Problem, names: Iterable[str] = BASIC, held: Iterable[str] = ()) -> Domain:
+    """Return the domain of a claim.
 
     Parameters
     ----------
@@ -114,16 +112,14 @@ def described(problem: Problem, names: Iterable[str] = BASIC, held: Iterable[str
         Quantities with a range that the claim depends on and does not vary: they stand at their nominal values.
     """
     spans = {name: span(problem, name) for name in names}
-    text = ", ".join(_range_text(name, ends) for name, ends in spans.items() if name in STATE or _wide(ends))
-    nominal = ", ".join(_range_text(name, 2 * (problem.nominal(name),)) for name in held)
-    return f"{text}; held: {nominal}" if nominal else text
+    return Domain(
+        varied=tuple(_interval(name, ends) for name, ends in spans.items() if name in STATE or _wide(ends)),
+        held=tuple(_interval(name, 2 * (problem.nominal(name),)) for name in held),
+    )
 
 
-def _range_text(name: str, ends: Ends) -> str:
-    factor, unit = SHOWN.get(QUANTITIES[name].unit, (1.0, QUANTITIES[name].unit))
-    low, high = (f"{end * factor:.3g}" if name == "speed" else f"{end * factor:.6g}" for end in ends)
-    numbers = low if low == high else f"{low} to {high}"
-    return f"{numbers} {unit}" if name == "speed" else f"{name} {numbers} {unit}".removesuffix(" -")
+def _interval(name: str, ends: Ends) -> Interval:
+    return Interval(name=name, low=ends[0], high=ends[1], unit=QUANTITIES[name].unit)
 
 
 def _wide(ends: Ends) -> bool:

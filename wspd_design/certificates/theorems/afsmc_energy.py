@@ -150,6 +150,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             *(hypothesis(each.text, findings[each.key]) for each in conditions),
         ),
         assumptions=(CONTINUOUS, "slip reference constant", "slip and speed measured exactly"),
+        domain=said.domain,
         varied=said.varied,
         held=said.held,
         method="repaired Lyapunov function V; torques and deceleration enclosed by interval branch and bound and "

@@ -138,11 +138,12 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     cells, windows = _covered(problem, findings), windows_of(problem)
     friction = proved_friction(problem, findings)
     held = held_names(problem)
+    within = domain.domain_of(_held(problem), VARIED, held)
     low, high = (speed * KMH for speed in problem.speeds)
     claim = (
         f"Once the state of a wheelset is in its ellipsoid, its slip stays in a band around {problem.slip:g} at every "
-        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit. For "
-        f"constant parameters in the box: {domain.described(_held(problem), VARIED, held)}; sampled every "
+        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit. On "
+        f"{within.text}, all of them constant; sampled every "
         f"{problem.sample_time * 1e3:g} ms, with any course of the friction whose slope stays within its proved range."
     )
     explanation, margin = f"No ellipsoids were found. {_dead_band(problem)}.", None
@@ -188,6 +189,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "pulses begin with the sample; the law computes with real numbers",
             "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
         ),
+        domain=within,
         varied=tuple(name for name in domain.uncertain(problem) if name in VARIED),
         held=held,
         method="ellipsoids by linear matrix inequalities in doubles; LDL' in balls at the corners of the sampled loop, "

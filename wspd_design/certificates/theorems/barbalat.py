@@ -163,6 +163,7 @@ def _convergence(problem: Problem, findings: Findings) -> Certificate:
             "the model of the slip and the rates alpha/v hold down to standstill; both are limited below "
             f"{constants().slip_regularization_speed:g} m/s",
         ),
+        domain=said.domain,
         varied=said.varied,
         held=said.held,
         method="repaired Lyapunov function in sigma; torques enclosed by interval branch and bound and replayed by the "
@@ -222,6 +223,7 @@ def _vacuous(problem: Problem, findings: Findings) -> Certificate:
             hypothesis(continuity.asked, continuity),
         ),
         assumptions=ASSUMPTIONS,
+        domain=said.domain,
         varied=said.varied,
         held=said.held,
         method="a positive deceleration by interval branch and bound, replayed by the independent checker; a run with "

@@ -37,8 +37,9 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
     # The inertia of the bounds is that of a wheelset, 2 I; G is smallest where both inertia and speed are largest.
     largest = Fraction(problem.span("wheelset inertia")[1]) * Fraction(problem.speeds[1])
     smallest = Fraction(problem.span("wheel radius")[0]) / largest if status is Status.PROVED else None
+    within = domain.domain_of(problem, USED)
     return Certificate(
-        claim=f"G = R/(2 I v) > 0 on {domain.described(problem, USED)}.",
+        claim=f"G = R/(2 I v) > 0 on {within.text}.",
         status=status,
         explanation=(
             "A factor of G is zero or negative in the box, so that G has no sign there; correct the bounds."
@@ -58,6 +59,7 @@ def _tell_gain_positive(problem: Problem, findings: Mapping[str, Finding]) -> Ce
         ),
         witness=tuple(_point(each) for each in wrong),
         hypotheses=tuple(hypothesis(each.text, findings[each.key]) for each in factors),
+        domain=within,
         varied=USED[1:],
         reference="eq. (19); docs/theory.md#slip-equation",
     )

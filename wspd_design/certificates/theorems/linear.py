@@ -175,10 +175,11 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
     uncertain = domain.uncertain(problem)
     varied = tuple(each for each in VARIED if each in uncertain)
     held = tuple(each for each in OTHERS if each in uncertain)
+    within = domain.domain_of(problem, ("speed", *varied), held)
     return Certificate(
         claim=f"At every frozen speed the loop near {rest}, with the averaged valve"
         f"{'' if one_time(problem) else ' at any share of T_max'}{included}, is stable: "
-        f"{'; '.join(findings)}. {STATIC.capitalize()}; {domain.described(problem, ('speed', *varied), held)}.",
+        f"{'; '.join(findings)}. {STATIC.capitalize()}; on {within.text}.",
         status=status,
         explanation={
             Status.PROVED: f"Tightest{spot}. Small deviations of the slip die out despite the lag.",
@@ -198,6 +199,7 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
             *_held_of_law(problem),
             STATIC,
         ),
+        domain=within,
         varied=varied,
         held=held,
         method="Routh's conditions of the linearized loop by interval branch and bound, replayed by the independent "

@@ -122,9 +122,10 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         )
     if status is not Status.REFUTED and numbers and numbers["cut short"]:
         told += f" {numbers['cut short']:.0f} of the runs were cut short."
+    where = domain.domain_of(problem)
     return Certificate(
         claim="V = sbar^2/2, sbar = s/K_P, does not rise at any state outside the layer, abs(sbar) > "
-        f"{law.gains.boundary_layer:g}, whatever the integral of the error, on {domain.described(problem)}, the "
+        f"{law.gains.boundary_layer:g}, whatever the integral of the error, on {where.text}, the "
         "other numbers of vehicle and rail nominal.",
         status=status,
         explanation=told,
@@ -138,6 +139,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "quarter model with static wheel load; its other numbers are nominal",
             ASSUMPTIONS[2],
         ),
+        domain=where,
         varied=PARAMETERS,
         held=domain.not_varied(problem, PARAMETERS),
         method="runs with the Rosenbrock method RODAS, with nominal parameters and all corners of those that are "

@@ -352,7 +352,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         )
         reached = f"The lowest controllable speed {between} km/h; from there on the recovery is proved."
     held = tuple(name for name in HELD if problem.span(name)[0] < problem.span(name)[1])
-    described = domain.described(problem, ("speed", *USED), held)
+    within = domain.domain_of(problem, ("speed", *USED), held)
     where = (
         (
             *place(escape.place, tuple(escape.place)),
@@ -365,7 +365,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         claim=f"At every frozen speed a deviation of the slip of {DEVIATION:g} above the reference {problem.slip:g}, "
         f"seen one sample of {problem.sample_time * 1e3:g} ms late, is brought back by full venting without passing "
-        f"{problem.slips[1]:g}; {STATIC}, on {described}. Where it is not, "
+        f"{problem.slips[1]:g}; {STATIC}, on {within.text}. Where it is not, "
         "no law can do it: venting is all that a brake can do.",
         status=status,
         explanation=" ".join(f"{passing} {growing} {reached}".split()),
@@ -393,6 +393,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "exact measurement, no computing time, full supply pressure",
             "a deviation below the reference is benign: the wheel falls back to rolling and brakes less",
         ),
+        domain=within,
         varied=USED,
         held=held,
         reference="eqs. (9), (19); docs/theory.md#hard-limits",

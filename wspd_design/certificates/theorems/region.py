@@ -182,13 +182,14 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     uncertain = domain.uncertain(problem)
     varied = tuple(name for name in (*creep_slope.USED, *NUMBERS) if name in uncertain)
     held = tuple(name for name in (*creep_slope.HELD, "supply rate") if name in uncertain)
+    where = domain.domain_of(problem, varied, held)
     return Certificate(
         claim=f"Around any slip from {near[0]:.6g} to {near[1]:.6g}, taken as the equilibrium, a quadratic function "
         "of the deviations of sliding speed and torque falls along the loop, continuous with the averaged valve and "
         f"sampled every {problem.sample_time * 1e3:g} ms with its pulses, whatever the course of speed from {high:.3g} "
         f"to {low:.3g} km/h; and for all numbers of the domain an equilibrium lies within "
-        f"{problem.slip_tolerance:g} of slip {problem.slip:g}. {STATIC.capitalize()}; domain: "
-        f"{domain.described(problem, varied, held)}.",
+        f"{problem.slip_tolerance:g} of slip {problem.slip:g}. {STATIC.capitalize()}; on "
+        f"{where.text}.",
         status=status,
         explanation=f"{polytope}; {falling[functions]}. {equilibrium.explained(problem, findings)}.",
         margin=margin,
@@ -216,6 +217,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "the slow change of the equilibrium with the speed is left out",
             STATIC,
         ),
+        domain=where,
         varied=varied,
         held=held,
         method="functions by a search over their form; exact LDL' of rational matrices at the corners; interval branch "
@@ -257,8 +259,9 @@ def _tell_sets(problem: Problem, findings: Findings) -> Certificate:
     varied = tuple(name for name in VARIED_IN_SETS if name in uncertain)
     held = tuple(name for name in (*PLANT, *BRAKE) if name in uncertain and name not in VARIED_IN_SETS)
     brake = problem.vehicle.brake
+    where = domain.domain_of(problem, ("slip", "speed", *varied), held)
     claim = (
-        f"Over {domain.described(problem, ('slip', 'speed', *varied), held)}, sampled every {problem.sample_time:g} s "
+        f"On {where.text}, sampled every {problem.sample_time:g} s "
         f"with pulses that fill with {brake.fill_time:g} s and vent with {brake.vent_time:g} s, "
         f"{problem.controller.name} keeps slip and torque in a set around slip {problem.slip:g} once they are in it. "
         f"{STATIC.capitalize()}."
@@ -289,6 +292,7 @@ def _tell_sets(problem: Problem, findings: Findings) -> Certificate:
             "mass, inertia and mu0 may even change with time",
             "says nothing about the way from rolling into the set, nor below the lowest speed",
         ),
+        domain=where,
         varied=varied,
         held=held,
         method="interval enclosure of the one-sample map on cells of slip and torque; cells with images that leave are "

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from wspd_design.certificates.quantities import AXLE, STATE
-from wspd_design.certificates.records import Problem
+from wspd_design.certificates.records import Domain, Problem
 from wspd_design.certificates.setting import domain
 
 
@@ -13,6 +13,7 @@ class Scope:
     """On which numbers a claim is made."""
 
     text: str
+    domain: Domain  # whose words end the text
     varied: tuple[str, ...]  # over all of their range
     held: tuple[str, ...]  # at their nominal value, though they have a range
 
@@ -44,6 +45,7 @@ def scope(problem: Problem, uses: Sequence[str], hold: Iterable[str] = ()) -> Sc
         if set(AXLE) <= set(uses)
         else "for the axle at static load, "
         if "mu0" in uses
-        else "for "
+        else ""
     )
-    return Scope(text=f"{who}{domain.described(problem, (*state, *varied), held)}", varied=varied, held=held)
+    where = domain.domain_of(problem, (*state, *varied), held)
+    return Scope(text=f"{who}on {where.text}", domain=where, varied=varied, held=held)

@@ -156,6 +156,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             hypothesis(f"{sign.name} {'>' if sign.least else '>='} 0", found[sign.key]) for sign in SIGNS
         ),
         assumptions=("level track",),
+        domain=said.domain,
         varied=said.varied,
         held=said.held,
         method="interval branch and bound on the edges of the box where the adhesion is least, replayed by the "

@@ -141,10 +141,11 @@ def _tell_pole(problem: Problem, findings: Findings) -> Certificate:
         "equilibrium at this slip is unstable for this law and every other one of its class, whatever the gains.",
         Status.UNDECIDED: f"Open: {left_open(findings.values()) or 'it depends on the share of filling and venting'}.",
     }[status]
+    within = domain.domain_of(problem, USED)
     return Certificate(
         claim=f"At every frozen speed the open-loop slip pole p at slip {problem.slip:g} does not exceed the rate of "
         f"the valve, as the equilibrium of a {MEMBERS} needs to be asymptotically stable; for fill and vent times up "
-        f"to {slowest_valve(problem):g} s, {STATIC}, on {domain.described(problem, USED)}.",
+        f"to {slowest_valve(problem):g} s, {STATIC}, on {within.text}.",
         status=status,
         explanation=meaning,
         method="interval branch and bound, replayed by the independent checker",
@@ -166,6 +167,7 @@ def _tell_pole(problem: Problem, findings: Findings) -> Certificate:
             SMOOTH,
             STATIC,
         ),
+        domain=within,
         varied=(*USED[1:], "fill time", "vent time"),
         reference="eqs. (14), (19); docs/theory.md#no-go",
     )
@@ -309,11 +311,12 @@ def _tell_sampling(problem: Problem, findings: Findings) -> Certificate:
     }[status]
     low, high = common_lag(problem) or (lag, lag)
     times = f"{lag:g} s" if low == high else f"{low:g} to {high:g} s"
+    within = domain.domain_of(problem, USED)
     return Certificate(
         claim=f"At every frozen speed the slip pole at slip {problem.slip:g} does not exceed p_max, up to which "
         f"proportional feedback of the slip, sampled every {problem.sample_time * 1e3:g} ms, stabilizes it through a "
         f"valve that fills and vents with one time constant of {times}; p_max = {limit:.3g} 1/s at {lag:g} s; "
-        f"{STATIC}, on {domain.described(problem, USED)}.",
+        f"{STATIC}, on {within.text}.",
         status=status,
         explanation=f"{meaning} At the tightest point a deviation of the slip grows by a factor of {growth:.4g} within "
         "one sample.",
@@ -331,6 +334,7 @@ def _tell_sampling(problem: Problem, findings: Findings) -> Certificate:
             "proportional feedback of the slip error",
             STATIC,
         ),
+        domain=within,
         varied=(*USED[1:], "fill time", "vent time"),
         reference="eqs. (13)-(15), (19); docs/theory.md#sampling",
     )

@@ -3,17 +3,15 @@
 import ctypes
 import os
 import platform
-import re
 import shlex
 import shutil
-import subprocess
 import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, requires, version
+from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 
 import typer
@@ -27,6 +25,7 @@ from wspd_design.codegen.compiler import (
     COMPILER_INSTALLATION,
     NoCompilerError,
     cache_folder,
+    compiler_version,
     find_compiler,
     load_library,
 )
@@ -38,6 +37,7 @@ from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.simulation.parquet import PARQUET_INSTALLATION
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
+from wspd_design.studies.provenance import required_packages
 
 _INSTALL_COMPILER = (
     "Without one, laws run in CasADi's virtual machine, and plants as well if none came with the package. "
@@ -103,12 +103,6 @@ def examine() -> list[Finding]:
     ]
 
 
-def required_packages() -> list[str]:
-    """Return what the installed program says it needs, without the tools for its development."""
-    requirements = [text for text in requires("wspd-design") or () if "extra ==" not in text]
-    return [re.split(r"[^\w.-]", text, maxsplit=1)[0] for text in requirements]
-
-
 def _package(name: str) -> Finding:
     try:
         return Finding(name=name, found=version(name), good=True)
@@ -158,8 +152,7 @@ def _compiler() -> Finding:
         return Finding(name="C compiler", found="none", good=False, needed=False, remedy=_INSTALL_COMPILER)
     works, found = False, shlex.join(compiler)
     try:
-        about = subprocess.run([*compiler, "--version"], capture_output=True, text=True, check=False).stdout
-        found += f", {next(iter(about.splitlines()), 'version unknown')}; "
+        found += f", {compiler_version()}; "
         with _empty_cache():
             function = load_library(_TEST_SOURCE).doctor
         function.restype, function.argtypes = ctypes.c_double, [ctypes.c_double]

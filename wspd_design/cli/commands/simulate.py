@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -11,6 +11,7 @@ from wspd_design.cli.arguments import check_plant, chosen, initial_speed
 from wspd_design.cli.campaign import Extent, simulate_runs
 from wspd_design.cli.console import console, print_json, progress
 from wspd_design.cli.disturbances import StopOptions
+from wspd_design.cli.drawn_run import drawn_run, show_drawn
 from wspd_design.cli.from_witness import LEFT, check_words, read, show_leaving, show_start, witness_start
 from wspd_design.cli.json_objects import witness_object
 from wspd_design.cli.option_records import takes_records
@@ -23,11 +24,8 @@ from wspd_design.exchange.objects import stop_object
 from wspd_design.parameters.errors import UserError
 from wspd_design.simulation.campaign import CHECK_EVERY
 from wspd_design.simulation.comparison import trial
-from wspd_design.simulation.records import Run
 from wspd_design.simulation.start import leaving_time
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from wspd_design.simulation.traces import traces
 
 _MANY = "Many stops"
 
@@ -54,6 +52,17 @@ def simulate(
             min=1,
             metavar="NUMBER",
             help="Simulate so many stops with other seeds and with parameters drawn from their bounds.",
+            show_default=False,
+            rich_help_panel=_MANY,
+        ),
+    ] = None,
+    only_run: Annotated[
+        int | None,
+        typer.Option(
+            "--only-run",
+            min=0,
+            metavar="NUMBER",
+            help="Simulate this one of the stops that --runs simulates, alone: the run of its table, from 0 on.",
             show_default=False,
             rich_help_panel=_MANY,
         ),
@@ -91,6 +100,9 @@ def simulate(
         check_table(output, force=force)
     if nominal and runs is None:
         raise UserError("--nominal is about many stops; add --runs, for example --runs 1000")
+    if only_run is not None and (runs is not None or from_witness is not None):
+        other = "--runs" if runs is not None else "--from-witness"
+        raise UserError(f"--only-run is one stop with drawn numbers; leave {other} out")
     witness = None
     if from_witness is not None:
         draws = runs is not None and not nominal
@@ -128,6 +140,11 @@ def simulate(
             start=start,
         )
         return
+    drawn: dict[str, float] | None = None
+    if only_run is not None:
+        case, stop, drawn = drawn_run(case, stop, only_run, plant=plant)
+        if not as_json:
+            show_drawn(case, drawn, only_run)
     reference = case.specification.slip
     with progress() as tell:
         tell(f"stop with {case.controller.name}")
@@ -136,33 +153,10 @@ def simulate(
         write_table(output, [traces(made.run)], force=force)
     if as_json:
         named = None if start is None else witness_object(start, leaving_time(made.run, LEFT))
-        print_json(stop_object(made, stop, slip_reference=reference, witness=named))
+        print_json(stop_object(made, stop, slip_reference=reference, witness=named, drawn=drawn))
         return
     show_stop(made, stop, reference)
     if start is not None:
         show_leaving(made.run)
     if output is not None:
         console().print(f"Traces: {output}", markup=False, soft_wrap=True)
-
-
-def traces(run: Run) -> "NDArray[Any]":
-    """Return the traces of a stop as a table, one row a record, columns named with their unit."""
-    import numpy as np
-
-    columns = [("time_s", run.time), ("speed_m_s", run.speed), ("distance_m", run.distance)]
-    for name, trace in (
-        ("wheel_speed_rad_s", run.wheel_speed),
-        ("slip", run.slip),
-        ("torque_Nm", run.torque),
-        ("wheel_load_N", run.wheel_load),
-        ("dynamic_torque_Nm", run.dynamic_torque),
-        ("pad_temperature_K", run.pad_temperature),
-    ):
-        if trace is not None:
-            columns += [(f"{name}_{k + 1}", column) for k, column in enumerate(trace.T)]
-    if run.track_brake_force is not None:
-        columns.append(("track_brake_force_N", run.track_brake_force))
-    table = np.zeros(len(run.time), dtype=[(name, "f8") for name, _ in columns])
-    for name, column in columns:
-        table[name] = column
-    return table

@@ -29,10 +29,9 @@ if TYPE_CHECKING:
 def distance_bars(
     figure: "Figure",
     trials: Sequence[Trial],
-    lag_distances: Sequence[float],
     published: Mapping[str, PublishedStop],
 ) -> "Figure":
-    """Draw the stopping distances, split into brake build-up and plateau.
+    """Draw the stopping distances, split where the brake is built up.
 
     Parameters
     ----------
@@ -40,20 +39,18 @@ def distance_bars(
         Empty figure.
     trials : sequence of Trial
         Stops; one without standstill has a bar without parts.
-    lag_distances : sequence of float
-        Part of each distance that the build-up costs [m]; NaN where it cannot be told apart.
     published : mapping of str to PublishedStop
         The paper's stops by controller, marked by a line.
     """
     axes = figure.subplots()
-    for row, (trial, lag) in enumerate(zip(trials, lag_distances, strict=True)):
-        distance = trial.metrics.distance
+    for row, trial in enumerate(trials):
+        distance, build_up = trial.metrics.distance, trial.metrics.build_up_distance
         theirs = published.get(trial.run.controller)
         end = distance if theirs is None else max(distance, theirs.distance_m)
         if trial.run.ending is Ending.STOPPED:
-            parted = not math.isnan(lag)
-            built_up = lag if parted else 0.0
-            names = ("lag", "plateau") if parted and not row else (None, None)
+            parted = not math.isnan(build_up)
+            built_up = build_up if parted else 0.0
+            names = ("brake build-up", "after it") if parted and not row else (None, None)
             axes.barh(row, built_up, color=SERIES[1], height=0.6, label=names[0])
             axes.barh(
                 row,
@@ -64,7 +61,7 @@ def distance_bars(
                 alpha=0.45,
                 label=names[1],
             )
-            said = f"{numbers.uncertain(distance, trial.check.spread, 1)} m"
+            said = f"{numbers.settled(distance, trial.check.spread, 1)} m"
             note(axes, said, end, row, xytext=(4, 0), va="center")
         else:
             axes.barh(row, distance, color=SERIES[6], height=0.6, alpha=0.4)
@@ -117,18 +114,16 @@ def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specif
     return figure
 
 
-def distances_alt(trials: Sequence[Trial], lag_distances: Sequence[float]) -> str:
+def distances_alt(trials: Sequence[Trial]) -> str:
     """Say in words what the bars show."""
 
-    def parts(trial: Trial, lag: float) -> str:
+    def parts(trial: Trial) -> str:
+        build_up = trial.metrics.build_up_distance
         if trial.run.ending is not Ending.STOPPED:
             return ", still moving"
-        return "" if math.isnan(lag) else f", {lag:.1f} m of it brake build-up"
+        return "" if math.isnan(build_up) else f", {build_up:.1f} m of it brake build-up"
 
-    said = (
-        f"{trial.run.controller} {trial.metrics.distance:.1f} m{parts(trial, lag)}"
-        for trial, lag in zip(trials, lag_distances, strict=True)
-    )
+    said = (f"{trial.run.controller} {trial.metrics.distance:.1f} m{parts(trial)}" for trial in trials)
     return f"Stopping distances: {'; '.join(said)}; ideal stop {ideal_distance(trials[0].metrics)}."
 
 

@@ -5,6 +5,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.reporting.figure_style import LINE_STYLES, SERIES, figure_style, figure_svg, new_figure
+from wspd_design.reporting.numbers import significant
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,6 +21,9 @@ MOST_POINTS = 2000
 INK_OF_DOTS = 1.4
 """A dotted line is drawn so many times wider, else it is paler than the others."""
 
+HIDDEN = 0.005
+"""Share of the height of a panel by which a curve may leave it without a word: no line is thinner."""
+
 KMH = 3.6
 KILO = 1e3
 
@@ -27,7 +31,41 @@ KILO = 1e3
 def picture(draw: Callable[["Figure"], "Figure"], *, height: float) -> str:
     """Return what a function draws on an empty figure of this height [in] as SVG, in the report's style."""
     with figure_style():
-        return figure_svg(draw(new_figure(height=height)))
+        figure = draw(new_figure(height=height))
+        for axes in figure.axes:
+            tell_what_is_cut(axes)
+        return figure_svg(figure)
+
+
+def tell_what_is_cut(axes: "Axes") -> None:
+    """Say at the upper and the lower edge how far curves go beyond it, in the stretch of x that is shown."""
+    import numpy as np
+
+    (left, right), (low, high) = sorted(axes.get_xlim()), sorted(axes.get_ylim())
+    beyond = HIDDEN * (high - low)
+    shown = [
+        np.asarray(line.get_xydata()) for line in axes.get_lines() if line.get_transform() == axes.transData
+    ]
+    points = np.concatenate([np.empty((0, 2)), *shown])
+    points = points[np.isfinite(points).all(axis=1) & (points[:, 0] >= left) & (points[:, 0] <= right)]
+    for sign, edge, arrow, height in ((1.0, high, "▲", 0.93), (-1.0, low, "▼", 0.05)):
+        cut = points[sign * (points[:, 1] - edge) > beyond]
+        if not cut.size:
+            continue
+        # Beside the stretch that is cut, on the side with more room.
+        first, last = cut[:, 0].min(), cut[:, 0].max()
+        before = first - left > right - last
+        axes.annotate(
+            f"{arrow} to {significant(float(sign * np.max(sign * cut[:, 1])), 3)}",
+            (first if before else last, height),
+            xycoords=axes.get_xaxis_transform(),
+            xytext=(-3 if before else 3, 0),
+            textcoords="offset points",
+            ha="right" if before else "left",
+            va="center",
+            fontsize=7.5,
+            gid="note-0",
+        )
 
 
 def thinned(x: "Trace", y: "Trace", most: int = MOST_POINTS) -> tuple["Trace", "Trace"]:
@@ -67,7 +105,7 @@ def curve(
     color, style = look(index)
     if style == ":" and "linewidth" in options:
         options["linewidth"] *= INK_OF_DOTS
-    axes.plot(thin_x, thin_y, color=color, linestyle=style, **options)
+    axes.plot(thin_x, thin_y, color=color, linestyle=style, gid=f"look-{index}", **options)
 
 
 def look(index: int) -> tuple[str, Any]:
@@ -81,4 +119,4 @@ def look(index: int) -> tuple[str, Any]:
 def note(axes: "Axes", text: str, x: float, y: float, **options: Any) -> None:
     """Write beside a curve, a few points away from the data point (x, y)."""
     placed: dict[str, Any] = {"xytext": (0, 3), "ha": "left", "va": "bottom", "fontsize": 7.5} | options
-    axes.annotate(text, (x, y), textcoords="offset points", **placed)
+    axes.annotate(text, (x, y), textcoords="offset points", gid="note-0", **placed)

@@ -82,5 +82,7 @@ def _wheelsets(axes: "Axes", *, run: Run, trace: "Trace", label: str) -> None:
 
 def _magnets(axes: "Axes", *, run: Run) -> None:
     assert run.track_brake_force is not None
-    axes.plot(run.time[::20], run.track_brake_force[::20] / KILO, color=INK, linewidth=1.2)
+    axes.plot(
+        run.time[::20], run.track_brake_force[::20] / KILO, color=INK, linewidth=1.2, label="_track brake"
+    )
     axes.set(ylabel="force [kN]", ylim=(0.0, None))

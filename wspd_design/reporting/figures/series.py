@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.records import Certificate, Role, Series
+from wspd_design.certificates.records import Role, Series
 from wspd_design.reporting.figure_style import INK, LINE_STYLES, SERIES
 from wspd_design.reporting.figures.drawing import curve
 from wspd_design.reporting.numbers import listing, significant, unit
@@ -39,17 +39,17 @@ def curves_height(series: Sequence[Series]) -> float:
     return FRAME_HEIGHT + (STACKED_HEIGHT if _stacked(groups) else PANEL_HEIGHT) * len(groups)
 
 
-def certificate_curves(figure: "Figure", certificate: Certificate) -> "Figure":
-    """Draw the curves of a certificate, one panel for each pair of axes; panels over the same quantity share it.
+def certificate_curves(figure: "Figure", series: Sequence[Series]) -> "Figure":
+    """Draw curves of a certificate, one panel for each pair of axes; panels over the same quantity share it.
 
     Parameters
     ----------
     figure : Figure
         Empty figure.
-    certificate : Certificate
-        With at least one series.
+    series : sequence of Series
+        At least one.
     """
-    groups = panels(certificate.series)
+    groups = panels(series)
     stacked = _stacked(groups)
     rows = figure.subplots(len(groups), 1, squeeze=False, sharex=stacked)[:, 0]
     for axes, ((x_label, y_label), group) in zip(rows, groups.items(), strict=True):
@@ -64,55 +64,26 @@ def certificate_curves(figure: "Figure", certificate: Certificate) -> "Figure":
     return figure
 
 
-def lyapunov_functions(figure: "Figure", certificates: Sequence[Certificate]) -> "Figure":
-    """Draw the Lyapunov functions of certificates side by side over time, each with its claim's verdict.
-
-    Parameters
-    ----------
-    figure : Figure
-        Empty figure.
-    certificates : sequence of Certificate
-        Each with at least one series that is a Lyapunov function.
-    """
-    columns = figure.subplots(1, len(certificates), squeeze=False)[0]
-    for axes, certificate in zip(columns, certificates, strict=True):
-        drawn = lyapunov_series(certificate)
-        x_label, y_label = drawn[0].x_label, drawn[0].y_label
-        _panel(axes, panels(certificate.series)[x_label, y_label])
-        axes.set(
-            xlabel=axis_label(x_label),
-            ylabel=axis_label(y_label),
-            title=f"{certificate.title}: {certificate.status.name.lower()}",
-        )
-        axes.legend(loc="best")
-    return figure
-
-
-def lyapunov_series(certificate: Certificate) -> tuple[Series, ...]:
-    """Return the curves of a certificate that are Lyapunov functions."""
-    return tuple(each for each in certificate.series if each.role is Role.LYAPUNOV)
-
-
 def series_alt(series: Sequence[Series]) -> str:
     """Say in words what the curves show: where each begins, ends, and its extremes."""
     return "; ".join(map(_words, series)) + "."
 
 
-def series_caption(certificate: Certificate) -> str:
-    """Name what the curves of a certificate show."""
-    axes = [tuple(label.rpartition(" [")[0] for label in pair) for pair in panels(certificate.series)]
+def series_caption(title: str, series: Sequence[Series]) -> str:
+    """Name what the curves of the certificate of this title show."""
+    axes = [tuple(label.rpartition(" [")[0] for label in pair) for pair in panels(series)]
     shown = [
         f"{listing([y for _, y in group])} over {x}" for x, group in groupby(axes, key=lambda pair: pair[0])
     ]
-    return f"{certificate.title}: {listing(shown)}."
+    return f"{title}: {listing(shown)}."
 
 
 def axis_label(label: str) -> str:
     """Write the unit of a label as people read it, ``[m/s2]`` as ``[m/s²]``."""
-    return re.sub(r"\[(.*)\]$", lambda found: f"[{unit(found[1]) or '-'}]", _symbols(label))
+    return re.sub(r"\[(.*)\]$", lambda found: f"[{unit(found[1]) or '-'}]", plain_symbols(label))
 
 
-def _symbols(text: str) -> str:
+def plain_symbols(text: str) -> str:
     """Write a time constant as in the text around the figure."""
     return re.sub(r"\btau\b", "τ", text)
 
@@ -153,7 +124,7 @@ def _panel(axes: "Axes", group: Sequence[Series]) -> None:
 
     for index, each in enumerate(group):
         x, y = np.array(each.x), np.array(each.y)
-        name = _symbols(each.name)
+        name = plain_symbols(each.name)
         if each.role is Role.LIMIT:
             axes.plot(x, y, color=INK, linestyle=LINE_STYLES[index], linewidth=1.0, label=name)
             continue

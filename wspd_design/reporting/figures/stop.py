@@ -115,7 +115,7 @@ def _reference(axes: "Axes", run: Run, specification: Specification) -> None:
     low, high = held.min(axis=1) - tolerance, held.max(axis=1) + tolerance
     axes.fill_between(times, low, high, color=SERIES[2], alpha=0.15, linewidth=0)
     for course in np.unique(held, axis=1).T:  # one line where all wheelsets hold the same
-        axes.plot(*thinned(times, course, MOST), color=INK, linestyle="--", linewidth=0.8)
+        axes.plot(*thinned(times, course, MOST), color=INK, linestyle="--", linewidth=0.8, label="_reference")
 
 
 def speed_panel(axes: "Axes", run: Run, wheel_radius: float) -> None:

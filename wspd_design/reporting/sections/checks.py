@@ -1,18 +1,21 @@
-"""Every check in full: claim, finding, margin, worst point, hypotheses, assumptions, method and curves."""
+"""Every check in full, the worst first: claim, finding, needs, proofs, margin, what it does not say, and curves."""
 
-import shlex
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from wspd_design.certificates.kernel.file import certificate_text, file_name
-from wspd_design.certificates.records import Certificate, Map
+from wspd_design.certificates.records import Certificate, Map, Proof
 from wspd_design.certificates.records import Status as Finding
+from wspd_design.certificates.theorems.register import cited
+from wspd_design.certificates.theorems.simulated_stop import TRACKING
+from wspd_design.plants.quarter import Quarter
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Attachment,
     Block,
     Cell,
-    Code,
     Definition,
     Definitions,
     Figure,
@@ -24,17 +27,26 @@ from wspd_design.reporting.blocks import (
 )
 from wspd_design.reporting.figures.drawing import picture
 from wspd_design.reporting.figures.maps import map_alt, map_caption, margin_map
+from wspd_design.reporting.figures.poles import is_pole_over_speed
 from wspd_design.reporting.figures.series import (
     certificate_curves,
     curves_height,
     series_alt,
     series_caption,
 )
+from wspd_design.reporting.formula_text import with_formulas
+from wspd_design.reporting.sections.domains import domains
+from wspd_design.reporting.sections.theory import theorem_anchor, theorems_of
+from wspd_design.reporting.statements import Statements, linked, statements_of
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import escape, rich
+from wspd_design.reporting.text import Emphasis, Inline, Link, Text, references, rich, spans
 from wspd_design.studies.dossier import Dossier
 
 MAP_HEIGHT = 2.6  # in
+POLE_MAP, STOP_TRACES = (
+    "pole-map",
+    "stop-traces",
+)  # anchors of figures that show what several checks are about
 
 MEANINGS = {
     Status.REFUTED: Finding.REFUTED.value,
@@ -60,7 +72,12 @@ def is_bad_news(certificate: Certificate) -> bool:
 
 def check_anchor(certificate: Certificate) -> str:
     """Return the anchor of the section of a check."""
-    return f"check-{certificate.name.replace('_', '-')}"
+    return anchor_of(certificate.name)
+
+
+def anchor_of(name: str) -> str:
+    """Return the anchor of the section of a check by its name."""
+    return f"check-{name.replace('_', '-')}"
 
 
 def finding_anchor(status: Status) -> str:
@@ -86,151 +103,249 @@ def _kept(dossier: Dossier) -> tuple[Certificate, ...]:
     return tuple(each for each in dossier.certificates if each.status is not Finding.NOT_APPLICABLE)
 
 
+def worst_first(certificates: Iterable[Certificate]) -> tuple[Certificate, ...]:
+    """Sort checks by what they mean for the loop.
+
+    The finding counts first. What fails with the nominal numbers is worse than what fails somewhere within their
+    bounds, and what speaks about the whole loop weighs more than what speaks about a part of it: an argument begins
+    with the equations and ends with the stop.
+    """
+    ranks = {status: rank for rank, status in enumerate(MEANINGS)}
+    latest = reversed(tuple(certificates))
+    return tuple(sorted(latest, key=lambda each: (ranks[status_of(each)], bool(each.varied))))
+
+
 def checks(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the stability checks."""
+    statements = statements_of(dossier.certificates)
     found: list[Block] = [
         Heading(text="Stability checks", anchor="stability-checks"),
         Paragraph(
-            text="Each check states a claim with its domain and the numbers that it varies and holds, under the "
-            "assumptions that it names. The worst findings stand first."
+            text=rich(
+                "Each check states a claim on a domain, under the assumptions that it names. The worst findings "
+                "stand first; among those of one kind, what fails with the nominal numbers comes before what fails "
+                "within their bounds, and the whole loop before its parts; [](#evidence-ladder) counts them. Symbols "
+                "stand in [](#symbols), terms in [](#glossary). Nobody has to trust the programs that found the "
+                "proofs: [one command](#replay) lets the checkers decide again about all of them."
+            )
         ),
-        *_replay(dossier),
+        *domains(statements, dossier),
     ]
+    shown = _Shown(
+        statements=statements,
+        # A name of one word, such as sampling, is also a word of its sentences.
+        anchors={
+            each.name: check_anchor(each)
+            for each in dossier.certificates
+            if is_shown(each) and "_" in each.name
+        },
+        same_stop=dossier.trials[0].run.plant == Quarter.name,
+    )
+    ordered = worst_first(dossier.certificates)
     for status, meaning in MEANINGS.items():
-        group = [each for each in dossier.certificates if status_of(each) is status]
-        if group:
-            word = status.word.capitalize()
-            found += [
-                Heading(text=word, anchor=finding_anchor(status), level=2),
-                Paragraph(text=f"{word}: {meaning}."),
-            ]
-        if status is Status.NOT_APPLICABLE:
-            found += [_not_applicable(group)] if group else []
+        group = [each for each in ordered if status_of(each) is status]
+        if not group:
             continue
+        word = status.word.capitalize()
+        found.append(Heading(text=word, anchor=finding_anchor(status), level=2))
+        if status is Status.NOT_APPLICABLE:
+            found.append(_silent(group[::-1]))
+            continue
+        found.append(Paragraph(text=f"{word}: {meaning}."))
         for certificate in group:
-            found += _check(certificate)
+            found += shown.check(certificate)
     return tuple(found)
 
 
-def _not_applicable(group: Sequence[Certificate]) -> Table:
-    """List the checks that do not speak about this design, with the reasons."""
-    return build(
-        group,
-        (
-            ColumnOf(title="Check", read=lambda each: each.name),
-            ColumnOf(title="What is checked", read=lambda each: each.title),
-            ColumnOf(title="Why it does not speak about this design", read=lambda each: each.explanation),
-        ),
-        caption="Checks that say nothing here.",
-        anchor="not-applicable",
-    )
+def is_shown(certificate: Certificate) -> bool:
+    """Tell whether a check has a place of its own in the report."""
+    return status_of(certificate) is not Status.NOT_APPLICABLE
 
 
-def _replay(dossier: Dossier) -> tuple[Block, ...]:
-    """Say how to have a proof decided again; the checker needs the vehicle and the rail that were certified."""
-    kept = _kept(dossier)
-    if not kept:
-        return ()
-    example = next((each for each in kept if each.status is Finding.PROVED), kept[0])
-    stated = {"vehicle": dossier.vehicle.name, "rail": dossier.rail.name}
-    stated |= {own.kind: own.name + own.variant for own in dossier.own_files}
-    case = [word for kind, name in stated.items() for word in (f"--{kind}", name)]
-    files = ", ".join(
-        f"`{name}`" for name in ("design.toml", *(escape(own.name) for own in dossier.own_files))
-    )
-    return (
-        Paragraph(
-            text=rich(
-                f"Nobody has to trust the prover. Save the attached {files} and the attached file of a check "
-                "into one folder. The command below decides again about its proofs, or about the witness of what is "
-                "refuted, without the program that found them."
-            )
-        ),
-        Code(text=shlex.join(("wspd", "check", file_name(example), "--design", "design.toml", *case))),
-    )
-
-
-def _check(certificate: Certificate) -> list[Block]:
-    anchor = check_anchor(certificate)
-    found: list[Block] = [
-        Heading(text=certificate.title, anchor=anchor, level=3),
-        Verdict(status=status_of(certificate), sentence=certificate.claim),
-        Paragraph(text=certificate.explanation),
-    ]
-    if certificate.hypotheses:
-        found.append(
-            build(
-                certificate.hypotheses,
-                (
-                    ColumnOf(title="Hypothesis", read=lambda each: each.text),
-                    ColumnOf(title="Finding", read=lambda each: Cell(status=Status[each.status.name])),
-                ),
-                caption="What the claim needs.",
-                anchor=f"{anchor}-hypotheses",
-            )
+def _silent(group: Sequence[Certificate]) -> Paragraph:
+    """Name the checks that do not speak about this design, those of one reason together."""
+    reasons: dict[str, list[str]] = {}
+    for each in group:
+        reasons.setdefault(each.explanation.rstrip("."), []).append(each.title)
+    said: list[Inline] = []
+    for reason, titles in reasons.items():
+        said += ["; " if said else "", Emphasis(text=numbers.listing(titles)), f" ({reason})"]
+    return Paragraph(
+        text=(
+            f"{numbers.count(len(group), 'check')} {'does' if len(group) == 1 else 'do'} not speak about this design: ",
+            *said,
+            ".",
         )
-    found.append(Definitions(rows=_details(certificate)))
-    if certificate.proved:
-        found.append(_proofs(certificate))
-    found += _figures(certificate, anchor)
-    return found
+    )
 
 
-def _figures(certificate: Certificate, anchor: str) -> list[Block]:
-    found: list[Block] = [
-        _map(shown, f"{anchor}-map-{number}") for number, shown in enumerate(certificate.maps, 1)
-    ]
-    if certificate.series:
-        found.append(
-            Figure(
-                svg=picture(
-                    partial(certificate_curves, certificate=certificate),
-                    height=curves_height(certificate.series),
-                ),
-                caption=series_caption(certificate),
-                alt=series_alt(certificate.series),
-                anchor=f"{anchor}-curves",
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Shown:
+    """What the blocks of all checks share."""
+
+    statements: Statements
+    anchors: Mapping[str, str]  # of the checks, by their names
+    same_stop: bool  # whether the stop of the report is the one that the check of the tracking simulates
+
+    def check(self, certificate: Certificate) -> list[Block]:
+        """Return the blocks of one check."""
+        anchor = check_anchor(certificate)
+        tables = self._tables(certificate, anchor)
+        figures = self._figures(certificate, anchor)
+        return [
+            Heading(text=certificate.title, anchor=anchor, level=3),
+            Verdict(status=status_of(certificate), sentence=self.statements.claim(certificate)),
+            Paragraph(
+                text=(*self._words(certificate.explanation), *self._seen(certificate, tables, figures))
+            ),
+            *tables,
+            Definitions(rows=self._details(certificate)),
+            *figures,
+        ]
+
+    def _words(self, text: str) -> tuple[Inline, ...]:
+        return spans(linked(with_formulas(text), self.anchors))
+
+    def _seen(
+        self, certificate: Certificate, tables: Sequence[Table], figures: Sequence[Figure]
+    ) -> tuple[Inline, ...]:
+        """Refer to what stands below, and to curves that another figure has."""
+        said: list[Inline] = []
+        for table in tables:
+            what = "is proved" if table.anchor.endswith("-proofs") else "it needs"
+            said += [" ", Link(anchor=table.anchor), f" lists what {what}."]
+        if figures:
+            said += [" Samples: ", *references([each.anchor for each in figures]), "."]
+        if any(map(is_pole_over_speed, certificate.series)):
+            said += [" ", Link(anchor=POLE_MAP), " shows the slip pole over speed."]
+        if certificate.series and self._is_the_stop(certificate):
+            said += [" The stop is that of ", Link(anchor=STOP_TRACES), "."]
+        return tuple(said)
+
+    def _tables(self, certificate: Certificate, anchor: str) -> list[Table]:
+        found = []
+        proved = {each.statement for each in certificate.proofs}
+        if any(each.text not in proved for each in certificate.hypotheses):
+            found.append(
+                build(
+                    certificate.hypotheses,
+                    (
+                        ColumnOf(title="Hypothesis", read=lambda each: self._words(each.text)),
+                        ColumnOf(title="Finding", read=lambda each: Cell(status=Status[each.status.name])),
+                    ),
+                    caption=(*spans(with_formulas(certificate.title)), ": what the claim needs."),
+                    anchor=f"{anchor}-hypotheses",
+                )
             )
+        if certificate.proofs:
+            found.append(self._proofs(certificate, anchor))
+        return found
+
+    def _proofs(self, certificate: Certificate, anchor: str) -> Table:
+        """List what the checker accepted; times are left out, because they change from run to run."""
+        some = [each for each in certificate.proofs if each.domain is not None]
+        on: tuple[ColumnOf[Proof], ...] = (
+            (ColumnOf(title="On", read=lambda each: self.statements.proof(each, certificate)),)
+            if some
+            else ()
         )
-    return found
+        return build(
+            certificate.proofs,
+            (
+                ColumnOf(title="Proved", read=lambda each: with_formulas(each.statement)),
+                *on,
+                ColumnOf(title="Boxes", decimals=0, read=lambda each: each.boxes),
+            ),
+            caption=(
+                *spans(with_formulas(certificate.title)),
+                ": what the independent checker accepted, and the boxes that it decided. Attached as "
+                f"{file_name(certificate)}.",
+            ),
+            anchor=f"{anchor}-proofs",
+        )
+
+    def _is_the_stop(self, certificate: Certificate) -> bool:
+        return self.same_stop and certificate.name == TRACKING.name
+
+    def _figures(self, certificate: Certificate, anchor: str) -> list[Figure]:
+        found = [_map(shown, f"{anchor}-map-{number}") for number, shown in enumerate(certificate.maps, 1)]
+        series = tuple(each for each in certificate.series if not is_pole_over_speed(each))
+        if series and not self._is_the_stop(certificate):
+            found.append(
+                Figure(
+                    svg=picture(partial(certificate_curves, series=series), height=curves_height(series)),
+                    caption=with_formulas(series_caption(certificate.title, series)),
+                    alt=series_alt(series),
+                    anchor=f"{anchor}-curves",
+                )
+            )
+        return found
+
+    def _details(self, certificate: Certificate) -> tuple[Definition, ...]:
+        open_share = f"{numbers.significant(100.0 * certificate.undecided, 2)} % of the box"
+        rows: tuple[tuple[str, Text], ...] = (
+            ("Margin", "" if certificate.margin is None else numbers.margin(certificate.margin)),
+            ("Tightest point", with_formulas(numbers.point(certificate.worst_point))),
+            ("Witness", _witness(certificate)),
+            ("Domain", self._domain(certificate)),
+            ("Assumptions", self._words("; ".join(map(cited, certificate.assumptions)))),
+            ("Does not say", self._not_said(certificate)),
+            ("Left open", open_share if certificate.undecided else ""),
+            ("Search", "ended by its budget" if certificate.cut else ""),
+            ("Samples", self._words(certificate.remark)),
+            ("Method", self._words(certificate.method)),
+            ("Reference", reference(certificate)),
+            ("Name, model", f"{certificate.name}, {certificate.model_hash[:16]}"),
+        )
+        return tuple(Definition(term=term, text=text) for term, text in rows if text)
+
+    def _domain(self, certificate: Certificate) -> Text:
+        """Say on what the claim is made."""
+        if certificate.domain is not None:
+            return (self.statements.name(certificate.domain), f": {_size(certificate)}")
+        if certificate.held:
+            return f"as the claim says; no number varies, held: {', '.join(certificate.held)}"
+        return ""
+
+    def _not_said(self, certificate: Certificate) -> Text:
+        """Return the sentences about what nobody may conclude."""
+        found: list[Inline] = []
+        for each in theorems_of(certificate):
+            found += [Link(anchor=theorem_anchor(each.anchor)), ": ", *self._words(each.not_said)]
+        return tuple(found)
+
+
+def _size(certificate: Certificate) -> str:
+    """Say how many numbers with bounds vary and how many are held."""
+    varied = numbers.count(len(certificate.varied), "number") + " with bounds varied"
+    return f"{varied}, {len(certificate.held)} held" if certificate.held else varied
+
+
+def _witness(certificate: Certificate) -> Text:
+    """Write the witness; where it is the tightest point with something more, only that."""
+    shared = set(certificate.worst_point) if certificate.worst_point else set()
+    more = tuple(each for each in certificate.witness if each not in shared)
+    if not certificate.witness or not shared <= set(certificate.witness):
+        return with_formulas(numbers.point(certificate.witness))
+    said: list[Inline] = ["the tightest point"]
+    if more:
+        said += [", with ", *spans(with_formulas(numbers.point(more)))]
+    return tuple(said)
+
+
+def reference(certificate: Certificate) -> Text:
+    """Write what a check refers to; a theorem of the theory page as a link to it in this report."""
+    found: list[Inline] = []
+    for part in re.split(r"(docs/theory\.md#[a-z-]+)", certificate.reference):
+        anchor = part.removeprefix("docs/theory.md#")
+        found += [] if not part else [part] if anchor == part else [Link(anchor=theorem_anchor(anchor))]
+    return tuple(found)
 
 
 def _map(shown: Map, anchor: str) -> Figure:
     return Figure(
         svg=picture(partial(margin_map, shown=shown), height=MAP_HEIGHT),
-        caption=map_caption(shown),
+        caption=with_formulas(map_caption(shown)),
         alt=map_alt(shown),
         anchor=anchor,
     )
-
-
-def _proofs(certificate: Certificate) -> Table:
-    """List what the checker accepted; times are left out, because they change from run to run."""
-    return build(
-        tuple(certificate.proved.values()),
-        (
-            ColumnOf(title="Proved", read=lambda each: each.shown),
-            ColumnOf(title="Boxes", decimals=0, read=lambda each: each.leaves),
-        ),
-        caption="What the independent checker accepted, and the boxes that it decided. Attached as "
-        f"{file_name(certificate)}.",
-        anchor=f"{check_anchor(certificate)}-proofs",
-    )
-
-
-def _details(certificate: Certificate) -> tuple[Definition, ...]:
-    open_share = f"{numbers.significant(100.0 * certificate.undecided, 2)} % of the box"
-    rows = (
-        ("Margin", "" if certificate.margin is None else numbers.margin(certificate.margin)),
-        ("Tightest point", numbers.point(certificate.worst_point)),
-        ("Witness", numbers.point(certificate.witness)),
-        ("Assumptions", "; ".join(certificate.assumptions)),
-        ("Left open", open_share if certificate.undecided else ""),
-        ("Search", "ended by its budget" if certificate.cut else ""),
-        ("Samples", certificate.remark),
-        ("Held", ", ".join(certificate.held)),
-        ("Method", certificate.method),
-        ("Reference", certificate.reference),
-        ("Name, model", f"{certificate.name}, {certificate.model_hash[:16]}"),
-    )
-    return tuple(Definition(term=term, text=text) for term, text in rows if text)

@@ -1,6 +1,7 @@
 """The same stop with every controller, and the paper's Table 10 where it applies."""
 
 import math
+from collections.abc import Mapping
 from functools import partial
 
 from wspd_design.design.industry import table_note
@@ -17,8 +18,9 @@ from wspd_design.reporting.blocks import (
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all, slips_alt
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.sections.checks import check_anchor
+from wspd_design.reporting.statements import statements_of
 from wspd_design.reporting.tables import ColumnOf, Uncertain, build
-from wspd_design.reporting.text import CodeSpan, Link, Text
+from wspd_design.reporting.text import CodeSpan, Inline, Link, Text, spans
 from wspd_design.reporting.yardsticks import ideal_distance, ideal_sentence, proved_bound
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending, Scenario
@@ -31,11 +33,9 @@ BAR_HEIGHT, ROW_HEIGHT = 0.33, 1.55  # in
 
 def comparison(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section that compares the controllers."""
-    trials, specification = dossier.trials, dossier.design.specification
+    trials, specification = dossier.trials, dossier.specification
     published = _published(dossier)
-    draw_bars = partial(
-        distance_bars, trials=trials, lag_distances=dossier.lag_distances, published=published
-    )
+    draw_bars = partial(distance_bars, trials=trials, published=published)
     rows = -(-len(trials) // (3 if len(trials) > 4 else 2))
     marked = " Black marks: Table 10 of the paper." if published else ""
     found: list[Block] = [
@@ -44,9 +44,10 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
             caption=f"Stopping distances. {_parts(dossier)}Dashed: the ideal stop, "
             f"{ideal_distance(trials[0].metrics)}, a simulation of a brake that holds the best slip.{marked}",
-            alt=distances_alt(trials, dossier.lag_distances),
+            alt=distances_alt(trials),
             anchor="distances",
         ),
+        Paragraph(text=("The same stop with every controller: ", *_contents(published), ".")),
         Paragraph(text=_yardsticks(dossier)),
         Paragraph(text=_ranking(dossier)),
         *_notes(trials),
@@ -71,6 +72,19 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
     return tuple(found)
 
 
+def _contents(published: Mapping[str, PublishedStop]) -> tuple[Inline, ...]:
+    """Refer to the figures and tables of the section."""
+    shown = [
+        (Link(anchor="distances"), " shows the distances, "),
+        (Link(anchor="stops-table"), " lists them with time, slip and locks, "),
+        (Link(anchor="efforts-table"), " what they take, "),
+        (Link(anchor="accuracy-table"), " how far the simulation can be trusted, "),
+        *([(Link(anchor="table10"), " sets the paper's numbers beside them, ")] if published else []),
+        (Link(anchor="slips"), " shows the slip over time"),
+    ]
+    return tuple(part for each in shown for part in each)
+
+
 def _notes(trials: tuple[Trial, ...]) -> tuple[Block, ...]:
     """Say which tables the laws of the industry take, where their names state it, and which laws let the brake go."""
     note = table_note(each.run.controller for each in trials)
@@ -85,7 +99,8 @@ def _yardsticks(dossier: Dossier) -> Text:
     if proved is None:
         return f"{ideal} No bound on the distance is proved."
     link = Link(anchor=check_anchor(proved.certificate), text=proved.certificate.name)
-    return (f"{ideal} Proved, in the check ", link, f": {proved.certificate.claim}")
+    claim = statements_of(dossier.certificates).claim(proved.certificate)
+    return (f"{ideal} Proved, in the check ", link, ": ", *spans(claim))
 
 
 def _published(dossier: Dossier) -> dict[str, PublishedStop]:
@@ -101,19 +116,12 @@ def _parts(dossier: Dossier) -> str:
     """Say which part of a bar is which, if they have parts: not where the rail changes along the track."""
     if dossier.scenario.patches:
         return ""
-    return (
-        "Dark: initial speed times lag, what the brake build-up costs; light: the rest, at the plateau "
-        "deceleration. "
-    )
+    return "Orange: until the torque of the brake is built up, 90 % of what it then holds; blue: the rest. "
 
 
 def _ranking(dossier: Dossier) -> Text:
     """Say what separates the shortest from the longest stop, and what the ranking is worth."""
-    stopped = [
-        (trial, lag)
-        for trial, lag in zip(dossier.trials, dossier.lag_distances, strict=True)
-        if trial.run.ending is Ending.STOPPED
-    ]
+    stopped = [each for each in dossier.trials if each.run.ending is Ending.STOPPED]
     decay, ratio = (dossier.rail.entries[name].value for name in ("friction_decay", "friction_ratio"))
     world = (
         "On this rail the friction falls with the sliding speed, so that adhesion is lost by sliding."
@@ -122,19 +130,13 @@ def _ranking(dossier: Dossier) -> Text:
         "as well as a controlled one, and the ranking says nothing about the control of slip. It needs a rail "
         "with a peak."
     )
-    meaning = (
-        "Lag and plateau are the dead time and the constant deceleration that together give the same "
-        "distance and time. They part the build-up of the brake from the use of adhesion as long as the "
-        "deceleration stays about the same; where it falls during the stop, as with wheels locked on "
-        "falling friction, the lag comes out too small and the plateau too low. "
-    )
+    meaning = "The brake is built up where the torque of all wheelsets first reaches 90 % of its median above 10 km/h. "
     if dossier.scenario.patches:
         return "The rail changes along the track: no stop has parts of build-up and of constant deceleration."
     if len(stopped) < 2:
         return meaning + world
-    (best, best_lag), (worst, worst_lag) = (
-        pick(stopped, key=lambda each: each[0].metrics.distance) for pick in (min, max)
-    )
+    best, worst = (pick(stopped, key=lambda each: each.metrics.distance) for pick in (min, max))
+    first = worst.metrics.build_up_distance - best.metrics.build_up_distance
     gap = worst.metrics.distance - best.metrics.distance
     return (
         f"{meaning}Between the shortest stop, ",
@@ -142,8 +144,8 @@ def _ranking(dossier: Dossier) -> Text:
         f" with {best.metrics.distance:.1f} m, and the longest, ",
         CodeSpan(text=worst.run.controller),
         f" with {worst.metrics.distance:.1f} m, lie {gap:.1f} m: "
-        f"{numbers.decimals(worst_lag - best_lag, 1)} m of lag and "
-        f"{numbers.decimals(gap - worst_lag + best_lag, 1)} m of plateau. {world} The torque integral is a "
+        f"{numbers.decimals(first, 1)} m until the brake is built up and "
+        f"{numbers.decimals(gap - first, 1)} m after it. {world} The torque integral is a "
         "balance of momentum, nearly the same for all, and no measure of air consumption.",
     )
 
@@ -161,26 +163,33 @@ def _stops(trials: tuple[Trial, ...]) -> Table:
             ColumnOf(
                 title="Distance",
                 unit="m",
-                decimals=1,
-                read=lambda each: Uncertain(value=each.metrics.distance, spread=each.check.spread),
+                flush_right=True,
+                read=lambda each: numbers.settled(each.metrics.distance, each.check.spread, 1),
             ),
             ColumnOf(
                 title="Efficiency", unit="%", decimals=1, read=lambda each: 100.0 * each.metrics.efficiency
             ),
             ColumnOf(title="Time", unit="s", decimals=2, read=lambda each: each.metrics.stopping_time),
-            ColumnOf(title="Lag", unit="s", decimals=2, read=lambda each: each.metrics.lag),
-            ColumnOf(title="Plateau", unit="m/s²", decimals=2, read=lambda each: each.metrics.plateau),
-            ColumnOf(title="Slip rms", unit="-", decimals=3, read=lambda each: each.metrics.slip_rms),
+            ColumnOf(title="Build-up", unit="s", decimals=2, read=lambda each: each.metrics.build_up),
+            ColumnOf(title="Slip rms", unit="-", decimals=3, read=lambda each: each.metrics.held_slip_rms),
+            ColumnOf(title="Over", unit="-", decimals=3, read=lambda each: each.metrics.slip_overshoot),
+            ColumnOf(title="Under", unit="-", decimals=3, read=lambda each: each.metrics.slip_undershoot),
             ColumnOf(title="Mean", unit="-", decimals=3, read=lambda each: each.metrics.slip_mean),
             ColumnOf(title="Largest", unit="-", decimals=3, read=lambda each: each.metrics.slip_max),
             ColumnOf(title="Locked", unit="s", decimals=2, read=lambda each: each.metrics.lock_time),
         ),
         caption=f"Stops of {trials[0].run.train}; this design first. The ideal stop: "
         f"{ideal_distance(trials[0].metrics)}; efficiency is ideal stop over distance. Slip of all "
-        "wheelsets about its reference above 10 km/h; locked: the wheelset that is locked longest. Lag "
-        "2 d/v0 − t and plateau v0/(2 (t − d/v0)) follow from distance d, time t and initial speed v0.",
+        "wheelsets above 10 km/h: rms, overshoot and undershoot about its reference, each wheelset once it has 90 % of "
+        f"it{_perfect(trials)}; mean and largest of the whole stop. Locked: the wheelset that is locked longest.",
         anchor="stops-table",
     )
+
+
+def _perfect(trials: tuple[Trial, ...]) -> str:
+    """Say what a perfect law would have in the place of the rms of this design."""
+    best = trials[0].metrics.perfect_slip_rms
+    return "" if math.isnan(best) else f", where a perfect law has {numbers.decimals(best, 3)} rms"
 
 
 def _efforts(trials: tuple[Trial, ...]) -> Table:

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Bullets, Definition, Heading
-from wspd_design.reporting.text import CodeSpan, Text, escape, rich
+from wspd_design.reporting.blocks import Block, Bullets, Heading
+from wspd_design.reporting.text import Text
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Run, Sensing
@@ -124,26 +124,3 @@ def _digits(trials: tuple[Trial, ...]) -> list[Text]:
             "change them."
         )
     return said
-
-
-def provenance(dossier: Dossier) -> tuple[Definition, ...]:
-    """Return how the report was made."""
-    made = dossier.provenance
-    own = ", ".join(f"`{escape(each.name)}`" for each in dossier.own_files)
-    return (
-        Definition(term="Command", text=(CodeSpan(text=made.command),)),
-        Definition(
-            term="To make it again",
-            text=rich(
-                "Save the attached `design.toml` and run the command with the versions below. With "
-                "`SOURCE_DATE_EPOCH` set, the same inputs give the same file, byte for byte. The attached "
-                "`report.json` holds the numbers in full length."
-                + (f" Attached, too: {own}; the design says in which folder it looks for it." if own else "")
-            ),
-        ),
-        Definition(term="Versions", text=", ".join(f"{name} {number}" for name, number in made.versions)),
-        Definition(term="Seed", text=str(made.seed)),
-        Definition(term="Inputs, sha256", text=made.input_hash),
-        Definition(term="Vehicle, fingerprint in the design", text=dossier.design.vehicle_hash),
-        Definition(term="Design rail, fingerprint in the design", text=dossier.design.rail_hash),
-    )

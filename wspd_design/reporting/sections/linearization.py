@@ -7,7 +7,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
-from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
+from wspd_design.reporting.figures.poles import beside_nominal, pole_map, pole_map_alt
 from wspd_design.reporting.running_gear import alike_note
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
@@ -19,7 +19,7 @@ MEGA = 1e6
 
 def linearization(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the slip pole."""
-    points, specification = dossier.linearizations, dossier.design.specification
+    points, specification = dossier.linearizations, dossier.specification
     times = lag_times(dossier.vehicle)
     valve, tau = (
         (
@@ -33,6 +33,7 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
     beyond = [point for point in points if point.slip_pole > 1.0 / point.time_constant]
     unstable = [point for point in points if point.slip_pole > 0.0]
     note = alike_note(dossier.vehicle)
+    series = beside_nominal(dossier.certificates, {1.0 / point.time_constant for point in points})
     return (
         Heading(text="Linearization", anchor="linearization"),
         Paragraph(
@@ -46,21 +47,25 @@ def linearization(dossier: Dossier) -> tuple[Block, ...]:
             )
         ),
         Paragraph(
-            text=f"The slip pole is positive at {len(unstable)} and beyond 1/τ at {len(beyond)} of "
-            f"{len(points)} speeds from {numbers.significant(points[0].speed * KMH)} to "
-            f"{numbers.significant(points[-1].speed * KMH)} km/h, for the nominal parameters."
+            text=rich(
+                f"The slip pole is positive at {len(unstable)} and beyond $1\\/tau$ at {len(beyond)} of "
+                f"{len(points)} speeds from {numbers.significant(points[0].speed * KMH)} to "
+                f"{numbers.significant(points[-1].speed * KMH)} km/h, for the nominal parameters. [](#pole-map) shows "
+                "it over speed; [](#linearization-table) lists the poles, the gain, and what holds the slip there."
+            )
         ),
         *([Paragraph(text=note)] if note else []),
         Figure(
             svg=picture(
-                partial(pole_map, points=points, speeds=specification.speeds, times=times), height=3.1
+                partial(pole_map, points=points, speeds=specification.speeds, times=times, series=series),
+                height=3.3,
             ),
             caption=rich(
-                "Open-loop poles over train speed on the rail of the stops. Above the dashed line $1\\/tau$ "
-                "no law that does not read the torque and has a memory of integrals alone has a stable equilibrium. "
-                "Dotted: range of the specification."
+                "Slip pole over train speed on the rail of the stops, with the limits that checks set it. Above the "
+                "dashed line $1\\/tau$ no law that does not read the torque and has a memory of integrals alone has a "
+                "stable equilibrium. Dotted: range of the specification."
             ),
-            alt=pole_map_alt(points, specification.speeds, times),
+            alt=pole_map_alt(points, specification.speeds, times, series),
             anchor="pole-map",
         ),
         _table(points),
@@ -75,7 +80,7 @@ def _table(points: tuple[Linearization, ...]) -> Table:
         (
             ColumnOf(
                 title="At a train speed of",
-                read=lambda point: f"{numbers.decimals(point.speed * KMH, 1)} km/h",
+                read=lambda point: f"{numbers.significant(point.speed * KMH)} km/h",
             ),
             ColumnOf(title="Slip pole", unit="1/s", decimals=3, read=lambda point: point.slip_pole),
             ColumnOf(

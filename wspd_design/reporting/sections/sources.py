@@ -1,11 +1,13 @@
 """Where every number comes from."""
 
+from wspd_design.certificates.quantities import outside_claims, quantity_of
 from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph, Table
 from wspd_design.reporting.sections.design import gain_table
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import references
 from wspd_design.studies.dossier import Dossier
 
 WEAK = ("calibrated", "assumed")
@@ -16,19 +18,25 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
     sets = (dossier.vehicle, dossier.rail, *dossier.other_parameters)
     entries = [entry for each in sets for entry in each.entries.values()]
     weak = sum(entry.status in WEAK for entry in entries)
+    gains = [f"gains-{index}" for index in range(1, len(dossier.compared_designs) + 1)]
     found: list[Block] = [
         Heading(text="Sources", anchor="sources"),
         Paragraph(
-            text=f"All {len(entries)} numbers of the vehicle, the rails, the compared controllers and the "
-            f"constants; {weak} of them are calibrated or assumed. A number without bounds is taken as "
-            "exactly known; the checks vary mass, inertia and friction within their bounds and hold the rest "
-            "at its value."
+            text=(
+                f"All {len(entries)} numbers of the vehicle, the rails, the compared controllers and the constants; "
+                f"{weak} of them are calibrated or assumed. A number without bounds is taken as exactly known. Of a "
+                "number with bounds the tables say who varies it over all of them, and who holds it at its value. "
+                f"{', '.join(map(_called, sets))} and the gains of the compared designs stand in ",
+                *references([*(_anchor(each) for each in sets), *gains]),
+                ".",
+            )
         ),
     ]
-    found += [_table(each) for each in sets]
+    own = dossier.vehicle, dossier.rail
+    found += [_table(each, dossier if each in own else None) for each in sets]
     found += [
-        gain_table(made, caption=f"Gains of {made.name}, compared.", anchor=f"gains-{index}")
-        for index, made in enumerate(dossier.compared_designs, start=1)
+        gain_table(made, caption=f"Gains of {made.name}, compared.", anchor=anchor)
+        for made, anchor in zip(dossier.compared_designs, gains, strict=True)
     ]
     known = known_sources()
     keys = [key for key in dict.fromkeys(entry.source for entry in entries) if key in known]
@@ -53,7 +61,13 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
     return tuple(found)
 
 
-def _table(parameters: ParameterSet) -> Table:
+def _table(parameters: ParameterSet, dossier: Dossier | None) -> Table:
+    """List the numbers of a set; of those that the checks and the drawn sets go by, say how they take the bounds."""
+    used: list[ColumnOf[Entry]] = []
+    if dossier is not None:
+        used.append(
+            ColumnOf(title="Within its bounds", read=lambda entry: _use(entry, parameters.kind, dossier))
+        )
     return build(
         parameters.entries.values(),
         (
@@ -61,16 +75,40 @@ def _table(parameters: ParameterSet) -> Table:
             ColumnOf(title="Value", read=lambda entry: _value(entry.value, entry.unit)),
             ColumnOf(title="Bounds", read=lambda entry: _bounds(entry)),
             ColumnOf(title="Unit", read=lambda entry: numbers.unit(entry.unit) or "-"),
+            *used,
             ColumnOf(title="Status", read=lambda entry: entry.status),
             ColumnOf(
                 title="Source, place",
                 read=lambda entry: f"{entry.source}: {entry.at}" + (f". {entry.note}" if entry.note else ""),
             ),
         ),
-        caption=f"{' '.join(dict.fromkeys((parameters.kind, parameters.name))).capitalize()}: "
-        f"{parameters.title}.",
+        caption=f"{_called(parameters)}: {parameters.title}.",
         anchor=_anchor(parameters),
     )
+
+
+def _called(parameters: ParameterSet) -> str:
+    return " ".join(dict.fromkeys((parameters.kind, parameters.name))).capitalize()
+
+
+def _use(entry: Entry, kind: str, dossier: Dossier) -> str:
+    """Say who varies a number within its bounds and who holds it."""
+    if entry.bounds is None:
+        return ""
+    found, quantity = dossier.uncertainty, quantity_of(kind, entry.name)
+    name = f"{kind}.{entry.name}"
+    drawn, kept_back = found is not None and name in found.drawn, found is not None and name in found.held
+    term = "" if quantity is None else quantity.name
+    varied = sum(term in check.varied for check in dossier.certificates)
+    held = sum(term in check.held for check in dossier.certificates)
+    by = [*(["the drawn sets"] if drawn else []), *([numbers.count(varied, "check")] if varied else [])]
+    kept = [*(["the drawn sets"] if kept_back else []), *([numbers.count(held, "check")] if held else [])]
+    said = [
+        *([f"varied by {numbers.listing(by)}"] if by else []),
+        *([f"held by {numbers.listing(kept)}"] if kept else []),
+        *([outside_claims(kind, entry.name)] if quantity is None else []),
+    ]
+    return "; ".join(filter(None, said))
 
 
 def _name(key: str) -> str:

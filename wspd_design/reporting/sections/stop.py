@@ -1,8 +1,7 @@
-"""The stop of this design: traces, Lyapunov functions and phase planes."""
+"""The stop of this design: traces and phase planes."""
 
 from functools import partial
 
-from wspd_design.certificates.records import Certificate
 from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE, ERROR_SPEED
 from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.reporting import numbers
@@ -11,15 +10,17 @@ from wspd_design.reporting.figures.drawing import KMH, picture
 from wspd_design.reporting.figures.estimate import estimate_alt, estimate_panels
 from wspd_design.reporting.figures.further_brakes import further_brakes, height, panels
 from wspd_design.reporting.figures.phase import phase_alt, phase_planes
-from wspd_design.reporting.figures.series import lyapunov_functions, lyapunov_series, series_alt
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.running_gear import axle_shares
+from wspd_design.reporting.spreads import distance_of_stop
+from wspd_design.reporting.text import Link, escape, rich
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip, rails_of
 from wspd_design.simulation.law_memory import reference_range, releases, speed_estimate
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
+from wspd_design.simulation.traces import trace_name
 from wspd_design.studies.dossier import Dossier
 
 EXACT = 1e-4  # relative error of a speed that is told, below which none is
@@ -27,7 +28,7 @@ EXACT = 1e-4  # relative error of a speed that is told, below which none is
 
 def stop(dossier: Dossier) -> tuple[Block, ...]:
     """Return the section about the simulated stop."""
-    own, specification = dossier.trials[0], dossier.design.specification
+    own, specification = dossier.trials[0], dossier.specification
     run, figures = own.run, own.metrics
     radius = dossier.vehicle.number("wheel_radius")
     limit = dossier.vehicle.number("brake.max_torque") * max(axle_shares(dossier.vehicle))
@@ -37,15 +38,17 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"The stop of {run.train} from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
-            f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
-            f"{numbers.uncertain(figures.distance, own.check.spread, 1)} m and "
-            f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
-            f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
-            f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
-            f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
-            f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
-            "the samples it fills or vents throughout; a relay would do so in all."
+            text=rich(
+                f"The stop of {escape(run.train)} from {start} km/h on {escape(rails_of(dossier.scenario))}, sampled "
+                f"every {run.sample_time * 1e3:g} ms: {run.ending.value}, after {distance_of_stop(dossier)} m and "
+                f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
+                f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
+                f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
+                f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
+                f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
+                "the samples it fills or vents throughout; a relay would do so in all. "
+                "[](#stop-traces) shows the stop over time, [](#phase-plane) its path in the planes of slip and torque."
+            )
         ),
         Figure(
             svg=picture(draw, height=8.6),
@@ -54,8 +57,9 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             "Bars at the upper edge of the slip mark locked wheels, the front wheelset on top.",
             alt=stop_alt(own, specification),
             anchor="stop-traces",
+            data=trace_name(0, run.controller),
         ),
-        *_estimate(own, specification.sensors),
+        *_estimate(own, None if dossier.law.own else specification.sensors),
         *_further_brakes(run),
         Figure(
             svg=picture(
@@ -71,11 +75,10 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             alt=phase_alt(run, dossier.phase_plane),
             anchor="phase-plane",
         ),
-        *_lyapunov(dossier.certificates),
     )
 
 
-def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
+def _estimate(own: Trial, sensors: Sensors | None) -> tuple[Block, ...]:
     """Say where the law has the train speed from, and show an estimate beside the true one."""
     run, figures = own.run, own.metrics
     estimate = speed_estimate(run)
@@ -95,18 +98,18 @@ def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
         if not looks
         else f" It released a wheelset {numbers.count(looks, 'time')} to see the speed of the train."
     )
-    if sensors.speed == "told" and figures.speed_error < EXACT:
+    if sensors is not None and sensors.speed == "told" and figures.speed_error < EXACT:
         return (Paragraph(text=f"{_source(sensors)} In this stop it is told it without an error."),)
-    said = Paragraph(
-        text=f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
+    said = (
+        f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
         f"{numbers.significant(100.0 * figures.speed_error, 2)} %; the distance that follows from it by at most "
         f"{numbers.significant(figures.distance_error, 2)} of {allowed}, {inside} what the odometry of train "
         f"control allows.{looked}"
     )
-    if sensors.speed == "told":
-        return (said,)
+    if sensors is not None and sensors.speed == "told":
+        return (Paragraph(text=said),)
     return (
-        said,
+        Paragraph(text=(said, " ", Link(anchor="stop-estimate"), " shows both over the stop.")),
         Figure(
             svg=picture(partial(estimate_panels, run=run, estimate=estimate), height=5.4),
             caption="The train speed as the law has it (dashed) beside the true one, the relative error of the speed, "
@@ -118,8 +121,10 @@ def _estimate(own: Trial, sensors: Sensors) -> tuple[Block, ...]:
     )
 
 
-def _source(sensors: Sensors) -> str:
+def _source(sensors: Sensors | None) -> str:
     """Say where a law has the train speed from."""
+    if sensors is None:
+        return "The law goes by a train speed of its own."
     match sensors.speed:
         case "told":
             return "The law is told the train speed, and scales it so that wheels that roll have no slip."
@@ -137,6 +142,7 @@ def _further_brakes(run: Run) -> tuple[Block, ...]:
     if not shown:
         return ()
     return (
+        Paragraph(text=(Link(anchor="stop-further-brakes"), " shows what else acts in the same stop.")),
         Figure(
             svg=picture(partial(further_brakes, run=run), height=height(run)),
             caption="The same stop: what acts beside the friction brake, and how warm its pads get. Lines as in the "
@@ -145,20 +151,6 @@ def _further_brakes(run: Run) -> tuple[Block, ...]:
                 (f"{len(shown)} panels over {run.time[-1]:.2f} s.", *(panel.words for panel in shown))
             ),
             anchor="stop-further-brakes",
-        ),
-    )
-
-
-def _lyapunov(certificates: tuple[Certificate, ...]) -> tuple[Block, ...]:
-    shown = [each for each in certificates if lyapunov_series(each)]
-    if not shown:
-        return ()
-    return (
-        Figure(
-            svg=picture(partial(lyapunov_functions, certificates=shown), height=2.8),
-            caption="Lyapunov functions over time, each in the setting of its proof, not in the stop above. "
-            "Each check says where its function must not rise.",
-            alt=" ".join(series_alt(lyapunov_series(each)[:1]) for each in shown),
-            anchor="lyapunov",
+            data=trace_name(0, run.controller),
         ),
     )

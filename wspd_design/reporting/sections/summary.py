@@ -1,140 +1,241 @@
-"""Page one: the verdict in one sentence, four key numbers and the table of checks."""
+"""Page one: the decision, what it rests on, the table of requirements and the ladder of evidence."""
 
 import math
-from collections import Counter
-from dataclasses import replace
+from collections.abc import Sequence
 
 from wspd_design.certificates.records import Certificate
+from wspd_design.certificates.records import Status as Finding
+from wspd_design.certificates.theorems.holds_for import HOLDS_FOR, HoldsFor
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import rounded_down
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.design.requirements import Requirements
+from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Cell, KeyNumber, KeyNumbers, Status, Table, Verdict
-from wspd_design.reporting.brakes import lag_times
+from wspd_design.reporting.blocks import (
+    Block,
+    Column,
+    Definition,
+    Definitions,
+    KeyNumber,
+    KeyNumbers,
+    Status,
+    Table,
+    Verdict,
+)
+from wspd_design.reporting.decision_words import next_words, produced_by, rank, scope, weakest
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.sections.checks import check_anchor, finding_anchor, is_bad_news, status_of
-from wspd_design.reporting.sections.requirements import REQUIREMENTS, stops_of
+from wspd_design.reporting.requirement_words import against_limit, figure, finding, limit, margin, reached
+from wspd_design.reporting.sections.assumptions import ASSUMPTIONS, deciding_words
+from wspd_design.reporting.sections.checks import check_anchor, is_bad_news
+from wspd_design.reporting.sections.requirements import REQUIREMENTS, decided_by, stops_of
 from wspd_design.reporting.sections.robustness import ROBUSTNESS, what_fails
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
-from wspd_design.simulation.description import held_slip, rails_of
-from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.metrics import Metrics
+from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
-from wspd_design.studies.faults import Robustness
-from wspd_design.studies.judgment import Judgment
+from wspd_design.studies.judgment import Judgment, Requirement
 
-COUNTED = {
-    Status.REFUTED: "refuted",
-    Status.LIMITATION: "proved to be a limitation",
-    Status.UNDECIDED: "undecided",
-    Status.EVIDENCE: "sampled only",
-    Status.PROVED: "proved",
-    Status.VACUOUS: "vacuous",
-    Status.NOT_APPLICABLE: "not applicable",
+_SPREADS = {
+    "stopping_distance": "distance",
+    "efficiency_worst": "efficiency",
+    "longest_lock": "longest_lock",
+    "vented_air": "vented_air",
+    "speed_error": "speed_error",
 }
-"""Each finding in words that follow a number."""
+"""Figures that the spread over the bounds has under these names."""
+
+_VERDICTS = {
+    "accepted": Status.ACCEPTED,
+    "rejected": Status.REJECTED,
+    "undecided": Status.UNDECIDED,
+}
 
 
 def verdict(dossier: Dossier) -> Verdict:
-    """Return the judgment of the whole report; the worst finding decides.
-
-    A design with requirements is accepted if it meets them all and nothing is refuted; one without is judged by the
-    tolerance of its slip.
-    """
-    certificates, judgment = dossier.certificates, dossier.judgment
-    counts = Counter(map(status_of, certificates))
-    total = len(certificates)
-    stop, stop_is_good = _stop(dossier)
-    spoken: tuple[Inline, ...]
-    if named := [each for each in certificates if is_bad_news(each)]:
-        status = Status.REFUTED
-        limits = " or proved to be a limitation" if counts[Status.LIMITATION] else ""
-        spoken = (
-            f"Not fit as it stands: {len(named)} of {total} checks refuted{limits} (",
-            *_links(named),
-            "). ",
-            *(("It misses ", *_required(judgment), ". ") if judgment is not None and judgment.missed else ()),
-        )
-    elif judgment is not None and judgment.missed:
-        status = Status.BAD
-        spoken = ("Not fit as it stands: no check is refuted, but it misses ", *_required(judgment), ". ")
-    elif not stop_is_good:
-        status = Status.BAD
-        spoken = ("Not fit as it stands: no check is refuted, but the simulated stop is not as specified. ",)
-    elif judgment is not None:
-        status = Status.ACCEPTED
-        spoken = (
-            "Accepted: it meets ",
-            *_required(judgment),
-            ", and no check that speaks about it is refuted. That is shown by simulated stops, not proved",
-            *_not_shown(certificates),
-            ". ",
-            *_fails_with(dossier.robustness),
-        )
-    elif named := _of(certificates, Status.UNDECIDED):
-        status = Status.UNDECIDED
-        spoken = (
-            f"Not decided: {len(named)} of {total} checks neither proved nor refuted (",
-            *_links(named),
-            "). ",
-        )
-    elif named := _of(certificates, Status.EVIDENCE):
-        status = Status.EVIDENCE
-        spoken = (
-            f"Nothing speaks against it, but {len(named)} of {total} checks hold at samples "
-            "only, which proves nothing between them. ",
-        )
-    elif counts[Status.PROVED]:
-        status = Status.PROVED
-        spoken = ("Every check that speaks about this controller is proved under its stated assumptions. ",)
-    else:
-        status = Status.VACUOUS
-        spoken = ("No check says anything about this controller. ",)
-    assumptions = {text for each in certificates for text in each.assumptions}
-    tally = numbers.listing([f"{counts[each]} {COUNTED[each]}" for each in COUNTED if counts[each]])
-    counted = f" Checks: {tally}; {numbers.count(len(assumptions), 'assumption')}."
-    return Verdict(status=status, sentence=(*spoken, stop, counted if tally else ""))
+    """Return the judgment of the whole report, which its requirements define, with the reason that comes first."""
+    judgment = dossier.judgment
+    count = len(judgment.limited)
+    link = Link(anchor=REQUIREMENTS, text="requirements" if count != 1 else "requirement")
+    row = judgment.weakest
+    first = "" if row is None else f"{row.id}, {against_limit(row)}"
+    match judgment.verdict:
+        case "accepted":
+            spoken: tuple[Inline, ...] = (
+                f"Accepted: it meets all {count} ",
+                link,
+                f" ({judgment.name}) on {stops_of(judgment)}. That is shown by simulation, not measured. ",
+            )
+        case "rejected":
+            spoken = (
+                f"Rejected: it misses {_ids(judgment)} of {count} ",
+                link,
+                f" ({judgment.name}); first {first}. ",
+            )
+        case _:
+            spoken = (
+                f"Not decided: {_ids(judgment)} of {count} ",
+                link,
+                f" ({judgment.name}) {'is' if len(judgment.open) == 1 else 'are'} open; first {first}. ",
+            )
+    return Verdict(status=_VERDICTS[judgment.verdict], sentence=(*spoken, _stop(dossier)))
 
 
-def _required(judgment: Judgment) -> tuple[Inline, ...]:
-    """Say how many requirements are met or missed, and where they are judged."""
-    limited, missed = judgment.limited, judgment.missed
-    number = f"{len(missed)} of {len(limited)}" if missed else f"all {len(limited)}"
-    named = f" ({numbers.listing([each.title for each in missed])})" if missed else ""
+def _ids(judgment: Judgment) -> str:
+    return numbers.listing([each.id for each in judgment.missed or judgment.open])
+
+
+def _stop(dossier: Dossier) -> str:
+    """Say how the design's own stop went."""
+    own = dossier.trials[0]
+    run, figures = own.run, own.metrics
+    start = (
+        f"The simulated stop of {run.train} from "
+        f"{numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
+    )
+    if run.ending is not Ending.STOPPED:
+        return f"{start} does not end: {run.ending.value}."
+    known = figures.ideal_ending is Ending.STOPPED
     return (
-        f"{number} ",
-        Link(anchor=REQUIREMENTS, text="requirements"),
-        f"{named} on {stops_of(judgment)}",
+        f"{start} takes {numbers.decimals(figures.distance, 0)} m"
+        f"{f', the ideal stop {ideal_distance(figures)}' if known else ''}."
     )
 
 
-def _not_shown(certificates: tuple[Certificate, ...]) -> tuple[Inline, ...]:
-    """Name what an accepted design leaves open."""
-    undecided, sampled = (_of(certificates, each) for each in (Status.UNDECIDED, Status.EVIDENCE))
+def summary(dossier: Dossier) -> tuple[Block, ...]:
+    """Return the key numbers, the decision row by row, the requirements and the ladder of evidence."""
+    return (
+        KeyNumbers(numbers=_key_numbers(dossier)),
+        Definitions(rows=_decision(dossier)),
+        _requirements(dossier),
+        _ladder(dossier.certificates, dossier),
+        Definitions(rows=(Definition(term="Made by", text=produced_by(dossier)),)),
+    )
+
+
+def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
+    own = dossier.trials[0]
+    run, figures = own.run, own.metrics
+    stopped = run.ending is Ending.STOPPED
+    start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
+    judgment = dossier.judgment
+    met = len(judgment.limited) - len(judgment.missed) - len(judgment.open)
+    return (
+        KeyNumber(
+            label="Stopping distance" if stopped else "Distance, still moving",
+            value=numbers.decimals(figures.distance, 0),
+            unit="m",
+            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 1)} s{_build_up(dossier)}"
+            f"{_spread(dossier)}",
+        ),
+        KeyNumber(
+            label="Efficiency",
+            value=numbers.decimals(100.0 * figures.efficiency, 1),
+            unit="%" if math.isfinite(figures.efficiency) else "",
+            note=_yardsticks(dossier),
+        ),
+        KeyNumber(
+            label="Requirements met",
+            value=f"{met} of {len(judgment.limited)}",
+            note=(Link(anchor=REQUIREMENTS, text="on"), f" {stops_of(judgment)}"),
+        ),
+        _loop(dossier),
+    )
+
+
+def _build_up(dossier: Dossier) -> str:
+    build_up = dossier.trials[0].metrics.build_up
+    if not math.isfinite(build_up):
+        return ""
+    return f"; brake built up after {numbers.decimals(build_up, 1)} s"
+
+
+def _spread(dossier: Dossier) -> str:
+    """Say how far the distance spreads over the bounds."""
+    found = dossier.uncertainty
+    spread = None if found is None else found.spread_of("distance")
+    if found is None or spread is None:
+        return ""
+    low, high = (
+        f"{numbers.decimals(each, 0)} m" if math.isfinite(each) else "no stop"
+        for each in (spread.low, spread.high)
+    )
+    return f". {low} to {high} over the bounds ({found.sets} sets)"
+
+
+def _yardsticks(dossier: Dossier) -> Text:
+    """Say what the efficiency is a share of, and what is proved, each under its own name."""
+    ideal = f"ideal stop, simulated: {ideal_distance(dossier.trials[0].metrics)}"
+    proved = proved_bound(dossier.certificates)
+    if proved is None:
+        return f"{ideal}; no bound is proved"
+    start = numbers.significant(dossier.specification.speeds[1] * KMH)
+    link = Link(anchor=check_anchor(proved.certificate), text="proved bound")
+    return (
+        f"{ideal}; ",
+        link,
+        f" of the nominal vehicle from {start} km/h: {rounded_down(proved.distance)} m",
+    )
+
+
+def _loop(dossier: Dossier) -> KeyNumber:
+    """Show the growth of a deviation against its limit; for laws of which no check tells it, the pole of the slip."""
+    growth = dossier.growth
+    if growth is not None:
+        return KeyNumber(
+            label="Growth per sample",
+            value=numbers.significant(growth.factor, 3),
+            note=f"of a deviation near the reference, largest at {numbers.significant(growth.speed * KMH, 3)} km/h; "
+            "nominal, with valve and sampling",
+        )
+    fastest = max(
+        dossier.linearizations, key=lambda point: (_in_range(dossier, point.speed), point.slip_pole)
+    )
+    lag = numbers.decimals(1.0 / fastest.time_constant, 2)
+    return KeyNumber(
+        label="Slip pole, nominal",
+        value=numbers.significant(fastest.slip_pole, 2),
+        unit="1/s",
+        note=f"near {numbers.significant(fastest.speed * KMH, 2)} km/h, the valve has {lag} 1/s; no check of the loop "
+        "speaks about this law",
+    )
+
+
+def _in_range(dossier: Dossier, speed: float) -> bool:
+    low, high = dossier.specification.speeds
+    return low <= speed <= high
+
+
+def _decision(dossier: Dossier) -> tuple[Definition, ...]:
+    rows: tuple[tuple[str, Text], ...] = (
+        ("Scope", scope(dossier)),
+        ("Weakest link", weakest(dossier)),
+        ("Next", next_words(dossier)),
+        ("Against the others", rank(dossier)),
+        ("Refuted, not required", _told(dossier)),
+        ("With a fault", _fails_with(dossier)),
+        ("Assumptions that decide", _assumed(dossier)),
+    )
+    return tuple(Definition(term=term, text=text) for term, text in rows if text)
+
+
+def _told(dossier: Dossier) -> Text:
+    """Name the refuted checks that decide nothing, with what they hold for."""
+    named = [
+        each
+        for each in dossier.certificates
+        if is_bad_news(each) and not decided_by(dossier.judgment, each.name)
+    ]
     said: list[Inline] = []
-    if undecided:
-        said += ["; undecided: ", *_links(undecided)]
-    if sampled:
-        said += ["; sampled only: ", *_links(sampled)]
+    for rung in (*HoldsFor, None):
+        group = [each for each in named if HOLDS_FOR.get(each.name) is rung]
+        if group:
+            holds_for = "" if rung is None else f"{rung.value}: "
+            said += [f"{'; ' if said else ''}{holds_for}", *_links(group)]
     return tuple(said)
 
 
-def _fails_with(robustness: Robustness | None) -> tuple[Inline, ...]:
-    """Name the faults with which an accepted design does not hold."""
-    failing = [] if robustness is None else [each for each in robustness.stops if not robustness.holds(each)]
-    if not failing:
-        return ()
-    named = numbers.listing([what_fails(each) for each in failing])
-    return ("It does not hold ", Link(anchor=ROBUSTNESS, text="with a fault"), f": {named}. ")
-
-
-def _of(certificates: tuple[Certificate, ...], *found: Status) -> list[Certificate]:
-    return [each for each in certificates if status_of(each) in found]
-
-
-def _links(certificates: list[Certificate]) -> list[Inline]:
+def _links(certificates: Sequence[Certificate]) -> list[Inline]:
     links: list[Inline] = []
     for each in certificates:
         links += [", "] if links else []
@@ -147,137 +248,89 @@ def _lowered(title: str) -> str:
     return title if title[1:2].isupper() or not title[1:2].isalpha() else title[0].lower() + title[1:]
 
 
-def _stop(dossier: Dossier) -> tuple[str, bool]:
-    """Say how the design's own stop went, and whether it kept to the tolerance if that is what it is judged by."""
-    own, specification = dossier.trials[0], dossier.design.specification
-    run, figures = own.run, own.metrics
-    start = (
-        f"The simulated stop of {run.train} from "
-        f"{numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
-    )
-    if run.ending is not Ending.STOPPED:
-        return f"{start} does not end: {run.ending.value}.", False
-    takes = f"{start} takes {numbers.uncertain(figures.distance, own.check.spread, 1)} m"
-    if dossier.judgment is not None:
-        known = figures.ideal_ending is Ending.STOPPED
-        return f"{takes}{f', the ideal stop {ideal_distance(figures)}' if known else ''}.", True
-    inside = figures.slip_rms <= specification.slip_tolerance
-    side = "within" if inside else "beyond"
-    said = (
-        f"{takes}; the slip is off its reference of "
-        f"{held_slip(run, specification.slip)} by {numbers.decimals(figures.slip_rms, 3)} rms, {side} the tolerance of "
-        f"{specification.slip_tolerance:g}."
-    )
-    return said, inside
+def _assumed(dossier: Dossier) -> Text:
+    return (f"{deciding_words(dossier)} ", Link(anchor=ASSUMPTIONS, text="(register)"))
 
 
-def summary(dossier: Dossier) -> tuple[Block, ...]:
-    """Return the key numbers and the table of checks."""
-    return (KeyNumbers(numbers=_key_numbers(dossier)), _checks(dossier.certificates))
+def _fails_with(dossier: Dossier) -> Text:
+    """Name the faults with which a design does not hold."""
+    found = dossier.robustness
+    failing = [] if found is None else [each for each in found.stops if not found.holds(each)]
+    if not failing:
+        return ""
+    named = numbers.listing([what_fails(each) for each in failing])
+    return ("it does not hold ", Link(anchor=ROBUSTNESS, text="with"), f": {named}")
 
 
-def _key_numbers(dossier: Dossier) -> tuple[KeyNumber, ...]:
-    own, specification = dossier.trials[0], dossier.design.specification
-    run, figures = own.run, own.metrics
-    stopped = run.ending is Ending.STOPPED
-    start = f"from {numbers.significant(run.initial_speed * KMH)} km/h on {rails_of(dossier.scenario)}"
-    in_range = [
-        point
-        for point in dossier.linearizations
-        if specification.speeds[0] <= point.speed <= specification.speeds[1]
-    ]
-    worst = max(in_range, key=lambda point: point.slip_pole)
-    return (
-        KeyNumber(
-            label="Stopping distance" if stopped else "Distance, still moving",
-            value=numbers.uncertain(figures.distance, own.check.spread, 1),
-            unit="m",
-            note=f"{start} ({run.plant}), in {numbers.decimals(figures.stopping_time, 2)} s{_build_up(figures)}",
-        ),
-        KeyNumber(
-            label="Efficiency",
-            value=numbers.decimals(100.0 * figures.efficiency, 1),
-            unit="%" if math.isfinite(figures.efficiency) else "",
-            note=_yardsticks(dossier),
-        ),
-        _slip_or_requirements(dossier),
-        KeyNumber(
-            label="Largest nominal slip pole",
-            value=numbers.decimals(worst.slip_pole, 2),
-            unit="1/s",
-            note=f"at {numbers.significant(worst.speed * KMH, 3)} km/h; 1/τ = "
-            f"{numbers.decimals(1.0 / worst.time_constant, 2)} 1/s{_between_times(dossier.vehicle)}",
-        ),
-    )
+def _over_the_bounds(dossier: Dossier) -> ColumnOf[Requirement] | None:
+    """Return the column with the spread over the bounds of all numbers, where one stop is judged."""
+    found = dossier.uncertainty
+    if found is None or isinstance(dossier.judgment.wanted, Requirements):
+        return None
 
-
-def _slip_or_requirements(dossier: Dossier) -> KeyNumber:
-    """Return what the design is judged by."""
-    judgment, figures, specification = (
-        dossier.judgment,
-        dossier.trials[0].metrics,
-        dossier.design.specification,
-    )
-    if judgment is not None:
-        met = len(judgment.limited) - len(judgment.missed)
-        return KeyNumber(
-            label="Requirements met",
-            value=f"{met} of {len(judgment.limited)}",
-            note=(Link(anchor=REQUIREMENTS, text="on"), f" {stops_of(judgment)}"),
+    def read(row: Requirement) -> str:
+        spread = found.spread_of(_SPREADS[row.name]) if row.name in _SPREADS else None
+        if spread is None:
+            return numbers.NONE
+        low, high = (
+            figure(row, each) if math.isfinite(each) else "no stop" for each in (spread.low, spread.high)
         )
-    return KeyNumber(
-        label=f"Slip rms above {numbers.quantity_in(JUDGING_SPEED, 'km/h')}",
-        value=numbers.decimals(figures.slip_rms, 3),
-        note=f"reference {held_slip(dossier.trials[0].run, specification.slip)}, tolerance "
-        f"{specification.slip_tolerance:g}",
-    )
+        return f"{low.removesuffix(f' {row.unit}')} to {high}"
+
+    return ColumnOf(title="Over the bounds", flush_right=True, read=read)
 
 
-def _between_times(vehicle: ParameterSet) -> str:
-    """Say between which rates that of an averaged lag lies; nothing if it fills as fast as it vents."""
-    times = lag_times(vehicle)
-    if times is None or times[0] == times[1]:
-        return ""
-    fill, vent = (numbers.decimals(1.0 / time, 2) for time in times)
-    return f" there, between {fill} 1/s of filling and {vent} 1/s of venting"
-
-
-def _build_up(figures: Metrics) -> str:
-    """Part a stop into build-up and plateau; where the deceleration falls so much that no lag is left, say nothing."""
-    if not figures.lag > 0.0:
-        return ""
-    lag, plateau = (numbers.decimals(value, 2) for value in (figures.lag, figures.plateau))
-    return f": {lag} s of build-up, then {plateau} m/s²"
-
-
-def _yardsticks(dossier: Dossier) -> Text:
-    """Say what the efficiency is a share of, and what is proved, each under its own name."""
-    ideal = f"ideal stop, simulated: {ideal_distance(dossier.trials[0].metrics)}"
-    proved = proved_bound(dossier.certificates)
-    if proved is None:
-        return f"{ideal}; no bound is proved"
-    start = numbers.significant(dossier.design.specification.speeds[1] * KMH)
-    link = Link(anchor=check_anchor(proved.certificate), text="proved bound")
-    return (f"{ideal}; ", link, f" from {start} km/h: {rounded_down(proved.distance)} m")
-
-
-def _checks(certificates: tuple[Certificate, ...]) -> Table:
-    silent = _of(certificates, Status.NOT_APPLICABLE)
-    table = build(
-        [each for each in certificates if each not in silent],
+def _requirements(dossier: Dossier) -> Table:
+    judgment = dossier.judgment
+    unverified = sum(each.limit is not None and not each.verified for each in judgment.limited)
+    return build(
+        judgment.rows,
         (
-            ColumnOf(title="Check", read=lambda each: (Link(anchor=check_anchor(each), text=each.name),)),
-            ColumnOf(title="Finding", read=lambda each: Cell(status=status_of(each))),
-            ColumnOf(title="What is checked", read=lambda each: each.title),
-            ColumnOf(title="Margin", flush_right=True, read=lambda each: numbers.margin(each.margin)),
+            ColumnOf(title="", read=lambda each: each.id),
+            ColumnOf(title="Requirement", read=lambda each: each.title),
+            ColumnOf(title="Limit", flush_right=True, read=limit),
+            ColumnOf(title="Reached", flush_right=True, read=reached),
+            ColumnOf(title="Margin", flush_right=True, read=margin),
+            *([over] if (over := _over_the_bounds(dossier)) else []),
+            ColumnOf(title="Evidence", read=lambda each: each.evidence),
+            ColumnOf(title="Finding", read=finding),
         ),
-        caption="All checks. A margin is positive where the claim holds; ≤: sampling bounds it from above "
-        "only.",
-        anchor="checks",
+        caption=f"What is asked for ({judgment.name}) and what is reached on {stops_of(judgment)}; margin over the "
+        f"limit, positive where it is kept. {numbers.count(unverified, 'limit')} not verified against a source. "
+        "Told: not required.",
+        anchor="requirements-table",
     )
-    if not silent:
-        return table
-    link = Link(anchor=finding_anchor(Status.NOT_APPLICABLE), text=f"{len(silent)} more")
-    names = ", ".join(each.name for each in silent)
-    row = ((link,), Cell(status=Status.NOT_APPLICABLE), names, numbers.NONE)
-    return replace(table, rows=(*table.rows, row))
+
+
+_COLUMNS = (
+    ("Proved", (Finding.PROVED,)),
+    ("Samples only", (Finding.EVIDENCE,)),
+    ("Refuted, or a limit proved", (Finding.REFUTED, Finding.LIMITATION)),
+    ("Undecided", (Finding.UNDECIDED,)),
+)
+
+
+def _ladder(certificates: Sequence[Certificate], dossier: Dossier) -> Table:
+    """Count what is shown on each rung, from the equations to a measurement, of which there is none."""
+
+    def counted(rung: HoldsFor, statuses: tuple[Finding, ...]) -> str:
+        group = [
+            each for each in certificates if HOLDS_FOR.get(each.name) is rung and each.status in statuses
+        ]
+        return str(len(group)) if group else numbers.NONE
+
+    rows: list[tuple[Text, ...]] = [
+        (rung.value, *(counted(rung, statuses) for _, statuses in _COLUMNS)) for rung in HoldsFor
+    ]
+    rows.append(("measured on a vehicle", *[numbers.NONE] * len(_COLUMNS)))
+    span = format_quantity(dossier.specification.sample_time, "ms")
+    return Table(
+        columns=(
+            Column(title="Holds for"),
+            *(Column(title=title, align="right") for title, _ in _COLUMNS),
+        ),
+        rows=tuple(rows),
+        caption=f"Ladder of evidence: checks that speak about this law, by what stands between it and the wheel "
+        f"(sampled every {span}). The requirements count from the rung that each of them needs; nothing was measured.",
+        anchor="evidence-ladder",
+    )

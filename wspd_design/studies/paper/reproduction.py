@@ -1,6 +1,5 @@
 """Section 7 of the paper, computed again: Table 10, Figures 3 and 9 to 21, Table 9, and what they show."""
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
@@ -16,7 +15,6 @@ from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
-from wspd_design.studies.dossier import Provenance, versions
 from wspd_design.studies.paper.ablation import IDEAL_FILL_TIME, IDEAL_SAMPLE_TIME, ablation
 from wspd_design.studies.paper.conclusions import conclusions
 from wspd_design.studies.paper.conclusions.records import Conclusion
@@ -41,6 +39,7 @@ from wspd_design.studies.paper.evidence import (
 from wspd_design.studies.paper.published import load_table10
 from wspd_design.studies.paper.slip_history import slip_history
 from wspd_design.studies.paper.table10 import Table10Row, table10_rows
+from wspd_design.studies.provenance import Provenance, provenance
 
 if TYPE_CHECKING:
     import numpy as np
@@ -136,7 +135,6 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
         fill_time=vehicle.brake.fill_time,
         load_range=_load_range(trials["afsmc", CONSTANT_RAILS[1]].run),
     )
-    inputs = repr((vehicle, specification, scenarios, seed))
     return Reproduction(
         vehicle=vehicle,
         specification=specification,
@@ -151,12 +149,7 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
         track=tuple(track_channel(spectra, channel, seed=seed) for channel in CHANNELS),
         disturbances=tuple(disturbances),
         ideal_changes=tuple(ideal_change(vehicle, each, load) for each in scenarios.values()),
-        provenance=Provenance(
-            command=command,
-            versions=versions(),
-            seed=seed,
-            input_hash=hashlib.sha256(inputs.encode()).hexdigest(),
-        ),
+        provenance=provenance(command=command, seed=seed),
     )
 
 

@@ -51,7 +51,9 @@ def region(law: LinearSurface, lag: float, speeds: "Array", plant: SlipModel) ->
     shown = np.concatenate([own, paper, [k for k in beside if 0.0 < k < np.inf]])
     bottom, top = float(shown.min()) / MARGIN, float(shown.max()) * MARGIN
     axes = ("c = K_I/K_P [1/s]", "k [1/s]")
-    curves = [series("the law over speed", *axes, np.full(len(speeds), rate), own, Role.LOOP_GAIN)]
+    slow, fast = speeds[0] * KMH, speeds[-1] * KMH
+    ends = f"k = {own[0]:.3g} at {slow:.3g} km/h to {own[-1]:.3g} at {fast:.3g} km/h"
+    curves = [series(f"the law, {ends}", *axes, np.full(len(speeds), rate), own, Role.LOOP_GAIN)]
     if (rate, *own[:1]) != (paper_rate, *paper[:1]):
         curves.append(
             series(

@@ -33,7 +33,11 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     """Nominal pole over speed, and where it is proved to lie beyond the limit."""
     proved = certificate.findings["beyond"].part if certificate.status is Status.LIMITATION else None
     limit = valve_rate(problem)[1]
-    return Figures(series=slip_pole.nominal_plots(slip_pole.pole_map(problem), "1/tau", limit, proved))
+    return Figures(
+        series=slip_pole.nominal_plots(
+            slip_pole.pole_map(problem), "1/tau of the fastest nominal valve", limit, proved
+        )
+    )
 
 
 def widest_interval(problem: Problem, limit: float) -> tuple[float, float] | None:

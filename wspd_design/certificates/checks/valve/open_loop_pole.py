@@ -30,7 +30,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     limit = 1.0 / slowest_valve(problem)
     worst = certificate.findings["every valve"].values
     return Figures(
-        series=slip_pole.plots(poles, "1/tau", limit),
+        series=slip_pole.plots(poles, "1/tau of the slowest valve", limit),
         maps=margin_map(
             "slip pole",
             "slip pole p [1/s]",

@@ -71,10 +71,10 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
 
 def _tell(problem: Problem, findings: Findings) -> Certificate:
     known, wide = findings[NOMINAL], findings[BOUNDS]
-    described = domain.described(problem, (*USED, "axle load share"))
+    where = domain.domain_of(problem, (*USED, "axle load share"))
     stop = f"stops this vehicle from {problem.speeds[1] * KMH:.3g} km/h on {problem.rail.name}"
     return Certificate(
-        claim=f"No controller {stop} within less than {_bound(wide.numbers)}, for {described}; with the nominal "
+        claim=f"No controller {stop} within less than {_bound(wide.numbers)} on {where.text}; with the nominal "
         f"parameters, static wheel loads and all wheelsets alike, not within less than {_bound(known.numbers)}.",
         status=all_of(known, wide),
         explanation=(
@@ -99,6 +99,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "the range of the axle load share is that of a load transfer that follows the deceleration without delay",
             "rolling wheels and empty cylinders at the start; no other brake",
         ),
+        domain=where,
         varied=(*USED, "axle load share"),
         method="peaks and cuts of the slip that are searched, then shown in balls by an independent checker; "
         "momentum that the filling brake can take; both bound the speed from below" + _size(known.numbers),

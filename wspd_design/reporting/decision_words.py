@@ -1,0 +1,155 @@
+"""What page one says about the decision: scope, weakest link, next step, rank and origin, each from a record."""
+
+from wspd_design.design.requirements import Requirements
+from wspd_design.parameters.units import format_quantity
+from wspd_design.reporting import numbers
+from wspd_design.reporting.brakes import lag_times
+from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.requirement_words import against_limit, margin
+from wspd_design.reporting.yardsticks import ideal_distance
+from wspd_design.simulation.description import disturbances_of, rails_of
+from wspd_design.simulation.records import Ending
+from wspd_design.studies.dossier import Dossier
+from wspd_design.studies.judgment import Requirement
+from wspd_design.studies.next_step import Alternative, NextStep
+
+
+def scope(dossier: Dossier) -> str:
+    """Say for what the decision is made."""
+    low, high = (numbers.significant(speed * KMH) for speed in dossier.specification.speeds)
+    span = format_quantity(dossier.specification.sample_time, "ms")
+    grade = dossier.scenario.grade
+    track = "straight level track" if grade == 0.0 else f"straight track, grade {1e3 * grade:g} permille"
+    wanted = dossier.judgment.wanted
+    rails = numbers.listing(wanted.rails) if isinstance(wanted, Requirements) else rails_of(dossier.scenario)
+    disturbed = disturbances_of(dossier.scenario)
+    return (
+        f"{dossier.vehicle.name} on {rails}, {low} to {high} km/h, {track}, sample time {span}"
+        f"{f', {disturbed}' if disturbed else ''}. Simulation and proofs only: no data of a vehicle"
+    )
+
+
+def weakest(dossier: Dossier) -> str:
+    """Say which requirement decides, with cause, number and limit."""
+    row = dossier.judgment.weakest
+    if row is None:
+        return "no requirement has a margin"
+    if row.name == "loop" and dossier.growth is not None:
+        return _loop(dossier, row)
+    if dossier.judgment.accepted:
+        return f"{row.id}, {against_limit(row)}: the smallest reserve, {margin(row)}"
+    return f"{row.id}, {against_limit(row)}"
+
+
+def _loop(dossier: Dossier, row: Requirement) -> str:
+    growth = dossier.growth
+    assert growth is not None, "asked for by the caller"
+    span = format_quantity(dossier.specification.sample_time, "ms")
+    poles = [
+        each.slip_pole
+        for each in dossier.linearizations
+        if dossier.specification.speeds[0] <= each.speed <= dossier.specification.speeds[1]
+    ]
+    times = lag_times(dossier.vehicle)
+    lag = "" if times is None else f" of {numbers.significant(min(times))} s"
+    said = (
+        f"{row.id}, the loop near its reference: sampled every {span} behind a valve{lag} it is unstable at "
+        f"{growth.unstable} of {growth.speeds} speeds; a deviation of the slip is multiplied by "
+        f"{numbers.significant(growth.factor, 3)} per sample at {numbers.significant(growth.speed * KMH, 3)} km/h, "
+        "allowed below 1"
+    )
+    return f"{said}. The slip pole reaches {numbers.significant(max(poles), 2)} 1/s (nominal)"
+
+
+def next_words(dossier: Dossier) -> str:
+    """Say what was tried in place of a design that is not accepted; for one that is, which evidence it lacks."""
+    found = dossier.next_step
+    if found is None:
+        return "nothing that is required is missed; no rung of the ladder below is a measurement on a vehicle"
+    tried = (
+        f"{numbers.count(len(found.tried), 'alternative')} tried, gains by their rules, "
+        f"{numbers.count(found.stops, 'stop')} each"
+    )
+    if not found.tried:
+        return "no other law has gains by rules for this vehicle"
+    if found.clears:
+        spans = dict.fromkeys(sorted((each.sample_time for each in found.clears), reverse=True))
+        named = [
+            f"sampled every {format_quantity(span, 'ms')} "
+            + numbers.listing([_alternative(each) for each in found.clears if each.sample_time == span])
+            for span in spans
+        ]
+        met = f"these meet everything: {'; '.join(named)} ({tried}{_silent(dossier, found)})"
+        return f"{met}. {_same_law(dossier, found)}".rstrip()
+    best = found.tried[0]
+    return (
+        f"nothing meets everything ({tried}); closest is {_alternative(best)} sampled every "
+        f"{format_quantity(best.sample_time, 'ms')}, which misses {_missed(dossier, best)}. "
+        f"{_same_law(dossier, found)}".rstrip()
+    )
+
+
+def _silent(dossier: Dossier, found: NextStep) -> str:
+    """Say which requirement no check judges for some of the alternatives that meet the others."""
+    names = {name for each in found.clears for name in each.silent}
+    ids = [row.id for row in dossier.judgment.rows if row.name in names]
+    return f"; of some of them no check judges {numbers.listing(ids)}" if ids else ""
+
+
+def _alternative(each: Alternative) -> str:
+    distance = "" if each.distance is None else f" ({numbers.decimals(each.distance, 0)} m)"
+    return f"{each.law}{distance}"
+
+
+def _missed(dossier: Dossier, each: Alternative) -> str:
+    """Name the requirements that an alternative misses by their ids."""
+    ids = {row.name: row.id for row in dossier.judgment.rows}
+    return numbers.listing([ids.get(name, name) for name in each.missed])
+
+
+def _same_law(dossier: Dossier, found: NextStep) -> str:
+    """Say whether the same law sampled faster would do."""
+    own = None if dossier.design is None else dossier.design.law
+    faster = next((each for each in found.tried if each.law == own), None)
+    if faster is None:
+        return ""
+    span = format_quantity(faster.sample_time, "ms")
+    if not faster.missed:
+        return f"The same law sampled every {span} meets everything."
+    return f"The same law sampled every {span} still misses {_missed(dossier, faster)}."
+
+
+def rank(dossier: Dossier) -> str:
+    """Set the distance of the stop among those of the other laws."""
+    stopped = sorted(
+        (each for each in dossier.trials if each.run.ending is Ending.STOPPED),
+        key=lambda each: each.metrics.distance,
+    )
+    own = dossier.trials[0]
+    if own not in stopped or len(stopped) < 2:
+        return ""
+    place = stopped.index(own) + 1
+    named = [
+        f"{each.run.controller} {numbers.decimals(each.metrics.distance, 0)}"
+        for each in stopped
+        if each is not own
+    ]
+    ideal = ideal_distance(own.metrics)
+    return (
+        f"{place} of {len(stopped)} by distance on this stop: {numbers.decimals(own.metrics.distance, 0)} m; "
+        f"{', '.join(named)}; ideal stop {ideal}"
+    )
+
+
+def produced_by(dossier: Dossier) -> str:
+    """Say what made the report; the rest stands under its provenance."""
+    made = dossier.provenance
+    tree = (
+        f"{made.package_tree[:12]}{' and changes' if made.changed else ''}"
+        if made.package_tree
+        else "no clone"
+    )
+    return (
+        f"wspd {made.program_version} ({tree}), package {made.package_sha256[:12]}, {made.compiler}, {made.platform}, "
+        f"inputs {made.input_hash[:12]}, seed {made.seed}, searches that were cut: {len(made.searches_cut)}"
+    )
