@@ -65,7 +65,9 @@ THEOREMS = (
             Identity("N+ = N + (1 - theta)^2 r - drift", slip_loop.friction_residual),
             Identity("1 - x^c is the integral of c u^(c - 1) from x to 1", slip_loop.part_residual),
             Identity("late share of a steady rise: 1/(1 - exp(-m)) - 1/m", slip_loop.lateness_residual),
-            Identity("share of a steady drift in its mean with the same weight", slip_loop.seen_of_drift_residual),
+            Identity(
+                "share of a steady drift in its mean with the same weight", slip_loop.seen_of_drift_residual
+            ),
             Identity("X+ - c of X+ = A X + B (m + r z)", _centered),
             Identity("what the shares and alpha leave of 1", _budget),
             Identity("what lies between an ellipse and one in it", _nested),
