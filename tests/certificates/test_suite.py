@@ -1,6 +1,7 @@
 """The whole set: order, completeness, honesty and what it refuses."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -13,6 +14,7 @@ from wspd_design.certificates.search.budget import Budget
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.suite import CHECKS, NAMES, verify
 from wspd_design.parameters.errors import UserError
+from wspd_design.reporting.blocks import Status as Shown
 
 
 @pytest.fixture(scope="session")
@@ -247,3 +249,27 @@ def test_box_outside_the_model_leaves_the_rest_undecided(make_problem, make_cont
     for undecided in ("well_posed", "sliding_exists", "no_go", "open_loop_pole", "sampling", "routh_lag"):
         assert found[undecided].status is Status.UNDECIDED
         assert "not positive" in found[undecided].explanation
+
+
+BAD_NEWS = re.compile(
+    r"unstable|cannot|no gain|no law|violated|diverge|not stable|no margin|strays|swings|drifts|leaves its|locks"
+)
+
+
+def _green_on_bad_news(certificate):
+    """Whether a report shows a good sign over a sentence that is bad news about the design."""
+    sentences = re.split(r"\. (?=[A-Z])", f"{certificate.claim} {certificate.explanation}")
+    said = [each for each in sentences if not each.startswith("Where it is not")]  # what is not the case here
+    return Shown[certificate.status.name].tone == "good" and any(map(BAD_NEWS.search, said))
+
+
+def test_no_green_sign_stands_over_bad_news(certificates):
+    assert [each.name for each in certificates if _green_on_bad_news(each)] == []
+    for each in certificates:
+        assert (Shown[each.status.name].tone == "bad") == (each.status in (Status.REFUTED, Status.LIMITATION))
+
+
+def test_bad_news_with_a_green_sign_is_seen(certificates):
+    refuted = [each for each in certificates if each.status in (Status.REFUTED, Status.LIMITATION)]
+    planted = [replace(each, status=Status.PROVED) for each in refuted]
+    assert any(map(_green_on_bad_news, planted))

@@ -61,10 +61,18 @@ def _differences(before: object, after: object, where: tuple[str, ...]) -> Itera
         old, new = _named(before), _named(after)
         for key in dict.fromkeys((*old, *new)):
             yield from _differences(old.get(key, _NOTHING), new.get(key, _NOTHING), (*where, key))
+    elif (judged := _judged(before) or _judged(after)) and _NOTHING in (before, after):
+        was, now = (each[judged] if isinstance(each, dict) else each for each in (before, after))
+        yield from _differences(was, now, (*where, judged))
     elif type(before) is not type(after) or before != after:
         yield Difference(
             where=where, kind=_kind(before, after, where), before=_said(before), after=_said(after)
         )
+
+
+def _judged(entry: object) -> str:
+    """Return the key of the verdict of an entry, if it has one."""
+    return next((key for key in VERDICTS if key in entry), "") if isinstance(entry, dict) else ""
 
 
 def _named(items: Sequence[object]) -> dict[str, object]:

@@ -191,6 +191,7 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
 
 
 LONG_TEXT = 25  # characters
+SHORT_ROWS, SHORT_TEXT = 12, 1500  # rows and characters of a table that fits any page
 
 
 def _length(cell: Text | Cell) -> int:
@@ -213,6 +214,13 @@ def _shares(table: Table) -> list[int]:
     if max(longest) < LONG_TEXT:
         return longest
     return [min(length, 80) if length >= LONG_TEXT else 0 for length in longest]
+
+
+def _is_long(table: Table) -> bool:
+    """Tell whether a table may go over two pages; a short one stays whole."""
+    return (
+        len(table.rows) > SHORT_ROWS or sum(_length(cell) for row in table.rows for cell in row) > SHORT_TEXT
+    )
 
 
 def _block(numbered: NumberedBlock) -> dict[str, Any]:
@@ -263,13 +271,14 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "columns": [
                     {
                         "title": _text(column.title),
-                        "unit": printable(column.unit),
+                        "unit": printable(column.unit).replace(" ", "\N{NO-BREAK SPACE}"),
                         "align": column.align,
                         "share": share,
                     }
                     for column, share in zip(block.columns, _shares(block), strict=True)
                 ],
                 "rows": [[_cell(cell) for cell in row] for row in block.rows],
+                "breakable": _is_long(block),
             }
         case Verdict():
             return _verdict(block)
@@ -280,7 +289,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                     {
                         "label": printable(each.label),
                         "value": printable(each.unbroken),
-                        "unit": printable(each.unit),
+                        "unit": printable(each.unit).replace(" ", "\N{NO-BREAK SPACE}"),
                         "note": _text(each.note),
                     }
                     for each in block.numbers

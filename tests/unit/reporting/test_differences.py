@@ -12,7 +12,7 @@ from wspd_design.certificates.records import Status
 from wspd_design.reporting.blocks import Paragraph, Table
 from wspd_design.reporting.differences import Kind, differences
 from wspd_design.reporting.record import report_record
-from wspd_design.reporting.sections.changes import changes, since_previous
+from wspd_design.reporting.sections.changes import changes, shown, since_previous
 from wspd_design.reporting.text import plain
 from wspd_design.studies.previous import previous
 
@@ -77,6 +77,22 @@ def test_verdicts_come_first_and_are_named():
 )
 def test_what_is_of_another_kind_or_missing_is_different(before, after, kind):
     assert {each.kind for each in differences(before, after)} == {kind}
+
+
+def test_a_judged_entry_that_appears_or_goes_is_a_verdict():
+    (new,) = differences([], [{"name": "a", "status": "PROVED", "claim": "all"}])
+    assert (new.kind, new.place, new.before, new.after) == (Kind.VERDICT, "a: status", "none", "PROVED")
+    (gone,) = differences([{"name": "a", "status": "PROVED"}], [])
+    assert (gone.kind, gone.after) == (Kind.VERDICT, "none")
+
+
+def test_long_words_are_shown_where_they_differ():
+    long = "the same words " * 20
+    (found,) = differences({"claim": f"{long}as before"}, {"claim": f"{long}as it is now"})
+    before, after = shown(found)
+    assert before.endswith("words as before")
+    assert after.endswith("words as it is now")
+    assert max(map(len, (before, after))) < 80
 
 
 def test_order_of_named_items_is_no_difference_and_repeated_names_are_told_apart():

@@ -8,7 +8,7 @@ from wspd_design.reporting.blocks import Block, Heading, Paragraph, Table
 from wspd_design.reporting.differences import Difference, Kind, differences
 from wspd_design.reporting.record import report_record
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import CodeSpan, rich
+from wspd_design.reporting.text import CodeSpan, Inline, Link, rich
 from wspd_design.studies.dossier import Dossier
 
 CHANGES = "changes"
@@ -27,6 +27,7 @@ _MADE_BY = (
 )
 _HEADLINES = ("law", "specification", "design", "requirements", "uncertainty", "checks", "parameters")
 _MOST_ROWS = 60
+_LONGEST, _BEFORE = 70, 20  # characters of words that a table shows, and of them before what differs
 
 
 def changes(dossier: Dossier) -> tuple[Block, ...]:
@@ -44,36 +45,30 @@ def changes(dossier: Dossier) -> tuple[Block, ...]:
     headlines = [each for each in values if _is_headline(each, dossier)]
     words = [each for each in content if each.kind is Kind.WORDS]
     made_at = f" of {old.made_at}" if old.made_at else ""
-    blocks: list[Block] = [
-        heading,
-        Paragraph(
-            text=(
-                f"Compared with the report{made_at} on {old.law or 'another law'}, whose report.json has the SHA-256 ",
-                CodeSpan(text=old.sha256),
-                f": {summary_of(found)}.",
-            )
-        ),
-    ]
-    for caption, anchor, rows in (
+    parts = (
         ("Verdicts that changed.", "changed-verdicts", verdicts),
         (
             "Numbers that changed: of the design, its requirements, its checks, its parameters and its own stop.",
             "changed-numbers",
             headlines,
         ),
+        ("Sentences and words that changed.", "changed-words", words),
         ("What the two reports were made by.", "changed-program", by_program),
-    ):
-        if rows:
-            blocks.append(_table(rows, caption, anchor))
-    left = [
-        *_left("number", len(values) - min(len(headlines), _MOST_ROWS)),
-        *_left("text", len(words)),
-    ]
-    if left:
-        blocks.append(
-            Paragraph(text=f"Not in the tables: {numbers.listing(left)}; both records are attached.")
-        )
-    return tuple(blocks)
+    )
+    tables = [_table(rows, caption, anchor) for caption, anchor, rows in parts if rows]
+    listed: list[Inline] = []
+    for table in tables:
+        listed += [", " if listed else "; see ", Link(anchor=table.anchor)]
+    told = (
+        f"Compared with the report{made_at} on {old.law or 'another law'}, whose report.json has the SHA-256 ",
+        CodeSpan(text=old.sha256),
+        f": {summary_of(found)}",
+        *listed,
+        ".",
+    )
+    left = len(values) - len(headlines)
+    rest = f"{numbers.count(left, 'further number')}, of other stops and over speed, stand in the two attached records."
+    return (heading, Paragraph(text=told), *tables, *([Paragraph(text=rest)] if left else []))
 
 
 def since_previous(dossier: Dossier) -> tuple[Difference, ...]:
@@ -110,10 +105,6 @@ def _is_headline(each: Difference, dossier: Dossier) -> bool:
     return own or each.where[0] in _HEADLINES
 
 
-def _left(what: str, number: int) -> list[str]:
-    return [numbers.count(number, what)] if number > 0 else []
-
-
 def _table(rows: list[Difference], caption: str, anchor: str) -> Table:
     more = f" The first {_MOST_ROWS} of {len(rows)}." if len(rows) > _MOST_ROWS else ""
     return build(
@@ -129,13 +120,23 @@ def _table(rows: list[Difference], caption: str, anchor: str) -> Table:
 
 
 def shown(each: Difference) -> tuple[str, str]:
-    """Return both values with six digits, or with all where six do not tell them apart."""
-    short = _short(each.before), _short(each.after)
-    return short if short[0] != short[1] else (each.before, each.after)
+    """Return both values short enough for a table, and so that what differs can be seen."""
+    if each.kind is not Kind.WORDS:
+        short = _six_digits(each.before), _six_digits(each.after)
+        return short if short[0] != short[1] else (each.before, each.after)
+    pairs = enumerate(zip(each.before, each.after, strict=False))
+    same = next((at for at, (old, new) in pairs if old != new), 0)
+    start = max(0, same - _BEFORE) if max(len(each.before), len(each.after)) > _LONGEST else 0
+    return _from(each.before, start), _from(each.after, start)
 
 
-def _short(value: str) -> str:
+def _six_digits(value: str) -> str:
     try:
         return f"{float(value):.6g}"
     except ValueError:
-        return value if len(value) <= 80 else f"{value[:79]}…"
+        return value
+
+
+def _from(value: str, start: int) -> str:
+    part = value[start : start + _LONGEST]
+    return f"{'…' if start else ''}{part}{'…' if start + _LONGEST < len(value) else ''}"

@@ -61,10 +61,12 @@ def tool(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="Tool statement", anchor=TOOL),
         Paragraph(
-            text="EN 50716, and before it EN 50128 and EN 50657, sort software tools in clause 6.7: T1 makes nothing "
-            "that can come into the executable software, T2 tests or verifies and can only fail to show a fault, T3 "
-            "makes what comes into it. Not verified: the standards were not read, the classes are told as tool vendors "
-            "and guides describe them, and the assignment below is ours."
+            text=rich(
+                "EN 50716, and before it EN 50128 and EN 50657, sort software tools in clause 6.7: T1 makes nothing "
+                "that can come into the executable software, T2 tests or verifies and can only fail to show a fault, "
+                "T3 makes what comes into it. Not verified: the standards were not read, the classes are told as tool "
+                "vendors and guides describe them, and the assignment in [](#tool-classes) is ours."
+            )
         ),
         _uses(),
         Bullets(items=items),
