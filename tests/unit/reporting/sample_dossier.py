@@ -339,6 +339,7 @@ def sample_dossier(
             equations=FAMILIES["afsmc"].equations,
             acts_on="one wheelset",
             fingerprint="123abc" * 10 + "1234",
+            reads=("train speed", "wheel speed"),
         ),
         specification=Specification(),
         design=Design(

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 
 HISTORIES = 60  # pairs that are tried
 SAMPLES = 4  # of a history
-OF_WHEELSET = ("train speed", "wheel speed", "torque", "sensor health", "pressure")
+TRAIN_SPEED = "train speed"
+OF_WHEELSET = (TRAIN_SPEED, "wheel speed", "torque", "sensor health", "pressure")
 OF_VEHICLE = ("acceleration", "demand", "reservoir pressure")
 LARGEST = {
-    "train speed": 40.0,  # m/s
+    TRAIN_SPEED: 40.0,  # m/s
     "wheel speed": 80.0,  # rad/s
     "torque": 6e4,  # N m
     "sensor health": 1.0,
@@ -53,7 +54,7 @@ def measured(law: TracedLaw) -> tuple[Measured, ...]:
     if count is None:
         return tuple(Measured(name=name, wheelset=None) for name in OF_WHEELSET[:3])
     lanes = (
-        Measured(name=name, wheelset=None if name == "train speed" else number)
+        Measured(name=name, wheelset=None if name == TRAIN_SPEED else number)
         for name in OF_WHEELSET[:LANE_SEEN]
         for number in range(1, count + 1)
     )
@@ -76,6 +77,12 @@ def read_by_commands(law: TracedLaw) -> tuple[frozenset[Measured], ...]:
         read = direct.union(*(outputs[i] for i in reached))
         found.append(frozenset(told[k - states] for k in read if k >= states))
     return tuple(found)
+
+
+def read_names(law: TracedLaw) -> tuple[str, ...]:
+    """Return the names of what any command may depend on."""
+    used = {each.name for reads in read_by_commands(law) for each in reads}
+    return tuple(dict.fromkeys(each.name for each in measured(law) if each.name in used))
 
 
 def _paths(function: Any) -> list[set[int]]:
@@ -127,12 +134,12 @@ def _history(law: TracedLaw, number: int) -> "Iterator[Array]":
     import numpy as np
 
     told = measured(law)
-    speed = LARGEST["train speed"] * _share(number, "speed")
+    speed = LARGEST[TRAIN_SPEED] * _share(number, "speed")
     for sample in range(SAMPLES + 1):
         seen = np.empty(len(told))
         for k, each in enumerate(told):
             seen[k] = LARGEST[each.name] * _share(number, sample, k)
-            if each.name == "train speed":
+            if each.name == TRAIN_SPEED:
                 seen[k] = speed * (1.0 - 0.02 * sample)
             elif each.name == "wheel speed":
                 seen[k] = 2.0 * speed * (1.0 - 0.4 * _share(number, sample, k))

@@ -105,9 +105,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     asked = [f"path, {each}" for each in wheelsets]
     asked += [f"histories, {each}" for each in wheelsets if each not in blind]
     return Certificate(
-        claim=f"The command of {'its wheelset' if law.wheelsets is None else 'every wheelset with a brake'} by "
-        f"{problem.controller.name} depends on the speed of its own wheel, at the same sample or later; what the "
-        "law reads before its first sample does not count.",
+        claim=f"The command of {problem.controller.name} to "
+        f"{'its wheelset' if law.wheelsets is None else 'every wheelset with a brake'} depends on the speed of this "
+        "wheel, at the same sample or later; what the law reads before its first sample does not count.",
         status=status,
         explanation=f"{meaning} {_said(law, [read[each - 1] for each in wheelsets])}",
         hypotheses=tuple(hypothesis(findings[each].asked, findings[each]) for each in asked),

@@ -1,7 +1,6 @@
 """The register of assumptions: each with its id, where reality breaks it, and what rests on it."""
 
 from wspd_design.certificates.theorems.register import REGISTER, Registered, stated_in
-from wspd_design.controllers.observers.sensors import TOLD
 from wspd_design.plants.planar import Planar
 from wspd_design.reporting.blocks import Block, Heading, Paragraph, Status
 from wspd_design.reporting.formula_text import with_formulas
@@ -85,5 +84,5 @@ def _held(dossier: Dossier, assumption: Registered) -> bool:
 
 def deciding_words(dossier: Dossier) -> str:
     """Name the assumptions that decide, for page one."""
-    told = ["the law is told the train speed"] if dossier.specification.sensors.speed == TOLD.speed else []
+    told = ["the law is told the train speed"] if dossier.law.told_speed else []
     return "; ".join([*(f"{each.id} {each.short}" for each in decisive(dossier)), *told])

@@ -35,7 +35,8 @@ def _without_gains(law: ReportedLaw) -> str:
     """Say where a law without gains is found, and what a report cannot say about it."""
     silent = (
         "No rule of this program chose its numbers: the report says what the law does, not why its numbers are what "
-        f"they are. It commands {law.acts_on}. Fingerprint of all that decides what it does: `{law.fingerprint[:16]}`."
+        f"they are. It commands {law.acts_on}. {_reads(law)} Fingerprint of all that decides what it does: "
+        f"`{law.fingerprint[:16]}`."
     )
     if not law.called:
         return (
@@ -46,6 +47,12 @@ def _without_gains(law: ReportedLaw) -> str:
         file = law.called.rpartition(":")[0]
         return f"The law `{escape(law.called)}` is attached as `{escape(file)}`. {silent}"
     return f"Commands call it `{escape(law.called)}`; its numbers stand in [](#sources). {silent}"
+
+
+def _reads(law: ReportedLaw) -> str:
+    if law.reads is None:
+        return "Its step cannot be traced, so that no check tells what its commands depend on."
+    return f"Its commands depend on {numbers.listing(list(law.reads)) or 'nothing that it measures'}."
 
 
 def gain_table(design: Design, *, caption: str, anchor: str) -> Table:

@@ -59,7 +59,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             anchor="stop-traces",
             data=trace_name(0, run.controller),
         ),
-        *_estimate(own, None if dossier.law.own else specification.sensors),
+        *_estimate(own, None if dossier.law.own else specification.sensors, told=dossier.law.told_speed),
         *_further_brakes(run),
         Figure(
             svg=picture(
@@ -78,7 +78,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     )
 
 
-def _estimate(own: Trial, sensors: Sensors | None) -> tuple[Block, ...]:
+def _estimate(own: Trial, sensors: Sensors | None, *, told: bool) -> tuple[Block, ...]:
     """Say where the law has the train speed from, and show an estimate beside the true one."""
     run, figures = own.run, own.metrics
     estimate = speed_estimate(run)
@@ -87,6 +87,8 @@ def _estimate(own: Trial, sensors: Sensors | None) -> tuple[Block, ...]:
             Paragraph(
                 text="The law is told the train speed and estimates none; a vehicle that has no radar must work it out "
                 "from its wheels, whose slides then go into it."
+                if told
+                else "The law does not go by the train speed that it is told, and tells of none that it estimates."
             ),
         )
     base, share = DISTANCE_TOLERANCE
