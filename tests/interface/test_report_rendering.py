@@ -434,7 +434,7 @@ def test_no_name_turns_the_direction_of_the_text_around_it() -> None:
     assert "<title>live [U+202E]live</title>" in html
     for shown in ("[U+202E]gnp.exe", "[U+2067]x", 'aria-label="[U+202E]y"'):
         assert shown in html
-    assert f"<p>\u2068{hebrew}\u2069 3.2 m</p>" in html
+    assert f"<p>\u2068{hebrew}\u2069 3.2\u00a0m</p>" in html
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about Hebrew
         reader = pypdf.PdfReader(io.BytesIO(render_pdf(document)))
