@@ -12,17 +12,30 @@ _budget = sp.expand(
     - (_alpha * (1 - _P * _x**2) + _share * (1 - _d**2) + (1 - _alpha - _share))
 )
 
+# --- one ellipse in another: what the larger function leaves of 1 is at least t times what the smaller leaves ---------
+_t, _Pf, _Ps, _z, _D = sp.symbols("t P_f P_s z D", real=True)
+_form = (_t * _Pf - _Ps) * _z**2 - 2 * _Ps * _D * _z + (1 - _t - _D * _Ps * _D)
+_nested = sp.expand((1 - _Ps * (_z + _D) ** 2) - _t * (1 - _Pf * _z**2) - _form)
+
+# --- about a center: X+ - c of X+ = A X + B (m + r z) ---------------------------------------------------------------
+_A, _B, _c, _m, _r, _X = sp.symbols("A B c m r X", real=True)
+_centered = sp.expand(
+    (_A * _X + _B * (_m + _r * _z) - _c) - (_A * (_X - _c) + (_A * _c - _c + _B * _m) + _B * _r * _z)
+)
+
 THEOREMS = (
     Theorem(
         anchor="band",
         title="Band of slip of a sampled law with friction-torque observer",
         statement="With X = (e, p, N, Y), e = w - w_r the error of the wheel speed, p that of the observed one, N and "
         "Y h over the inertia of the law times the deviations of observed friction and seen torque from those that "
-        "hold the reference, one sample makes X+ = A X + B d. If P > 0, shares D >= 0 and alpha with "
-        "alpha + sum D <= 1 make diag(alpha P, D) - [A B]' P [A B] positive definite at the corners of all numbers "
-        "of a sample, then {X'PX <= 1} is left by no sample with |d| <= 1, and |e| stays below the root of the first "
-        "entry of P^-1. If such sets are given for windows of speed, that of a faster window inside that of the next "
-        "slower one, a wheel that is in the set once keeps its slip within R |e|/v down to the lowest speed.",
+        "hold the reference, one sample makes X+ = A X + B (m + r z) with -1 <= z <= 1, where m + r z is what "
+        "disturbs. About a center c that is X+ - c = A (X - c) + o + B r z, o = A c - c + B m. If P > 0, shares "
+        "D >= 0 and alpha with alpha + sum D <= 1 make diag(alpha P, D) - [A o Br]' P [A o Br] positive definite at "
+        "the corners of all numbers of a sample, then no sample leads out of {(X - c)'P(X - c) <= 1}, and e stays "
+        "within the root of the first entry of P^-1 around the first entry of c. If such sets are given for windows "
+        "of speed, that of a faster window inside that of the next slower one, a wheel that is in the set once keeps "
+        "its slip in the band R e/v down to the lowest speed.",
         hypotheses=(
             "mass, inertia, radius, pads and valve times do not change; there are sets for each cell of their box",
             "(phi, psi) in the polygon of the range of the slope of the friction, which is proved over the slips that "
@@ -30,7 +43,8 @@ THEOREMS = (
             "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
             "and torque above zero: there the law is the written one",
             "wheel speed, pressure and train speed measured exactly, without dead time; full supply pressure",
-            "drift of torque and reference, and the error of the filtered acceleration, within their bounds",
+            "drift of torque and reference, and the error of the filtered acceleration, between their bounds: while "
+            "the train slows down, the friction at the reference rises",
         ),
         sketch="In deviations from the torque that holds the reference, pads, inertia and friction drop out of what "
         "is constant: the observer estimates the torque that explains the motion. A valve that is inverted with wrong "
@@ -51,7 +65,12 @@ THEOREMS = (
             Identity("N+ = N + (1 - theta)^2 r - drift", slip_loop.friction_residual),
             Identity("1 - x^c is the integral of c u^(c - 1) from x to 1", slip_loop.part_residual),
             Identity("late share of a steady rise: 1/(1 - exp(-m)) - 1/m", slip_loop.lateness_residual),
+            Identity(
+                "share of a steady drift in its mean with the same weight", slip_loop.seen_of_drift_residual
+            ),
+            Identity("X+ - c of X+ = A X + B (m + r z)", _centered),
             Identity("what the shares and alpha leave of 1", _budget),
+            Identity("what lies between an ellipse and one in it", _nested),
         ),
         certificates=("slip_band",),
     ),

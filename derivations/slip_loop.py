@@ -96,6 +96,10 @@ lateness = 1 / (1 - sp.exp(-m)) - 1 / m
 lateness_residual = sp.simplify(
     sp.integrate((1 - u) * _weight, (u, 0, 1)) - lateness * sp.integrate(_weight, (u, 0, 1))
 )
+seen_of_drift = 1 - lateness  # share of a steady drift in its mean with the same weight
+seen_of_drift_residual = sp.simplify(
+    sp.integrate(u * _weight, (u, 0, 1)) - seen_of_drift * sp.integrate(_weight, (u, 0, 1))
+)
 
 _STATE = {
     "error": "Deviation e of the wheel speed from its reference [rad/s]",

@@ -25,6 +25,8 @@ speed_left_residual = sp.simplify(_speed.subs(_sigma, _s0 / _eta) - _v0 * sp.exp
 
 # --- existence: the ideal torque keeps a distance eta/g from both limits ----------------------------------
 _u_star = (-F + c * e) / G
+_T = sp.Symbol("T", real=True)
+holding_residual = sp.simplify(F + G * _T - G * (_T + F / G))
 existence_residual = sp.simplify((F + G * (_u_star + _eta / (G * v)) - c * e) - _eta / v)
 
 THEOREMS = (
@@ -81,6 +83,20 @@ THEOREMS = (
         not_said="That u* > T_max is dangerous: the wheel then slips less than asked, the brake is the limit.",
         identities=(Identity("slip' at u* + eta/(G v) exceeds c e by eta/v", existence_residual),),
         certificates=("sliding_exists",),
+    ),
+    Theorem(
+        anchor="holding",
+        title="What holds the reference, and what goes beyond it",
+        statement="slip' = G (T - T_h) with the torque T_h = -F/G that holds the slip and G > 0. Where T_h >= 0 no "
+        "slip grows at a vented brake. Where T_h at the reference exceeds T_max, a slip that lies below it stays "
+        "there, whatever the law does. How far the slip goes beyond its reference under a law is seen in a "
+        "simulated stop.",
+        hypotheses=("v > 0", "T = u for what is said about a vented or full brake"),
+        sketch="(19) is affine in the torque and G > 0.",
+        not_said="That the law vents, or fills: what it does is seen in the stop. That another start, rail or vehicle "
+        "gives the same stop.",
+        identities=(Identity("F + G T = G (T + F/G)", holding_residual),),
+        certificates=("holding_torque", "overshoot"),
     ),
     Theorem(
         anchor="energy",

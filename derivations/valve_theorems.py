@@ -8,6 +8,7 @@ from derivations import (
     sampled_loop,
     sliding_surface,
     stop_limit,
+    traced_sample,
     valve_limit,
     valve_map,
 )
@@ -196,6 +197,39 @@ THEOREMS = (
             ),
         ),
         certificates=("routh_lag", "margins"),
+    ),
+    Theorem(
+        anchor="traced-loop",
+        title="The step of any law as its graph tells it",
+        statement="Let the step of a law be traced to a graph. A measurement from which no path leads to a command, "
+        "through the memory of any number of samples, does not change it. If the loop of this step and of the valve "
+        "rests at a state, is differentiable there, and all poles of the map from one sample to the next lie inside "
+        "the unit circle, small deviations die out; if one lies outside, some grow. A family of states at which the "
+        "loop rests has poles at 1, which are left out.",
+        hypotheses=(
+            "the graph is the step that runs",
+            "train speed frozen, parameters known, measurement without error",
+            "supply at its full pressure; valves that open and close at once, filling first",
+            "within a sample slip' = F + p (s - s_k) + G T with F, p and G at the sampled slip s_k",
+        ),
+        sketch="(9) is linear while the valve stays in one state, and so is the slip with a constant pole: filling, "
+        "venting and holding have closed forms. Newton's method looks for the rest, CasADi differentiates the map. A "
+        "law that switches, holds its valves or moves on in every sample has no such slopes, and nothing is said.",
+        not_said="That there is no rest where none was found. Anything about deviations that are not small, about "
+        "speeds between those that were tried, or about a train that slows down. A path of the graph alone does not "
+        "show that a command depends on a measurement: two histories do.",
+        identities=(
+            Identity("filling: slip' = F + p (s - s_k) + G T", traced_sample.filling_residual),
+            Identity("venting: the same", traced_sample.venting_residual),
+            Identity("holding: the same", traced_sample.holding_residual),
+            Identity("the sample begins at s_k", traced_sample.start_residual),
+            Identity("d(s_k + F (exp(p h) - 1)/p)/ds_k = exp(p h) for F' = p", traced_sample.slope_residual),
+            Identity(
+                "x+ = A x + B m, u = C x + D m: the next command follows m by C B",
+                traced_sample.memory_residual,
+            ),
+        ),
+        certificates=("feedback", "traced_loop"),
     ),
     Theorem(
         anchor="lpv",

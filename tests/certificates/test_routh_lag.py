@@ -128,6 +128,7 @@ def proved(light):
 def _stable_wherever_one_looks(problem, verdict, lag):
     assert verdict.status is Status.PROVED
     assert 0.0 < verdict.margin.low <= verdict.margin.high
+    assert "in continuous time" in verdict.explanation
     assert all(hypothesis.status is Status.PROVED for hypothesis in verdict.hypotheses)
     assert set(verdict.proved) == set(conditions(problem))
     rng = np.random.default_rng(3)

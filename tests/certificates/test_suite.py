@@ -1,6 +1,7 @@
 """The whole set: order, completeness, honesty and what it refuses."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -13,6 +14,7 @@ from wspd_design.certificates.search.budget import Budget
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.suite import CHECKS, NAMES, verify
 from wspd_design.parameters.errors import UserError
+from wspd_design.reporting.blocks import Status as Shown
 
 
 @pytest.fixture(scope="session")
@@ -35,9 +37,11 @@ def certificates(request):
 def test_order(certificates):
     assert NAMES == (
         "derivation",
+        "feedback",
         "surface_hurwitz",
         "gain_positive",
         "well_posed",
+        "holding_torque",
         "sliding_exists",
         "reaching",
         "boundary_layer",
@@ -52,10 +56,12 @@ def test_order(certificates):
         "sampling",
         "routh_lag",
         "margins",
+        "traced_loop",
         "lpv_lyapunov",
         "sampled_invariance",
         "slip_band",
         "tracking",
+        "overshoot",
         "conservation",
         "stop_bound",
     )
@@ -157,9 +163,11 @@ def test_printed_law_on_dry_rail(printed):
     verdicts = {c.name: c.status for c in printed}
     assert verdicts == {
         "derivation": Status.PROVED,
+        "feedback": Status.PROVED,
         "surface_hurwitz": Status.PROVED,
         "gain_positive": Status.PROVED,
         "well_posed": Status.PROVED,
+        "holding_torque": Status.PROVED,
         "sliding_exists": Status.REFUTED,  # of some axle, with the weakest brake of the bounds
         "reaching": Status.NOT_APPLICABLE,
         "boundary_layer": Status.NOT_APPLICABLE,
@@ -174,10 +182,12 @@ def test_printed_law_on_dry_rail(printed):
         "sampling": Status.REFUTED,
         "routh_lag": Status.REFUTED,
         "margins": Status.REFUTED,
+        "traced_loop": Status.REFUTED,
         "lpv_lyapunov": Status.NOT_APPLICABLE,
         "sampled_invariance": Status.NOT_APPLICABLE,
         "slip_band": Status.NOT_APPLICABLE,
         "tracking": Status.REFUTED,
+        "overshoot": Status.REFUTED,
         "conservation": Status.EVIDENCE,
         "stop_bound": Status.PROVED,
     }
@@ -239,3 +249,27 @@ def test_box_outside_the_model_leaves_the_rest_undecided(make_problem, make_cont
     for undecided in ("well_posed", "sliding_exists", "no_go", "open_loop_pole", "sampling", "routh_lag"):
         assert found[undecided].status is Status.UNDECIDED
         assert "not positive" in found[undecided].explanation
+
+
+BAD_NEWS = re.compile(
+    r"unstable|cannot|no gain|no law|violated|diverge|not stable|no margin|strays|swings|drifts|leaves its|locks"
+)
+
+
+def _green_on_bad_news(certificate):
+    """Whether a report shows a good sign over a sentence that is bad news about the design."""
+    sentences = re.split(r"\. (?=[A-Z])", f"{certificate.claim} {certificate.explanation}")
+    said = [each for each in sentences if not each.startswith("Where it is not")]  # what is not the case here
+    return Shown[certificate.status.name].tone == "good" and any(map(BAD_NEWS.search, said))
+
+
+def test_no_green_sign_stands_over_bad_news(certificates):
+    assert [each.name for each in certificates if _green_on_bad_news(each)] == []
+    for each in certificates:
+        assert (Shown[each.status.name].tone == "bad") == (each.status in (Status.REFUTED, Status.LIMITATION))
+
+
+def test_bad_news_with_a_green_sign_is_seen(certificates):
+    refuted = [each for each in certificates if each.status in (Status.REFUTED, Status.LIMITATION)]
+    planted = [replace(each, status=Status.PROVED) for each in refuted]
+    assert any(map(_green_on_bad_news, planted))

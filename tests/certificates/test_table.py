@@ -20,6 +20,7 @@ from wspd_design.reporting.sections.checks import MEANINGS
 LAWS = ("smc", "afsmc", "afsmc-repaired", "torque-feedback", "trenitalia")
 WITHOUT_SPEED = {
     "derivation": "identities between formulas, at whatever speed",
+    "feedback": "a statement about the graph of the step, at whatever speed",
     "surface_hurwitz": "a statement about the gains, on the surface at whatever speed",
 }
 """Theorems whose claim names no range of speed, and why."""

@@ -12,8 +12,9 @@ from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_rail
 
 ABOUT_PLANT_AND_RAIL = ("derivation", "gain_positive", "hard_limits")
-OTHERS = ("well_posed", "conservation", "stop_bound")  # that take longer, or simulate
-ABOUT_A_LAW = tuple(name for name in NAMES if name not in (*ABOUT_PLANT_AND_RAIL, *OTHERS))
+OTHERS = ("well_posed", "holding_torque", "conservation", "stop_bound")  # that take longer, or simulate
+OF_EVERY_LAW = ("feedback", "traced_loop", "overshoot")  # with tests of their own
+ABOUT_A_LAW = tuple(name for name in NAMES if name not in (*ABOUT_PLANT_AND_RAIL, *OTHERS, *OF_EVERY_LAW))
 
 
 def checked(vehicle, law, only):

@@ -148,7 +148,7 @@ def test_the_page_shows_what_comes_out(wspd):
         if kind == "console"
         for part in re.split(r"^\$ wspd ", text, flags=re.MULTILINE)[1:]
     ]
-    assert len(commands) == 5
+    assert len(commands) == 6
     for command, expected in commands:
         outcome = wspd(*shlex.split(command))
         assert (outcome.code, outcome.err) == (0, "")

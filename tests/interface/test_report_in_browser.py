@@ -16,8 +16,9 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.unit.reporting.sample_report import sample
-from wspd_design.reporting.blocks import Attachment, Figure, Paragraph
+from wspd_design.reporting.blocks import Attachment, Figure, KeyNumbers, Paragraph
 from wspd_design.reporting.html import render_html
+from wspd_design.reporting.text import rich
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 AXE = (
@@ -100,12 +101,27 @@ def test_the_verdict_stands_above_the_contents(browser: Browser, html: str, widt
 @pytest.mark.parametrize("width", WIDTHS)
 def test_no_name_makes_the_page_wider_than_the_window(browser: Browser, width: int) -> None:
     document = sample()
-    blocks = (Paragraph(text=NAME), *document.blocks)
+    wide = rich(f"${' + '.join(['lambda'] * 40)}$")
+    blocks = (Paragraph(text=NAME), Paragraph(text=wide), *document.blocks)
     page = open_at(browser, render_html(replace(document, title=NAME, subtitle=NAME, blocks=blocks)), width)
     assert page.evaluate("document.documentElement.scrollWidth") == width
     shown = page.locator("h1").inner_text()
     assert "[U+202E]live" in shown
     assert "\u673a\u8f66 \U0001f600" in shown
+    page.context.close()
+
+
+def test_key_numbers_stand_on_one_line_whatever_their_labels(browser: Browser) -> None:
+    document = sample()
+    tiles = next(each for each in document.summary if isinstance(each, KeyNumbers))
+    long = replace(tiles.numbers[1], label="A label of so many words that it takes two lines or more")
+    tiles = replace(tiles, numbers=(tiles.numbers[0], long, *tiles.numbers[2:]))
+    page = open_at(browser, render_html(replace(document, summary=(tiles, *document.summary[1:]))), 1280)
+    tops = page.locator(".key-numbers .value").evaluate_all(
+        "all => all.map(each => each.getBoundingClientRect().y)"
+    )
+    assert len(tops) == 4
+    assert max(tops) - min(tops) < 1.0
     page.context.close()
 
 

@@ -285,6 +285,10 @@ def test_page_one_tells_the_result(reader: pypdf.PdfReader) -> None:
     assert positions == sorted(positions)
 
 
+def test_no_unit_breaks_away(pdf_text: str) -> None:
+    assert "−3.2\N{NO-BREAK SPACE}kN\N{NO-BREAK SPACE}m" in pdf_text
+
+
 def test_a_long_table_repeats_its_header(reader: pypdf.PdfReader) -> None:
     table = [text for sheet in reader.pages if "variant" in (text := sheet.extract_text())]
     assert len(table) >= 2

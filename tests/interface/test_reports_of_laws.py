@@ -9,7 +9,7 @@ import pytest
 import wspd_design as wd
 from wspd_design.certificates import suite
 from wspd_design.controllers.protocol import Command
-from wspd_design.model.number import maximum, where
+from wspd_design.model.number import maximum, sqrt, where
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.reporting.blocks import Document
 from wspd_design.reporting.report import report_document, report_time
@@ -97,6 +97,15 @@ def test_the_opposite_law_is_another_one_and_is_not_fit(in_memory, vehicle):
     assert wrong.law.fingerprint != in_memory.law.fingerprint
     assert wrong.provenance.input_hash != in_memory.provenance.input_hash
     assert plain(verdict(wrong).sentence).startswith("Rejected")
+
+
+def test_a_law_that_commands_no_number_is_refused(vehicle):
+    class NoNumber(Band):
+        def step(self, state, measurement):
+            return state, Command(fill=0.1 * sqrt(measurement.speed - 8.0), vent=0.0)
+
+    with pytest.raises(wd.UserError, match="commanded fill = nan"):
+        wd.dossier(NoNumber(radius=vehicle.wheel_radius), vehicle=vehicle, rail=RAIL, scenario=STOP)
 
 
 def test_a_design_keeps_its_specification():

@@ -13,15 +13,22 @@ from wspd_design.certificates.checks.adaptive import (
 from wspd_design.certificates.checks.foundations import (
     conservation,
     derivation,
+    feedback,
     gain_positive,
     surface_hurwitz,
     well_posed,
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
-from wspd_design.certificates.checks.linear import margins, routh_lag
+from wspd_design.certificates.checks.linear import margins, routh_lag, traced_loop
 from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance, slip_band
-from wspd_design.certificates.checks.sliding import boundary_layer, lyapunov_surface, reaching, sliding_exists
-from wspd_design.certificates.checks.stop import stop_bound, tracking
+from wspd_design.certificates.checks.sliding import (
+    boundary_layer,
+    holding_torque,
+    lyapunov_surface,
+    reaching,
+    sliding_exists,
+)
+from wspd_design.certificates.checks.stop import overshoot, stop_bound, tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Certificate, Problem
@@ -36,9 +43,11 @@ CHECKS: Mapping[str, Check] = {
     each.name: each
     for each in (
         derivation.CHECK,
+        feedback.CHECK,
         surface_hurwitz.CHECK,
         gain_positive.CHECK,
         well_posed.CHECK,
+        holding_torque.CHECK,
         sliding_exists.CHECK,
         reaching.CHECK,
         boundary_layer.CHECK,
@@ -53,10 +62,12 @@ CHECKS: Mapping[str, Check] = {
         sampling.CHECK,
         routh_lag.CHECK,
         margins.CHECK,
+        traced_loop.CHECK,
         lpv_lyapunov.CHECK,
         sampled_invariance.CHECK,
         slip_band.CHECK,
         tracking.CHECK,
+        overshoot.CHECK,
         conservation.CHECK,
         stop_bound.CHECK,
     )

@@ -1,7 +1,7 @@
 """The command of a report over its own attachments: written beside them, read from there, and run in their folder."""
 
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import chdir
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -15,11 +15,27 @@ from wspd_design.cli.stop_options import rail_names, scenario, with_rail_names
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.case import Case, CaseOptions, load_case
+from wspd_design.design.catalog import is_design_file
 from wspd_design.design.records import Design
+from wspd_design.design.requirements import Requirements
 from wspd_design.design.selection import named_design
-from wspd_design.design.stop_requirements import named_requirements
+from wspd_design.design.stop_requirements import StopRequirements, named_requirements
 from wspd_design.parameters.errors import UserError
-from wspd_design.studies.inputs import COMMAND, DESIGN, file_of
+from wspd_design.studies.inputs import (
+    COMMAND,
+    DESIGN,
+    attached_design,
+    attached_name,
+    command_input,
+    design_input,
+    file_of,
+    law_inputs,
+    parameter_inputs,
+    required_rails,
+    requirement_inputs,
+    side_by_side,
+)
+from wspd_design.studies.previous import PREVIOUS, Previous, previous
 from wspd_design.studies.provenance import InputFile
 
 if TYPE_CHECKING:
@@ -43,6 +59,7 @@ class ReportCall:
     sample_time: str | None = None
     seed: int = 0
     template: str | None = None
+    diff: str | None = None  # record of an older report
     requirements: str | None = None  # name of a template of requirements, or a file
     sensors: SensorOptions = _UNSAID
     disturbances: StopOptions = _CALM
@@ -82,7 +99,7 @@ class ReportCall:
     @property
     def simulation(self) -> str:
         """The command line that simulates the stop of the report."""
-        return replace(self, template=None, requirements=None)._after("wspd", "simulate")
+        return replace(self, template=None, diff=None, requirements=None)._after("wspd", "simulate")
 
     def _after(self, *head: str) -> str:
         plain = ReportCall(vehicle="", rail="")
@@ -172,13 +189,76 @@ def reported(name: str, case: Case) -> Design | Law:
     return case.controller
 
 
+def over_attachments(
+    case: Case, call: ReportCall, older: Previous | None = None
+) -> tuple[ReportCall, tuple[InputFile, ...]]:
+    """Return a call over the files that it needs side by side, and these files, the command among them.
+
+    Parameters
+    ----------
+    case : Case
+        The law on its vehicle and rail.
+    call : ReportCall
+        As it was written, but for vehicle and rail.
+    older : Previous, optional
+        The report to compare with.
+
+    Raises
+    ------
+    UserError
+        If two different files have the same name.
+    """
+    name = call.law
+    made = reported(name, case)
+    call = replace(call, vehicle=case.vehicle_name, rail=case.rail_name)
+    rails, law_files = call.rails, law_inputs(name)
+    if isinstance(made, Design):
+        folder = Path(name).parent if is_design_file(name) else Path()
+        rails = (*rails, *required_rails(made, folder))
+        attached = attached_design(
+            made, vehicle_name=case.vehicle_name, rail_name=case.rail_name, rail=case.rail
+        )
+        call = replace(call, law=DESIGN, slip=None, sample_time=None, sensors=SensorOptions())
+        law_files = (design_input(attached),)
+    wanted = None if call.requirements is None else named_requirements(call.requirements, case.specification)
+    files = (
+        *law_files,
+        *requirement_inputs(call.requirements, wanted),
+        *parameter_inputs("vehicle", case.vehicle_name),
+        *(file for rail in rails for file in parameter_inputs("rail", rail)),
+    )
+    if older is not None:
+        call, files = replace(call, diff=PREVIOUS), (*files, older.input)
+    call = call.named(attached_name)
+    return call, side_by_side((command_input(call.text), *files))
+
+
 def check_names(call: ReportCall, inputs: Sequence[InputFile]) -> None:
     """Refuse a call for a file that is not among the inputs, which stand in the folder that this runs in."""
     there = {each.name for each in inputs}
-    for name in (call.law, call.vehicle, *call.rails, *filter(None, [call.requirements])):
+    if call.diff is not None and call.diff not in there:
+        raise UserError(f"{COMMAND} names {call.diff!a}, which is not attached; {_AS_WRITTEN}")
+    _check_attached((call.law, call.vehicle, *call.rails, *filter(None, [call.requirements])), inputs)
+
+
+def _check_attached(names: Iterable[str], inputs: Sequence[InputFile]) -> None:
+    there = {each.name for each in inputs}
+    for name in names:
         path = file_of(name)
         if path is not None and str(path) not in there:
             raise UserError(f"{COMMAND} names {name!a}, which is not attached; {_AS_WRITTEN}")
+
+
+def _wanted(
+    written: str | None, case: Case, inputs: Sequence[InputFile]
+) -> StopRequirements | Requirements | None:
+    """Read the requirements that a call names; their rails are shipped or attached, too."""
+    if written is None:
+        return None
+    found = named_requirements(written, case.specification)
+    if isinstance(found, Requirements):
+        _check_attached((*found.rails, *(rail for rail, _ in found.stable_within)), inputs)
+    return found
 
 
 def compute(
@@ -221,6 +301,7 @@ def compute(
         check_names(call, inputs)
         case = case or load_case(call.law, call.case_options)
         made = reported(call.law, case)
+        older = None if call.diff is None else previous(Path(call.diff).read_text("utf-8"), call.diff)
         return dossier(
             made,
             vehicle=call.vehicle,
@@ -236,12 +317,11 @@ def compute(
             baselines=[other for other in FAMILIES if other not in (made.name, call.law)],
             command=call.text,
             stop_command=call.simulation,
+            previous=older,
             inputs=inputs,
             written="" if isinstance(made, Design) else call.law,
             plant=call.plant,
             stored=stored,
-            requirements=None
-            if call.requirements is None
-            else named_requirements(call.requirements, case.specification),
+            requirements=_wanted(call.requirements, case, inputs),
             progress=progress,
         )

@@ -52,9 +52,10 @@ def _loop(dossier: Dossier, row: Requirement) -> str:
     ]
     times = lag_times(dossier.vehicle)
     lag = "" if times is None else f" of {numbers.significant(min(times))} s"
+    counted = f"it is unstable at {growth.unstable} of {growth.speeds} speeds; " if growth.speeds else ""
     said = (
-        f"{row.id}, the loop near its reference: sampled every {span} behind a valve{lag} it is unstable at "
-        f"{growth.unstable} of {growth.speeds} speeds; a deviation of the slip is multiplied by "
+        f"{row.id}, the loop near its reference: sampled every {span} behind a valve{lag} "
+        f"{counted}a deviation of the slip is multiplied by "
         f"{numbers.significant(growth.factor, 3)} per sample at {numbers.significant(growth.speed * KMH, 3)} km/h, "
         "allowed below 1"
     )

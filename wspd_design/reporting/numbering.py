@@ -101,6 +101,22 @@ def parts(record: object) -> Iterator[object]:
             yield from parts(getattr(record, field.name))
 
 
+def unreferenced(document: Document) -> tuple[str, ...]:
+    """Return the labels of figures and tables to which no text of the document refers."""
+    referred = {
+        part.anchor
+        for block in (document.verdict, *document.summary, *document.blocks, *document.provenance)
+        for part in parts(block)
+        if isinstance(part, Link)
+    }
+    numbering = number(document)
+    return tuple(
+        each.label
+        for each in numbering.summary + numbering.blocks
+        if isinstance(each.block, Figure | Table) and each.block.anchor not in referred
+    )
+
+
 def formulas(document: Document) -> tuple[Math | Equation, ...]:
     """Return every formula of a document, inline or displayed, in reading order."""
     return tuple(part for part in parts(document) if isinstance(part, Math | Equation))

@@ -18,15 +18,25 @@ def write_document(document: Document, path: str | Path) -> None:
         If the ending is unknown or the file cannot be written.
     """
     path = Path(path)
+    content = rendered(document, path)
+    write_whole(path, lambda part: part.write_bytes(content))
+
+
+def rendered(document: Document, path: Path) -> bytes:
+    """Return a document as the bytes of a file of this name, of which only the ending matters.
+
+    Raises
+    ------
+    UserError
+        If the ending is unknown.
+    """
     match path.suffix.lower():
         case ".html":
             from wspd_design.reporting.html import render_html
 
-            content = render_html(document).encode()
+            return render_html(document).encode()
         case ".pdf":
             from wspd_design.reporting.pdf import render_pdf
 
-            content = render_pdf(document)
-        case _:
-            raise UserError(f"report {path}: the name must end in .html or .pdf, which chooses the format")
-    write_whole(path, lambda part: part.write_bytes(content))
+            return render_pdf(document)
+    raise UserError(f"report {path}: the name must end in .html or .pdf, which chooses the format")

@@ -78,6 +78,9 @@ def _drawable() -> frozenset[str]:
     return frozenset(map(chr, font.get_charmap())) | {"\n", "\t"}
 
 
+_AS_IT_IS = ("content", "stored")  # of an attachment: what no page shows
+
+
 def spelled(value: Any, missing: set[str]) -> Any:
     """Return data for the template with code points in place of what no font of ours can draw.
 
@@ -101,7 +104,7 @@ def spelled(value: Any, missing: set[str]) -> Any:
         case list():
             return [spelled(each, missing) for each in value]
         case dict():
-            return {key: each if key == "content" else spelled(each, missing) for key, each in value.items()}
+            return {key: each if key in _AS_IT_IS else spelled(each, missing) for key, each in value.items()}
     return value
 
 
@@ -130,6 +133,7 @@ def _document(document: Document) -> dict[str, Any]:
         "attachments": [
             {
                 "name": printable(each.name),
+                "stored": each.name,
                 "media-type": each.media_type,
                 "content": each.content,
                 "description": printable(each.description),
@@ -187,6 +191,7 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
 
 
 LONG_TEXT = 25  # characters
+SHORT_ROWS, SHORT_TEXT = 12, 1500  # rows and characters of a table that fits any page
 
 
 def _length(cell: Text | Cell) -> int:
@@ -209,6 +214,13 @@ def _shares(table: Table) -> list[int]:
     if max(longest) < LONG_TEXT:
         return longest
     return [min(length, 80) if length >= LONG_TEXT else 0 for length in longest]
+
+
+def _is_long(table: Table) -> bool:
+    """Tell whether a table may go over two pages; a short one stays whole."""
+    return (
+        len(table.rows) > SHORT_ROWS or sum(_length(cell) for row in table.rows for cell in row) > SHORT_TEXT
+    )
 
 
 def _block(numbered: NumberedBlock) -> dict[str, Any]:
@@ -259,13 +271,14 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                 "columns": [
                     {
                         "title": _text(column.title),
-                        "unit": printable(column.unit),
+                        "unit": printable(column.unit).replace(" ", "\N{NO-BREAK SPACE}"),
                         "align": column.align,
                         "share": share,
                     }
                     for column, share in zip(block.columns, _shares(block), strict=True)
                 ],
                 "rows": [[_cell(cell) for cell in row] for row in block.rows],
+                "breakable": _is_long(block),
             }
         case Verdict():
             return _verdict(block)
@@ -276,7 +289,7 @@ def _block(numbered: NumberedBlock) -> dict[str, Any]:
                     {
                         "label": printable(each.label),
                         "value": printable(each.unbroken),
-                        "unit": printable(each.unit),
+                        "unit": printable(each.unit).replace(" ", "\N{NO-BREAK SPACE}"),
                         "note": _text(each.note),
                     }
                     for each in block.numbers

@@ -12,6 +12,7 @@ from wspd_design.reporting.output import write_document
 from wspd_design.reporting.sections.assumptions import assumptions
 from wspd_design.reporting.sections.brake import brake
 from wspd_design.reporting.sections.case import case
+from wspd_design.reporting.sections.changes import changes
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
@@ -26,6 +27,7 @@ from wspd_design.reporting.sections.sources import sources
 from wspd_design.reporting.sections.stop import stop
 from wspd_design.reporting.sections.summary import summary, verdict
 from wspd_design.reporting.sections.theory import theory
+from wspd_design.reporting.sections.tool import tool
 from wspd_design.reporting.sections.uncertainty import uncertainty
 from wspd_design.reporting.sections.words import words
 from wspd_design.reporting.template import BLANK, Template
@@ -47,8 +49,10 @@ SECTIONS = (
     comparison,
     sources,
     limits,
-    replay,
     theory,
+    replay,
+    tool,
+    changes,
 )
 
 

@@ -5,6 +5,7 @@ need no escaping. Emphasis, code, mathematics and links come from :func:`rich`.
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -82,6 +83,15 @@ def _append(spans: list[Inline], text: str) -> None:
         spans[-1] += text
     elif text:
         spans.append(text)
+
+
+def references(anchors: Sequence[str]) -> tuple[Inline, ...]:
+    """Refer to several anchors by their labels: ``Table 1, Table 2 and Figure 1``."""
+    found: list[Inline] = []
+    for place, anchor in enumerate(anchors):
+        found += [] if place == 0 else [" and " if place == len(anchors) - 1 else ", "]
+        found.append(Link(anchor=anchor))
+    return tuple(found)
 
 
 def escape(text: str) -> str:

@@ -40,6 +40,7 @@ from wspd_design.studies.inputs import design_input, law_inputs, parameter_input
 from wspd_design.studies.judgment import Judgment, judgment
 from wspd_design.studies.loop_growth import Growth, growth_of
 from wspd_design.studies.next_step import NextStep, next_step
+from wspd_design.studies.previous import Previous
 from wspd_design.studies.provenance import InputFile, Provenance, provenance
 from wspd_design.studies.reported_law import ReportedLaw, reported_law
 from wspd_design.studies.uncertainty import Uncertainty, uncertainty
@@ -80,6 +81,7 @@ class Dossier:
     robustness: Robustness | None  # where wheelsets differ
     uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
+    previous: Previous | None  # report to compare with
     provenance: Provenance
 
 
@@ -94,6 +96,7 @@ def dossier(
     command: str = "",
     inputs: Sequence[InputFile] = (),
     stop_command: str = "",
+    previous: Previous | None = None,
     written: str = "",
     plant: str = DEFAULT_PLANT,
     stored: Path | None = None,
@@ -122,6 +125,8 @@ def dossier(
         What the command makes it from; without a command, the design and the vehicle, rail and law of one's own.
     stop_command : str
         ``wspd simulate`` with what the command says about the stop, so that drawn ones can be simulated again.
+    previous : Previous, optional
+        An older report; the changes since then are told.
     written : str
         What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
         report.
@@ -242,6 +247,7 @@ def dossier(
             progress=progress,
         ),
         scenario=scenario,
+        previous=previous,
         provenance=provenance(command=command, seed=scenario.seed, inputs=inputs, certificates=certificates),
     )
 

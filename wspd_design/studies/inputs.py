@@ -87,7 +87,7 @@ def design_input(design: Design) -> InputFile:
 def law_inputs(written: str) -> tuple[InputFile, ...]:
     """Return the file of a law of one's own that was loaded, and what it imported from its folder."""
     path = file_of(written)
-    if path is None:
+    if path is None or not is_own_controller(written):
         return ()
     folder = path.parent.resolve()
     beside_it = {
@@ -95,7 +95,9 @@ def law_inputs(written: str) -> tuple[InputFile, ...]:
         for module in list(sys.modules.values())
         if (file := getattr(module, "__file__", None)) and file.endswith(".py")
     }
-    imported = sorted(each for each in beside_it if each.parent == folder and each != path.resolve())
+    imported = sorted(
+        each for each in beside_it if each.parent == folder and each != path.resolve() and each.is_file()
+    )
     return (
         _file(path, "the law, a file of its own"),
         *(_file(each, f"what {path.name} imports") for each in imported),
@@ -126,7 +128,11 @@ def requirement_inputs(
     path = None if written is None else file_of(written)
     if path is None:
         return ()
-    rails = wanted.rails if isinstance(wanted, Requirements) else ()
+    rails = (
+        (*wanted.rails, *(rail for rail, _ in wanted.stable_within))
+        if isinstance(wanted, Requirements)
+        else ()
+    )
     return (
         _file(path, "the requirements, a file of its own"),
         *(file for rail in rails for file in parameter_inputs("rail", rail)),

@@ -10,14 +10,14 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.criteria import CRITERIA
 from wspd_design.design.judging import judge_law
 from wspd_design.design.requirements import Judged, Limit, Requirements, judged_by
-from wspd_design.design.stop_requirements import LOOP, MODEL, StopRequirements
+from wspd_design.design.stop_requirements import LOOPS, MODEL, StopRequirements
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.figures_of_stop import figures_of_stop
-from wspd_design.studies.loop_growth import Growth
+from wspd_design.studies.loop_growth import Growth, speaking
 
 _HARMLESS = (Status.PROVED, Status.EVIDENCE, Status.NOT_APPLICABLE, Status.VACUOUS, Status.LIMITATION)
 _PROOFS_OF_THE_LOOP = ("lpv_lyapunov", "sampled_invariance", "slip_band")
@@ -190,7 +190,7 @@ def judged_stop(
     reached = figures_of_stop(own, full_adhesion)
     limits = {each.criterion: each for each in wanted.limits}
     told = {name: value for name, value in reached.items() if name in limits or name in _TOLD}
-    others = [name for name in wanted.not_refuted if name not in (*MODEL, LOOP)]
+    others = [name for name in wanted.not_refuted if name not in (*MODEL, *LOOPS)]
     model = tuple(name for name in wanted.not_refuted if name in MODEL)
     evidence = "one simulated stop"
     by_name = {each.requirement: each for each in judged_by(wanted.limits, told)}
@@ -201,7 +201,7 @@ def judged_stop(
     perfect = own.metrics.perfect_slip_rms
     rows = [
         *([_by_checks("sound", "equations and simulation are sound", model, found)] if model else []),
-        *([_loop(found, growth)] if LOOP in wanted.not_refuted else []),
+        *([_loop(found, growth)] if set(LOOPS) & set(wanted.not_refuted) else []),
         *(_by_checks(name, f"not refuted: {name}", (name,), found) for name in others),
         *(_proved(name, found) for name in wanted.certificates),
         *(_row(each, limits[each.requirement], evidence, perfect) for each in judged if each.met is not None),
@@ -253,27 +253,27 @@ def _by_checks(name: str, title: str, names: Sequence[str], found: Mapping[str, 
 
 
 def _loop(found: Mapping[str, Certificate], growth: Growth | None) -> Requirement:
-    """Judge the loop near its reference by the check of its sampled poles; else by a proof about the sampled loop."""
-    check = found.get(LOOP)
-    speaks = check is not None and check.status not in (Status.NOT_APPLICABLE, Status.VACUOUS)
+    """Judge the loop near its reference by a check of its sampled poles; else by a proof about the sampled loop."""
+    check = speaking(found)
+    speaks = check is not None
     proofs = tuple(
         each for each in found.values() if each.name in _PROOFS_OF_THE_LOOP and each.status is Status.PROVED
     )
     outcome, evidence, remark = Outcome.TOLD, "none", "no check speaks about this law"
     names: tuple[str, ...] = ()
-    if check is not None and speaks:
+    if check is not None:
         settled = {
             Status.REFUTED: Outcome.MISSED,
             Status.UNDECIDED: Outcome.OPEN,
         }
         outcome, evidence = settled.get(check.status, Outcome.MET), evidence_of([check])
-        names, remark = (LOOP,), "nominal parameters"
+        names, remark = (check.name,), "nominal parameters"
     elif proofs:
         outcome, evidence, names, remark = Outcome.MET, "proof", tuple(each.name for each in proofs), ""
     return Requirement(
         id="",
         name="loop",
-        title="growth of a deviation per sample, near the reference",
+        title="growth of a deviation per sample",
         limit=1.0 if growth is not None and speaks else None,
         reached=growth.factor if growth is not None and speaks else None,
         outcome=outcome,

@@ -4,7 +4,7 @@ Nothing is guessed: each alternative is designed, its loop is checked and it sto
 same drawn stops. How many were tried is told.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from wspd_design.certificates.records import Certificate
@@ -15,7 +15,7 @@ from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Specification
 from wspd_design.design.requirements import Requirements
 from wspd_design.design.selection import RULES, design_controller
-from wspd_design.design.stop_requirements import LOOP, MODEL, StopRequirements
+from wspd_design.design.stop_requirements import LOOPS, MODEL, StopRequirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.simulation.comparison import trial
@@ -65,14 +65,16 @@ def next_step(
     full_adhesion: float,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> NextStep:
-    """Try the laws that have rules for their gains, as sampled and sampled five times as often.
+    """Try the other laws that have rules for their gains, and this one sampled five times as often.
+
+    If none of them will do, the others are tried with that sample time, too.
 
     Parameters
     ----------
     judged : Judgment
         Of the design that is not accepted.
     law : str or None
-        Its law, which is tried with another sample time only; None for a law without rules.
+        Its law; None for one that no rule made.
     vehicle, rail, asked, scenario, plant
         As of the design.
     vehicle_name : str
@@ -85,53 +87,45 @@ def next_step(
         Told each alternative before it is tried.
     """
     faster = max(asked.sample_time / FASTER, SHORTEST)
-    wanted = judged.wanted
-    of_stop = isinstance(wanted, StopRequirements)
-    candidates = [
-        (name, span)
-        for span in dict.fromkeys((asked.sample_time, faster))
-        for name in RULES
-        if (name, span) != (law, asked.sample_time)
-    ]
-    if not of_stop:  # each has as many stops as the design itself
-        candidates = [each for each in candidates if each[1] == asked.sample_time or each[0] == law]
     of_model = {each.name: each for each in certificates if each.name in MODEL}
-    tried = []
-    for name, span in candidates:
+    wanted = judged.wanted
+
+    def attempt(name: str, span: float) -> Alternative | None:
         progress(f"alternative: {name}, {span * 1e3:g} ms")
         specification = replace(asked, sample_time=span)
         try:
             made = design_controller(vehicle, rail, specification, law=name)
             built = controller_of(made, vehicle, rail)
         except UserError:  # no gains by these rules: no alternative
-            continue
+            return None
         if isinstance(wanted, Requirements):
-            missed = [
-                each.requirement
-                for each in judge_law(built, wanted, vehicle, vehicle_name, asked.speeds)
-                if each.met is False
-            ]
-            tried.append(Alternative(law=name, sample_time=span, missed=tuple(missed), distance=None))
-            continue
+            reached = judge_law(built, wanted, vehicle, vehicle_name, asked.speeds)
+            missed = tuple(each.requirement for each in reached if each.met is False)
+            return Alternative(law=name, sample_time=span, missed=missed, distance=None)
         problem = stability_problem(vehicle, rail, built, specification, seed=scenario.seed)
         checked = verify(problem, only=_of_the_law(wanted), figures=False)
-        found: Mapping[str, Certificate] = of_model | {each.name: each for each in checked}
+        found = of_model | {each.name: each for each in checked}
         stop = trial(vehicle, built, scenario, slip_reference=asked.slip, plant=plant)
         result = judged_stop(
             wanted, stop, found, growth=growth_of(problem, checked), full_adhesion=full_adhesion
         )
-        unmet = tuple(each.name for each in (*result.missed, *result.open))
-        tried.append(
-            Alternative(
-                law=name,
-                sample_time=span,
-                missed=unmet,
-                distance=stop.metrics.distance,
-                silent=tuple(
-                    each.name for each in result.rows if each.outcome is Outcome.TOLD and each.name == "loop"
-                ),
-            )
+        return Alternative(
+            law=name,
+            sample_time=span,
+            missed=tuple(each.name for each in (*result.missed, *result.open)),
+            distance=stop.metrics.distance,
+            silent=tuple(
+                each.name for each in result.rows if each.outcome is Outcome.TOLD and each.name == "loop"
+            ),
         )
+
+    others = [name for name in RULES if name != law]
+    first = [(name, asked.sample_time) for name in others]
+    if law in RULES and faster < asked.sample_time:
+        first.append((law, faster))
+    tried = [found for each in first if (found := attempt(*each)) is not None]
+    if all(each.missed for each in tried) and faster < asked.sample_time:
+        tried += [found for name in others if (found := attempt(name, faster)) is not None]
     return NextStep(
         tried=tuple(sorted(tried, key=lambda each: (len(each.missed), each.distance or 0.0))),
         stops=wanted.held_out.sets if isinstance(wanted, Requirements) else 1,
@@ -140,4 +134,4 @@ def next_step(
 
 def _of_the_law(wanted: StopRequirements) -> tuple[str, ...]:
     """Return the checks that must be run again for another law."""
-    return tuple(name for name in (*wanted.not_refuted, *wanted.certificates) if name not in MODEL) or (LOOP,)
+    return tuple(name for name in (*wanted.not_refuted, *wanted.certificates) if name not in MODEL) or LOOPS

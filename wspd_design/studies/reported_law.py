@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from pathlib import PurePath
 
+from wspd_design.certificates.setting.feedback import TRAIN_SPEED, read_names
+from wspd_design.certificates.setting.traced_law import trace
 from wspd_design.controllers.family import FAMILIES, Family
 from wspd_design.controllers.protocol import Law, acts_on_vehicle
 from wspd_design.design.own_controller import is_own_controller
@@ -24,6 +26,14 @@ class ReportedLaw:
     ]  # numbers of the paper's equations that it rests on, besides those of the plant
     acts_on: str  # one wheelset, or all of them
     fingerprint: str  # of all that decides what it does
+    reads: (
+        tuple[str, ...] | None
+    )  # what its commands depend on, after its start; None where it cannot be traced
+
+    @property
+    def told_speed(self) -> bool:
+        """Whether a command may depend on the train speed that the law is told."""
+        return self.reads is None or TRAIN_SPEED in self.reads
 
     @property
     def heading(self) -> str:
@@ -51,6 +61,7 @@ def reported_law(law: Law, made: Design | None, *, written: str) -> ReportedLaw:
     """
     family = FAMILIES.get(written.partition(":")[0] if made is None else made.law)
     title, origin = _words(family, written)
+    traced = trace(law)
     return ReportedLaw(
         name=law.name if made is None else made.name,
         title=title,
@@ -60,6 +71,7 @@ def reported_law(law: Law, made: Design | None, *, written: str) -> ReportedLaw:
         equations=() if family is None else family.equations,
         acts_on="all wheelsets of the vehicle together" if acts_on_vehicle(law) else "one wheelset",
         fingerprint=fingerprint(law),
+        reads=None if isinstance(traced, str) else read_names(traced),
     )
 
 

@@ -34,14 +34,14 @@ def certificate_of(problem):
 
 
 @pytest.fixture(scope="session")
-def quarter():
-    """A quarter of each range of the wet rail."""
-    return problem_of(0.25)
+def half():
+    """A half of each range of the wet rail."""
+    return problem_of(0.5)
 
 
 @pytest.fixture(scope="session")
-def proved(quarter):
-    return certificate_of(quarter)
+def proved(half):
+    return certificate_of(half)
 
 
 @pytest.fixture

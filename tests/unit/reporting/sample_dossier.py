@@ -339,6 +339,7 @@ def sample_dossier(
             equations=FAMILIES["afsmc"].equations,
             acts_on="one wheelset",
             fingerprint="123abc" * 10 + "1234",
+            reads=("train speed", "wheel speed"),
         ),
         specification=Specification(),
         design=Design(
@@ -377,5 +378,6 @@ def sample_dossier(
         robustness=None,
         uncertainty=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
+        previous=None,
         provenance=SAMPLE_PROVENANCE,
     )

@@ -47,7 +47,7 @@ def _rows(dossier):
     return found
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=40)
 @given(STATUSES)
 def test_only_a_check_that_decides_a_requirement_decides(statuses):
     dossier = sample_dossier(statuses)  # the first check decides R1
@@ -66,7 +66,7 @@ def test_only_a_check_that_decides_a_requirement_decides(statuses):
         assert "not measured" in plain(said.sentence)
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=40)
 @given(STATUSES)
 def test_what_is_refuted_and_decides_nothing_is_told(statuses):
     dossier = sample_dossier(statuses)
@@ -77,7 +77,7 @@ def test_what_is_refuted_and_decides_nothing_is_told(statuses):
     assert sorted(named) == sorted(f"check-{name.replace('_', '-')}" for name in others)
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=40)
 @given(st.floats(0.0, 2.0), st.floats(0.01, 2.0))
 def test_no_limit_that_is_missed_is_green(lock, allowed):
     wanted = replace(WANTED, limits=(Limit(criterion="longest_lock", value=allowed),))
@@ -208,7 +208,7 @@ def test_the_rank_counts_the_stops():
     assert said.startswith("2 of 3 by distance on this stop: 188 m; good 180, bad 201; ideal stop 174.2 m")
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=40)
 @given(st.lists(st.sampled_from(Status), min_size=3, max_size=3))
 def test_the_ladder_counts_every_check_once(statuses):
     names = ("reaching", "routh_lag", "tracking")

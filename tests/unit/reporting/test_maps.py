@@ -55,8 +55,8 @@ def test_limit_and_tightest_point_are_drawn_with_their_values():
     assert _lines(figure) == [3.5]
     (cross,) = figure.axes[0].lines
     assert (cross.get_xdata()[0], cross.get_ydata()[0]) == SHOWN.worst
-    assert _legend(figure) == ["tightest: 6 m/s² at 90 km/h, slip 0.2", "limit 3.5 m/s²"]
-    assert "The claim fails on the side of the cross." in map_caption(SHOWN)
+    assert _legend(figure) == ["tightest: 6 m/s² at 90 km/h, slip 0.2", "the claim fails", "limit 3.5 m/s²"]
+    assert "Hatched: there the claim fails." in map_caption(SHOWN)
     assert map_alt(SHOWN) == (
         "Map of gain that is needed over speed and slip: between 1 and 6 m/s²; the limit, 3.5 m/s², is a line "
         "inside the map; a cross marks the tightest point, 6 m/s² at 90 km/h, slip 0.2."
@@ -78,7 +78,7 @@ def test_a_limit_outside_the_map_is_told(limit, worst, said):
     assert _lines(figure) == []
     assert said in _legend(figure)[1]
     assert said in map_alt(shown)
-    assert "side of the cross" not in map_caption(shown)
+    assert "Hatched" not in map_caption(shown)
 
 
 def test_neither_limit_nor_tightest_point_is_made_up():

@@ -35,8 +35,11 @@ class TracedLaw:
 
     name: str
     start: Any  # casadi.Function, measurement -> state
-    step: Any  # casadi.Function, (state, measurement) -> [state, fill, vent]
+    step: (
+        Any  # casadi.Function, (state, measurement) -> [state, fill of each wheelset, vent of each wheelset]
+    )
     states: int
+    wheelsets: int | None = None  # that a law of a vehicle acts on; it sees and commands all of them
 
     def fingerprint(self) -> str:
         """SHA-256 of the graphs: every operation and every constant to its last bit."""
@@ -64,7 +67,7 @@ class LawMemory:
 
 
 def trace(law: Law) -> TracedLaw | str:
-    """Run ``start`` and ``step`` of a law of one wheelset on symbols.
+    """Run ``start`` and ``step`` of a law on symbols.
 
     Returns
     -------
@@ -73,18 +76,17 @@ def trace(law: Law) -> TracedLaw | str:
     """
     import casadi as ca
 
-    if acts_on_vehicle(law):
-        return f"{law.name} {OF_VEHICLE}"
     try:
         made = law_constants(law)
     except UntraceableError as reason:
         return f"the step of {law.name} cannot be traced ({reason})"
-    x, m, none = ca.SX.sym("x", made.states), ca.SX.sym("m", len(Measurement._fields)), ca.SX(0, 1)
+    x, m, none = ca.SX.sym("x", made.states), ca.SX.sym("m", made.step.size1_in(1)), ca.SX(0, 1)
     return TracedLaw(
         name=law.name,
         start=ca.Function("start", [m], [made.start(m, none)]),
         step=ca.Function("step", [x, m], [made.step(x, m, none)]),
         states=made.states,
+        wheelsets=made.wheelsets,
     )
 
 
@@ -158,6 +160,8 @@ def memory(law: Law) -> LawMemory | str:
     """
     import casadi as ca
 
+    if acts_on_vehicle(law):
+        return f"{law.name} {OF_VEHICLE}"
     traced = trace(law)
     if isinstance(traced, str):
         return traced
@@ -170,7 +174,7 @@ def memory(law: Law) -> LawMemory | str:
         moved = [_with_other_torque(step, k) for k in range(POINTS)]
     except UndecidedError as reason:
         return f"the memory of {law.name} is not decided ({reason})"
-    names = _state_names(law, states)
+    names = state_names(law, states)
     own = [
         names[i]
         for i in range(states)
@@ -229,7 +233,8 @@ def _in_circles(rows: list[list[list[int]]], size: int) -> set[int]:
     return left
 
 
-def _state_names(law: Law, states: int) -> tuple[str, ...]:
+def state_names(law: Law, states: int) -> tuple[str, ...]:
+    """Names of the elements of the state of a law."""
     if isinstance(law, offers.Memory) and len(law.memory) == states:
         return tuple(law.memory)
     return tuple(f"element {number} of the state" for number in range(1, states + 1))

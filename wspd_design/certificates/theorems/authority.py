@@ -49,14 +49,16 @@ def torque_claim(
     ranges: Ranges,
     *,
     uses: Sequence[str] = AXLE_PLANT,
-    reserved: bool = True,
+    holding: bool = False,
 ) -> Claim:
     """Return a claim about the ideal torque u* with the reserve eta/g taken from it (>=) or added to it (<=).
+
+    With ``holding`` it is about the torque that holds a slip where it is, which needs no surface: u* at the reference.
 
     Parameters
     ----------
     problem : Problem
-        Plant and domain, and the surface of the law.
+        Plant and domain, and the surface of the law unless ``holding``.
     relation : {"<=", ">="}
         Of torque and bound.
     bound : float
@@ -65,12 +67,13 @@ def torque_claim(
         Other ranges of the quantities, as in :func:`plant_variables`.
     uses : sequence of str
         Quantities of every axle, or of the one at static load.
-    reserved : bool
-        Whether the reserve counts.
+    holding : bool
+        Whether the slip is held where it is: neither surface nor reserve count.
     """
-    law = surface_of(problem)
-    rate, reference = law.surface_rate, law.slip_reference
-    eta = (reserve(problem) if relation == "<=" else -reserve(problem)) if reserved else 0.0
+    rate, reference, eta = 0.0, problem.slip, 0.0
+    if not holding:
+        rate, reference = surface_of(problem).surface_rate, surface_of(problem).slip_reference
+        eta = reserve(problem) if relation == "<=" else -reserve(problem)
 
     def torque(x: Values) -> Number:
         plant = plant_dynamics(problem, x)
@@ -86,7 +89,7 @@ def torque_claim(
         surface = inertia * (rate * speed * error + eta)
         return forces.creep_force * x["wheel radius"] * 2.0 + (slowing + surface) / x["wheel radius"]
 
-    name = "u*" if not reserved else "u* + eta/g" if relation == "<=" else "u* - eta/g"
+    name = "T" if holding else "u* + eta/g" if relation == "<=" else "u* - eta/g"
     return Claim(
         name=name,
         variables=plant_variables(problem, uses=uses, hold=MEASURED, ranges=ranges),
@@ -141,7 +144,7 @@ def out_of_reach(problem: Problem, *, axle: bool = True) -> tuple[Inequality, ..
     def claimed(edge: Ranges) -> Claim:
         held = {**edge, "slip": problem.slip}
         uses = AXLE_PLANT if axle else tuple(name for name in AXLE_PLANT if name not in AXLE)
-        return torque_claim(problem, ">=", most, held, uses=uses, reserved=False)
+        return torque_claim(problem, ">=", most, held, uses=uses, holding=True)
 
     if axle:
         return on_edges("out of reach", problem, claimed, most=False, axle=True)

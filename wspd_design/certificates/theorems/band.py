@@ -4,7 +4,7 @@ See :mod:`wspd_design.certificates.theorems.slip_band` for loop, proof and check
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import cast
@@ -21,7 +21,7 @@ from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.slip_band.checker import checker
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 from wspd_design.certificates.theorems.slip_band.statement import (
-    JERK_FACTOR,
+    JERK_FACTORS,
     NAMES,
     law_of,
     slips_of,
@@ -146,23 +146,26 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"{within.text}, all of them constant; sampled every "
         f"{problem.sample_time * 1e3:g} ms, with any course of the friction whose slope stays within its proved range."
     )
-    explanation, margin = f"No ellipsoids were found for the whole box. {_dead_band(problem)}.", None
+    explanation, margin = f"No ellipsoids were found. {_dead_band(problem)}.", None
     worst: tuple[Point, ...] = ()
+    status = all_of(cells)
     if cells.status is Status.PROVED:
-        bands = [cells.numbers[f"band {k}"] for k in range(len(windows))]
-        told = ", ".join(
-            f"{band:.2g} at {slow * KMH:.0f} to {fast * KMH:.0f} km/h"
-            for band, (slow, fast) in zip(bands, windows, strict=True)
-        )
+        share = cells.numbers["share"]
         explanation = (
-            f"The slip stays within +-{told}. {cells.numbers['cells']:g} cells of the box, each with an ellipsoid for "
-            "each window of speed, that of a faster window inside that of the next slower one."
+            f"{_bands(windows, cells)} {cells.numbers['cells']:g} cells of the box, each with an ellipsoid "
         )
-        margin = Range(low=1.0 - problem.slip - max(bands), high=None, unit="-")
-        worst = (Point(name="slip", value=problem.slip + max(bands), unit="-"),)
+        explanation += "for each window of speed, that of a faster window inside that of the next slower one."
+        if share < 1.0:
+            status = Status.UNDECIDED
+            part = f"{100.0 * share:.3g} % of each range about its nominal value"
+            explanation = f"Shown on {part}, not on all of it. {explanation}"
+        else:
+            largest = max(cells.numbers[f"band {k} above"] for k in range(len(windows)))
+            margin = Range(low=1.0 - problem.slip - largest, high=None, unit="-")
+            worst = (Point(name="slip", value=problem.slip + largest, unit="-"),)
     return Certificate(
         claim=claim,
-        status=all_of(cells),
+        status=status,
         explanation=explanation,
         margin=margin,
         worst_point=worst,
@@ -180,8 +183,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "the parameters do not change during the stop; the full pressure is demanded and there",
             "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time; the "
             "scale of the train speed was found while rolling",
-            "all axles at static load and within their bands; the deceleration of the train changes at most "
-            f"{float(JERK_FACTOR):g} times as fast as with all wheels at the reference, and its filter has settled",
+            "all axles at static load and within their bands; the deceleration of the train rises "
+            f"{float(JERK_FACTORS[0]):g} to {float(JERK_FACTORS[1]):g} times as fast as with all wheels at the "
+            "reference, and its filter has settled",
             "pulses begin with the sample; the law computes with real numbers",
             "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
         ),
@@ -192,6 +196,16 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         "with the friction bounded by interval branch and bound, replayed by the independent checker",
         reference="docs/theory.md#band",
     )
+
+
+def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
+    """Say how far the slip strays at the lowest, a middle and the highest speeds."""
+    told = [
+        f"+{cells.numbers[f'band {k} above']:.2g} and -{cells.numbers[f'band {k} below']:.2g} at "
+        f"{windows[k][0] * KMH:.0f} to {windows[k][1] * KMH:.0f} km/h"
+        for k in sorted({0, len(windows) // 2, len(windows) - 1})
+    ]
+    return f"The slip stays within {', '.join(told)} of its reference."
 
 
 def _dead_band(problem: Problem) -> str:

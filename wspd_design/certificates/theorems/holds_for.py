@@ -21,9 +21,11 @@ class HoldsFor(Enum):
 
 HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "derivation": HoldsFor.EQUATIONS,
+    "feedback": HoldsFor.EQUATIONS,
     "surface_hurwitz": HoldsFor.IDEAL_BRAKE,
     "gain_positive": HoldsFor.EQUATIONS,
     "well_posed": HoldsFor.EQUATIONS,
+    "holding_torque": HoldsFor.IDEAL_BRAKE,
     "sliding_exists": HoldsFor.IDEAL_BRAKE,
     "reaching": HoldsFor.IDEAL_BRAKE,
     "boundary_layer": HoldsFor.IDEAL_BRAKE,
@@ -38,10 +40,12 @@ HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "sampling": HoldsFor.SAMPLED,
     "routh_lag": HoldsFor.VALVE,
     "margins": HoldsFor.SAMPLED,
+    "traced_loop": HoldsFor.SAMPLED,
     "lpv_lyapunov": HoldsFor.SAMPLED,
     "sampled_invariance": HoldsFor.SAMPLED,
     "slip_band": HoldsFor.SAMPLED,
     "tracking": HoldsFor.STOP,
+    "overshoot": HoldsFor.STOP,
     "conservation": HoldsFor.STOP,
     "stop_bound": HoldsFor.STOP,
 }

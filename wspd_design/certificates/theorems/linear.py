@@ -182,7 +182,7 @@ def _tell_routh(problem: Problem, findings: Findings) -> Certificate:
         f"{'; '.join(findings)}. {STATIC.capitalize()}; on {within.text}.",
         status=status,
         explanation={
-            Status.PROVED: f"Tightest{spot}. Small deviations of the slip die out despite the lag.",
+            Status.PROVED: f"Tightest{spot}. Small deviations of the slip die out despite the lag, in continuous time.",
             Status.REFUTED: f"Violated{spot}: {name}. The slip cannot settle there and swings or drifts away.",
             Status.UNDECIDED: f"Open{spot}: {name}. {left_open(findings.values())}",
         }[status],

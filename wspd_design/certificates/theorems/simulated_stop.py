@@ -35,7 +35,8 @@ SETTLED_SHARE = 0.5  # of the initial speed: build-up of the brake and the trans
 TRACKED = ("time", "speed", "slip", "torque", "slip rms", "share outside", "lock time", "instants", "stopped")
 
 
-def _scenario(problem: Problem) -> Scenario:
+def scenario_of(problem: Problem) -> Scenario:
+    """Return the stop that these theorems speak about: from the highest speed, undisturbed."""
     if min(problem.speeds) <= 0.0:
         raise OutsideModel(f"the speeds {problem.speeds[0]:g} to {problem.speeds[1]:g} m/s must be positive")
     return Scenario(rail=problem.rail, initial_speed=problem.speeds[1])
@@ -63,7 +64,7 @@ def residuals(problem: Problem) -> dict[str, float]:
     """Simulate a stop on each plant and compare what it lost with what forces and torques took."""
     found: dict[str, float] = {}
     for plant in plants(problem.vehicle):
-        run = simulate(problem.vehicle, problem.controller, _scenario(problem), plant=plant)
+        run = simulate(problem.vehicle, problem.controller, scenario_of(problem), plant=plant)
         pair = momentum_residual(run, problem.vehicle), energy_residual(run, problem.vehicle)
         for quantity, value in zip(("momentum", "energy"), pair, strict=True):
             found[f"{quantity} residual, {plant}"] = value if math.isfinite(value) else NOT_FINITE
@@ -89,7 +90,7 @@ def _denies_balance(problem: Problem, _place: Place, work: Work) -> Mapping[str,
 
 
 def _balance_obligations(problem: Problem) -> tuple[Special | Sampled, ...]:
-    _scenario(problem)
+    scenario_of(problem)
     start = problem.speeds[1]
     text = f"momentum closes within {MOMENTUM_LIMIT:g} and energy within {ENERGY_LIMIT:g}"
     return (
@@ -159,7 +160,7 @@ def tracked_stop(problem: Problem) -> tuple[Run, dict[str, float]]:
     """
     import numpy as np
 
-    law, scenario = surface_of(problem), _scenario(problem)
+    law, scenario = surface_of(problem), scenario_of(problem)
     bound, reference = 2.0 * law.layer, law.slip_reference
     run = simulate(problem.vehicle, problem.controller, scenario, plant="quarter")
     errors = np.abs(run.slip[:, 0] - reference)
@@ -199,7 +200,7 @@ def _denies_tracking(problem: Problem, _place: Place, work: Work) -> Mapping[str
 
 
 def _tracking_obligations(problem: Problem) -> tuple[Special | Sampled | Inequality, ...]:
-    _scenario(problem)
+    scenario_of(problem)
     start = problem.speeds[1]
     text = "the slip stays near the reference in the simulated stop"
     return (

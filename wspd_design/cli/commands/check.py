@@ -1,7 +1,7 @@
 """``wspd check``: the checkers alone. Every sentence is made again from the design; the file gives only the proofs."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 from rich.padding import Padding
@@ -17,12 +17,15 @@ from wspd_design.cli.verification import claim_text
 from wspd_design.design import certification
 from wspd_design.parameters.errors import UserError
 
+REPORTS = (".html", ".pdf")
+
 
 def check(
     certificates: Annotated[
         list[Path],
         typer.Argument(
-            metavar="CERTIFICATE...", help=f"Files that wspd certify wrote, or folders NAME{FOLDER} of them."
+            metavar="CERTIFICATE...",
+            help=f"Files that wspd certify wrote, folders NAME{FOLDER} of them, or a report with all that it attaches.",
         ),
     ],
     design: Annotated[
@@ -30,7 +33,8 @@ def check(
         typer.Option(
             "--design",
             metavar="DESIGN",
-            help=f"What wspd certify was given. Default: NAME.toml beside the folder NAME{FOLDER} of the certificate.",
+            help=f"What wspd certify was given. Default: NAME.toml beside the folder NAME{FOLDER} of the certificate. "
+            "Of a report the attached design; its own law in Python is run only where this names the same file.",
             show_default=False,
         ),
     ] = None,
@@ -42,6 +46,10 @@ def check(
     The whole certificate is made again from the design and printed; a file that says anything else is refused. Exit
     code 1 when a file is refused, else 3 when one decides nothing, else 0.
     """
+    if any(path.suffix.lower() in REPORTS for path in certificates):
+        if len(certificates) > 1 or vehicle or rail:
+            raise UserError(f"a report has its own vehicle and rail: wspd check {certificates[0]} alone")
+        _end(_of_report(certificates[0], law=design))
     cases = [(path, design or _design_of(path)) for path in _files(certificates)]
     found = []
     problems = {
@@ -52,7 +60,23 @@ def check(
         with progress() as tell:
             tell(f"Checking {path.name!a}")
             found.append(certification.check(path, problems[made]))
-        _show(path, made, found[-1])
+        _show(path.name, Path(made).name, found[-1])
+    _end(found)
+
+
+def _of_report(path: Path, *, law: str | None) -> list[Replayed]:
+    """Decide about all that a report attaches."""
+    from wspd_design.cli.checking import check_report
+
+    with progress() as tell:
+        found = check_report(path, law=law, progress=tell)
+    for name, each in found.items():
+        _show(name, path.name, each)
+    return list(found.values())
+
+
+def _end(found: list[Replayed]) -> NoReturn:
+    """End with the exit code of what was found."""
     if not all(each.accepted for each in found):
         raise typer.Exit(REFUTED)
     raise typer.Exit(UNDECIDED if any(each.unchecked for each in found) else GOOD)
@@ -78,12 +102,12 @@ def _design_of(path: Path) -> str:
     return str(design)
 
 
-def _show(path: Path, design: str, found: Replayed) -> None:
+def _show(name: str, about: str, found: Replayed) -> None:
     out = console()
     sign, style = _sign(found)
     took = f" ({found.leaves} {'box' if found.leaves == 1 else 'boxes'})" if found.accepted else ""
     # The name of the file is the only text that does not come from the design.
-    head = f"  {_printable(path.name)} for {_printable(Path(design).name)}{took}"
+    head = f"  {_printable(name)} for {_printable(about)}{took}"
     out.print(Text(sign, style=style) + Text(head, style="bold"))
     if found.certificate is None:
         out.print(Padding(Text(found.reason), (0, 0, 0, 2)))

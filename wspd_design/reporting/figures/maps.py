@@ -29,7 +29,9 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
         Over speed.
     """
     import numpy as np
+    from matplotlib.artist import Artist
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
     from matplotlib.patheffects import AbstractPathEffect, withStroke
     from matplotlib.ticker import FixedLocator, MaxNLocator, NullLocator, ScalarFormatter
 
@@ -41,7 +43,7 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
     bar = figure.colorbar(filled, ax=axes, pad=0.02, aspect=14)
     bar.set_label(axis_label(shown.value_label))
     bar.outline.set_visible(False)
-    handles = []
+    handles: list[Artist] = []
     if shown.worst is not None:
         handles += axes.plot(
             *shown.worst,
@@ -61,11 +63,17 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
             line = axes.contour(shown.x, shown.y, values, levels=[shown.limit], colors=LINE, linewidths=1.3)
             line.set_path_effects(halo)
             bar.add_lines(line)
+            beyond = [shown.limit, levels[-1]] if _tight_is_high(shown) else [levels[0], shown.limit]
+            fails = axes.contourf(shown.x, shown.y, values, levels=beyond, colors="none", hatches=["////"])
+            fails.set(edgecolor=LINE, linewidth=0.0)
+            handles.append(
+                Patch(facecolor="none", edgecolor=LINE, hatch="////", linewidth=0.0, label="the claim fails")
+            )
         where = "" if _crosses(shown) else ", reached nowhere" if _holds(shown) else ", passed everywhere"
         label = f"limit {quantity(shown.limit, _unit(shown))}{where}"
         handles.append(Line2D([], [], color=LINE, linewidth=1.3, path_effects=halo, label=label))
     if handles:
-        figure.legend(handles=handles, loc="outside upper left", ncols=2)
+        figure.legend(handles=handles, loc="outside upper left", ncols=3)
     axes.grid(visible=False)
     axes.set(xscale="log", xlabel=shown.x_label, ylabel=textwrap.fill(shown.y_label, LABEL_WIDTH))
     low, high = shown.x[0], shown.x[-1]
@@ -104,7 +112,7 @@ def map_caption(shown: Map) -> str:
         f"{name[0].upper()}{name[1:]} over {_name(shown.x_label)} and {_name(shown.y_label)}, at each point the worst "
         "of the corners of all other ranges; the brighter, the tighter."
     )
-    return f"{said} The claim fails on the side of the cross." if _crosses(shown) else said
+    return f"{said} Hatched: there the claim fails." if _crosses(shown) else said
 
 
 def _name(label: str) -> str:

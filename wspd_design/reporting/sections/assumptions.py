@@ -1,11 +1,12 @@
 """The register of assumptions: each with its id, where reality breaks it, and what rests on it."""
 
 from wspd_design.certificates.theorems.register import REGISTER, Registered, stated_in
-from wspd_design.controllers.observers.sensors import TOLD
 from wspd_design.plants.planar import Planar
 from wspd_design.reporting.blocks import Block, Heading, Paragraph, Status
+from wspd_design.reporting.formula_text import with_formulas
 from wspd_design.reporting.sections.checks import status_of
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 
 ASSUMPTIONS = "assumptions"
@@ -17,15 +18,17 @@ def assumptions(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="Register of assumptions", anchor=ASSUMPTIONS),
         Paragraph(
-            text="What the statements of this report take for granted. The ids are the same in every report. A check "
-            "falls with each of its assumptions; a simulated stop drops some of them."
+            text=rich(
+                "[](#assumption-register) lists what the statements of this report take for granted. The ids are the "
+                "same in every report. A check falls with each of its assumptions; a simulated stop drops some of them."
+            )
         ),
         build(
             _used(dossier),
             (
                 ColumnOf(title="", read=lambda each: each.id),
-                ColumnOf(title="Assumption", read=lambda each: each.title),
-                ColumnOf(title="Broken in reality by", read=lambda each: each.broken),
+                ColumnOf(title="Assumption", read=lambda each: with_formulas(each.title)),
+                ColumnOf(title="Broken in reality by", read=lambda each: with_formulas(each.broken)),
                 ColumnOf(title="Rests on it", read=lambda each: _resting(dossier, each)),
                 ColumnOf(title="Stops without it", read=lambda each: each.dropped or "none"),
                 ColumnOf(title="To be shown on the vehicle by", read=lambda each: each.shown_by),
@@ -84,5 +87,5 @@ def _held(dossier: Dossier, assumption: Registered) -> bool:
 
 def deciding_words(dossier: Dossier) -> str:
     """Name the assumptions that decide, for page one."""
-    told = ["the law is told the train speed"] if dossier.specification.sensors.speed == TOLD.speed else []
+    told = ["the law is told the train speed"] if dossier.law.told_speed else []
     return "; ".join([*(f"{each.id} {each.short}" for each in decisive(dossier)), *told])

@@ -6,7 +6,9 @@ from wspd_design.analysis.brake_sheet import RULES, BrakeSheet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import KILO, KMH
+from wspd_design.reporting.formula_text import with_formulas
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import Link
 from wspd_design.studies.dossier import Dossier
 
 
@@ -15,7 +17,13 @@ def brake(dossier: Dossier) -> tuple[Block, ...]:
     sheet = dossier.brake
     return (
         Heading(text="The brake on full adhesion", anchor="brake"),
-        Paragraph(text=f"{brake_sentence(sheet)} {dossier.adhesion_use}"),
+        Paragraph(
+            text=(
+                f"{brake_sentence(sheet)} {dossier.adhesion_use} ",
+                Link(anchor="brake-table"),
+                " lists the stops of a brake that no wheel limits.",
+            )
+        ),
         brake_table(sheet),
     )
 
@@ -42,8 +50,12 @@ def brake_table(sheet: BrakeSheet) -> Table:
             ColumnOf(
                 title="From", unit="km/h", flush_right=True, read=lambda each: f"{each.speed * KMH:.4g}"
             ),
-            ColumnOf(title="t_e", unit="s", decimals=3, read=lambda each: each.mean.equivalent_time),
-            ColumnOf(title="a_e", unit="m/s²", decimals=3, read=lambda each: each.mean.deceleration),
+            ColumnOf(
+                title=with_formulas("t_e"), unit="s", decimals=3, read=lambda each: each.mean.equivalent_time
+            ),
+            ColumnOf(
+                title=with_formulas("a_e"), unit="m/s²", decimals=3, read=lambda each: each.mean.deceleration
+            ),
             ColumnOf(title="Distance", unit="m", decimals=1, read=lambda each: each.mean.distance),
             ColumnOf(title="Time", unit="s", decimals=1, read=lambda each: each.mean.time),
             ColumnOf(
@@ -53,6 +65,6 @@ def brake_table(sheet: BrakeSheet) -> Table:
                 read=lambda each: math.nan if each.percentage is None else each.percentage,
             ),
         ),
-        caption=RULES,
+        caption=with_formulas(RULES),
         anchor="brake-table",
     )

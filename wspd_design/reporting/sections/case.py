@@ -1,4 +1,7 @@
-"""The vehicle, the rail and the controller in short."""
+"""The vehicle, the rail and the controller in short, and the loop that they make."""
+
+from collections.abc import Mapping
+from functools import partial
 
 from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.parameters.records import Entry, ParameterSet
@@ -6,9 +9,11 @@ from wspd_design.parameters.units import format_quantity
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.quarter import Quarter
 from wspd_design.reporting import numbers
-from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph
-from wspd_design.reporting.brakes import brake_text
-from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.blocks import Block, Definition, Definitions, Figure, Heading, Paragraph
+from wspd_design.reporting.brakes import brake_text, lag_times
+from wspd_design.reporting.figures.drawing import KMH, picture
+from wspd_design.reporting.figures.loop import HEIGHT, Loop, loop_alt, loop_diagram
+from wspd_design.reporting.formula_text import readable
 from wspd_design.reporting.further_brakes import further_brakes
 from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
@@ -49,13 +54,72 @@ def case(dossier: Dossier) -> tuple[Block, ...]:
         ("Sample time", format_quantity(specification.sample_time, "ms")),
         ("Plant of the stops", _plant(dossier.trials[0].run)),
         ("Rails of the stops", every_rail_of(dossier.scenario)),
-        ("Disturbances of the stops", disturbances_of(dossier.scenario) or "none"),
+        ("Disturbances of the stops", readable(disturbances_of(dossier.scenario)) or "none"),
     )
     return (
         Heading(text="Vehicle, rail and controller", anchor="case"),
         Definitions(rows=tuple(Definition(term=term, text=text) for term, text in rows)),
-        Paragraph(text=rich("Every number with its unit, bounds, status and source stands in [](#sources).")),
+        Paragraph(
+            text=rich(
+                "[](#loop) shows the loop that everything below speaks about. Every number with its unit, bounds, "
+                "status and source stands in [](#sources)."
+            )
+        ),
+        _loop(dossier),
     )
+
+
+def _loop(dossier: Dossier) -> Figure:
+    """Draw the loop of the stops."""
+    entries, specification = dossier.vehicle.entries, dossier.specification
+    times = lag_times(dossier.vehicle)
+    lag = (
+        ""
+        if times is None
+        else f", lags of {_plain(entries, 'fill_time')} and {_plain(entries, 'vent_time')}"
+    )
+    loop = Loop(
+        law=dossier.law.heading,
+        period=format_quantity(specification.sample_time, "ms"),
+        valves=f"fill, hold, vent{lag}" if times else "fill, hold, vent through orifices",
+        brake=f"up to {_plain(entries, 'max_torque')} a wheelset",
+        vehicle=f"{dossier.vehicle.name}, {_plant(dossier.trials[0].run).partition(':')[0]} model",
+        rail=dossier.rail.name,
+        measured=_measured(dossier),
+        reads_brake=dossier.law.own or specification.sensors.pressures,
+        disturbed=readable(disturbances_of(dossier.scenario)),
+    )
+    return Figure(
+        svg=picture(partial(loop_diagram, loop=loop), height=HEIGHT),
+        caption="The loop. Dashed and blue: what is sampled and held; solid: what moves all the time; green: what the "
+        "law goes by.",
+        alt=loop_alt(loop),
+        anchor="loop",
+    )
+
+
+def _measured(dossier: Dossier) -> tuple[str, ...]:
+    """Say what the law reads."""
+    if dossier.law.own:
+        return ("wheel speed", "train speed", "braking torque")
+    sensors = dossier.specification.sensors
+    speed = {
+        "told": "train speed, told",
+        "fastest-axle": "train speed, from the fastest wheelset",
+        "wheels": "train speed, estimated from the wheels",
+    }[sensors.speed]
+    return (
+        "wheel speeds",
+        speed,
+        *(["acceleration of the train"] if sensors.accelerometer else []),
+        *(["pressure of the cylinders"] if sensors.pressures else []),
+    )
+
+
+def _plain(entries: Mapping[str, Entry], name: str) -> str:
+    entry = entries[f"brake.{name}"]
+    assert isinstance(entry.value, float)
+    return numbers.quantity_in(entry.value, entry.unit)
 
 
 def _controller(dossier: Dossier) -> str:

@@ -39,7 +39,7 @@ from wspd_design.reporting.sections.domains import domains
 from wspd_design.reporting.sections.theory import theorem_anchor, theorems_of
 from wspd_design.reporting.statements import Statements, linked, statements_of
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import Emphasis, Inline, Link, Text, rich, spans
+from wspd_design.reporting.text import Emphasis, Inline, Link, Text, references, rich, spans
 from wspd_design.studies.dossier import Dossier
 
 MAP_HEIGHT = 2.6  # in
@@ -124,16 +124,21 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
             text=rich(
                 "Each check states a claim on a domain, under the assumptions that it names. The worst findings "
                 "stand first; among those of one kind, what fails with the nominal numbers comes before what fails "
-                "within their bounds, and the whole loop before its parts. Symbols stand in [](#symbols), terms in "
-                "[](#glossary). Nobody has to trust the programs that found the proofs: [one command](#replay) lets "
-                "the checkers decide again about all of them."
+                "within their bounds, and the whole loop before its parts; [](#evidence-ladder) counts them. Symbols "
+                "stand in [](#symbols), terms in [](#glossary). Nobody has to trust the programs that found the "
+                "proofs: [one command](#replay) lets the checkers decide again about all of them."
             )
         ),
         *domains(statements, dossier),
     ]
     shown = _Shown(
         statements=statements,
-        anchors={each.name: check_anchor(each) for each in dossier.certificates if is_shown(each)},
+        # A name of one word, such as sampling, is also a word of its sentences.
+        anchors={
+            each.name: check_anchor(each)
+            for each in dossier.certificates
+            if is_shown(each) and "_" in each.name
+        },
         same_stop=dossier.trials[0].run.plant == Quarter.name,
     )
     ordered = worst_first(dossier.certificates)
@@ -210,8 +215,7 @@ class _Shown:
             what = "is proved" if table.anchor.endswith("-proofs") else "it needs"
             said += [" ", Link(anchor=table.anchor), f" lists what {what}."]
         if figures:
-            links = [Link(anchor=each.anchor) for each in figures]
-            said += [" Samples: ", *_joined(links), "."]
+            said += [" Samples: ", *references([each.anchor for each in figures]), "."]
         if any(map(is_pole_over_speed, certificate.series)):
             said += [" ", Link(anchor=POLE_MAP), " shows the slip pole over speed."]
         if certificate.series and self._is_the_stop(certificate):
@@ -335,14 +339,6 @@ def reference(certificate: Certificate) -> Text:
     for part in re.split(r"(docs/theory\.md#[a-z-]+)", certificate.reference):
         anchor = part.removeprefix("docs/theory.md#")
         found += [] if not part else [part] if anchor == part else [Link(anchor=theorem_anchor(anchor))]
-    return tuple(found)
-
-
-def _joined(links: Sequence[Link]) -> tuple[Inline, ...]:
-    found: list[Inline] = []
-    for place, link in enumerate(links):
-        found += [] if place == 0 else [" and " if place == len(links) - 1 else ", "]
-        found.append(link)
     return tuple(found)
 
 

@@ -1,6 +1,7 @@
 """The same stop with every controller, and the paper's Table 10 where it applies."""
 
 import math
+from collections.abc import Mapping
 from functools import partial
 
 from wspd_design.design.industry import table_note
@@ -17,8 +18,9 @@ from wspd_design.reporting.blocks import (
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all, slips_alt
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
 from wspd_design.reporting.sections.checks import check_anchor
+from wspd_design.reporting.statements import statements_of
 from wspd_design.reporting.tables import ColumnOf, Uncertain, build
-from wspd_design.reporting.text import CodeSpan, Link, Text
+from wspd_design.reporting.text import CodeSpan, Inline, Link, Text, spans
 from wspd_design.reporting.yardsticks import ideal_distance, ideal_sentence, proved_bound
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.records import Ending, Scenario
@@ -45,6 +47,7 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
             alt=distances_alt(trials),
             anchor="distances",
         ),
+        Paragraph(text=("The same stop with every controller: ", *_contents(published), ".")),
         Paragraph(text=_yardsticks(dossier)),
         Paragraph(text=_ranking(dossier)),
         *_notes(trials),
@@ -69,6 +72,19 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
     return tuple(found)
 
 
+def _contents(published: Mapping[str, PublishedStop]) -> tuple[Inline, ...]:
+    """Refer to the figures and tables of the section."""
+    shown = [
+        (Link(anchor="distances"), " shows the distances, "),
+        (Link(anchor="stops-table"), " lists them with time, slip and locks, "),
+        (Link(anchor="efforts-table"), " what they take, "),
+        (Link(anchor="accuracy-table"), " how far the simulation can be trusted, "),
+        *([(Link(anchor="table10"), " sets the paper's numbers beside them, ")] if published else []),
+        (Link(anchor="slips"), " shows the slip over time"),
+    ]
+    return tuple(part for each in shown for part in each)
+
+
 def _notes(trials: tuple[Trial, ...]) -> tuple[Block, ...]:
     """Say which tables the laws of the industry take, where their names state it, and which laws let the brake go."""
     note = table_note(each.run.controller for each in trials)
@@ -83,7 +99,8 @@ def _yardsticks(dossier: Dossier) -> Text:
     if proved is None:
         return f"{ideal} No bound on the distance is proved."
     link = Link(anchor=check_anchor(proved.certificate), text=proved.certificate.name)
-    return (f"{ideal} Proved, in the check ", link, f": {proved.certificate.claim}")
+    claim = statements_of(dossier.certificates).claim(proved.certificate)
+    return (f"{ideal} Proved, in the check ", link, ": ", *spans(claim))
 
 
 def _published(dossier: Dossier) -> dict[str, PublishedStop]:

@@ -3,6 +3,7 @@
 from wspd_design.design.records import Design, GainValue
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Heading, Paragraph, Table
+from wspd_design.reporting.formula_text import with_formulas
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
@@ -20,8 +21,8 @@ def design(dossier: Dossier) -> tuple[Block, ...]:
         Heading(text="The design", anchor="design"),
         Paragraph(
             text=rich(
-                "The gains, each with the rule that chose it. The attached `design.toml` holds the same "
-                "numbers in full length and stands in place of a controller's name in every command."
+                "[](#gains) lists the gains, each with the rule that chose it. The attached `design.toml` holds the "
+                "same numbers in full length and stands in place of a controller's name in every command."
             )
         ),
         gain_table(
@@ -34,7 +35,8 @@ def _without_gains(law: ReportedLaw) -> str:
     """Say where a law without gains is found, and what a report cannot say about it."""
     silent = (
         "No rule of this program chose its numbers: the report says what the law does, not why its numbers are what "
-        f"they are. It commands {law.acts_on}. Fingerprint of all that decides what it does: `{law.fingerprint[:16]}`."
+        f"they are. It commands {law.acts_on}. {_reads(law)} Fingerprint of all that decides what it does: "
+        f"`{law.fingerprint[:16]}`."
     )
     if not law.called:
         return (
@@ -47,6 +49,12 @@ def _without_gains(law: ReportedLaw) -> str:
     return f"Commands call it `{escape(law.called)}`; its numbers stand in [](#sources). {silent}"
 
 
+def _reads(law: ReportedLaw) -> str:
+    if law.reads is None:
+        return "Its step cannot be traced, so that no check tells what its commands depend on."
+    return f"Its commands depend on {numbers.listing(list(law.reads)) or 'nothing that it measures'}."
+
+
 def gain_table(design: Design, *, caption: str, anchor: str) -> Table:
     """Return the gains of a design as a table."""
     return build(
@@ -55,7 +63,7 @@ def gain_table(design: Design, *, caption: str, anchor: str) -> Table:
             ColumnOf(title="Gain", read=lambda gain: gain.name.replace("_", " ")),
             ColumnOf(title="Value", read=lambda gain: value_text(gain.value)),
             ColumnOf(title="Unit", read=lambda gain: numbers.unit(gain.unit) or "-"),
-            ColumnOf(title="Why", read=lambda gain: gain.why),
+            ColumnOf(title="Why", read=lambda gain: with_formulas(gain.why)),
         ),
         caption=caption,
         anchor=anchor,

@@ -2,6 +2,7 @@
 
 from wspd_design.reporting.blocks import Block, Heading, Paragraph
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.hazards import hazards as found_hazards
 
@@ -14,8 +15,10 @@ def hazards(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="Hazards", anchor=HAZARDS),
         Paragraph(
-            text="What can go wrong with a protection that releases brakes, and what this report shows of it. It is no "
-            "hazard analysis: causes, rates and severities are not judged."
+            text=rich(
+                "[](#hazard-table) lists what can go wrong with a protection that releases brakes, and what this "
+                "report shows of it. It is no hazard analysis: causes, rates and severities are not judged."
+            )
         ),
         build(
             found_hazards(dossier.trials[0], dossier.robustness, dossier.vehicle),

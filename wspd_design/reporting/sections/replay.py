@@ -9,6 +9,7 @@ from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.provenance import Provenance
 
 REPLAY = "replay"
+DIGITS = 16  # of a SHA-256 that a table shows; SHA256SUMS has all
 
 
 def replay(dossier: Dossier) -> tuple[Block, ...]:
@@ -42,11 +43,13 @@ def replay(dossier: Dossier) -> tuple[Block, ...]:
             text=rich(
                 "By hand: save all attachments into one folder. `sha256sum --check SHA256SUMS` tells whether they are "
                 "whole, the command in `command.txt` makes the report from them, and `report.json` holds its numbers "
-                "in full length. Of what the report says of itself, only the date does not follow from the attached "
-                "files and from what it was made by; `SOURCE_DATE_EPOCH` sets it."
+                "in full length; [](#input-files) lists what it was made from. Of what the report says of itself, only "
+                "the date does not follow from the attached files and from what it was made by; "
+                "`SOURCE_DATE_EPOCH` sets it."
                 if made.command
                 else "By hand: save all attachments into one folder. `sha256sum --check SHA256SUMS` tells whether they "
-                "are whole, and `report.json` holds the numbers in full length."
+                "are whole, `report.json` holds the numbers in full length, and [](#input-files) lists what it was "
+                "made from."
             )
         ),
         _inputs(made),
@@ -59,9 +62,9 @@ def _inputs(made: Provenance) -> Table:
         (
             ColumnOf(title="File", read=lambda each: (CodeSpan(text=each.name),)),
             ColumnOf(title="What it is", read=lambda each: each.meaning),
-            ColumnOf(title="SHA-256", read=lambda each: (CodeSpan(text=each.sha256),)),
+            ColumnOf(title="SHA-256 begins", read=lambda each: (CodeSpan(text=each.sha256[:DIGITS]),)),
         ),
-        caption="What the report was made from; all of it is attached.",
+        caption="What the report was made from; all of it is attached, with the whole SHA-256 of each file.",
         anchor="input-files",
     )
 

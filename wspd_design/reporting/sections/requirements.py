@@ -42,7 +42,8 @@ def _stops(judgment: Judgment) -> str:
         return (
             f"The design is judged on {stops_of(judgment)} and by checks, after the table “{escape(wanted.name)}”. A "
             "requirement that is missed rejects the design; one that is open leaves it undecided. A refuted check that "
-            "decides no requirement is told, and rejects nothing. The results stand in [](#requirements-table)."
+            "decides no requirement is told, and rejects nothing. The results stand in [](#requirements-table), where "
+            "the limits come from in [](#requirement-sources), and all checks in [](#checks)."
         )
     drawn = [draw.name.partition(".")[2].replace(".", " ").replace("_", " ") for draw in wanted.draws]
     spread = [
@@ -54,7 +55,7 @@ def _stops(judgment: Judgment) -> str:
         f"The design is judged on {stops_of(judgment)}: vehicle, rail and disturbances are drawn anew for each stop, "
         f"on {escape(numbers.listing(wanted.rails))} in turn. {differ}Efficiency is the ideal stop of the same draw "
         "over the distance. How the gains were found stands beside each of them in [](#design). The results stand in "
-        "[](#requirements-table)."
+        "[](#requirements-table), where the limits come from in [](#requirement-sources), all checks in [](#checks)."
     )
 
 

@@ -5,6 +5,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Cell, Heading, Paragraph, Status, Table
 from wspd_design.reporting.figures.drawing import KILO, KMH
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import escape, rich
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.studies.dossier import Dossier
@@ -31,10 +32,13 @@ def robustness(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="Faults and patches", anchor=ROBUSTNESS),
         Paragraph(
-            text=f"The same design, unchanged, where one wheelset has a fault from {SINCE:g} s on; of the axles the "
-            f"one where it does most harm. Stops on {rails} without a fault take "
-            f"{numbers.decimals(found.plain, 1)} m. A stop holds if the train stops and no wheel that a law could keep "
-            f"turning is locked for more than {LONGEST_LOCK:g} s above {judged} km/h."
+            text=rich(
+                f"The same design, unchanged, where one wheelset has a fault from {SINCE:g} s on; of the axles the "
+                f"one where it does most harm. Stops on {escape(rails)} without a fault take "
+                f"{numbers.decimals(found.plain, 1)} m. A stop holds if the train stops and no wheel that a law could "
+                f"keep turning is locked for more than {LONGEST_LOCK:g} s above {judged} km/h. [](#robustness-table) "
+                "lists them."
+            )
         ),
         _table(found, judged),
         Paragraph(text=_filled(found)),

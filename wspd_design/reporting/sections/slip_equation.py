@@ -3,8 +3,9 @@
 from wspd_design.parameters.equations import Equation as PaperEquation
 from wspd_design.parameters.equations import load_equations
 from wspd_design.reporting.blocks import Block, Cell, Equation, Heading, Paragraph, Status
+from wspd_design.reporting.formula_text import with_formulas
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import escape, rich
+from wspd_design.reporting.text import Text, rich, spans
 from wspd_design.studies.dossier import Dossier
 
 PLANT = ("1", "2", "3", "5", "6", "7", "8", "9", "10", "13", "14", "15", "19", "B_W")
@@ -39,14 +40,17 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
         ),
         Paragraph(
             text=rich(
-                f"*Verdict: {slip.verdict}.* {escape(slip.remark)} It is derived from equations (1) to (3) "
-                f"in `{slip.file}`, and shown by the test `{slip.test.partition('::')[2]}`."
+                f"*Verdict: {slip.verdict}.* It is derived from equations (1) to (3) in `{slip.file}`, and shown by "
+                f"the test `{slip.test.partition('::')[2]}`. "
             )
+            + spans(with_formulas(slip.remark))
         ),
         Paragraph(
-            text=f"Of the {len(used)} equations of the paper that this report rests on, {len(faulty)} are "
-            "misprinted or true only under an assumption that the paper does not state. The program uses the "
-            "corrected forms."
+            text=rich(
+                f"Of the {len(used)} equations of the paper that this report rests on, {len(faulty)} are "
+                "misprinted or true only under an assumption that the paper does not state: [](#misprints) names them. "
+                "The program uses the corrected forms."
+            )
         ),
         build(
             faulty,
@@ -67,6 +71,6 @@ def slip_equation(dossier: Dossier) -> tuple[Block, ...]:
     )
 
 
-def _explained(equation: PaperEquation) -> str:
+def _explained(equation: PaperEquation) -> Text:
     needs = f"Needs: {equation.assumption}" if equation.assumption else ""
-    return " ".join(part for part in (equation.remark, needs) if part)
+    return with_formulas(" ".join(part for part in (equation.remark, needs) if part))

@@ -7,6 +7,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph, Table
 from wspd_design.reporting.sections.design import gain_table
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import references
 from wspd_design.studies.dossier import Dossier
 
 WEAK = ("calibrated", "assumed")
@@ -17,20 +18,25 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
     sets = (dossier.vehicle, dossier.rail, *dossier.other_parameters)
     entries = [entry for each in sets for entry in each.entries.values()]
     weak = sum(entry.status in WEAK for entry in entries)
+    gains = [f"gains-{index}" for index in range(1, len(dossier.compared_designs) + 1)]
     found: list[Block] = [
         Heading(text="Sources", anchor="sources"),
         Paragraph(
-            text=f"All {len(entries)} numbers of the vehicle, the rails, the compared controllers and the "
-            f"constants; {weak} of them are calibrated or assumed. A number without bounds is taken as "
-            "exactly known. Of a number with bounds the tables say who varies it over all of them, and who holds "
-            "it at its value."
+            text=(
+                f"All {len(entries)} numbers of the vehicle, the rails, the compared controllers and the constants; "
+                f"{weak} of them are calibrated or assumed. A number without bounds is taken as exactly known. Of a "
+                "number with bounds the tables say who varies it over all of them, and who holds it at its value. "
+                f"{', '.join(map(_called, sets))} and the gains of the compared designs stand in ",
+                *references([*(_anchor(each) for each in sets), *gains]),
+                ".",
+            )
         ),
     ]
     own = dossier.vehicle, dossier.rail
     found += [_table(each, dossier if each in own else None) for each in sets]
     found += [
-        gain_table(made, caption=f"Gains of {made.name}, compared.", anchor=f"gains-{index}")
-        for index, made in enumerate(dossier.compared_designs, start=1)
+        gain_table(made, caption=f"Gains of {made.name}, compared.", anchor=anchor)
+        for made, anchor in zip(dossier.compared_designs, gains, strict=True)
     ]
     known = known_sources()
     keys = [key for key in dict.fromkeys(entry.source for entry in entries) if key in known]
@@ -76,10 +82,13 @@ def _table(parameters: ParameterSet, dossier: Dossier | None) -> Table:
                 read=lambda entry: f"{entry.source}: {entry.at}" + (f". {entry.note}" if entry.note else ""),
             ),
         ),
-        caption=f"{' '.join(dict.fromkeys((parameters.kind, parameters.name))).capitalize()}: "
-        f"{parameters.title}.",
+        caption=f"{_called(parameters)}: {parameters.title}.",
         anchor=_anchor(parameters),
     )
+
+
+def _called(parameters: ParameterSet) -> str:
+    return " ".join(dict.fromkeys((parameters.kind, parameters.name))).capitalize()
 
 
 def _use(entry: Entry, kind: str, dossier: Dossier) -> str:

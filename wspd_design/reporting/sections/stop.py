@@ -13,6 +13,7 @@ from wspd_design.reporting.figures.phase import phase_alt, phase_planes
 from wspd_design.reporting.figures.stop import name, stop_alt, stop_traces
 from wspd_design.reporting.running_gear import axle_shares
 from wspd_design.reporting.spreads import distance_of_stop
+from wspd_design.reporting.text import Link, escape, rich
 from wspd_design.reporting.yardsticks import ideal_sentence
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip, rails_of
@@ -37,15 +38,17 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     return (
         Heading(text="The stop", anchor="stop"),
         Paragraph(
-            text=f"The stop of {run.train} from {start} km/h on {rails_of(dossier.scenario)}, sampled every "
-            f"{run.sample_time * 1e3:g} ms: {run.ending.value}, after "
-            f"{distance_of_stop(dossier)} m and {numbers.decimals(figures.stopping_time, 2)} s. "
-            f"{ideal_sentence(figures)} Above {judged} km/h the mean slip is "
-            f"{numbers.decimals(figures.slip_mean, 3)} and the largest "
-            f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
-            f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
-            f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
-            "the samples it fills or vents throughout; a relay would do so in all."
+            text=rich(
+                f"The stop of {escape(run.train)} from {start} km/h on {escape(rails_of(dossier.scenario))}, sampled "
+                f"every {run.sample_time * 1e3:g} ms: {run.ending.value}, after {distance_of_stop(dossier)} m and "
+                f"{numbers.decimals(figures.stopping_time, 2)} s. {ideal_sentence(figures)} Above "
+                f"{judged} km/h the mean slip is {numbers.decimals(figures.slip_mean, 3)} and the largest "
+                f"{numbers.decimals(figures.slip_max, 3)}; a wheelset is locked for at most "
+                f"{numbers.decimals(figures.lock_time, 2)} s of the whole stop, and its valve changes its state "
+                f"{figures.valve_switches} times. In {numbers.decimals(100.0 * figures.saturated_share, 0)} % of "
+                "the samples it fills or vents throughout; a relay would do so in all. "
+                "[](#stop-traces) shows the stop over time, [](#phase-plane) its path in the planes of slip and torque."
+            )
         ),
         Figure(
             svg=picture(draw, height=8.6),
@@ -56,7 +59,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
             anchor="stop-traces",
             data=trace_name(0, run.controller),
         ),
-        *_estimate(own, None if dossier.law.own else specification.sensors),
+        *_estimate(own, None if dossier.law.own else specification.sensors, told=dossier.law.told_speed),
         *_further_brakes(run),
         Figure(
             svg=picture(
@@ -75,7 +78,7 @@ def stop(dossier: Dossier) -> tuple[Block, ...]:
     )
 
 
-def _estimate(own: Trial, sensors: Sensors | None) -> tuple[Block, ...]:
+def _estimate(own: Trial, sensors: Sensors | None, *, told: bool) -> tuple[Block, ...]:
     """Say where the law has the train speed from, and show an estimate beside the true one."""
     run, figures = own.run, own.metrics
     estimate = speed_estimate(run)
@@ -84,6 +87,8 @@ def _estimate(own: Trial, sensors: Sensors | None) -> tuple[Block, ...]:
             Paragraph(
                 text="The law is told the train speed and estimates none; a vehicle that has no radar must work it out "
                 "from its wheels, whose slides then go into it."
+                if told
+                else "The law does not go by the train speed that it is told, and tells of none that it estimates."
             ),
         )
     base, share = DISTANCE_TOLERANCE
@@ -97,16 +102,16 @@ def _estimate(own: Trial, sensors: Sensors | None) -> tuple[Block, ...]:
     )
     if sensors is not None and sensors.speed == "told" and figures.speed_error < EXACT:
         return (Paragraph(text=f"{_source(sensors)} In this stop it is told it without an error."),)
-    said = Paragraph(
-        text=f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
+    said = (
+        f"{_source(sensors)} Above {fast} km/h that speed is wrong by at most "
         f"{numbers.significant(100.0 * figures.speed_error, 2)} %; the distance that follows from it by at most "
         f"{numbers.significant(figures.distance_error, 2)} of {allowed}, {inside} what the odometry of train "
         f"control allows.{looked}"
     )
     if sensors is not None and sensors.speed == "told":
-        return (said,)
+        return (Paragraph(text=said),)
     return (
-        said,
+        Paragraph(text=(said, " ", Link(anchor="stop-estimate"), " shows both over the stop.")),
         Figure(
             svg=picture(partial(estimate_panels, run=run, estimate=estimate), height=5.4),
             caption="The train speed as the law has it (dashed) beside the true one, the relative error of the speed, "
@@ -139,6 +144,7 @@ def _further_brakes(run: Run) -> tuple[Block, ...]:
     if not shown:
         return ()
     return (
+        Paragraph(text=(Link(anchor="stop-further-brakes"), " shows what else acts in the same stop.")),
         Figure(
             svg=picture(partial(further_brakes, run=run), height=height(run)),
             caption="The same stop: what acts beside the friction brake, and how warm its pads get. Lines as in the "

@@ -19,6 +19,7 @@ from wspd_design.reporting.figures.uncertainty import (
 from wspd_design.reporting.sections.other_conditions import other_conditions
 from wspd_design.reporting.spreads import capitalized, entries_of, scaled, shown, titled, unit_of, words_of
 from wspd_design.reporting.tables import ColumnOf, build
+from wspd_design.reporting.text import references
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.key_figures import KEY_FIGURES
 from wspd_design.studies.uncertainty import Effect, Spread, Uncertainty, WorstSet
@@ -36,15 +37,19 @@ def uncertainty(dossier: Dossier) -> tuple[Block, ...]:
     if found is None:
         return ()
     entries = entries_of(dossier)
-    return (
-        Heading(text="Uncertainty", anchor=UNCERTAINTY),
-        Paragraph(text=_what_is_drawn(found)),
+    shown: tuple[Block, ...] = (
         _spreads(found),
         *_distribution(found),
         Paragraph(text=_numerical(found)),
         *_single_effects(found, entries),
         *other_conditions(found),
         *_worst_sets(found, entries),
+    )
+    anchors = [each.anchor for each in shown if isinstance(each, Figure | Table)]
+    return (
+        Heading(text="Uncertainty", anchor=UNCERTAINTY),
+        Paragraph(text=(f"{_what_is_drawn(found)} What comes of it stands in ", *references(anchors), ".")),
+        *shown,
     )
 
 

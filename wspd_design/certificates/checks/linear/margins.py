@@ -14,6 +14,7 @@ from wspd_design.certificates.records import Certificate, Problem
 from wspd_design.certificates.search.settle import finding
 from wspd_design.certificates.setting.linear_loop import law_of, on_brake, valve
 from wspd_design.certificates.setting.pulsed_valve import Times, sample_of
+from wspd_design.certificates.setting.traced_loop import poles
 from wspd_design.certificates.theorems.linear import MARGINS_THEOREM, SPEEDS, decibel
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.units import KMH
@@ -177,12 +178,19 @@ def growths_per_sample(problem: Problem) -> list[tuple[float, float]]:
     return [(magnitude(float(speed)), float(speed)) for speed in np.geomspace(*problem.speeds, SPEEDS)]
 
 
-def margins(opened: Loop) -> Margins:
-    """Margins of a loop, from its poles before and after feedback [factors, rad, s]."""
+def margins(opened: Loop, free: int = 0) -> Margins:
+    """Margins of a loop, from its poles before and after feedback [factors, rad, s].
+
+    Parameters
+    ----------
+    opened : Loop
+        The loop, sampled or continuous.
+    free : int
+        Directions along which a sampled loop rests whether it is open or closed: their poles are left out.
+    """
     import numpy as np
 
-    states = (opened.A, opened.A - opened.B @ opened.C)
-    before, after = (np.linalg.eigvals(each).astype(np.complex128) for each in states)
+    before, after = (poles(each, free) for each in (opened.A, opened.A - opened.B @ opened.C))
     sampled = bool(opened.dt)
     inside = np.abs(after) < 1.0 if sampled else after.real < 0.0
     if not inside.all():

@@ -9,8 +9,7 @@ from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
-from wspd_design.certificates.search.slip_band.search import Failed
-from wspd_design.certificates.search.slip_band.search import search as find
+from wspd_design.certificates.search.slip_band.search import Failed, largest_share
 from wspd_design.certificates.theorems.band import BOUNDED, CELLS, DIRECTIONS, SLIP_BAND, key, proved_friction
 from wspd_design.certificates.theorems.slip_band.proof import write
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
@@ -35,9 +34,9 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     if friction is None:
         return stated | {CELLS: Stated()}
     law = law_of(cast(Protection, problem.controller))
-    found = find(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
+    found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
     if isinstance(found, Failed):
-        return stated | {CELLS: Stated(effort=Effort(boxes=found.tried, undecided=found.left, cut=found.cut))}
+        return stated | {CELLS: Stated(effort=Effort(boxes=CELLS_TRIED, undecided=1.0, cut=found.cut))}
     return stated | {CELLS: Stated(proof=write(found))}
 
 
@@ -48,15 +47,19 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     axes = ("speed [km/h]", "slip [-]")
     speeds = np.array(problem.speeds) * KMH
     reference = level("reference", *axes, (float(speeds[0]), float(speeds[1])), problem.slip)
-    if certificate.status is not Status.PROVED:
+    finding = certificate.findings[CELLS]
+    if finding.status is not Status.PROVED:
         return Figures(series=(reference,))
-    windows, numbers = windows_of(problem), certificate.findings[CELLS].numbers
+    windows, numbers = windows_of(problem), finding.numbers
     x = np.array([speed * KMH for window in windows for speed in window])
-    bands = np.array([numbers[f"band {k}"] for k in range(len(windows)) for _ in range(2)])
+    above, below = (
+        np.array([numbers[f"band {k} {side}"] for k in range(len(windows)) for _ in range(2)])
+        for side in ("above", "below")
+    )
     return Figures(
         series=(
-            series("largest slip", *axes, x, problem.slip + bands),
-            series("smallest slip", *axes, x, problem.slip - bands),
+            series("largest slip", *axes, x, problem.slip + above),
+            series("smallest slip", *axes, x, problem.slip - below),
             reference,
         )
     )

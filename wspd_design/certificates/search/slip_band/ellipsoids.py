@@ -1,6 +1,7 @@
 """Search for the ellipsoid of one cell and one window, in doubles; the checker decides about it."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -8,7 +9,7 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.search.common_quadratic import unit_matrices
 from wspd_design.certificates.search.matrix_inequalities import Inequalities
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, corners
-from wspd_design.certificates.theorems.slip_band.checker import largest_error
+from wspd_design.certificates.theorems.slip_band.checker import errors, lies_in
 from wspd_design.certificates.theorems.slip_band.loop import Loop, loop_law
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
@@ -16,15 +17,31 @@ from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 if TYPE_CHECKING:
     from wspd_design.certificates.search.matrix_inequalities import Array
 
-KEPT = (0.96, 0.98)  # of the function after a sample without disturbance; the first that succeeds
-FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 12, 6  # of the loop that the inequalities begin with, and are added
-UNIT = 0.05  # rad/s, in which states are counted, so that the numbers of the inequalities are near 1
+ATTEMPTS = ((0.94, 1.0), (0.9, 1.0), (0.94, 0.25), (0.97, 1.0))
+"""What is kept of the function after a sample without disturbance, and the unit of the states; the first that succeeds.
+
+Which unit suits the solver cannot be told beforehand."""
+FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 8, 8  # of the loop that the inequalities begin with, and are added
+UNIT = 8.0  # times what disturbs most: in this the states are counted, so that the numbers are near 1
+LEAST_UNIT = 0.02  # of the tightest limit of the state
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
-LEAST_DISTURBANCE = 0.01  # of the tightest limit of the state, that the inequalities reckon with
 DIGITS = 9  # of the numbers in the proof
 
 
-def ellipsoid(law: BandLaw, loop: Loop, faster: Ellipsoid | None) -> Ellipsoid | None:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Task:
+    """What the inequalities are made of, in units of the states."""
+
+    maps: "Array"  # [A o Br] at all corners
+    center: "Array"
+    limits: tuple[tuple["Array", float], ...]  # rows, and what is left beside the center
+    unit: float  # rad/s
+    used: tuple[int, ...]  # disturbances
+
+
+def ellipsoid(
+    law: BandLaw, loop: Loop, faster: Ellipsoid | None, hints: Sequence[int]
+) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Find an ellipsoid with a small band around that of the next faster window, or none.
 
     Parameters
@@ -35,88 +52,143 @@ def ellipsoid(law: BandLaw, loop: Loop, faster: Ellipsoid | None) -> Ellipsoid |
         Numbers of cell and window.
     faster : Ellipsoid or None
         Of the next faster window.
-    """
-    import numpy as np
+    hints : sequence of int
+        Corners of the loop that mattered in another window or cell.
 
-    if not all(each.bound > 0 for each in loop.limits):
+    Returns
+    -------
+    tuple of Ellipsoid and corners, or None
+        The ellipsoid, and the corners that mattered.
+    """
+    base = _task(law, loop)
+    if any(room <= 0.0 for _, room in base.limits):
         return None
-    bounds = np.array([float(each.mid()) for each in loop.disturbances])
-    used = [k for k, bound in enumerate(bounds) if bound > 0.0]
-    room = min(float(each.bound.mid()) for each in loop.limits)
-    # Ellipsoids far smaller than the room are hard to find, and nobody needs them.
-    bounds = np.where(bounds > 0.0, np.maximum(bounds, LEAST_DISTURBANCE * room), 0.0)
-    maps = np.array([_doubles(each) for each in corners(loop_law(law), loop.ranges)])
-    maps = np.concatenate(
-        [maps[:, :, :STATES], maps[:, :, STATES:][:, :, used] * bounds[used] / UNIT], axis=2
-    )
-    inner = None if faster is None else np.array(faster.matrix, dtype=float) * UNIT**2
-    for kept in KEPT:
-        found = _solve(loop, maps, used, kept, inner)
+    for kept, unit in ATTEMPTS:
+        found = _solve(_counted_in(base, unit * _unit(base)), kept, faster, hints)
         if found is None:
             continue
         try:
-            largest_error(law, loop, found)
+            errors(law, loop, found[0])
         except Refused:
             continue
-        return found
+        if faster is None or lies_in(faster, found[0]):
+            return found
     return None
 
 
+def _task(law: BandLaw, loop: Loop) -> _Task:
+    import numpy as np
+
+    ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
+    middle, spread = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2.0
+    used = tuple(int(k) for k in np.flatnonzero(spread > 0.0))
+    maps = np.array([_doubles(each) for each in corners(loop_law(law), loop.ranges)])
+    state, disturbed = maps[:, :, :STATES], maps[:, :, STATES:]
+    # Where the loop would settle if nothing but the middle of all were there.
+    center = np.linalg.solve(np.eye(STATES) - state.mean(axis=0), disturbed.mean(axis=0) @ middle)
+    center = np.array([float(_short(each)) for each in center])
+    offset = state @ center - center + disturbed @ middle
+    columns = np.concatenate([offset[:, :, None], disturbed[:, :, used] * spread[list(used)]], axis=2)
+    limits = []
+    for limit in loop.limits:
+        row = np.array([float(each.mid()) for each in limit.row])
+        limits.append((row, float(limit.bound.mid()) - float(row @ center)))
+    maps = np.concatenate([state, columns], axis=2)
+    return _Task(maps=maps, center=center, limits=tuple(limits), unit=1.0, used=used)
+
+
+def _unit(task: _Task) -> float:
+    """Unit of the states in which the numbers of the inequalities are near 1 [rad/s]."""
+    import numpy as np
+
+    disturbed = float(np.abs(task.maps[:, :, STATES:]).sum(axis=2).max())
+    return max(UNIT * disturbed, LEAST_UNIT * min(left for _, left in task.limits))
+
+
+def _counted_in(task: _Task, unit: float) -> _Task:
+    """Count the states of a task in another unit."""
+    import numpy as np
+
+    maps = np.concatenate([task.maps[:, :, :STATES], task.maps[:, :, STATES:] / unit], axis=2)
+    limits = tuple((row, left / unit) for row, left in task.limits)
+    return replace(task, maps=maps, limits=limits, unit=unit)
+
+
 def _solve(
-    loop: Loop, maps: "Array", used: Sequence[int], kept: float, inner: "Array | None"
-) -> Ellipsoid | None:
+    task: _Task, kept: float, faster: Ellipsoid | None, hints: Sequence[int]
+) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Solve for some corners, and add those that are not met."""
     import numpy as np
 
-    chosen = list(range(0, len(maps), max(1, len(maps) // FIRST_CORNERS)))
+    count = len(task.maps)
+    chosen = list(hints) or list(range(0, count, max(1, count // FIRST_CORNERS)))
     for _ in range(ROUNDS):
-        solved = _inequalities(loop, maps[chosen], len(used), kept, inner)
+        solved = _inequalities(task, chosen, kept, faster)
         if solved is None:
             return None
-        p, shares = solved
-        left = np.array([np.linalg.eigvalsh(_left(p, shares, kept, each))[0] for each in maps])
+        p, shares, inside = solved
+        left = _left(p, shares, kept, task.maps)
         worst = [int(k) for k in np.argsort(left)[:MORE_CORNERS] if left[k] < 0.0 and int(k) not in chosen]
         if not worst:
-            return _rounded(p, shares, used, kept)
+            matter = tuple(int(k) for k in np.argsort(left)[: 2 * FIRST_CORNERS])
+            return _rounded(task, p, shares, kept, inside), matter
         chosen += worst
     return None
 
 
 def _inequalities(
-    loop: Loop, maps: "Array", disturbances: int, kept: float, inner: "Array | None"
-) -> "tuple[Array, Array] | None":
-    """Minimize the largest error over P and the shares of the disturbances."""
+    task: _Task, chosen: Sequence[int], kept: float, faster: Ellipsoid | None
+) -> "tuple[Array, Array, float] | None":
+    """Minimize the largest error over P, the shares and the multiplier of the faster ellipsoid."""
     import numpy as np
 
-    units = unit_matrices(STATES)
-    band, size = len(units) + disturbances, STATES + disturbances
-    asked = Inequalities(band + 1)
-    for each in maps:
+    units, count = unit_matrices(STATES), len(task.used) + 1
+    first, band, size = len(units), len(units) + count, STATES + count
+    asked = Inequalities(band + 2)
+    for each in task.maps[list(chosen)]:
         parts = [
             (k, _padded(kept * (1.0 - SLACK) * unit, size) - each.T @ unit @ each)
             for k, unit in enumerate(units)
         ]
-        for k in range(disturbances):
+        for k in range(count):
             share = np.zeros((size, size))
             share[STATES + k, STATES + k] = 1.0 - SLACK
-            parts.append((len(units) + k, share))
+            parts.append((first + k, share))
         asked.semidefinite(np.zeros((size, size)), parts)
-    total = np.zeros((1, band + 1))
-    total[0, len(units) : band] = 1.0
-    asked.at_most(total, np.array([1.0 - kept - 1e-9]))
+    total = np.zeros((1, band + 2))
+    total[0, first:band] = 1.0
+    asked.at_most(total, np.array([1.0 - kept - 1e-7]))
     largest = np.zeros((STATES + 1, STATES + 1))
     largest[STATES, STATES] = 1.0
     blocks = [(k, _padded(unit, STATES + 1)) for k, unit in enumerate(units)]
-    asked.semidefinite(_edge([1.0, 0.0, 0.0, 0.0], 0.0), [*blocks, (band, largest)])
-    for limit in loop.limits:
-        bound = float(limit.bound.mid()) / UNIT * (1.0 - SLACK)
-        asked.semidefinite(_edge([float(each.mid()) for each in limit.row], bound**2), blocks)
-    if inner is not None:
-        asked.semidefinite(inner * (1.0 - SLACK), [(k, -unit) for k, unit in enumerate(units)])
-    found = asked.minimize(np.eye(band + 1)[band])
+    asked.semidefinite(_edge(np.eye(STATES)[0], 0.0), [*blocks, (band, largest)])
+    for row, left in task.limits:
+        asked.semidefinite(_edge(row, (left * (1.0 - SLACK)) ** 2), blocks)
+    if faster is not None:
+        _around(asked, task, faster, band + 1)
+    found = asked.minimize(np.eye(band + 2)[band])
     if found is None:
         return None
-    return np.tensordot(found[: len(units)], units, 1), found[len(units) : band]
+    return np.tensordot(found[:first], units, 1), found[first:band], float(found[band + 1])
+
+
+def _around(asked: Inequalities, task: _Task, faster: Ellipsoid, unknown: int) -> None:
+    """Ask that the faster ellipsoid lies inside, with its multiplier as the unknown of this number."""
+    import numpy as np
+
+    inner = np.array(faster.matrix, dtype=float) * task.unit**2
+    apart = (np.array(faster.center, dtype=float) - task.center) / task.unit
+    size = float(np.trace(inner))
+    shape = np.diag([*[size**-0.5] * STATES, 1.0])  # so that all entries are near 1
+    multiplier = _padded(inner, STATES + 1)
+    multiplier[STATES, STATES] = -1.0
+    parts = [(unknown, shape @ multiplier @ shape)]
+    for k, unit in enumerate(unit_matrices(STATES)):
+        moved = np.hstack([np.eye(STATES), apart[:, None]])
+        parts.append((k, -shape @ moved.T @ unit @ moved @ shape))
+    corner = np.zeros((STATES + 1, STATES + 1))
+    corner[STATES, STATES] = 1.0
+    asked.semidefinite(corner * (1.0 - SLACK), parts)
 
 
 def _padded(matrix: "Array", size: int) -> "Array":
@@ -125,7 +197,7 @@ def _padded(matrix: "Array", size: int) -> "Array":
     return np.pad(matrix, (0, size - len(matrix)))
 
 
-def _edge(row: Sequence[float], corner: float) -> "Array":
+def _edge(row: "Array", corner: float) -> "Array":
     """[[0, row'], [row, corner]]."""
     import numpy as np
 
@@ -135,22 +207,28 @@ def _edge(row: Sequence[float], corner: float) -> "Array":
     return block
 
 
-def _left(p: "Array", shares: "Array", kept: float, m: "Array") -> "Array":
+def _left(p: "Array", shares: "Array", kept: float, maps: "Array") -> "Array":
+    """Smallest eigenvalue of what is left over at each corner."""
     import numpy as np
 
-    left = _padded(kept * p, STATES + len(shares)) - m.T @ p @ m
-    left[STATES:, STATES:] += np.diag(shares)
-    return left
+    left = _padded(kept * p, STATES + len(shares)) - np.einsum("nki,kl,nlj->nij", maps, p, maps)
+    places = np.arange(STATES, STATES + len(shares))
+    left[:, places, places] += shares
+    smallest: Array = np.linalg.eigvalsh(left)[:, 0]
+    return smallest
 
 
-def _rounded(p: "Array", shares: "Array", used: Sequence[int], kept: float) -> Ellipsoid:
+def _rounded(task: _Task, p: "Array", shares: "Array", kept: float, inside: float) -> Ellipsoid:
     every = [Fraction(0)] * len(DISTURBANCES)
-    for k, share in zip(used, shares, strict=True):
+    for k, share in zip(task.used, shares[1:], strict=True):
         every[k] = _short(float(share))
     return Ellipsoid(
-        matrix=tuple(tuple(_short(float(each) / UNIT**2) for each in row) for row in p),
+        matrix=tuple(tuple(_short(float(each) / task.unit**2) for each in row) for row in p),
+        center=tuple(_short(float(each)) for each in task.center),
         alpha=Fraction(kept),
+        offset=_short(float(shares[0])),
         shares=tuple(every),
+        inside=_short(max(inside, 0.0)),
     )
 
 

@@ -1,7 +1,10 @@
 """Search for a cover of the box by cells that have an ellipsoid in every window; nothing here is trusted."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import ellipsoid
@@ -16,23 +19,44 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     windows_of,
 )
 
+NARROWEST = 1.02  # ratio of the ends of a range that is not worth halving
+SHARES = tuple(Fraction(k, 8) for k in range(1, 9))
+CORNERS = tuple(
+    (load, inertia, 1, load, torque, fill, vent)
+    for load, torque, inertia, fill, vent in product((1, 0), (0, 1), (0, 1), (1, 0), (0, 1))
+)
+"""Ends of the ranges, in the order of the names: mass and friction together, and the largest wheel."""
+MATTERS = {"m": 1.0, "i": 1.0, "r": 1.0, "u": 1.0, "t": 0.6, "f": 0.2, "v": 0.2}
+"""How much a halved range tightens an ellipsoid; the drift of the friction spreads with mass, inertia and friction."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failed:
     """A cell that is not worth halving, or the one at which the budget ended."""
 
+    share: Fraction  # of the box
     cell: Cell
     window: int  # in which no ellipsoid was found, the slowest being 0
-    tried: int  # cells
-    left: float  # share of the box that has no ellipsoids
     cut: bool  # whether the budget ended the search
 
 
-NARROWEST = 1.02  # ratio of the ends of a range that is not worth halving
+@dataclass(slots=True)
+class Tried:
+    """How many cells were tried, and how many may be."""
+
+    most: int
+    cells: int = 0
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether none is left."""
+        return self.cells >= self.most
 
 
-def search(problem: Problem, law: BandLaw, friction: Sequence[Friction], most_cells: int) -> Proof | Failed:
-    """Find ellipsoids for the whole box.
+def largest_share(
+    problem: Problem, law: BandLaw, friction: Sequence[Friction], most_cells: int
+) -> Proof | Failed:
+    """Find ellipsoids for the largest share of the box, in steps of :data:`SHARES`; none below the first.
 
     Parameters
     ----------
@@ -45,46 +69,107 @@ def search(problem: Problem, law: BandLaw, friction: Sequence[Friction], most_ce
     most_cells : int
         That may be tried.
     """
-    box = box_of(problem)
-    middle = tuple(((low + high) / 2,) * 2 for low, high in box)
-    alone = _all_windows(problem, law, middle, friction)
-    if isinstance(alone, int):  # no cell around it can do better
-        return Failed(cell=middle, window=alone, tried=1, left=1.0, cut=False)
-    waiting, steps = [(box, 0)], ""
+    tried = Tried(most=most_cells)
+    whole = _all_windows(problem, law, box_of(problem, SHARES[-1]), friction, tried)
+    if not isinstance(whole, int):
+        return Proof(share=SHARES[-1], friction=tuple(friction), steps=".", cells=(whole,))
+    middle = _middle(box_of(problem, SHARES[-1]))
+    alone = _all_windows(problem, law, middle, friction, tried)
+    if isinstance(alone, int):  # no box around it can do better
+        return Failed(share=SHARES[-1], cell=middle, window=alone, cut=False)
+    shares = list(SHARES)
+    failed: Failed | None = None
+    while shares:
+        # All shares below one whose corners have ellipsoids may be covered, none from one that has not.
+        failed = _failing_corner(problem, law, friction, shares[-1])
+        if failed is None:
+            break
+        shares.pop()
+    while shares:
+        covered = cover(problem, law, friction, shares.pop(), tried)
+        if isinstance(covered, Proof) or tried.exhausted:
+            return covered
+        failed = covered
+    assert failed is not None
+    return failed
+
+
+def _failing_corner(
+    problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction
+) -> Failed | None:
+    """Look for a corner of the box that has no ellipsoid at the lowest speed, where it is hardest."""
+    box, window = box_of(problem, share), windows_of(problem)[0]
+    for sides in CORNERS:
+        corner = tuple((ends[side], ends[side]) for ends, side in zip(box, sides, strict=True))
+        if ellipsoid(law, loop_of(problem, law, corner, window, friction[0]), None, ()) is None:
+            return Failed(share=share, cell=corner, window=0, cut=False)
+    return None
+
+
+def cover(
+    problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction, tried: Tried
+) -> Proof | Failed:
+    """Find ellipsoids for a share of the box.
+
+    Parameters
+    ----------
+    problem : Problem
+        Closed loop and domain.
+    law : BandLaw
+        Numbers of the law.
+    friction : sequence of Friction
+        Proved bounds for each window.
+    share : Fraction
+        Of each range, around its nominal value.
+    tried : Tried
+        Counts the cells.
+    """
+    waiting, steps = [box_of(problem, share)], ""
     cells: list[tuple[Ellipsoid, ...]] = []
-    tried = 0
     while waiting:
-        cell, depth = waiting.pop()
-        tried += 1
-        found = _all_windows(problem, law, cell, friction)
+        cell = waiting.pop()
+        found = _all_windows(problem, law, cell, friction, tried)
         if not isinstance(found, int):
             steps, cells = f"{steps}.", [*cells, found]
             continue
         letter = _widest(cell)
-        if letter is None or tried >= most_cells:
-            left = 2.0**-depth + sum(2.0**-deep for _, deep in waiting)
-            return Failed(cell=cell, window=found, tried=tried, left=left, cut=letter is not None)
+        middle = _middle(cell)
+        alone = found if letter is None else _all_windows(problem, law, middle, friction, tried)
+        if isinstance(alone, int):  # no cell around it can do better
+            return Failed(share=share, cell=cell if letter is None else middle, window=alone, cut=False)
+        if letter is None or tried.exhausted:
+            return Failed(share=share, cell=cell, window=found, cut=True)
         steps += letter
-        waiting += [(half, depth + 1) for half in halved(cell, letter)[::-1]]
-    return Proof(friction=tuple(friction), steps=steps, cells=tuple(cells))
+        waiting += halved(cell, letter)[::-1]
+    return Proof(share=share, friction=tuple(friction), steps=steps, cells=tuple(cells))
 
 
 def _all_windows(
-    problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction]
+    problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction], tried: Tried
 ) -> tuple[Ellipsoid, ...] | int:
     """Return the ellipsoids of a cell, or the window in which none was found."""
+    tried.cells += 1
     windows = windows_of(problem)
     found: list[Ellipsoid] = []
+    hints: tuple[int, ...] = ()
     for k in reversed(range(len(windows))):  # with the speed the train loses the room that venting has
         loop = loop_of(problem, law, cell, windows[k], friction[k])
-        each = ellipsoid(law, loop, found[-1] if found else None)
+        each = ellipsoid(law, loop, found[-1] if found else None, hints)
         if each is None:
             return k
-        found.append(each)
+        found.append(each[0])
+        hints = each[1]
     return tuple(found[::-1])
 
 
+def _middle(cell: Cell) -> Cell:
+    return tuple(((low + high) / 2,) * 2 for low, high in cell)
+
+
 def _widest(cell: Cell) -> str | None:
-    widths = {letter: high / low for letter, (low, high) in zip(LETTERS, cell, strict=True)}
-    letter = max(LETTERS, key=lambda each: widths[each])
-    return letter if widths[letter] > NARROWEST else None
+    widths = {
+        letter: MATTERS[letter] * math.log(high / low)
+        for letter, (low, high) in zip(LETTERS, cell, strict=True)
+        if high / low > NARROWEST
+    }
+    return max(widths, key=lambda each: widths[each]) if widths else None

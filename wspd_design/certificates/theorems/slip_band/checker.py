@@ -1,23 +1,23 @@
 """Decide about a proof of a band of slip: ellipsoids that no sample leads out of, in balls.
 
-For each cell and window the proof states P, a share for each disturbance and alpha. With X'PX <= 1 and disturbances
-within their bounds, the next state has X+'PX+ <= alpha X'PX + sum of the shares <= 1 if
+For each cell and window the proof states a center c, P, alpha, a share for the way of the center and one for each
+disturbance. What disturbs lies between two bounds, so d = m + r z with -1 <= z <= 1, and X+ - c = A (X - c) + o + B r z
+with o = A c - c + B m. With (X - c)'P(X - c) <= 1 the next state has at most alpha + sum of the shares <= 1 if
 
-    diag(alpha P, shares) - [A B]' P [A B]
+    diag(alpha P, share of o, shares) - [A o B r]' P [A o B r]
 
 is positive definite at all corners. Windows follow each other from the fastest to the slowest; the ellipsoid of a
 faster one lies in that of the next. Between samples the error is bounded by the same state, with the torque in between.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from fractions import Fraction
 from itertools import product
 from typing import Any
 
 from wspd_design.certificates.kernel.arb import Ball, above, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.slip_loop import STATES, Matrix, corners, wanted
+from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Matrix, Pair, corners, wanted
 from wspd_design.certificates.theorems.slip_band.loop import Loop, loop_law, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, read
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -50,8 +50,8 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
 def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work) -> dict[str, float]:
     windows = windows_of(problem)
     found = read(proof, len(windows))
-    waiting, cells = [box_of(problem)], iter(found.cells)
-    bands = [0.0] * len(windows)
+    waiting, cells = [box_of(problem, found.share)], iter(found.cells)
+    bands: list[Pair | None] = [None] * len(windows)
     for step in found.steps:
         if not waiting:
             raise Refused("the steps go on after the last cell")
@@ -66,20 +66,23 @@ def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work)
         for k, (window, friction, each) in enumerate(zip(windows, found.friction, ellipsoids, strict=True)):
             work.spend(WORK)
             loop = loop_of(problem, law, cell, window, friction)
-            bands[k] = max(bands[k], above(largest_error(law, loop, each)))
-            if slower is not None and not is_positive(_difference(each.matrix, slower.matrix)):
+            bands[k] = _joined(bands[k], errors(law, loop, each))
+            if slower is not None and not lies_in(each, slower):
                 raise Refused(
                     f"an ellipsoid at {window[1] * 3.6:.0f} km/h does not lie in the next slower one"
                 )
             slower = each
     if waiting or next(cells, None) is not None:
         raise Refused("steps and cells do not match")
-    radius = problem.span("wheel radius")[1]
+    radius = point(problem.span("wheel radius")[1])
     return {
+        "share": float(found.share),
         "cells": float(len(found.cells)),
         **{
-            f"band {k}": above(point(band) * point(radius) / point(window[0]))
+            f"band {k} {side}": above(radius * largest / point(window[0]))
             for k, (band, window) in enumerate(zip(bands, windows, strict=True))
+            if band is not None
+            for side, largest in zip(("below", "above"), (band[1], -band[0]), strict=True)
         },
         **{
             f"{name} {k} {end}": value
@@ -90,34 +93,40 @@ def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work)
     }
 
 
+def _joined(one: Pair | None, other: Pair) -> Pair:
+    return other if one is None else (one[0].min(other[0]), one[1].max(other[1]))
+
+
 def _unknown() -> Sequence[Any]:
     raise Refused("a step is unknown")
 
 
-def largest_error(law: BandLaw, loop: Loop, found: Ellipsoid) -> Ball:
-    """Return a bound of the error of the wheel speed, also between samples [rad/s], or refuse the ellipsoid."""
+def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
+    """Return between what the error of the wheel speed stays, also between samples [rad/s], or refuse the ellipsoid."""
     p = [[point(each) for each in row] for row in found.matrix]
     if not is_positive(p):
         raise Refused("a matrix P is not positive definite")
-    shares = [point(each) for each in found.shares]
-    if found.alpha < 0 or any(each < 0 for each in found.shares) or found.alpha + sum(found.shares) > 1:
+    shares = (found.offset, *found.shares)
+    if found.alpha < 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:
         raise Refused("alpha and the shares of the disturbances add up to more than 1")
-    used = [k for k, each in enumerate(loop.disturbances) if not each.is_zero()]
+    spread = [(high - low) / 2 for low, high in loop.disturbances]
+    used = [k for k, each in enumerate(spread) if not each.is_zero()]
     if any(found.shares[k] == 0 for k in used):
         raise Refused("a disturbance has no share")
-    numbers = loop_law(law)
-    for matrix in corners(numbers, loop.ranges):
-        if not is_positive(
-            _left_over(p, point(found.alpha), [shares[k] for k in used], _scaled(matrix, loop, used))
-        ):
+    center = [point(each) for each in found.center]
+    kept = [point(each) for each in (found.offset, *(found.shares[k] for k in used))]
+    for matrix in corners(loop_law(law), loop.ranges):
+        columns = _about(matrix, loop, center, spread, used)
+        if not is_positive(_left_over(p, point(found.alpha), kept, columns)):
             raise Refused("a sample may lead out of an ellipsoid")
     for limit in loop.limits:
-        if not limit.bound > 0 or not reaches(p, limit.row) < limit.bound:
+        there = sum((a * c for a, c in zip(limit.row, center, strict=True)), point(0))
+        if not there + reaches(p, limit.row) < limit.bound:
             raise Refused(f"the state may go beyond {limit.what}")
-    largest = _within(numbers, loop, p)
-    if not largest < loop.widest:
+    lowest, highest = _within(loop_law(law), loop, p, center)
+    if not highest < loop.widest or not -loop.widest < lowest:
         raise Refused("the error may leave the range in which the slope of the friction is bounded")
-    return largest
+    return lowest, highest
 
 
 def reaches(p: Sequence[Sequence[Ball]], row: Sequence[Ball]) -> Ball:
@@ -128,10 +137,28 @@ def reaches(p: Sequence[Sequence[Ball]], row: Sequence[Ball]) -> Ball:
     return sum((each * solved[k, 0] for k, each in enumerate(row)), point(0)).sqrt()
 
 
-def _within(law: Any, loop: Loop, p: Sequence[Sequence[Ball]]) -> Ball:
+def lies_in(faster: Ellipsoid, slower: Ellipsoid) -> bool:
+    """Whether one ellipsoid lies in another: 1 - (X-c)'P(X-c) of the slower one is at least t times that of the faster.
+
+    With D the center of the faster one less that of the slower one, that is [[t Pf - Ps, -Ps D], [., 1 - t - D'Ps D]]
+    positive definite.
+    """
+    t = slower.inside
+    apart = [a - b for a, b in zip(faster.center, slower.center, strict=True)]
+    pulled = [sum(a * b for a, b in zip(row, apart, strict=True)) for row in slower.matrix]
+    rows = [
+        [*(t * f - s for f, s in zip(*pair, strict=True)), -pull]
+        for *pair, pull in zip(faster.matrix, slower.matrix, pulled, strict=True)
+    ]
+    corner = 1 - t - sum(a * b for a, b in zip(apart, pulled, strict=True))
+    return t >= 0 and is_positive([*rows, [*(-pull for pull in pulled), corner]])
+
+
+def _within(law: LoopLaw, loop: Loop, p: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> Pair:
     """Bound the error at every instant of a sample, by parts of it in which phi and psi are enclosed."""
     h, (low, high) = law.sample_time, loop.ranges.secants
-    asked, largest = wanted(law), point(0)
+    asked, lowest, highest = wanted(law), center[0], center[0]
+    known, command, _, mean, _, _ = (a.union(b) for a, b in loop.disturbances)
     for part in range(PARTS):
         begin, end = h * part / PARTS, h * (part + 1) / PARTS
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]
@@ -141,19 +168,29 @@ def _within(law: Any, loop: Loop, p: Sequence[Sequence[Ball]]) -> Ball:
         ):
             way = [each - (k == 3) for k, each in enumerate(asked[:STATES])]
             row = [phi * (k == 0) - g * psi * ((k == 3) + gone * each) for k, each in enumerate(way)]
-            known, command, _, mean, _, _ = loop.disturbances
-            disturbed = g * psi * (gone * (abs(asked[STATES]) * known + command) + mean)
-            largest = largest.max(reaches(p, row) + disturbed)
-    return largest
+            # A part of the sample has seen at most the drift of the whole one.
+            disturbed = -g * psi * (gone * (asked[STATES] * known + command) - mean.union(point(0)))
+            there = sum((a * c for a, c in zip(row, center, strict=True)), point(0)) + disturbed
+            reach = reaches(p, row)
+            lowest, highest = lowest.min(there - reach), highest.max(there + reach)
+    return lowest, highest
 
 
 def _psi(q: Ball, span: Ball) -> Ball:
     return (q * span).expm1() / q
 
 
-def _scaled(matrix: Matrix, loop: Loop, used: Sequence[int]) -> list[list[Ball]]:
-    """[A B], each disturbance in terms of its bound."""
-    return [[*row[:STATES], *(row[STATES + k] * loop.disturbances[k] for k in used)] for row in matrix]
+def _about(
+    matrix: Matrix, loop: Loop, center: Sequence[Ball], spread: Sequence[Ball], used: Sequence[int]
+) -> list[list[Ball]]:
+    """[A o Br]: a sample about the center, with what disturbs about its middle."""
+    middle = [(low + high) / 2 for low, high in loop.disturbances]
+    found = []
+    for row, c in zip(matrix, center, strict=True):
+        state, disturbed = row[:STATES], row[STATES:]
+        offset = sum((a * b for a, b in zip((*state, *disturbed), (*center, *middle), strict=True)), -c)
+        found.append([*state, offset, *(disturbed[k] * spread[k] for k in used)])
+    return found
 
 
 def _left_over(
@@ -191,12 +228,6 @@ def is_positive(matrix: Sequence[Sequence[Any]]) -> bool:
                 a[i][j] = a[i][j] - factor * a[j][k]
                 a[j][i] = a[i][j]
     return True
-
-
-def _difference(
-    one: Sequence[Sequence[Fraction]], other: Sequence[Sequence[Fraction]]
-) -> list[list[Fraction]]:
-    return [[a - b for a, b in zip(*rows, strict=True)] for rows in zip(one, other, strict=True)]
 
 
 def _least(balls: Sequence[Ball]) -> Ball:

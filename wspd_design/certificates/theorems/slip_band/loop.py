@@ -14,11 +14,12 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import LoopLaw, LoopRanges, Pair, parts_of, wanted
 from wspd_design.certificates.theorems.slip_band.statement import (
     FASTEST_LOSS,
-    JERK_FACTOR,
+    JERK_FACTORS,
     SLIP_AROUND,
     BandLaw,
     Cell,
 )
+from wspd_design.model.generated.slip_loop import lateness
 from wspd_design.model.slip import wheels
 from wspd_design.parameters.loading import constants
 
@@ -37,7 +38,7 @@ class Friction(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
-    """A linear function of the state and what its magnitude must not exceed."""
+    """A linear function of the state and what it must not exceed."""
 
     what: str
     row: Row
@@ -49,7 +50,7 @@ class Loop:
     """The loop in one cell and one window."""
 
     ranges: LoopRanges
-    disturbances: tuple[Ball, ...]  # bounds [rad/s]
+    disturbances: tuple[Pair, ...]  # lowest and highest [rad/s]
     limits: tuple[Limit, ...]
     widest: Ball  # rad/s, error up to which the slope is bounded
 
@@ -81,37 +82,37 @@ def loop_of(
         problem.speeds[0]
     )
     braking = point(constants().gravity) * mu0 * used + drag
-    if not braking < point(FASTEST_LOSS) or not braking >= 0:
+    if not braking < point(FASTEST_LOSS) or not braking > 0:
         raise Refused("the train may lose more speed in a sample than the windows overlap, or gain some")
     slowing = ball(Fraction(0), Fraction(above(braking)))
     friction_torque = 2 * radius * normal * ball(*friction.level) - damping * rolling * speed
-    fading = abs(2 * radius * normal * slip * ball(*friction.fading)) + damping * rolling
+    fading = -2 * radius * normal * slip * ball(*friction.fading)
     secants = (2 * radius * radius * normal * ball(*friction.slope) - damping) / inertia
     pads = torque / point(law.full_torque)
     seen_inertia = pads * point(law.inertia)  # true torque over the number Y h counts it in
     held = (friction_torque + inertia * rolling * slowing) / seen_inertia
-    drag_slope = _resistance(problem, speed, 1) / mass
-    jerk = point(JERK_FACTOR) * braking * (wheels(vehicle) * fading / (2 * radius * mass) + drag_slope)
-    drift = (fading * braking + inertia * rolling * jerk) / seen_inertia
-    turning = rolling * jerk
-    # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2 at most.
+    # While the train slows down the friction at the reference rises, and with it the deceleration.
+    rising = wheels(vehicle) * fading / (2 * radius * mass) - _resistance(problem, speed, 1) / mass
+    jerk = ball(*JERK_FACTORS) * braking * rising
+    drift = h * h * ((fading + damping * rolling) * braking + inertia * rolling * jerk) / seen_inertia
+    turning = -h * h * rolling * jerk
+    # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2.
     share = -(-h / point(law.acceleration_time)).expm1()
-    known = _upper(h * turning * h * (1 / share - point(Fraction(1, 2))))
+    known = turning * (1 / share - point(Fraction(1, 2)))
+    left_out = (
+        h / point(law.inertia) * _dead_band(law, slip * speed / radius) * ball(Fraction(-1), Fraction(1))
+    )
+    low, high = _ends(secants)
+    # The share of a steady drift that a sample has seen; a later weight sees more of it.
+    half_way = (1 - lateness(high * h)).union(1 - lateness(low * h))
     return Loop(
         ranges=LoopRanges(
-            secants=_ends(secants),
+            secants=(low, high),
             effects=_ends(seen_inertia / inertia),
             parts=_parts(law, fill, vent),
             seen=_seen(law),
         ),
-        disturbances=(
-            known,
-            _upper(h / point(law.inertia) * _dead_band(law, slip * speed / radius)),
-            _upper(h * h * drift),
-            _upper(h * h * drift),
-            _upper(h * h * turning),
-            _upper(h * h * turning / 2),
-        ),
+        disturbances=tuple(map(_ends, (known, left_out, drift, drift * half_way, turning, turning / 2))),
         limits=_limits(law, held, rolling * slowing, known),
         widest=point(SLIP_AROUND) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
     )
@@ -129,13 +130,14 @@ def _limits(law: BandLaw, held: Ball, falling: Ball, known: Ball) -> tuple[Limit
     falling : ball
         Deceleration of the reference [rad/s2].
     known : ball
-        Bound of the error of that acceleration in the law, times h [rad/s].
+        Error of that acceleration in the law, times h [rad/s].
     """
     h, inertia = point(law.sample_time), point(law.inertia)
     least_held, most_held = _ends(h * held)
     full = h * point(law.full_torque) / inertia
     least = point(LEAST) * full
     asked = wanted(loop_law(law))
+    lowest, highest = _ends(asked[4] * known)
     venting, filling = (-h / point(each) for each in (law.vent_time, law.fill_time))
     vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one sample
     ahead, zero = point(law.ahead), point(0)
@@ -143,27 +145,27 @@ def _limits(law: BandLaw, held: Ball, falling: Ball, known: Ball) -> tuple[Limit
     return (
         Limit(
             what="what venting takes off in a sample",
-            row=(*asked[:3], asked[3] - 1 + vent),
-            bound=vent * least_held - abs(asked[4]) * known,
+            row=tuple(-each for each in (*asked[:3], asked[3] - 1 + vent)),
+            bound=vent * least_held + lowest,
         ),
         Limit(
             what="what filling adds in a sample",
             row=(*asked[:3], asked[3] - 1 + fill),
-            bound=fill * (full - most_held) - abs(asked[4]) * known,
+            bound=fill * (full - most_held) - highest,
         ),
         Limit(
             what="the beginning of the braking curve",
             row=(point(1), zero, ahead, -ahead),
-            bound=slew - ahead * known,
+            bound=slew - _upper(ahead * known),
         ),
         Limit(
             what="the observed friction above 0",
-            row=(zero, zero, point(1), zero),
+            row=(zero, zero, point(-1), zero),
             bound=least_held - _upper(h * falling),
         ),
         Limit(
             what="the torque that is left",
-            row=(zero, zero, zero, point(1)),
+            row=(zero, zero, zero, point(-1)),
             bound=least_held - least / venting.exp(),
         ),
         Limit(

@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 
-FORMAT = "wspd-slip-band/1"
+FORMAT = "wspd-slip-band/2"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -19,56 +19,77 @@ Square: TypeAlias = tuple[tuple[Fraction, ...], ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ellipsoid:
-    """X'PX <= 1, what of it is left after a sample, and what each disturbance adds at most."""
+    """(X - c)'P(X - c) <= 1, and the numbers that show that no sample leads out of it."""
 
     matrix: Square  # P [s2/rad2]
-    alpha: Fraction
-    shares: tuple[Fraction, ...]  # in the order of the disturbances
+    center: tuple[Fraction, ...]  # c [rad/s]
+    alpha: Fraction  # of the function that is left after a sample
+    offset: Fraction  # what the way of the center adds at most
+    shares: tuple[Fraction, ...]  # what each disturbance adds at most, in the order of the disturbances
+    inside: Fraction  # multiplier that shows that the ellipsoid of the next faster window lies in this one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof:
-    """Bounds of the friction for each window, the slowest first, how the box is halved, and the cells in preorder."""
+    """Share of the box, bounds of the friction for each window, the slowest first, and the cells in preorder.
 
+    A step is the letter of the range that it halves, or a full stop: a cell, of which the ellipsoids are given.
+    """
+
+    share: Fraction
     friction: tuple[Friction, ...]
     steps: str
     cells: tuple[tuple[Ellipsoid, ...], ...]  # for each cell one for each window
 
 
 def write(found: Proof) -> dict[str, Any]:
-    """Write a proof as JSON."""
+    """Write a proof as JSON; what a cell has in common with an earlier one is written once."""
+    ellipsoids: dict[Ellipsoid, int] = {}
+    cells = [[ellipsoids.setdefault(each, len(ellipsoids)) for each in cell] for cell in found.cells]
     return {
         "format": FORMAT,
+        "share": text(found.share),
         "friction": [[text(Fraction(end)) for ends in each for end in ends] for each in found.friction],
         "steps": found.steps,
-        "cells": [[_written(each) for each in cell] for cell in found.cells],
+        "ellipsoids": [_written(each) for each in ellipsoids],
+        "cells": cells,
     }
 
 
 def _written(each: Ellipsoid) -> list[str]:
-    return [text(value) for value in (*(each.matrix[i][j] for i, j in ENTRIES), each.alpha, *each.shares)]
+    numbers = (*(each.matrix[i][j] for i, j in ENTRIES), *each.center, each.alpha, each.offset, *each.shares)
+    return [text(value) for value in (*numbers, each.inside)]
 
 
 def read(proof: Mapping[str, Any], windows: int) -> Proof:
     """Read a proof about a number of windows, or refuse it."""
-    if proof.keys() != {"format", "friction", "steps", "cells"} or proof["format"] != FORMAT:
+    if proof.keys() != {"format", "share", "friction", "steps", "ellipsoids", "cells"} or (
+        proof["format"] != FORMAT
+    ):
         raise Refused(f"the proof does not have the format {FORMAT}")
-    steps, cells = proof["steps"], proof["cells"]
+    steps, cells, ellipsoids = proof["steps"], proof["cells"], proof["ellipsoids"]
     if not isinstance(steps, str) or not isinstance(cells, list) or not 0 < len(cells) <= MOST_CELLS:
         raise Refused("the proof has no steps or no cells, or too many")
     if len(steps) != 2 * len(cells) - 1:
         raise Refused("steps and cells do not match")
+    if not isinstance(ellipsoids, list) or len(ellipsoids) > windows * len(cells):
+        raise Refused("the proof has no ellipsoids, or too many")
+    (share,) = _numbers([proof["share"]], 1)
+    if not 0 < share <= 1:
+        raise Refused("the share of the box must be above 0, and 1 at most")
+    known = [_ellipsoid(_numbers(each, len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids]
     return Proof(
+        share=share,
         friction=tuple(_friction(_numbers(each, 6)) for each in _list(proof["friction"], windows)),
         steps=steps,
-        cells=tuple(
-            tuple(
-                _ellipsoid(_numbers(each, len(ENTRIES) + 1 + len(DISTURBANCES)))
-                for each in _list(cell, windows)
-            )
-            for cell in cells
-        ),
+        cells=tuple(tuple(_one_of(known, each) for each in _list(cell, windows)) for cell in cells),
     )
+
+
+def _one_of(known: Sequence[Ellipsoid], place: object) -> Ellipsoid:
+    if not isinstance(place, int) or isinstance(place, bool) or not 0 <= place < len(known):
+        raise Refused("a cell names an ellipsoid that is not there")
+    return known[place]
 
 
 def _friction(numbers: Sequence[Fraction]) -> Friction:
@@ -84,8 +105,15 @@ def _friction(numbers: Sequence[Fraction]) -> Friction:
 def _ellipsoid(numbers: Sequence[Fraction]) -> Ellipsoid:
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
-    count = len(ENTRIES)
-    return Ellipsoid(matrix=rows, alpha=numbers[count], shares=tuple(numbers[count + 1 :]))
+    center, rest = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
+    return Ellipsoid(
+        matrix=rows,
+        center=tuple(center),
+        alpha=rest[0],
+        offset=rest[1],
+        shares=tuple(rest[2:-1]),
+        inside=rest[-1],
+    )
 
 
 def _list(written: object, count: int) -> list[Any]:

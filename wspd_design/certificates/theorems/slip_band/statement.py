@@ -20,13 +20,14 @@ LETTERS = "mirutfv"
 """Which range a step halves, in the order of :data:`NAMES`; a full stop is a cell."""
 Cell: TypeAlias = tuple[Interval, ...]
 
-JERK_FACTOR = Fraction(
-    5, 4
-)  # -, how much faster the deceleration changes than with all wheels at the reference
+JERK_FACTORS = (
+    Fraction(3, 4),
+    Fraction(5, 4),
+)  # -, how fast the deceleration rises, of what it does with all wheels at the reference
 FASTEST_LOSS = Fraction(10)  # m/s2, more than adhesion and resistance take off
-WIDEST_WINDOW = 1.6  # ratio of its speeds
+WIDEST_WINDOW = 1.3  # ratio of its speeds
 SLIP_AROUND = Fraction(
-    1, 40
+    3, 100
 )  # -, on either side of the reference at the lowest speed, where the slope is bounded
 
 
@@ -80,10 +81,13 @@ def law_of(law: Protection) -> BandLaw:
     )
 
 
-def box_of(problem: Problem) -> Cell:
-    """Return the whole box."""
-    spans = [problem.span(name) for name in NAMES]
-    return tuple((Fraction(low), Fraction(high)) for low, high in spans)
+def box_of(problem: Problem, share: Fraction) -> Cell:
+    """Return a share of each range of the box, around the nominal values."""
+    box = []
+    for name in NAMES:
+        (low, high), middle = map(Fraction, problem.span(name)), Fraction(problem.nominal(name))
+        box.append((middle + share * (low - middle), middle + share * (high - middle)))
+    return tuple(box)
 
 
 def halved(cell: Cell, letter: str) -> tuple[Cell, Cell]:
