@@ -32,8 +32,8 @@ from wspd_design.reporting.requirement_words import (
     reached,
     title,
 )
-from wspd_design.reporting.sections.assumptions import ASSUMPTIONS, deciding_words
-from wspd_design.reporting.sections.checks import check_anchor, is_bad_news
+from wspd_design.reporting.sections.assumptions import deciding_words
+from wspd_design.reporting.sections.checks import ASSUMPTIONS, check_anchor, is_bad_news
 from wspd_design.reporting.sections.requirements import REQUIREMENTS, decided_by, stops_of
 from wspd_design.reporting.sections.robustness import ROBUSTNESS, what_fails
 from wspd_design.reporting.tables import ColumnOf, build
