@@ -45,7 +45,7 @@ class Band:
 
 @pytest.fixture(scope="module", autouse=True)
 def few_checks():
-    """Run the checks that take no time, and few drawn sets: what a report says about a law is tested, not its proofs."""
+    """Run the checks that take no time, and few drawn sets: what is said about a law is tested, not its proofs."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(dossier_module, "verify", partial(suite.verify, only=QUICK))
         patch.setattr(dossier_module, "uncertainty", partial(uncertainty, sets=16))
