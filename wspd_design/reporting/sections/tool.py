@@ -22,8 +22,8 @@ _USES = (
         "Rules and searches that choose gains",
         "A wrong gain comes into the software of the brake where it is copied from the design.",
         "T3, or T2 where the gains are verified in the target by other means",
-        "Each gain stands in design.toml with the rule that chose it. The checks and stops of this report judge the "
-        "law with these numbers, whoever chose them.",
+        "Each gain stands in the file of its design with the rule that chose it. The checks and stops of this "
+        "report judge the law with these numbers, whoever chose them.",
     ),
 )
 """Use, what a fault could do, class, and what controls the fault here."""
