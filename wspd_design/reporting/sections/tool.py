@@ -55,8 +55,10 @@ def tool(dossier: Dossier) -> tuple[Block, ...]:
             "*Known limits.* They stand under [](#limits). No code is exported, so that no generated code is part of "
             "this statement."
         ),
-        "Qualification. None: nobody outside of this project has validated the program, and no measured stop was "
-        "compared with it.",
+        rich(
+            "*Qualification.* None: nobody outside of this project has validated the program, and no measured stop was "
+            "compared with it."
+        ),
     )
     return (
         Heading(text="Tool statement", anchor=TOOL),
