@@ -202,7 +202,7 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
 
 
 LONG_TEXT = 25  # characters
-SHORT_ROWS, SHORT_TEXT = 12, 1500  # rows and characters of a table that fits any page
+SHORT_ROWS, SHORT_TEXT = 8, 1000  # rows and characters of a table that fits any page
 
 
 def _length(cell: Text | Cell) -> int:
