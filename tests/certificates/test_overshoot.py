@@ -78,7 +78,7 @@ def test_a_protection_keeps_to_its_own_reference_on_all_wheelsets(make_problem, 
 def test_rules_of_the_industry_are_judged_too(make_problem, make_controller, name):
     found = overshoot.CHECK.run(make_problem(make_controller(name), rail=WET))
     assert found.status is Status.REFUTED
-    assert "the law names none that it holds" in found.explanation
+    assert "The law names no slip that it holds." in found.explanation
 
 
 @pytest.fixture

@@ -277,6 +277,49 @@ def test_nothing_changes_against_itself(wspd, folder):
     assert said.endswith(": nothing differs.")
 
 
+def _hostile(folder):
+    """Yield pages that no report is, each with what is said about it."""
+    report = folder / "report.html"
+    record = json.loads(attached_files(report)["report.json"])
+    yield "<html></html>", "nothing is attached"
+    page = report.read_text(encoding="utf-8")
+    yield (
+        page.replace('download="my loco.toml"', 'download="../../my loco.toml"'),
+        "is not the name of an attachment",
+    )
+    command = "wspd report design.toml --vehicle er24pc --rail polach-wet"
+    for words, why in (
+        ("rm -rf /", "must begin with"),
+        (f"{command} --output /etc/passwd --force", "has '--output', which replay does not take"),
+        (f"{command} --patch '20 m /etc/x.toml'", "/etc/x.toml"),
+        ("wspd report /tmp/evil.py:Law --vehicle er24pc --rail polach-wet", "whose Python code is attached"),
+        (
+            "wspd report design.toml --vehicle ../x.toml --rail polach-wet",
+            "'../x.toml', which is not attached",
+        ),
+    ):
+        yield (folder / changed(report, "command.txt", words)).read_text(encoding="utf-8"), why
+    for made_at in ("yesterday", "2026-01-01", None, 3):
+        record["provenance"]["made_at"] = made_at
+        planted = changed(report, "report.json", json.dumps(record))
+        yield (folder / planted).read_text(encoding="utf-8"), "does not state made_at"
+    for name, content, why in (
+        ("report.json", "[" * 100_000, "is not JSON that can be read"),
+        ("design.toml", "schema = 3", "is not a design of this version"),
+        ("my loco.toml", "mass = 'heavy'", "my loco.toml"),
+        ("template.toml", "logo = '/etc/passwd'", "is neither PNG nor SVG"),
+    ):
+        yield (folder / changed(report, name, content)).read_text(encoding="utf-8"), why
+
+
+def test_a_hostile_report_is_refused_in_one_sentence(wspd, folder):
+    for page, why in list(_hostile(folder)):
+        (folder / "hostile.html").write_text(page, encoding="utf-8")
+        code, said = wspd("report", "--replay", "hostile.html")
+        assert (code, why in said, "Traceback" in said) == (2, True, False), said
+    assert sorted(each.name for each in folder.parent.glob("*.toml")) == []
+
+
 @pytest.mark.parametrize("content", ["", "{}", "[" * 100_000, '{"schema": 3}', '{"schema": "wspd-stop/2"}'])
 def test_what_is_no_older_report_is_refused(wspd, folder, content):
     (folder / "old.json").write_text(content)

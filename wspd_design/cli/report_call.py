@@ -1,7 +1,7 @@
 """The command of a report over its own attachments: written beside them, read from there, and run in their folder."""
 
 import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import chdir
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -17,8 +17,9 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.design.catalog import is_design_file
 from wspd_design.design.records import Design
+from wspd_design.design.requirements import Requirements
 from wspd_design.design.selection import named_design
-from wspd_design.design.stop_requirements import named_requirements
+from wspd_design.design.stop_requirements import StopRequirements, named_requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.studies.inputs import (
     COMMAND,
@@ -237,10 +238,27 @@ def check_names(call: ReportCall, inputs: Sequence[InputFile]) -> None:
     there = {each.name for each in inputs}
     if call.diff is not None and call.diff not in there:
         raise UserError(f"{COMMAND} names {call.diff!a}, which is not attached; {_AS_WRITTEN}")
-    for name in (call.law, call.vehicle, *call.rails, *filter(None, [call.requirements])):
+    _check_attached((call.law, call.vehicle, *call.rails, *filter(None, [call.requirements])), inputs)
+
+
+def _check_attached(names: Iterable[str], inputs: Sequence[InputFile]) -> None:
+    there = {each.name for each in inputs}
+    for name in names:
         path = file_of(name)
         if path is not None and str(path) not in there:
             raise UserError(f"{COMMAND} names {name!a}, which is not attached; {_AS_WRITTEN}")
+
+
+def _wanted(
+    written: str | None, case: Case, inputs: Sequence[InputFile]
+) -> StopRequirements | Requirements | None:
+    """Read the requirements that a call names; their rails are shipped or attached, too."""
+    if written is None:
+        return None
+    found = named_requirements(written, case.specification)
+    if isinstance(found, Requirements):
+        _check_attached((*found.rails, *(rail for rail, _ in found.stable_within)), inputs)
+    return found
 
 
 def compute(
@@ -304,8 +322,6 @@ def compute(
             written="" if isinstance(made, Design) else call.law,
             plant=call.plant,
             stored=stored,
-            requirements=None
-            if call.requirements is None
-            else named_requirements(call.requirements, case.specification),
+            requirements=_wanted(call.requirements, case, inputs),
             progress=progress,
         )

@@ -201,7 +201,7 @@ CRITERIA: dict[str, Criterion] = {
         ),
         Criterion(
             name="slip_rms",
-            title="slip off its reference once reached, rms",
+            title="slip off its reference, rms",
             dimension="ratio",
             figure="held_slip_rms",
             over_stops=_largest,
@@ -210,7 +210,7 @@ CRITERIA: dict[str, Criterion] = {
         ),
         Criterion(
             name="slip_overshoot",
-            title="overshoot of the slip once its reference is reached",
+            title="overshoot of the slip",
             dimension="ratio",
             figure="slip_overshoot",
             over_stops=_largest,
@@ -219,7 +219,7 @@ CRITERIA: dict[str, Criterion] = {
         ),
         Criterion(
             name="slip_undershoot",
-            title="undershoot of the slip, likewise",
+            title="undershoot of the slip",
             dimension="ratio",
             figure="slip_undershoot",
             over_stops=_largest,

@@ -11,6 +11,7 @@ from wspd_design.parameters.schema import Kind
 from wspd_design.reporting.blocks import Attachment
 from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.checks import certificate_files
+from wspd_design.reporting.sections.robustness import what_fails
 from wspd_design.reporting.template import BLANK, Template, template_text
 from wspd_design.simulation.records import Run
 from wspd_design.simulation.traces import on_a_grid, trace_name, traces
@@ -40,6 +41,7 @@ def attachments(dossier: Dossier, made_at: datetime, template: Template = BLANK)
             description="all numbers of this report",
         ),
         *_traces(dossier),
+        *_faulted_traces(dossier),
         *_sets(dossier),
         *certificate_files(dossier),
         *_template_file(template),
@@ -101,9 +103,26 @@ def _traces(dossier: Dossier) -> tuple[Attachment, ...]:
             media_type="text/csv",
             content=trace_text(trial.run, OTHER_INTERVAL if number else OWN_INTERVAL),
             description=f"traces of the stop of {trial.run.controller}, a row every "
-            f"{1e3 * (OTHER_INTERVAL if number else OWN_INTERVAL):g} ms; wspd simulate -o writes every step",
+            f"{1e3 * (OTHER_INTERVAL if number else OWN_INTERVAL):g} ms"
+            f"{'' if number else '; wspd simulate -o writes every step'}",
         )
         for number, trial in enumerate(dossier.trials)
+    )
+
+
+def _faulted_traces(dossier: Dossier) -> tuple[Attachment, ...]:
+    """Return the stops of the design with a fault, or on patches, as tables."""
+    found = () if dossier.robustness is None else dossier.robustness.stops
+    return tuple(
+        Attachment(
+            name=f"{'patches' if each.fault is None else f'fault-{each.fault.kind}'}.csv",
+            media_type="text/csv",
+            content=trace_text(each.run, OTHER_INTERVAL),
+            description=f"traces of the stop of the design, {what_fails(each)}, a row every "
+            f"{1e3 * OTHER_INTERVAL:g} ms",
+        )
+        for each in found
+        if each.run is not None
     )
 
 

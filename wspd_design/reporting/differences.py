@@ -5,7 +5,19 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-VERDICTS = ("status", "met", "holds", "ending", "stopped", "decision", "accepted", "search_cut", "sensitive")
+VERDICTS = (
+    "verdict",
+    "outcome",
+    "status",
+    "met",
+    "holds",
+    "ending",
+    "stopped",
+    "decision",
+    "accepted",
+    "search_cut",
+    "sensitive",
+)
 """Keys of what a report judges; everything else that is not a number is words."""
 
 _NAMES = ("name", "controller", "requirement", "id", "subject", "words", "check", "text", "speed_m_s")

@@ -96,6 +96,7 @@ def _image(page: bytes, glyphs: dict[str, str]) -> FormulaImage:
     root.set("width", f"{width / _FONT_SIZE:.3f}em")
     root.set("height", f"{height / _FONT_SIZE:.3f}em")
     root.set("aria-hidden", "true")
+    root.set("fill", "currentColor")
     return FormulaImage(svg=_markup(root), depth=round(depth / _FONT_SIZE, 2))
 
 
@@ -105,16 +106,26 @@ def _short(name: str) -> str:
 
 
 def _tidy(root: ElementTree.Element) -> None:
-    """Drop groups without content, and digits of places that no one sees."""
+    """Drop groups without content or with one glyph, and digits of places that no one sees."""
     for parent in list(root.iter()):
         for child in list(parent):
             if child.tag == f"{_SVG}g" and not len(child):
                 parent.remove(child)
+            elif child.tag == f"{_SVG}g" and _holds_one_glyph(child):
+                (glyph,) = child
+                glyph.attrib |= child.attrib
+                if glyph.get("fill") == "#000000":
+                    del glyph.attrib["fill"]  # that of the image
+                parent[list(parent).index(child)] = glyph
         if "transform" in parent.attrib:
             parent.set(
                 "transform",
                 _LONG_NUMBER.sub(lambda found: f"{float(found[0]):.2f}", parent.attrib["transform"]),
             )
+
+
+def _holds_one_glyph(group: ElementTree.Element) -> bool:
+    return len(group) == 1 and group[0].tag == f"{_SVG}use" and "transform" not in group[0].attrib
 
 
 def _markup(root: ElementTree.Element) -> str:

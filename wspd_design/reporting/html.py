@@ -12,7 +12,7 @@ from wspd_design.reporting.figure_style import GRID, INK, MUTED, SERIES
 from wspd_design.reporting.numbering import CONTENTS, PROVENANCE, Numbering, formulas, number
 from wspd_design.reporting.svg import inline
 from wspd_design.reporting.template import ROLES
-from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, Text, plain, printable, spans
+from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, Text, plain, printable, spans, unbroken
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -131,7 +131,7 @@ class _Writer:
                     _depth_class(image.depth), markup(image.svg), printable(spoken)
                 )
             case _:
-                return markup("{}").format(printable(str(span)))
+                return markup("{}").format(unbroken(printable(str(span))))
 
     def equation(self, equation: Equation) -> "Markup":
         """Return the image of a displayed formula."""

@@ -32,7 +32,18 @@ from wspd_design.reporting.figure_style import FONT_FAMILY
 from wspd_design.reporting.numbering import PROVENANCE, NumberedBlock, number
 from wspd_design.reporting.svg import size
 from wspd_design.reporting.template import ROLES, Template
-from wspd_design.reporting.text import CodeSpan, Emphasis, Inline, Link, Math, Text, plain, printable, spans
+from wspd_design.reporting.text import (
+    CodeSpan,
+    Emphasis,
+    Inline,
+    Link,
+    Math,
+    Text,
+    plain,
+    printable,
+    spans,
+    unbroken,
+)
 
 
 def render_pdf(document: Document) -> bytes:
@@ -173,7 +184,7 @@ def _span(span: Inline) -> dict[str, str]:
         case Link():
             return {"kind": "link", "anchor": span.anchor, "text": printable(span.text)}
         case str():
-            return {"kind": "plain", "text": printable(span)}
+            return {"kind": "plain", "text": unbroken(printable(span))}
 
 
 def _status(status: Status) -> dict[str, str]:
@@ -191,7 +202,7 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
 
 
 LONG_TEXT = 25  # characters
-SHORT_ROWS, SHORT_TEXT = 12, 1500  # rows and characters of a table that fits any page
+SHORT_ROWS, SHORT_TEXT = 8, 1000  # rows and characters of a table that fits any page
 
 
 def _length(cell: Text | Cell) -> int:

@@ -47,9 +47,18 @@ def finding(row: Requirement) -> Cell | str:
     return Cell(status=_SHOWN[row.outcome]) if row.outcome in _SHOWN else "told"
 
 
+def title(row: Requirement) -> str:
+    """Write what is asked for, with the figure of a perfect law where that is known."""
+    return (
+        row.title
+        if row.perfect is None
+        else f"{row.title} (a perfect law: {numbers.decimals(row.perfect, 3)})"
+    )
+
+
 def against_limit(row: Requirement) -> str:
     """Say in a clause what was reached and what is allowed."""
     if row.reached is None:
         return f"{row.title}: {row.remark or row.outcome.value}"
-    perfect = "" if row.perfect is None else f", a perfect law has {figure(row, row.perfect)}"
+    perfect = "" if row.perfect is None else f", a perfect law has {numbers.decimals(row.perfect, 3)}"
     return f"{row.title}: {figure(row, row.reached)}, allowed {limit(row)}{perfect}"

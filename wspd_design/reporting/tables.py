@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Generic, Literal, TypeAlias, TypeVar
 
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Cell, Column, Table
-from wspd_design.reporting.text import Text
+from wspd_design.reporting.text import Text, unbroken
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,7 +71,9 @@ def build(
         For links to it.
     """
     return Table(
-        columns=tuple(Column(title=each.title, unit=each.unit, align=each.align) for each in columns),
+        columns=tuple(
+            Column(title=each.title, unit=unbroken(each.unit), align=each.align) for each in columns
+        ),
         rows=tuple(tuple(column.cell(item) for column in columns) for item in items),
         caption=caption,
         anchor=anchor,

@@ -139,6 +139,17 @@ def printable(text: str) -> str:
     return _WORDS_FROM_THE_RIGHT.sub("\N{FIRST STRONG ISOLATE}\\g<0>\N{POP DIRECTIONAL ISOLATE}", text)
 
 
+_UNIT_BEHIND = re.compile(
+    r"(?<=[\d∞]) (?=(?:km/h|m/s²|m/s|1/s|kN|MN|N|kg|bar|MPa|Pa|GPa|mm|ms|m|s|t|dB|Hz|rad/s|%)(?![\w]))"
+    r"|(?<=[kM]N) (?=m\b)|(?<=\bN) (?=[ms]\b)|(?<=N m) (?=s\b)|(?<=kg) (?=m²)|(?<=\d) (?=±)|(?<=±) (?=\d)"
+)
+
+
+def unbroken(text: str) -> str:
+    """Keep numbers and their units on one line."""
+    return _UNIT_BEHIND.sub("\N{NO-BREAK SPACE}", text)
+
+
 _SPOKEN = (
     (r'"', ""),
     (r"\b(dot|hat|tilde|overline)\(([^()]*)\)", r"\2 \1"),

@@ -177,12 +177,13 @@ class Draw:
 
 
 def within_bounds(*parameters: ParameterSet) -> tuple[Draw, ...]:
-    """Draw every number of parameter files that has bounds evenly within them."""
+    """Draw every number of parameter files that has bounds evenly within them; those of a laden state stay."""
     return tuple(
         Draw(name=f"{each.kind}.{name}", distribution=Uniform(low=limits[0], high=limits[1]))
         for each in parameters
         for name, entry in each.entries.items()
         if (limits := entry.bounds) is not None and limits[0] < limits[1] and isinstance(entry.value, float)
+        if not name.startswith("laden.")  # which the empty vehicle does not have
     )
 
 

@@ -1,7 +1,7 @@
 """The same design where something fails or the rail changes: one sensor lost, one valve stuck, patches of leaves."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from wspd_design.controllers.protocol import Law
@@ -34,6 +34,7 @@ class FaultedStop:
     stopped: bool
     distance: float  # m
     locks: tuple[float, ...]  # s, longest of each wheelset above the judging speed
+    run: Run | None = field(default=None, repr=False)  # for its traces
 
     @property
     def own_lock(self) -> float:
@@ -116,6 +117,7 @@ def robustness(
             stopped=run.ending is Ending.STOPPED,
             distance=run.totals.distance,
             locks=longest_locks(run),
+            run=run,
         )
 
     found = []

@@ -128,7 +128,11 @@ def requirement_inputs(
     path = None if written is None else file_of(written)
     if path is None:
         return ()
-    rails = wanted.rails if isinstance(wanted, Requirements) else ()
+    rails = (
+        (*wanted.rails, *(rail for rail, _ in wanted.stable_within))
+        if isinstance(wanted, Requirements)
+        else ()
+    )
     return (
         _file(path, "the requirements, a file of its own"),
         *(file for rail in rails for file in parameter_inputs("rail", rail)),

@@ -273,7 +273,7 @@ def _loop(found: Mapping[str, Certificate], growth: Growth | None) -> Requiremen
     return Requirement(
         id="",
         name="loop",
-        title="growth of a deviation per sample, near the reference",
+        title="growth of a deviation per sample",
         limit=1.0 if growth is not None and speaks else None,
         reached=growth.factor if growth is not None and speaks else None,
         outcome=outcome,

@@ -22,6 +22,7 @@ FULL = ReportCall(
     sample_time="20 ms",
     seed=12,
     template="template.toml",
+    requirements="line 7.toml",
     sensors=SensorOptions(speed_source="wheels", accelerometer=False, pressure_sensors=True),
     disturbances=StopOptions(
         patch=["50 m leaves.toml", "80.5 m polach-dry"],
@@ -39,6 +40,7 @@ def test_a_command_is_read_as_it_was_written():
     assert plain.text == "wspd report design.toml --vehicle er24pc --rail polach-wet"
     assert read_call(plain.text) == plain
     assert "template" not in FULL.simulation
+    assert "requirements" not in FULL.simulation
     assert FULL.simulation.startswith("wspd simulate 'my law.py:Law' --vehicle")
 
 
@@ -83,7 +85,7 @@ def test_nothing_else_is_a_command(words):
 
 
 @pytest.mark.parametrize("name", ["/etc/x.toml", "../x.toml", "a/x.toml", "x.toml", "/tmp/x.py:Law"])
-@pytest.mark.parametrize("field", ["law", "vehicle", "rail"])
+@pytest.mark.parametrize("field", ["law", "vehicle", "rail", "requirements"])
 def test_only_attached_files_are_opened(name, field):
     call = ReportCall(vehicle="er24pc", rail="polach-wet")
     with pytest.raises(UserError, match="which is not attached"):

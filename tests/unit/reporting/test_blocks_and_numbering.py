@@ -29,7 +29,7 @@ def document() -> Document:
 
 
 def test_statuses_differ_without_color() -> None:
-    assert len({(status.sign, status.word) for status in Status}) == len(Status) == 16
+    assert len({(status.sign, status.word) for status in Status}) == len(Status) == 18
     assert {status.tone for status in Status} == {"good", "bad", "open", "neutral"}
 
 

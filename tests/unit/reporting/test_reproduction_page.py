@@ -11,7 +11,7 @@ from wspd_design.reporting.blocks import Cell, Figure, Heading, KeyNumbers, Stat
 from wspd_design.reporting.blocks import Verdict as Judgment
 from wspd_design.reporting.figure_style import figure_style, new_figure
 from wspd_design.reporting.figures import paper
-from wspd_design.reporting.numbering import number
+from wspd_design.reporting.numbering import number, unreferenced
 from wspd_design.reporting.paper.verdicts import summary, verdict
 from wspd_design.reporting.reproduction import reproduction_document
 from wspd_design.reporting.text import plain
@@ -32,8 +32,9 @@ def _table(document, anchor):
     return next(each for each in document.blocks if isinstance(each, Table) and each.anchor == anchor)
 
 
-def test_links_and_anchors_are_good(document):
+def test_links_and_anchors_are_good_and_everything_is_referred_to(document):
     number(document)
+    assert unreferenced(document) == ()
 
 
 def test_every_figure_of_the_paper_is_there_and_spoken(document):

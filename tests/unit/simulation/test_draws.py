@@ -95,6 +95,14 @@ def test_every_number_of_a_stop_can_be_drawn(scenario):
     assert "stop.seed" not in names
 
 
+def test_the_load_of_an_empty_vehicle_is_not_drawn():
+    coach = load_entries("vehicle", "coach")
+    assert coach.entries["laden.mass"].bounds is not None
+    names = [draw.name for draw in within_bounds(coach)]
+    assert "vehicle.mass" in names
+    assert [name for name in names if "laden" in name] == []
+
+
 def test_bounds_of_files_become_draws():
     parameters = load_entries("vehicle", "er24pc"), load_entries("rail", "polach-wet")
     draws = {draw.name: draw.distribution.ends for draw in within_bounds(*parameters)}

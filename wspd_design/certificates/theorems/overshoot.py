@@ -19,6 +19,7 @@ from wspd_design.certificates.theorems.simulated_stop import (
 )
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, hypothesis
 from wspd_design.certificates.theorems.whom import every_law
+from wspd_design.codegen.sampled import places_told
 from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import acts_on_vehicle
 from wspd_design.parameters.units import KMH
@@ -100,7 +101,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         claim=f"In the simulated stop of {problem.controller.name} from {problem.speeds[1] * KMH:.3g} km/h on "
         f"{problem.rail.name}, with nominal parameters, sampling, valves and wheel lock ({plant_of(problem)}), "
-        f"the slip gets to {REACHED:.0%} of its reference and from then on exceeds the reference by at most "
+        f"the slip gets to {REACHED:.0%} of {_which(problem)} and from then on exceeds it by at most "
         f"{problem.slip_tolerance:g} down to {JUDGING_SPEED * KMH:.0f} km/h, and the train stops.",
         status=status,
         explanation=_said(problem, status, numbers),
@@ -122,6 +123,14 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     )
 
 
+def _which(problem: Problem) -> str:
+    """Name the slip by which the stop is judged: that of the specification if the law names none."""
+    law = problem.controller
+    if slip_reference_of(law) is not None or places_told(law)[1] >= 0:
+        return "its reference"
+    return f"slip {problem.slip:g}"
+
+
 def _said(problem: Problem, status: Status, numbers: Mapping[str, float]) -> str:
     if status is Status.VACUOUS:
         return (
@@ -131,15 +140,15 @@ def _said(problem: Problem, status: Status, numbers: Mapping[str, float]) -> str
     if not numbers:
         return "No stop is stated."
     ends = "the train stops" if numbers["stopped"] else "the train does not stop"
-    named = slip_reference_of(problem.controller) is not None or acts_on_vehicle(problem.controller)
-    which = "its reference" if named else f"slip {problem.slip:g}, since the law names none that it holds,"
+    which = _which(problem)
     if not numbers["wheelsets"]:
         idle = "though the brake could bring it there: the law brakes too little"
-        return f"The slip never gets to {which.rstrip(',')}, {idle}; {ends}."
+        return f"The slip never gets to {which}, {idle}; {ends}."
+    unnamed = "" if which == "its reference" else " The law names no slip that it holds."
     return (
         f"The slip first gets to {which} after {numbers['reached']:.2f} s; from then on it exceeds it by at most "
         f"{numbers['overshoot']:.3f} and falls short of it by at most {numbers['undershoot']:.3f}, "
-        f"{numbers['rms']:.3f} rms; {ends}."
+        f"{numbers['rms']:.3f} rms; {ends}.{unnamed}"
     )
 
 

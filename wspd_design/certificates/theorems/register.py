@@ -224,11 +224,6 @@ def ids_of(clause: str) -> tuple[str, ...]:
     return tuple(each.id for each in REGISTER if any(words in clause for words in each.clauses))
 
 
-def cited(clause: str) -> str:
-    """Write a clause with the ids of the assumptions that it states."""
-    return f"{clause} ({', '.join(ids_of(clause))})" if ids_of(clause) else clause
-
-
 def stated_in(clauses: Iterable[str]) -> tuple[str, ...]:
     """Return the ids of the assumptions that some clauses state, in the order of the register."""
     found = {found for clause in clauses for found in ids_of(clause)}

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Map
 from wspd_design.reporting.figure_style import SERIES
-from wspd_design.reporting.figures.series import LABEL_WIDTH, axis_label
+from wspd_design.reporting.figures.series import LABEL_WIDTH, axis_label, plain_symbols
 from wspd_design.reporting.numbers import quantity, significant
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
             markeredgewidth=0.8,
             clip_on=False,
             zorder=4,
-            label=f"tightest: {_spot(shown, shown.worst)}",
+            label=plain_symbols(f"tightest: {_spot(shown, shown.worst)}"),
         )
     if shown.limit is not None:
         halo: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground=HALO)]
@@ -75,7 +75,9 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
     if handles:
         figure.legend(handles=handles, loc="outside upper left", ncols=3)
     axes.grid(visible=False)
-    axes.set(xscale="log", xlabel=shown.x_label, ylabel=textwrap.fill(shown.y_label, LABEL_WIDTH))
+    axes.set(
+        xscale="log", xlabel=shown.x_label, ylabel=textwrap.fill(plain_symbols(shown.y_label), LABEL_WIDTH)
+    )
     low, high = shown.x[0], shown.x[-1]
     axes.xaxis.set_major_locator(FixedLocator([tick for tick in TICKS if low <= tick <= high]))
     axes.xaxis.set_minor_locator(NullLocator())

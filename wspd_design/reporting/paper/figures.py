@@ -6,6 +6,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures import paper
 from wspd_design.reporting.figures.drawing import KILO, KMH, picture
+from wspd_design.reporting.text import references
 from wspd_design.studies.paper.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS, StopFigures
 from wspd_design.studies.paper.reproduction import Reproduction
 
@@ -24,7 +25,15 @@ DRY, WET = zip(CONSTANT_RAILS, FALLING_RAILS, strict=True)
 
 def figures(made: Reproduction) -> tuple[Block, ...]:
     """Return the section with the paper's figures."""
-    found: list[Block] = [
+    drawn: list[Figure] = [_friction(made)]
+    for controller, number in SLIP_FIGURES.items():
+        drawn += [_slips(made, controller, number), _velocities(made, controller, number + 1)]
+    drawn += [
+        *(_torques(made, rails, number) for rails, number in ((DRY, 17), (WET, 18))),
+        *(_inputs(made, rails, number) for rails, number in ((DRY, 19), (WET, 20))),
+        _forces(made),
+    ]
+    return (
         Heading(text="The figures of Section 7", anchor="figures"),
         Paragraph(
             text="Our stops with the quantities and axes of the paper, (a) dry and (b) wet. Left: the friction that "
@@ -32,16 +41,9 @@ def figures(made: Reproduction) -> tuple[Block, ...]:
             "meet the rail; the paper counts the other way, so that its wheelsets 3 and 4 are in front. Its "
             "wheelset 1, of Figures 17 to 20, is taken to be our last one, wheelset 4."
         ),
-        _friction(made),
-    ]
-    for controller, number in SLIP_FIGURES.items():
-        found += [_slips(made, controller, number), _velocities(made, controller, number + 1)]
-    found += [
-        *(_torques(made, rails, number) for rails, number in ((DRY, 17), (WET, 18))),
-        *(_inputs(made, rails, number) for rails, number in ((DRY, 19), (WET, 20))),
-        _forces(made),
-    ]
-    return tuple(found)
+        Paragraph(text=("They are ", *references([each.anchor for each in drawn]), ".")),
+        *drawn,
+    )
 
 
 def _friction(made: Reproduction) -> Figure:

@@ -35,8 +35,9 @@ def parts(made: Reproduction) -> tuple[Block, ...]:
             text=rich(
                 "The paper gives the command no unit. In kN m the printed weights of ±1 are nothing beside a brake "
                 "of 60 kN m, and the adaptation has to make them large; as a share of the maximum torque they "
-                "suffice from the start. Both readings end as the same relay on the sign of $s$: the columns show "
-                "the distance with each part taken out."
+                "suffice from the start. Both readings end as the same relay on the sign of $s$: "
+                "[](#parts-distances) has the distance with each part taken out, [](#parts-adaptation) what the "
+                "adaptation arrives at."
             )
         ),
         build(

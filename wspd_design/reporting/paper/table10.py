@@ -22,15 +22,17 @@ def table10(made: Reproduction) -> tuple[Block, ...]:
                 "Stops from 120 km/h on the rails `table10-dry` and `table10-wet`, with the calibrated rule "
                 "tables and the printed gains of the adaptive fuzzy law. The friction, the rotating inertia "
                 "and the rule tables were fitted to this table, as the paper prints too little to compute it: "
-                "agreement confirms the fit, and that one set of numbers explains all of them."
+                "agreement confirms the fit, and that one set of numbers explains all of them: [](#table10-numbers)."
             )
         ),
         _numbers(rows),
         Heading(text="Build-up and plateau", anchor="build-up", level=2),
         Paragraph(
-            text="Distance d and time t are those of a dead time, the lag 2 d/v0 − t, and a constant deceleration "
-            "after it, the plateau v0/(2 (t − d/v0)). They part the build-up of the brake from the use of "
-            "adhesion, in the paper's numbers as in ours."
+            text=rich(
+                "Distance $d$ and time $t$ are those of a dead time, the lag $2 d\\/v_0 - t$, and a constant "
+                "deceleration after it, the plateau $v_0\\/(2 (t - d\\/v_0))$. They part the build-up of the brake "
+                "from the use of adhesion, in the paper's numbers as in ours: [](#table10-parts)."
+            )
         ),
         _parts(made),
         Heading(text="The torque integral is a momentum balance", anchor="momentum", level=2),
@@ -43,17 +45,20 @@ def table10(made: Reproduction) -> tuple[Block, ...]:
             anchor="momentum-balance",
         ),
         Paragraph(
-            text="No controller appears in it, and the resistance hardly does: the range of all rows is "
-            f"{numbers.decimals(100.0 * relative_range(printed), 2)} % as printed and "
-            f"{numbers.decimals(100.0 * relative_range(ours), 2)} % here. The balance holds in our stops to "
-            f"{numbers.significant(max(abs(each.metrics.momentum_residual) for each in rows), 2)}."
+            text=rich(
+                "No controller appears in it, and the resistance hardly does: the range of all rows of "
+                f"[](#table10-momentum) is {numbers.decimals(100.0 * relative_range(printed), 2)} % as printed and "
+                f"{numbers.decimals(100.0 * relative_range(ours), 2)} % here. The balance holds in our stops to "
+                f"{numbers.significant(max(abs(each.metrics.momentum_residual) for each in rows), 2)}."
+            )
         ),
         _momentum(rows),
         Heading(text="The ranking on other friction", anchor="ranking", level=2),
         Paragraph(
             text=rich(
                 "The same controllers on the friction of Polach (2005), which the paper cites and which falls "
-                "with the sliding speed, and beside ideal stops, simulations of a brake that holds the slip."
+                "with the sliding speed, and beside ideal stops, simulations of a brake that holds the slip: "
+                "[](#distances)."
             )
         ),
         _ranking(made),

@@ -9,7 +9,7 @@ from wspd_design.reporting.blocks import Block, Equation, Figure, Heading, Parag
 from wspd_design.reporting.figures.drawing import KILO, picture
 from wspd_design.reporting.figures.track import milli_unit, profiles, spectra
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import rich
+from wspd_design.reporting.text import Link, rich
 from wspd_design.studies.paper.disturbances import LOAD_SPREAD, TrackChannel, largest_change
 from wspd_design.studies.paper.reproduction import Reproduction
 
@@ -43,7 +43,8 @@ def track(made: Reproduction) -> tuple[Block, ...]:
             text=rich(
                 "The rows of Table 9 are the high level of ERRI B176, one-sided in rad/m. The row that the paper "
                 "calls lateral is the cross level, an angle, and its $beta_2$ has lost its leading 1; the leading "
-                "coefficients $gamma_4$ and $gamma_6$ of 1 are missing in print."
+                "coefficients $gamma_4$ and $gamma_6$ of 1 are missing in print. [](#table9) has them all; "
+                "[](#track-spectra) and [](#track-profiles) show the track that is made from them."
             )
         ),
         _coefficients(made),
@@ -74,17 +75,23 @@ def track(made: Reproduction) -> tuple[Block, ...]:
         ),
         Heading(text="What the disturbances change", anchor="disturbances", level=2),
         Paragraph(
-            text="The paper adds a vibration of the pads and an irregular track to its stops. How a wheel load "
-            "follows the track depends on a suspension that the paper does not print. Here the load of each wheelset "
-            "has the shape of the vertical profile, as each axle meets it, with an assumed standard deviation of "
-            f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. The ideal "
-            f"stop changes by {ideal} m at most: what the track costs a brake that holds the best slip. "
-            "A real law switches at other "
-            f"moments than before, and its distance changes by up to {calm} m"
-            + (
-                f", that of a sensitive loop by up to {sensitive} m."
-                if any(d.spread for d in changes)
-                else "."
+            text=(
+                "The paper adds a vibration of the pads and an irregular track to its stops. How a wheel load "
+                "follows the track depends on a suspension that the paper does not print. Here the load of each "
+                "wheelset has the shape of the vertical profile, as each axle meets it, with an assumed standard "
+                "deviation of "
+                f"{100.0 * LOAD_SPREAD:.0f} %, inside the 3 to 5 % of multibody simulations. The ideal "
+                f"stop changes by {ideal} m at most: what the track costs a brake that holds the best slip. "
+                "A real law switches at other "
+                f"moments than before, and its distance changes by up to {calm} m"
+                + (
+                    f", that of a sensitive loop by up to {sensitive} m."
+                    if any(d.spread for d in changes)
+                    else "."
+                ),
+                " ",
+                Link(anchor="disturbances-table"),
+                " lists the changes.",
             )
         ),
         _disturbances(made),

@@ -16,7 +16,7 @@ from wspd_design.reporting.blocks import (
     Verdict,
 )
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import Link
+from wspd_design.reporting.text import Link, rich
 from wspd_design.studies.paper.conclusions.records import Conclusion
 from wspd_design.studies.paper.conclusions.records import Verdict as Finding
 from wspd_design.studies.paper.evidence import FALLING_RAILS
@@ -70,7 +70,7 @@ def summary(made: Reproduction) -> tuple[Block, ...]:
                 note="largest change of the distance on four rails",
             ),
             KeyNumber(
-                label="Place of the law on Polach's rails",
+                label="Place on Polach's rails",
                 value=" and ".join(places),
                 note=f"of {len(names)}, dry and wet, by distance",
             ),
@@ -103,9 +103,11 @@ def conclusions(made: Reproduction) -> tuple[Block, ...]:
     found: list[Block] = [
         Heading(text="What holds and what does not", anchor="conclusions"),
         Paragraph(
-            text="Each conclusion is judged by a stated rule from the numbers of this page alone; the claims are "
-            "the paper's in our words. The proof of Section 6 is judged elsewhere, by the checks of "
-            "every design report."
+            text=rich(
+                "Each conclusion of [](#conclusions-table) is judged by a stated rule from the numbers of this page "
+                "alone; the claims are the paper's in our words. The proof of Section 6 is judged elsewhere, by the "
+                "checks of every design report."
+            )
         ),
     ]
     for topic in dict.fromkeys(each.topic for each in made.conclusions):

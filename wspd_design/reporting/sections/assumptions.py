@@ -4,13 +4,10 @@ from wspd_design.certificates.theorems.register import REGISTER, Registered, sta
 from wspd_design.plants.planar import Planar
 from wspd_design.reporting.blocks import Block, Heading, Paragraph, Status
 from wspd_design.reporting.formula_text import with_formulas
-from wspd_design.reporting.sections.checks import status_of
+from wspd_design.reporting.sections.checks import ASSUMPTIONS, status_of
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import rich
 from wspd_design.studies.dossier import Dossier
-
-ASSUMPTIONS = "assumptions"
-"""Anchor of the section."""
 
 
 def assumptions(dossier: Dossier) -> tuple[Block, ...]:

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from wspd_design.certificates.kernel.file import certificate_text, file_name
-from wspd_design.certificates.records import Certificate, Map, Proof
+from wspd_design.certificates.quantities import QUANTITIES, STATE
+from wspd_design.certificates.records import Certificate, Map, Point, Proof
 from wspd_design.certificates.records import Status as Finding
-from wspd_design.certificates.theorems.register import cited
+from wspd_design.certificates.theorems.register import ids_of
 from wspd_design.certificates.theorems.simulated_stop import TRACKING
 from wspd_design.plants.quarter import Quarter
 from wspd_design.reporting import numbers
@@ -43,6 +44,8 @@ from wspd_design.reporting.text import Emphasis, Inline, Link, Text, references,
 from wspd_design.studies.dossier import Dossier
 
 MAP_HEIGHT = 2.6  # in
+ASSUMPTIONS = "assumptions"
+"""Anchor of the register of the assumptions."""
 POLE_MAP, STOP_TRACES = (
     "pole-map",
     "stop-traces",
@@ -285,10 +288,10 @@ class _Shown:
         open_share = f"{numbers.significant(100.0 * certificate.undecided, 2)} % of the box"
         rows: tuple[tuple[str, Text], ...] = (
             ("Margin", "" if certificate.margin is None else numbers.margin(certificate.margin)),
-            ("Tightest point", with_formulas(numbers.point(certificate.worst_point))),
+            ("Tightest point", with_formulas(numbers.point(_uncertain(certificate)))),
             ("Witness", _witness(certificate)),
             ("Domain", self._domain(certificate)),
-            ("Assumptions", self._words("; ".join(map(cited, certificate.assumptions)))),
+            ("Assumptions", self._assumed(certificate)),
             ("Does not say", self._not_said(certificate)),
             ("Left open", open_share if certificate.undecided else ""),
             ("Search", "ended by its budget" if certificate.cut else ""),
@@ -307,6 +310,15 @@ class _Shown:
             return f"as the claim says; no number varies, held: {', '.join(certificate.held)}"
         return ""
 
+    def _assumed(self, certificate: Certificate) -> Text:
+        """Return the assumptions in the words of the theorem, each with its ids in the register."""
+        found: list[Inline] = []
+        for clause in certificate.assumptions:
+            found += ["; " if found else "", *self._words(clause)]
+            if ids := ids_of(clause):
+                found += [" (", Link(anchor=ASSUMPTIONS, text=", ".join(ids)), ")"]
+        return tuple(found)
+
     def _not_said(self, certificate: Certificate) -> Text:
         """Return the sentences about what nobody may conclude."""
         found: list[Inline] = []
@@ -319,6 +331,14 @@ def _size(certificate: Certificate) -> str:
     """Say how many numbers with bounds vary and how many are held."""
     varied = numbers.count(len(certificate.varied), "number") + " with bounds varied"
     return f"{varied}, {len(certificate.held)} held" if certificate.held else varied
+
+
+def _uncertain(certificate: Certificate) -> tuple[Point, ...]:
+    """Return the tightest point without the numbers that are exactly known."""
+    open_ones = {*STATE, *certificate.varied, *certificate.held}
+    return tuple(
+        each for each in certificate.worst_point if each.name in open_ones or each.name not in QUANTITIES
+    )
 
 
 def _witness(certificate: Certificate) -> Text:

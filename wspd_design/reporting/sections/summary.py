@@ -23,9 +23,17 @@ from wspd_design.reporting.blocks import (
 )
 from wspd_design.reporting.decision_words import next_words, produced_by, rank, scope, weakest
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.requirement_words import against_limit, figure, finding, limit, margin, reached
-from wspd_design.reporting.sections.assumptions import ASSUMPTIONS, deciding_words
-from wspd_design.reporting.sections.checks import check_anchor, is_bad_news
+from wspd_design.reporting.requirement_words import (
+    against_limit,
+    figure,
+    finding,
+    limit,
+    margin,
+    reached,
+    title,
+)
+from wspd_design.reporting.sections.assumptions import deciding_words
+from wspd_design.reporting.sections.checks import ASSUMPTIONS, check_anchor, is_bad_news
 from wspd_design.reporting.sections.requirements import REQUIREMENTS, decided_by, stops_of
 from wspd_design.reporting.sections.robustness import ROBUSTNESS, what_fails
 from wspd_design.reporting.tables import ColumnOf, build
@@ -44,6 +52,8 @@ _SPREADS = {
     "speed_error": "speed_error",
 }
 """Figures that the spread over the bounds has under these names."""
+
+_SLIP = "Slip: each wheelset once it has 90 % of its reference. "
 
 _VERDICTS = {
     "accepted": Status.ACCEPTED,
@@ -109,7 +119,7 @@ def summary(dossier: Dossier) -> tuple[Block, ...]:
         Definitions(rows=_decision(dossier)),
         _requirements(dossier),
         _ladder(dossier.certificates, dossier),
-        Definitions(rows=(Definition(term="Made by", text=produced_by(dossier)),)),
+        Definitions(rows=_beside(dossier)),
     )
 
 
@@ -212,9 +222,17 @@ def _decision(dossier: Dossier) -> tuple[Definition, ...]:
         ("Weakest link", weakest(dossier)),
         ("Next", next_words(dossier)),
         ("Against the others", rank(dossier)),
+    )
+    return tuple(Definition(term=term, text=text) for term, text in rows if text)
+
+
+def _beside(dossier: Dossier) -> tuple[Definition, ...]:
+    """Return what is to be known beside the requirements."""
+    rows: tuple[tuple[str, Text], ...] = (
         ("Refuted, not required", _told(dossier)),
         ("With a fault", _fails_with(dossier)),
         ("Assumptions that decide", _assumed(dossier)),
+        ("Made by", produced_by(dossier)),
     )
     return tuple(Definition(term=term, text=text) for term, text in rows if text)
 
@@ -287,7 +305,7 @@ def _requirements(dossier: Dossier) -> Table:
         judgment.rows,
         (
             ColumnOf(title="", read=lambda each: each.id),
-            ColumnOf(title="Requirement", read=lambda each: each.title),
+            ColumnOf(title="Requirement", read=title),
             ColumnOf(title="Limit", flush_right=True, read=limit),
             ColumnOf(title="Reached", flush_right=True, read=reached),
             ColumnOf(title="Margin", flush_right=True, read=margin),
@@ -296,8 +314,8 @@ def _requirements(dossier: Dossier) -> Table:
             ColumnOf(title="Finding", read=finding),
         ),
         caption=f"What is asked for ({judgment.name}) and what is reached on {stops_of(judgment)}; margin over the "
-        f"limit, positive where it is kept. {numbers.count(unverified, 'limit')} not verified against a source. "
-        "Told: not required.",
+        f"limit, positive where it is kept. {_SLIP if any(each.name == 'slip_rms' for each in judgment.rows) else ''}"
+        f"{numbers.count(unverified, 'limit')} not verified against a source. Told: not required.",
         anchor="requirements-table",
     )
 

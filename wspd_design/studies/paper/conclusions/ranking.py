@@ -1,6 +1,6 @@
 """Conclusions from the order of the stops in Table 10."""
 
-from wspd_design.studies.paper.conclusions.records import Conclusion, Topic, verdict
+from wspd_design.studies.paper.conclusions.records import Conclusion, Topic, Verdict, verdict
 from wspd_design.studies.paper.evidence import (
     CONSTANT_RAILS,
     CONTROLLERS,
@@ -77,6 +77,7 @@ def locked(evidence: Evidence) -> Conclusion:
     pairs = [
         (evidence.stop(UNPROTECTED, rail).metrics, evidence.stop("afsmc", rail).metrics) for rail in RAILS
     ]
+    longer = [locked.distance > AS_SHORT * law.distance for locked, law in pairs]
     said = [
         f"{rail}: locked {locked.distance:.1f} m, adaptive fuzzy {law.distance:.1f} m"
         for rail, (locked, law) in zip(RAILS, pairs, strict=True)
@@ -86,8 +87,10 @@ def locked(evidence: Evidence) -> Conclusion:
         topic=Topic.RANKING,
         claim="Short stops show that the slip is well controlled.",
         place="Section 7, implied",
-        verdict=verdict([locked.distance > AS_SHORT * law.distance for locked, law in pairs]),
-        rule="without any protection, wheels locked, the stop is more than 1 % longer",
+        verdict=Verdict.HOLDS
+        if all(longer)
+        else Verdict.FAILS,  # one short stop with locked wheels denies it
+        rule="on every rail, without any protection and wheels locked, the stop is more than 1 % longer",
         finding="; ".join(said) + ". Where the friction does not fall with the sliding speed, a locked wheel "
         "loses nothing, and no ranking can show the control of slip.",
     )
