@@ -1,6 +1,6 @@
 # make demo   sets up .venv, designs the paper's controller, and writes its report and that of a protection that works
 # make test   sets up .venv with the test tools and runs the tests
-# make check  formatting, types and layers
+# make check  formatting, types, layers, and that the generated files are current
 # make derive writes the generated model and the equation map from derivations/
 # make reports rebuilds the committed reports
 # make wheels builds wheels for Linux, with compiled plants
@@ -18,7 +18,7 @@ unexport PYTHONDONTWRITEBYTECODE
 SENSING := --pulses 100 --period-timing --accelerometer-noise "0.05 m/s2"
 PROTECTION := reports/protection-polach-wet
 
-.PHONY: demo demo-paper demo-protection test check derive reports wheels bench clean
+.PHONY: demo demo-paper demo-protection test check style types layers current derive reports wheels bench clean
 
 demo: $(VENV)/.installed
 	@mkdir -p $(OUT)
@@ -35,11 +35,19 @@ demo-protection:
 test: $(VENV)/.installed-dev
 	$(BIN)/python -m pytest
 
-check: $(VENV)/.installed-dev
+check: style types layers current
+
+style: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+
+types: $(VENV)/.installed-dev
 	$(BIN)/mypy
+
+layers: $(VENV)/.installed-dev
 	$(BIN)/lint-imports
+
+current: $(VENV)/.installed-dev
 	$(BIN)/python -m derivations.generate --check
 
 derive: $(VENV)/.installed-dev

@@ -17,6 +17,7 @@ from wspd_design.reporting.sections.summary import verdict
 from wspd_design.reporting.text import plain
 from wspd_design.simulation.records import Scenario
 from wspd_design.studies import dossier as dossier_module
+from wspd_design.studies.uncertainty import uncertainty
 
 RAIL = load_rail("low-adhesion")
 STOP = Scenario.stop(from_kmh=40.0, rail=RAIL)
@@ -44,9 +45,10 @@ class Band:
 
 @pytest.fixture(scope="module", autouse=True)
 def few_checks():
-    """Run the checks that take no time: what a report says about a law is tested here, not its proofs."""
+    """Run the checks that take no time, and few drawn sets: what is said about a law is tested, not its proofs."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(dossier_module, "verify", partial(suite.verify, only=QUICK))
+        patch.setattr(dossier_module, "uncertainty", partial(uncertainty, sets=16))
         yield
 
 

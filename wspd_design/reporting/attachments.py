@@ -103,7 +103,8 @@ def _traces(dossier: Dossier) -> tuple[Attachment, ...]:
             media_type="text/csv",
             content=trace_text(trial.run, OTHER_INTERVAL if number else OWN_INTERVAL),
             description=f"traces of the stop of {trial.run.controller}, a row every "
-            f"{1e3 * (OTHER_INTERVAL if number else OWN_INTERVAL):g} ms; wspd simulate -o writes every step",
+            f"{1e3 * (OTHER_INTERVAL if number else OWN_INTERVAL):g} ms"
+            f"{'' if number else '; wspd simulate -o writes every step'}",
         )
         for number, trial in enumerate(dossier.trials)
     )

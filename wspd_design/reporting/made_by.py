@@ -15,7 +15,7 @@ def made_by(made: Provenance) -> tuple[Definition, ...]:
                 f"wspd {made.program_version}, git tree ",
                 CodeSpan(text=made.package_tree),
                 f" of the folder wspd_design{state and ', '}{state}; ",
-                CodeSpan(text=f"git log -t --find-object={made.package_tree[:12]}"),
+                CodeSpan(text=f"git log -m -t --find-object={made.package_tree[:12]}"),
                 " names the commit",
             ),
         ),

@@ -3,10 +3,14 @@
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tests.unit.reporting.sample_dossier import SAMPLE_PROVENANCE
+from wspd_design.reporting.made_by import made_by
+from wspd_design.reporting.text import CodeSpan
 from wspd_design.studies import package as package_module
 from wspd_design.studies.package import identity, is_changed, package
 
@@ -38,6 +42,30 @@ def test_the_identity_is_what_git_and_sha256sum_say(clone):
     command = "git ls-files small | LC_ALL=C sort | xargs sha256sum | sha256sum"
     told = subprocess.run(command, shell=True, cwd=clone.parent, capture_output=True, text=True, check=True)
     assert found.sha256 == told.stdout.split()[0]
+
+
+def _commits(clone):
+    """Run the command that a report prints, and return the first lines of the commits that it names."""
+    made = replace(SAMPLE_PROVENANCE, package_tree=identity(clone).tree)
+    program = next(each.text for each in made_by(made) if each.term == "Program")
+    (command,) = (each.text for each in program if isinstance(each, CodeSpan) and " log " in each.text)
+    return _git(clone.parent, *command.split()[1:], "--format=%s").splitlines()
+
+
+def _commit(clone, name):
+    (clone / f"{name}.py").write_text(name)
+    _git(clone.parent, "add", ".")
+    _git(clone.parent, "commit", "--quiet", "-m", name)
+
+
+def test_the_tree_leads_to_the_commit_also_where_that_is_a_merge(clone):
+    assert _commits(clone) == ["All"]
+    _git(clone.parent, "checkout", "--quiet", "-b", "side")
+    _commit(clone, "Side")
+    _git(clone.parent, "checkout", "--quiet", "-")
+    _commit(clone, "Main")
+    _git(clone.parent, "merge", "--quiet", "side", "-m", "Merge")
+    assert set(_commits(clone)) == {"Merge"}
 
 
 def test_every_byte_and_every_name_counts_and_what_machines_make_does_not(clone):

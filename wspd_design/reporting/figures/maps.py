@@ -4,8 +4,8 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Map
-from wspd_design.reporting.figure_style import SERIES
-from wspd_design.reporting.figures.series import LABEL_WIDTH, axis_label
+from wspd_design.reporting.figure_style import INK, SERIES
+from wspd_design.reporting.figures.series import LABEL_WIDTH, axis_label, plain_symbols
 from wspd_design.reporting.numbers import quantity, significant
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
             markeredgewidth=0.8,
             clip_on=False,
             zorder=4,
-            label=f"tightest: {_spot(shown, shown.worst)}",
+            label=plain_symbols(f"tightest: {_spot(shown, shown.worst)}"),
         )
     if shown.limit is not None:
         halo: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground=HALO)]
@@ -67,7 +67,7 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
             fails = axes.contourf(shown.x, shown.y, values, levels=beyond, colors="none", hatches=["////"])
             fails.set(edgecolor=LINE, linewidth=0.0)
             handles.append(
-                Patch(facecolor="none", edgecolor=LINE, hatch="////", linewidth=0.0, label="the claim fails")
+                Patch(facecolor="none", edgecolor=INK, hatch="////", linewidth=0.0, label="the claim fails")
             )
         where = "" if _crosses(shown) else ", reached nowhere" if _holds(shown) else ", passed everywhere"
         label = f"limit {quantity(shown.limit, _unit(shown))}{where}"
@@ -75,7 +75,9 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
     if handles:
         figure.legend(handles=handles, loc="outside upper left", ncols=3)
     axes.grid(visible=False)
-    axes.set(xscale="log", xlabel=shown.x_label, ylabel=textwrap.fill(shown.y_label, LABEL_WIDTH))
+    axes.set(
+        xscale="log", xlabel=shown.x_label, ylabel=textwrap.fill(plain_symbols(shown.y_label), LABEL_WIDTH)
+    )
     low, high = shown.x[0], shown.x[-1]
     axes.xaxis.set_major_locator(FixedLocator([tick for tick in TICKS if low <= tick <= high]))
     axes.xaxis.set_minor_locator(NullLocator())

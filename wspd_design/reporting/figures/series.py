@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates.records import Role, Series
 from wspd_design.reporting.figure_style import INK, LINE_STYLES, SERIES
 from wspd_design.reporting.figures.drawing import curve
-from wspd_design.reporting.numbers import listing, significant, unit
+from wspd_design.reporting.numbers import MINUS, listing, significant, unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,6 +21,19 @@ LOGARITHMIC_SPAN = {Role.LYAPUNOV: 1e3, Role.LOOP_GAIN: 10.0}
 FRAME_HEIGHT, PANEL_HEIGHT, STACKED_HEIGHT, REGION_HEIGHT = 0.5, 2.0, 1.55, 3.0  # in
 LABEL_WIDTH = 22  # characters of a label beside an axis
 LEGEND_WIDTH, HANDLE_WIDTH = 105, 10  # characters of a line of the legend, and of what stands before a name
+
+
+GREEK = {
+    "tau": "τ",
+    "eta": "η",
+    "mu": "μ",
+    "psi": "ψ",
+    "sigma": "σ",
+    "lambda": "λ",
+    "omega": "ω",
+    "Phi": "Φ",
+}
+_GREEK = re.compile(rf"\b({'|'.join(GREEK)})(?=\b|[0-9_])")
 
 
 def panels(series: Sequence[Series]) -> dict[tuple[str, str], list[Series]]:
@@ -84,8 +97,9 @@ def axis_label(label: str) -> str:
 
 
 def plain_symbols(text: str) -> str:
-    """Write a time constant as in the text around the figure."""
-    return re.sub(r"\btau\b", "τ", text)
+    """Write Greek letters, differences and magnitudes as in the text around the figure."""
+    text = _GREEK.sub(lambda found: GREEK[found[1]], text.replace(" - ", f" {MINUS} "))
+    return re.sub(r"\babs\(([^()]*)\)", r"|\1|", text)
 
 
 def _words(each: Series) -> str:

@@ -53,6 +53,8 @@ _SPREADS = {
 }
 """Figures that the spread over the bounds has under these names."""
 
+_SLIP = "Slip: each wheelset once it has 90 % of its reference. "
+
 _VERDICTS = {
     "accepted": Status.ACCEPTED,
     "rejected": Status.REJECTED,
@@ -312,7 +314,7 @@ def _requirements(dossier: Dossier) -> Table:
             ColumnOf(title="Finding", read=finding),
         ),
         caption=f"What is asked for ({judgment.name}) and what is reached on {stops_of(judgment)}; margin over the "
-        "limit, positive where it is kept. Slip: each wheelset once it has 90 % of its reference. "
+        f"limit, positive where it is kept. {_SLIP if any(each.name == 'slip_rms' for each in judgment.rows) else ''}"
         f"{numbers.count(unverified, 'limit')} not verified against a source. Told: not required.",
         anchor="requirements-table",
     )

@@ -22,8 +22,8 @@ _USES = (
         "Rules and searches that choose gains",
         "A wrong gain comes into the software of the brake where it is copied from the design.",
         "T3, or T2 where the gains are verified in the target by other means",
-        "Each gain stands in design.toml with the rule that chose it. The checks and stops of this report judge the "
-        "law with these numbers, whoever chose them.",
+        "Each gain stands in the file of its design with the rule that chose it. The checks and stops of this "
+        "report judge the law with these numbers, whoever chose them.",
     ),
 )
 """Use, what a fault could do, class, and what controls the fault here."""
@@ -55,8 +55,10 @@ def tool(dossier: Dossier) -> tuple[Block, ...]:
             "*Known limits.* They stand under [](#limits). No code is exported, so that no generated code is part of "
             "this statement."
         ),
-        "Qualification. None: nobody outside of this project has validated the program, and no measured stop was "
-        "compared with it.",
+        rich(
+            "*Qualification.* None: nobody outside of this project has validated the program, and no measured stop was "
+            "compared with it."
+        ),
     )
     return (
         Heading(text="Tool statement", anchor=TOOL),
