@@ -64,6 +64,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         witness=(*where, Point(name="T", value=release.high, unit="N m")) if status is Status.REFUTED else (),
         hypotheses=tuple(hypotheses),
         assumptions=("T = u: no valve lag, no sampling",),
+        domain=said.domain,
         varied=said.varied,
         held=said.held,
         method="interval branch and bound on the edges of the box where the adhesion is extreme, replayed by the "
