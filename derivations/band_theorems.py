@@ -64,7 +64,7 @@ THEOREMS = (
             Identity("p+ = -theta^2 r", slip_loop.observer_residual),
             Identity("N+ = N + (1 - theta)^2 r - drift", slip_loop.friction_residual),
             Identity("1 - x^c is the integral of c u^(c - 1) from x to 1", slip_loop.part_residual),
-            Identity("late share of a steady rise: 1/(1 - exp(-m)) - 1/m", slip_loop.lateness_residual),
+            Identity("late share of a rise over the longest pulse", slip_loop.lateness_residual),
             Identity(
                 "share of a steady drift in its mean with the same weight", slip_loop.seen_of_drift_residual
             ),

@@ -9,7 +9,8 @@ Claims: between samples e is phi e - g psi y for a constant y. For every course 
 in a convex set whose edges are courses that change once between the bounds; its edges are concave above and convex
 below, so that tangents enclose it. The observer takes (e, p, N) to (p+, N+) as below, whatever the wheel did. A valve
 that is inverted with wrong times goes the part rho of the wanted way, rho between c = (assumed over true time) and
-its value at the longest pulse. The share of the sample that sees the old torque is at most that of a steady rise.
+its value at the longest pulse. The share of the sample that sees the old torque is at most that of a steady rise over
+the longest pulse.
 """
 
 import sympy as sp
@@ -89,14 +90,15 @@ longest = sp.Symbol("longest", positive=True)
 part_of_pulse = part.subs(x, sp.exp(-longest))  # x at the end of a pulse, its length over the assumed time
 part_residual = sp.simplify(sp.integrate(c * u ** (c - 1), (u, x, 1), conds="none") - part * (1 - x))
 
-# --- the share of a steady rise that is still to come, weighted by exp(q (h - t)) ------------------------------------
+# --- the share of a rise that is still to come, weighted by exp(q (h - t)); it is steady and ends with the pulse ------
 m = sp.Symbol("m", real=True, nonzero=True)  # q h
+pulse = sp.Symbol("pulse", positive=True)  # its length over h
 _weight = sp.exp(m * (1 - u))
-lateness = 1 / (1 - sp.exp(-m)) - 1 / m
+lateness = (1 - (1 - sp.exp(-pulse * m)) / (pulse * m)) / (1 - sp.exp(-m))
 lateness_residual = sp.simplify(
-    sp.integrate((1 - u) * _weight, (u, 0, 1)) - lateness * sp.integrate(_weight, (u, 0, 1))
+    sp.integrate((1 - u / pulse) * _weight, (u, 0, pulse)) - lateness * sp.integrate(_weight, (u, 0, 1))
 )
-seen_of_drift = 1 - lateness  # share of a steady drift in its mean with the same weight
+seen_of_drift = 1 - lateness.subs(pulse, 1)  # share of a steady drift in its mean with the same weight
 seen_of_drift_residual = sp.simplify(
     sp.integrate(u * _weight, (u, 0, 1)) - seen_of_drift * sp.integrate(_weight, (u, 0, 1))
 )
@@ -129,6 +131,7 @@ _STATE = {
     "c": "Assumed over true time of the valve [-]",
     "longest": "Longest pulse over the assumed time of the valve [-]",
     "m": "Secant times sample time, not 0 [-]",
+    "pulse": "Longest pulse over the sample time [-]",
 }
 
 
@@ -186,7 +189,7 @@ FUNCTIONS = (
     ),
     _function(
         "lateness",
-        (m,),
+        (m, pulse),
         lateness,
         "Largest share of the sample that can see the torque before the pulse",
         "Share [-]",

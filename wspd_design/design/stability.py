@@ -135,6 +135,7 @@ def _corners(
                 effects=(effect, effect),
                 parts=parts_of((speedups[0], speedups[1]), longest),
                 seen=(0.5 * seen[0], seen[1]),
+                pulse=1.0,
             )
             for mass, mu0 in zip(box["mass"], box["mu0"], strict=True)
         ]

@@ -28,7 +28,7 @@ RELATIONS = {"<=": "<=", ">=": ">=", "!=": "!=", "->": "->", "=": "=", "<": "<",
 WORDS_OF_ONE_LETTER = ("a", "A", "I")
 LABEL = re.compile(r"\((?:\d+|\d* ?[a-d])\)")  # of an equation or a table
 UNITS = re.compile(
-    r"(?:1/)?(?:\(?(?:kN|MN|N|kg|MPa|Pa|bar|rad|km/h|km|mm|m|ms|s|Hz|J|dB|deg|t)(?:\^?[23])?\)?(?:[ /]?(?=\S))?)+"
+    r"(?:1/)?(?:\(?(?:kN|MN|N|kg|MPa|Pa|bar|rad|km/h|km|mm|m|ms|s|Hz|J|dB|deg|t)(?:\^?[23²³])?\)?(?:[ /]?(?=\S))?)+"
     r"(?: per (?:MN m|kN m))?(?=[\s,;:.)\]]|$)"
 )
 LONG = 34  # characters of a formula that has to fit into a line of a phone; a longer one breaks before its relations

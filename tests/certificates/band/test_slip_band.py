@@ -46,27 +46,32 @@ def test_checker_alone_accepts_it(half, proof):
     assert checker(half, half.controller)(proof, Work(PLENTY))["cells"] >= 1
 
 
-ALPHA, SHARES = 14, 16  # places in an ellipsoid
+P, CENTER, ALPHA, SHARES = slice(1, 11), 11, 15, 17  # places in an ellipsoid
 
 
 def test_ellipsoid_that_is_too_small_is_refused(half, proof):
     for window in range(len(windows_of(half))):
         forged = json.loads(json.dumps(proof))
         each = forged["ellipsoids"][window]
-        each[:10] = [repr(4.0 * float(number)) for number in each[:10]]
+        each[P] = [repr(4.0 * float(number)) for number in each[P]]
         assert "may lead out of an ellipsoid" in refused(half, forged)
 
 
 def test_ellipsoid_that_is_too_large_is_refused(half, proof):
     each = proof["ellipsoids"][0]
-    each[:10] = [repr(0.01 * float(number)) for number in each[:10]]
+    each[P] = [repr(0.01 * float(number)) for number in each[P]]
     assert "may" in refused(half, proof)
 
 
 def test_center_that_the_loop_leaves_is_refused(half, proof):
     each = proof["ellipsoids"][0]
-    each[10] = repr(3.0 * float(each[10]))
+    each[CENTER] = repr(3.0 * float(each[CENTER]))
     assert "may lead out of an ellipsoid" in refused(half, proof)
+
+
+def test_shorter_pulse_than_the_state_asks_for_is_refused(half, proof):
+    proof["ellipsoids"][0][0] = "0.05"
+    assert "in its longest pulse" in refused(half, proof)
 
 
 def test_shares_above_one_are_refused(half, proof):

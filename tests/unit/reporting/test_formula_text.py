@@ -74,6 +74,7 @@ def test_formulas_are_found(sentence: str, shown: str) -> None:
         "in N m the largest one, 17.79 1/s per MN m, after 5 m and 1.2 s",
         "the train slows down, eq. (19), Table 5 (b), on er24pc-polach-wet",
         "lyapunov_repaired says nothing",
+        "train deceleration 0.01127 m/s², wheelset inertia 860 kg m²",
     ],
 )
 def test_words_stay_words(words: str) -> None:

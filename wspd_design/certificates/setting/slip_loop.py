@@ -51,6 +51,7 @@ class LoopRanges:
     effects: Pair  # -, g
     parts: Pair  # -, rho
     seen: Pair  # -, share of the wanted way in the mean torque of the law
+    pulse: Number  # -, longest pulse over the sample time
 
 
 def polygon(secants: Pair, sample_time: Number) -> tuple[Pair, ...]:
@@ -87,7 +88,7 @@ def parts_of(speedups: Pair, longest: Number) -> Pair:
 
 def corners(law: LoopLaw, ranges: LoopRanges) -> Iterator[Matrix]:
     """Return [A B] of X+ = A X + B d at all corners, d in the order of :data:`DISTURBANCES`."""
-    latest = generated.lateness(ranges.secants[1] * law.sample_time)
+    latest = generated.lateness(ranges.secants[1] * law.sample_time, ranges.pulse)
     for (phi, psi), g, rho, late, seen in product(
         polygon(ranges.secants, law.sample_time),
         dict.fromkeys(ranges.effects),

@@ -159,17 +159,19 @@ def part_of_way(c: Number, longest: Number) -> Number:
     return (1.0 - exp(-c * longest)) / (1.0 - exp(-longest))
 
 
-def lateness(m: Number) -> Number:
+def lateness(m: Number, pulse: Number) -> Number:
     """Largest share of the sample that can see the torque before the pulse, docs/theory.md#band.
 
     Parameters
     ----------
     m : Number
         Secant times sample time, not 0 [-].
+    pulse : Number
+        Longest pulse over the sample time [-].
 
     Returns
     -------
     Number
         Share [-].
     """
-    return 1.0 / (1.0 - exp(-m)) - 1.0 / m
+    return (1.0 - (1.0 - exp(-m * pulse)) / (m * pulse)) / (1.0 - exp(-m))

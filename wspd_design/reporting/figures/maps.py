@@ -4,7 +4,7 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Map
-from wspd_design.reporting.figure_style import SERIES
+from wspd_design.reporting.figure_style import INK, SERIES
 from wspd_design.reporting.figures.series import LABEL_WIDTH, axis_label, plain_symbols
 from wspd_design.reporting.numbers import quantity, significant
 
@@ -67,7 +67,7 @@ def margin_map(figure: "Figure", shown: Map) -> "Figure":
             fails = axes.contourf(shown.x, shown.y, values, levels=beyond, colors="none", hatches=["////"])
             fails.set(edgecolor=LINE, linewidth=0.0)
             handles.append(
-                Patch(facecolor="none", edgecolor=LINE, hatch="////", linewidth=0.0, label="the claim fails")
+                Patch(facecolor="none", edgecolor=INK, hatch="////", linewidth=0.0, label="the claim fails")
             )
         where = "" if _crosses(shown) else ", reached nowhere" if _holds(shown) else ", passed everywhere"
         label = f"limit {quantity(shown.limit, _unit(shown))}{where}"

@@ -1,7 +1,7 @@
 """Search for the ellipsoid of one cell and one window, in doubles; the checker decides about it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -17,30 +17,26 @@ from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 if TYPE_CHECKING:
     from wspd_design.certificates.search.matrix_inequalities import Array
 
-ATTEMPTS = ((0.94, 1.0), (0.9, 1.0), (0.94, 0.25), (0.97, 1.0))
-"""What is kept of the function after a sample without disturbance, and the unit of the states; the first that succeeds.
-
-Which unit suits the solver cannot be told beforehand."""
+KEPT = (0.93, 0.85, 0.97)  # of the function after a sample without disturbance; the first that succeeds
 FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 8, 8  # of the loop that the inequalities begin with, and are added
-UNIT = 8.0  # times what disturbs most: in this the states are counted, so that the numbers are near 1
-LEAST_UNIT = 0.02  # of the tightest limit of the state
+SPREAD = 0.1  # of the room at the tightest limit, that the coordinates of the inequalities reach at least
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
 DIGITS = 9  # of the numbers in the proof
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Task:
-    """What the inequalities are made of, in units of the states."""
+    """What the inequalities are made of, in coordinates z, X - c = basis z, in which their numbers are near 1."""
 
     maps: "Array"  # [A o Br] at all corners
     center: "Array"
+    basis: "Array"
     limits: tuple[tuple["Array", float], ...]  # rows, and what is left beside the center
-    unit: float  # rad/s
     used: tuple[int, ...]  # disturbances
 
 
 def ellipsoid(
-    law: BandLaw, loop: Loop, faster: Ellipsoid | None, hints: Sequence[int]
+    law: BandLaw, loop: Loop, pulse: Fraction, faster: Ellipsoid | None, hints: Sequence[int]
 ) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Find an ellipsoid with a small band around that of the next faster window, or none.
 
@@ -49,7 +45,9 @@ def ellipsoid(
     law : BandLaw
         Numbers of the law.
     loop : Loop
-        Numbers of cell and window.
+        Numbers of cell and window with this longest pulse.
+    pulse : Fraction
+        Longest pulse over the sample time.
     faster : Ellipsoid or None
         Of the next faster window.
     hints : sequence of int
@@ -60,11 +58,11 @@ def ellipsoid(
     tuple of Ellipsoid and corners, or None
         The ellipsoid, and the corners that mattered.
     """
-    base = _task(law, loop)
-    if any(room <= 0.0 for _, room in base.limits):
-        return None
-    for kept, unit in ATTEMPTS:
-        found = _solve(_counted_in(base, unit * _unit(base)), kept, faster, hints)
+    for kept in KEPT:
+        task = _task(law, loop, kept)
+        if task is None:
+            return None
+        found = _solve(task, pulse, kept, faster, hints)
         if found is None:
             continue
         try:
@@ -76,46 +74,46 @@ def ellipsoid(
     return None
 
 
-def _task(law: BandLaw, loop: Loop) -> _Task:
+def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
+    """Set the inequalities up; None if the center is beyond a limit or the loop does not contract so much."""
     import numpy as np
+    from scipy.linalg import solve_discrete_lyapunov
 
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
     middle, spread = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2.0
     used = tuple(int(k) for k in np.flatnonzero(spread > 0.0))
     maps = np.array([_doubles(each) for each in corners(loop_law(law), loop.ranges)])
     state, disturbed = maps[:, :, :STATES], maps[:, :, STATES:]
+    mean = state.mean(axis=0)
     # Where the loop would settle if nothing but the middle of all were there.
-    center = np.linalg.solve(np.eye(STATES) - state.mean(axis=0), disturbed.mean(axis=0) @ middle)
+    center = np.linalg.solve(np.eye(STATES) - mean, disturbed.mean(axis=0) @ middle)
     center = np.array([float(_short(each)) for each in center])
     offset = state @ center - center + disturbed @ middle
     columns = np.concatenate([offset[:, :, None], disturbed[:, :, used] * spread[list(used)]], axis=2)
-    limits = []
-    for limit in loop.limits:
-        row = np.array([float(each.mid()) for each in limit.row])
-        limits.append((row, float(limit.bound.mid()) - float(row @ center)))
-    maps = np.concatenate([state, columns], axis=2)
-    return _Task(maps=maps, center=center, limits=tuple(limits), unit=1.0, used=used)
-
-
-def _unit(task: _Task) -> float:
-    """Unit of the states in which the numbers of the inequalities are near 1 [rad/s]."""
-    import numpy as np
-
-    disturbed = float(np.abs(task.maps[:, :, STATES:]).sum(axis=2).max())
-    return max(UNIT * disturbed, LEAST_UNIT * min(left for _, left in task.limits))
-
-
-def _counted_in(task: _Task, unit: float) -> _Task:
-    """Count the states of a task in another unit."""
-    import numpy as np
-
-    maps = np.concatenate([task.maps[:, :, :STATES], task.maps[:, :, STATES:] / unit], axis=2)
-    limits = tuple((row, left / unit) for row, left in task.limits)
-    return replace(task, maps=maps, limits=limits, unit=unit)
+    limits = [(np.array([float(each.mid()) for each in limit.row]), limit) for limit in loop.limits]
+    rooms = [float(limit.bound.mid()) - float(row @ center) for row, limit in limits]
+    contracting = max(abs(np.linalg.eigvals(mean))) ** 2 < kept
+    if min(rooms) <= 0.0 or not contracting:
+        return None
+    # Coordinates in which what disturbs spreads alike in all directions.
+    stirred = np.einsum("nik,njk->ij", columns, columns) / len(columns) + 1e-12 * np.eye(STATES)
+    spreads = solve_discrete_lyapunov(mean / kept**0.5, stirred)
+    basis = np.linalg.cholesky((spreads + spreads.T) / 2.0) / (1.0 - kept) ** 0.5
+    rows = [row @ basis for row, _ in limits]
+    widest = max(float(np.linalg.norm(row)) / room for row, room in zip(rows, rooms, strict=True))
+    basis = basis * max(1.0, SPREAD / widest)
+    back = np.linalg.inv(basis)
+    return _Task(
+        maps=np.concatenate([back @ state @ basis, back @ columns], axis=2),
+        center=center,
+        basis=basis,
+        limits=tuple((row @ basis, room) for (row, _), room in zip(limits, rooms, strict=True)),
+        used=used,
+    )
 
 
 def _solve(
-    task: _Task, kept: float, faster: Ellipsoid | None, hints: Sequence[int]
+    task: _Task, pulse: Fraction, kept: float, faster: Ellipsoid | None, hints: Sequence[int]
 ) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Solve for some corners, and add those that are not met."""
     import numpy as np
@@ -131,7 +129,7 @@ def _solve(
         worst = [int(k) for k in np.argsort(left)[:MORE_CORNERS] if left[k] < 0.0 and int(k) not in chosen]
         if not worst:
             matter = tuple(int(k) for k in np.argsort(left)[: 2 * FIRST_CORNERS])
-            return _rounded(task, p, shares, kept, inside), matter
+            return _rounded(task, pulse, p, shares, kept, inside), matter
         chosen += worst
     return None
 
@@ -161,9 +159,11 @@ def _inequalities(
     largest = np.zeros((STATES + 1, STATES + 1))
     largest[STATES, STATES] = 1.0
     blocks = [(k, _padded(unit, STATES + 1)) for k, unit in enumerate(units)]
-    asked.semidefinite(_edge(np.eye(STATES)[0], 0.0), [*blocks, (band, largest)])
+    error = task.basis[0] / np.linalg.norm(task.basis[0])
+    asked.semidefinite(_edge(error, 0.0), [*blocks, (band, largest)])
     for row, left in task.limits:
-        asked.semidefinite(_edge(row, (left * (1.0 - SLACK)) ** 2), blocks)
+        length = float(np.linalg.norm(row))
+        asked.semidefinite(_edge(row / length, (left / length * (1.0 - SLACK)) ** 2), blocks)
     if faster is not None:
         _around(asked, task, faster, band + 1)
     found = asked.minimize(np.eye(band + 2)[band])
@@ -176,8 +176,8 @@ def _around(asked: Inequalities, task: _Task, faster: Ellipsoid, unknown: int) -
     """Ask that the faster ellipsoid lies inside, with its multiplier as the unknown of this number."""
     import numpy as np
 
-    inner = np.array(faster.matrix, dtype=float) * task.unit**2
-    apart = (np.array(faster.center, dtype=float) - task.center) / task.unit
+    inner = task.basis.T @ np.array(faster.matrix, dtype=float) @ task.basis
+    apart = np.linalg.solve(task.basis, np.array(faster.center, dtype=float) - task.center)
     size = float(np.trace(inner))
     shape = np.diag([*[size**-0.5] * STATES, 1.0])  # so that all entries are near 1
     multiplier = _padded(inner, STATES + 1)
@@ -218,12 +218,18 @@ def _left(p: "Array", shares: "Array", kept: float, maps: "Array") -> "Array":
     return smallest
 
 
-def _rounded(task: _Task, p: "Array", shares: "Array", kept: float, inside: float) -> Ellipsoid:
+def _rounded(
+    task: _Task, pulse: Fraction, p: "Array", shares: "Array", kept: float, inside: float
+) -> Ellipsoid:
+    import numpy as np
+
+    back = np.linalg.inv(task.basis)
     every = [Fraction(0)] * len(DISTURBANCES)
     for k, share in zip(task.used, shares[1:], strict=True):
         every[k] = _short(float(share))
     return Ellipsoid(
-        matrix=tuple(tuple(_short(float(each) / task.unit**2) for each in row) for row in p),
+        pulse=pulse,
+        matrix=tuple(tuple(_short(float(each)) for each in row) for row in back.T @ p @ back),
         center=tuple(_short(float(each)) for each in task.center),
         alpha=Fraction(kept),
         offset=_short(float(shares[0])),

@@ -26,6 +26,7 @@ CORNERS = tuple(
     for load, torque, inertia, fill, vent in product((1, 0), (0, 1), (0, 1), (1, 0), (0, 1))
 )
 """Ends of the ranges, in the order of the names: mass and friction together, and the largest wheel."""
+PULSES = (Fraction(1, 2), Fraction(1), Fraction(1, 4))  # longest ones that are tried
 MATTERS = {"m": 1.0, "i": 1.0, "r": 1.0, "u": 1.0, "t": 0.6, "f": 0.2, "v": 0.2}
 """How much a halved range tightens an ellipsoid; the drift of the friction spreads with mass, inertia and friction."""
 
@@ -101,7 +102,7 @@ def _failing_corner(
     box, window = box_of(problem, share), windows_of(problem)[0]
     for sides in CORNERS:
         corner = tuple((ends[side], ends[side]) for ends, side in zip(box, sides, strict=True))
-        if ellipsoid(law, loop_of(problem, law, corner, window, friction[0]), None, ()) is None:
+        if _one_window(problem, law, corner, window, friction[0], None, ()) is None:
             return Failed(share=share, cell=corner, window=0, cut=False)
     return None
 
@@ -153,13 +154,31 @@ def _all_windows(
     found: list[Ellipsoid] = []
     hints: tuple[int, ...] = ()
     for k in reversed(range(len(windows))):  # with the speed the train loses the room that venting has
-        loop = loop_of(problem, law, cell, windows[k], friction[k])
-        each = ellipsoid(law, loop, found[-1] if found else None, hints)
+        faster = found[-1] if found else None
+        each = _one_window(problem, law, cell, windows[k], friction[k], faster, hints)
         if each is None:
             return k
         found.append(each[0])
         hints = each[1]
     return tuple(found[::-1])
+
+
+def _one_window(
+    problem: Problem,
+    law: BandLaw,
+    cell: Cell,
+    window: tuple[float, float],
+    friction: Friction,
+    faster: Ellipsoid | None,
+    hints: Sequence[int],
+) -> tuple[Ellipsoid, tuple[int, ...]] | None:
+    """Find an ellipsoid for one of the longest pulses; shorter ones leave less room and less to be uncertain about."""
+    for pulse in PULSES:
+        loop = loop_of(problem, law, cell, window, friction, pulse)
+        found = ellipsoid(law, loop, pulse, faster, hints)
+        if found is not None:
+            return found
+    return None
 
 
 def _middle(cell: Cell) -> Cell:

@@ -65,7 +65,7 @@ def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work)
         slower = None
         for k, (window, friction, each) in enumerate(zip(windows, found.friction, ellipsoids, strict=True)):
             work.spend(WORK)
-            loop = loop_of(problem, law, cell, window, friction)
+            loop = loop_of(problem, law, cell, window, friction, each.pulse)
             bands[k] = _joined(bands[k], errors(law, loop, each))
             if slower is not None and not lies_in(each, slower):
                 raise Refused(

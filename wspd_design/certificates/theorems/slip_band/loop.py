@@ -67,9 +67,14 @@ def loop_law(law: BandLaw) -> LoopLaw:
 
 
 def loop_of(
-    problem: Problem, law: BandLaw, cell: Cell, window: tuple[float, float], friction: Friction
+    problem: Problem,
+    law: BandLaw,
+    cell: Cell,
+    window: tuple[float, float],
+    friction: Friction,
+    pulse: Fraction,
 ) -> Loop:
-    """Work out the loop of a cell in a window of speed."""
+    """Work out the loop of a cell in a window of speed, with pulses of at most this share of the sample."""
     mass, inertia, radius, mu0, torque, fill, vent = (ball(*each) for each in cell)
     speed, h, slip = ball(*window), point(law.sample_time), point(law.slip)
     vehicle = problem.vehicle
@@ -104,27 +109,30 @@ def loop_of(
     )
     low, high = _ends(secants)
     # The share of a steady drift that a sample has seen; a later weight sees more of it.
-    half_way = (1 - lateness(high * h)).union(1 - lateness(low * h))
+    half_way = (1 - lateness(high * h, 1)).union(1 - lateness(low * h, 1))
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
             effects=_ends(seen_inertia / inertia),
-            parts=_parts(law, fill, vent),
-            seen=_seen(law),
+            parts=_parts(law, fill, vent, pulse),
+            seen=_seen(law, pulse),
+            pulse=point(pulse),
         ),
         disturbances=tuple(map(_ends, (known, left_out, drift, drift * half_way, turning, turning / 2))),
-        limits=_limits(law, held, rolling * slowing, known),
+        limits=_limits(law, pulse, held, rolling * slowing, known),
         widest=point(SLIP_AROUND) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
     )
 
 
-def _limits(law: BandLaw, held: Ball, falling: Ball, known: Ball) -> tuple[Limit, ...]:
+def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Ball) -> tuple[Limit, ...]:
     """Return what keeps the state where the law is the written one and the valve is not saturated.
 
     Parameters
     ----------
     law : BandLaw
         Its numbers.
+    pulse : Fraction
+        Longest pulse over the sample time.
     held : ball
         Torque that holds the reference, over the inertia of the law [rad/s2].
     falling : ball
@@ -138,18 +146,18 @@ def _limits(law: BandLaw, held: Ball, falling: Ball, known: Ball) -> tuple[Limit
     least = point(LEAST) * full
     asked = wanted(loop_law(law))
     lowest, highest = _ends(asked[4] * known)
-    venting, filling = (-h / point(each) for each in (law.vent_time, law.fill_time))
-    vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one sample
+    venting, filling = (-h * point(pulse) / point(each) for each in (law.vent_time, law.fill_time))
+    vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one pulse
     ahead, zero = point(law.ahead), point(0)
     slew = point(law.torque_slew) / inertia / point(law.approach_rate) ** 2
     return (
         Limit(
-            what="what venting takes off in a sample",
+            what="what venting takes off in its longest pulse",
             row=tuple(-each for each in (*asked[:3], asked[3] - 1 + vent)),
             bound=vent * least_held + lowest,
         ),
         Limit(
-            what="what filling adds in a sample",
+            what="what filling adds in its longest pulse",
             row=(*asked[:3], asked[3] - 1 + fill),
             bound=fill * (full - most_held) - highest,
         ),
@@ -176,21 +184,21 @@ def _limits(law: BandLaw, held: Ball, falling: Ball, known: Ball) -> tuple[Limit
     )
 
 
-def _parts(law: BandLaw, fill: Ball, vent: Ball) -> Pair:
+def _parts(law: BandLaw, fill: Ball, vent: Ball, pulse: Fraction) -> Pair:
     """Part of the wanted way that the true valve goes."""
-    longest = point(law.sample_time) / point(min(law.fill_time, law.vent_time))
+    longest = point(pulse * law.sample_time) / point(min(law.fill_time, law.vent_time))
     speedups = [
         end for ratio in (point(law.fill_time) / fill, point(law.vent_time) / vent) for end in _ends(ratio)
     ]
     return _ends(_hull(parts_of((_least(speedups), _most(speedups)), longest)))
 
 
-def _seen(law: BandLaw) -> Pair:
+def _seen(law: BandLaw, pulse: Fraction) -> Pair:
     """Part of the wanted way in the mean torque, which the law works out with the nominal times."""
-    longest = point(law.sample_time) / point(min(law.fill_time, law.vent_time))
+    longest = point(pulse * law.sample_time) / point(min(law.fill_time, law.vent_time))
     share = point(law.time_share)
     low, high = parts_of((share, share), longest)
-    return _ends(_hull((low / 2, high)))  # the way is gone at least evenly
+    return _ends(_hull((low * (1 - point(pulse) / 2), high)))  # the way is gone at least evenly
 
 
 def _dead_band(law: BandLaw, sliding: Ball) -> Ball:

@@ -21,6 +21,7 @@ Square: TypeAlias = tuple[tuple[Fraction, ...], ...]
 class Ellipsoid:
     """(X - c)'P(X - c) <= 1, and the numbers that show that no sample leads out of it."""
 
+    pulse: Fraction  # -, longest pulse over the sample time that a state in it asks for
     matrix: Square  # P [s2/rad2]
     center: tuple[Fraction, ...]  # c [rad/s]
     alpha: Fraction  # of the function that is left after a sample
@@ -57,7 +58,14 @@ def write(found: Proof) -> dict[str, Any]:
 
 
 def _written(each: Ellipsoid) -> list[str]:
-    numbers = (*(each.matrix[i][j] for i, j in ENTRIES), *each.center, each.alpha, each.offset, *each.shares)
+    numbers = (
+        each.pulse,
+        *(each.matrix[i][j] for i, j in ENTRIES),
+        *each.center,
+        each.alpha,
+        each.offset,
+        *each.shares,
+    )
     return [text(value) for value in (*numbers, each.inside)]
 
 
@@ -77,7 +85,9 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     (share,) = _numbers([proof["share"]], 1)
     if not 0 < share <= 1:
         raise Refused("the share of the box must be above 0, and 1 at most")
-    known = [_ellipsoid(_numbers(each, len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids]
+    known = [
+        _ellipsoid(_numbers(each, 1 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
+    ]
     return Proof(
         share=share,
         friction=tuple(_friction(_numbers(each, 6)) for each in _list(proof["friction"], windows)),
@@ -102,11 +112,15 @@ def _friction(numbers: Sequence[Fraction]) -> Friction:
     return Friction(slope=slope, level=level, fading=fading)
 
 
-def _ellipsoid(numbers: Sequence[Fraction]) -> Ellipsoid:
+def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
+    pulse, *numbers = written
+    if not 0 < pulse <= 1:
+        raise Refused("the longest pulse must be above 0, and the sample at most")
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, rest = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
     return Ellipsoid(
+        pulse=pulse,
         matrix=rows,
         center=tuple(center),
         alpha=rest[0],
