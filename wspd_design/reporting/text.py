@@ -156,6 +156,7 @@ _SPOKEN = (
     (r"\\/", " over "),
     (r"<=", " at most "),
     (r">=", " at least "),
+    (r"\^\*", " star"),
     (r"\^2\b", " squared"),
     (r"\^", " to the power "),
     (r"/", " over "),

@@ -307,7 +307,7 @@ class _Shown:
         if certificate.domain is not None:
             return (self.statements.name(certificate.domain), f": {_size(certificate)}")
         if certificate.held:
-            return f"as the claim says; no number varies, held: {', '.join(certificate.held)}"
+            return with_formulas(f"as the claim says; no number varies, held: {', '.join(certificate.held)}")
         return ""
 
     def _assumed(self, certificate: Certificate) -> Text:
