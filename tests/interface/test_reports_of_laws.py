@@ -59,6 +59,14 @@ def vehicle():
     return replace(shipped, name="prototype 7", wheel_radius=0.52)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def one_alternative():
+    """Try one other law in place of those that are rejected: each costs a stop and a check."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("wspd_design.studies.next_step.RULES", {"super-twisting": None})
+        yield
+
+
 @pytest.fixture(scope="module")
 def in_memory(vehicle):
     return wd.dossier(Band(radius=vehicle.wheel_radius), vehicle=vehicle, rail=RAIL, scenario=STOP)

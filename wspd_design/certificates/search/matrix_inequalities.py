@@ -48,8 +48,8 @@ class Inequalities:
         self._constants.append(bounds)
         self._cones.append(clarabel.NonnegativeConeT(len(bounds)))
 
-    def minimize(self, costs: "Array") -> "Array | None":
-        """Return x, or None where there is none or the solver does not find it."""
+    def minimize(self, costs: "Array", *, rough: bool = False) -> "Array | None":
+        """Return x, or None where there is none or the solver does not find it; ``rough``: also where it gave up."""
         import clarabel
         import numpy as np
         from scipy import sparse
@@ -66,5 +66,8 @@ class Inequalities:
             settings,
         )
         found = solver.solve()
-        usable = (clarabel.SolverStatus.Solved, clarabel.SolverStatus.AlmostSolved)
-        return np.array(found.x) if found.status in usable else None
+        usable = [clarabel.SolverStatus.Solved, clarabel.SolverStatus.AlmostSolved]
+        if rough:
+            usable += [clarabel.SolverStatus.NumericalError, clarabel.SolverStatus.InsufficientProgress]
+        x = np.array(found.x)
+        return x if found.status in usable and bool(np.isfinite(x).all()) else None

@@ -86,12 +86,12 @@ def _lower_side(release: Finding) -> str:
 def _upper_side(apply: Finding, limit: float, slip: float) -> str:
     """Say how much torque holds the reference, and that too little of it is no fault."""
     if apply.status is Status.PROVED:
-        most = f"{apply.high / 1e3:.4g} kN m, {apply.high / limit:.0%} of the least T_max"
+        most = f"{apply.high / 1e3:.4g} kN m, {100.0 * apply.high / limit:.0f} % of the least T_max"
         return f"Holding slip {slip:g} takes at most {most}."
     if apply.status is not Status.REFUTED:
         reason = left_open([apply]) or "it comes within the tolerance"
         return f"Whether T_max suffices to hold slip {slip:g} is open: {reason}."
-    most = f"{apply.low / 1e3:.4g} kN m, {apply.low / limit:.0%} of the least T_max"
+    most = f"{apply.low / 1e3:.4g} kN m, {100.0 * apply.low / limit:.0f} % of the least T_max"
     return (
         f"Holding slip {slip:g} takes up to {most}, at {apply.values['speed'] * KMH:.3g} km/h: where the brake has "
         "less, the slip stays below the reference by itself and the protection is idle."

@@ -101,7 +101,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         claim=f"In the simulated stop of {problem.controller.name} from {problem.speeds[1] * KMH:.3g} km/h on "
         f"{problem.rail.name}, with nominal parameters, sampling, valves and wheel lock ({plant_of(problem)}), "
-        f"the slip gets to {REACHED:.0%} of {_which(problem)} and from then on exceeds it by at most "
+        f"the slip gets to {100.0 * REACHED:.0f} % of {_which(problem)} and from then on exceeds it by at most "
         f"{problem.slip_tolerance:g} down to {JUDGING_SPEED * KMH:.0f} km/h, and the train stops.",
         status=status,
         explanation=_said(problem, status, numbers),

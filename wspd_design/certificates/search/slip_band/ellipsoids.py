@@ -166,7 +166,7 @@ def _inequalities(
         asked.semidefinite(_edge(row / length, (left / length * (1.0 - SLACK)) ** 2), blocks)
     if faster is not None:
         _around(asked, task, faster, band + 1)
-    found = asked.minimize(np.eye(band + 2)[band])
+    found = asked.minimize(np.eye(band + 2)[band], rough=True)
     if found is None:
         return None
     return np.tensordot(found[:first], units, 1), found[first:band], float(found[band + 1])
@@ -224,6 +224,7 @@ def _rounded(
     import numpy as np
 
     back = np.linalg.inv(task.basis)
+    shares = shares * min(1.0, (1.0 - kept - 1e-7) / float(shares.sum()))  # where the solver gave up
     every = [Fraction(0)] * len(DISTURBANCES)
     for k, share in zip(task.used, shares[1:], strict=True):
         every[k] = _short(float(share))
