@@ -1,5 +1,6 @@
 """What many tests share: the paper's vehicle, its controllers, and stops that are simulated once."""
 
+import os
 from dataclasses import fields
 from functools import cache
 
@@ -25,6 +26,9 @@ from wspd_design.parameters.records import PaperGains
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
+
+# As the command does; the workers and the commands that tests start inherit it.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 SLIP_REFERENCE = 0.14
 INITIAL_SPEED = 120.0 / 3.6

@@ -123,7 +123,9 @@ def test_the_files_travel_with_the_report(made, pdf):
     assert b"[gains.integral_gain]" in attached["design.toml"]
 
 
-def test_a_planted_refutation_reaches_the_reader(made, tmp_path):
+def test_a_planted_refutation_reaches_the_reader(made, tmp_path, monkeypatch):
+    blank = '<svg xmlns="http://www.w3.org/2000/svg" width="10pt" height="10pt" viewBox="0 0 10 10"/>'
+    monkeypatch.setattr("wspd_design.reporting.figures.drawing.figure_svg", lambda _figure: blank)
     planted = tuple(
         replace(each, status=Status.REFUTED) if each.name == "derivation" else each
         for each in made.certificates

@@ -1,8 +1,9 @@
 """Designs of the laws: for each the rule that chooses its gains, in one table."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 
+from wspd_design.certificates.memory import recall
 from wspd_design.controllers.family import Family, designed_family, tunable_family
 from wspd_design.design.fuzzy_surface_gains import fuzzy_surface_gains
 from wspd_design.design.industry import PRINTED, named_with, usual_table
@@ -79,7 +80,8 @@ def design_controller(
         If there is no such law, or no rule that chooses its gains.
     """
     family = designed_family(law)
-    gains = _rules(family).choose(vehicle, rail, specification)
+    asked = ["gains", family.name, vehicle_hash(vehicle), rail_hash(rail), asdict(specification)]
+    gains = recall(asked, lambda: _rules(family).choose(vehicle, rail, specification))
     return _design(f"{law}-{vehicle.name}-{rail.name}", family, vehicle, rail, specification, gains)
 
 

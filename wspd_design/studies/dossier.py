@@ -8,6 +8,7 @@ from pathlib import Path
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
 from wspd_design.analysis.linearization import Linearization, linearize
 from wspd_design.analysis.stopping import full_adhesion_stop
+from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Certificate
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
@@ -85,6 +86,7 @@ class Dossier:
     provenance: Provenance
 
 
+@remembering()  # laws to compare with are alternatives, too
 def dossier(
     made: Design | Law,
     *,

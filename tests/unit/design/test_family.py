@@ -1,10 +1,11 @@
 """A family of laws is one row: a fourth one is designed, written, read, built, simulated and verified by its name."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import pytest
 
+from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES, Family, Given
@@ -102,6 +103,26 @@ def test_a_fourth_family_touches_one_file(er24pc, tmp_path):
     # It feeds back the slip alone, so that the no-go theorem speaks about it, and no theorem of another family does.
     assert found["no_go"] in (Status.PROVED, Status.VACUOUS)
     assert found["reaching"] is found["routh_lag"] is Status.NOT_APPLICABLE
+
+
+@pytest.mark.usefixtures("fourth")
+def test_gains_are_chosen_once_for_the_same_question(er24pc, monkeypatch):
+    asked = []
+
+    def counted(vehicle, rail, specification):
+        asked.append((vehicle.mass, rail.name, specification.slip))
+        return choose(vehicle, rail, specification)
+
+    monkeypatch.setitem(RULES, "pi", GainRules(choose=counted))
+    wet, heavier = load_rail("polach-wet"), replace(er24pc, mass=1.01 * er24pc.mass)
+    others = [(er24pc, load_rail("polach-dry"), Specification()), (er24pc, wet, Specification(slip=0.1))]
+    questions = [(er24pc, wet, Specification()), (heavier, wet, Specification()), *others]
+    with remembering():
+        made = [[design_controller(*each, law="pi") for each in questions] for _ in range(2)]
+    assert made[0] == made[1]
+    assert len(asked) == len(set(asked)) == len(questions)
+    design_controller(*questions[0], law="pi")
+    assert len(asked) == len(questions) + 1
 
 
 @pytest.mark.usefixtures("fourth")
