@@ -101,12 +101,12 @@ def over_all_bounds(dossier: Dossier) -> str:
         *([f"misses {numbers.listing(missed)}"] if missed else []),
         *([f"keeps {numbers.listing(kept)}"] if kept else []),
     ]
+    if not said:
+        return ""
     fixed = numbers.listing([words_of(each) for each in kept_fixed])
     return (
-        f"the stops of the requirements hold {fixed} at their values. The worst of {found.sets} stops on "
-        f"{rails_of(dossier.scenario)} that draw all numbers {' and '.join(said)}"
-        if said
-        else ""
+        f"the worst of {found.sets} stops on {rails_of(dossier.scenario)} that draw all numbers {' and '.join(said)}; "
+        f"the stops of the requirements hold {fixed} at their values"
     )
 
 

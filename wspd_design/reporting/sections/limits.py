@@ -81,7 +81,13 @@ def _elsewhere(dossier: Dossier) -> list[Text]:
         return []
     and_ = (" and ",) if len(places) == 2 else ()
     listed = (*places[:1], *and_, *places[1:])
-    return [("Other conditions are tried one at a time, in ", *listed, "; never several together.")]
+    return [
+        (
+            "Other rails, sensor errors, dead times and faults are tried one at a time, in ",
+            *listed,
+            "; no two of them together.",
+        )
+    ]
 
 
 def _of_brakes(vehicle: ParameterSet) -> list[Text]:
