@@ -8,6 +8,7 @@ from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
 from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KMH
+from wspd_design.reporting.formula_text import readable
 from wspd_design.reporting.requirement_words import against_limit, figure, margin
 from wspd_design.reporting.spreads import words_of
 from wspd_design.reporting.yardsticks import ideal_distance
@@ -34,7 +35,7 @@ def scope(dossier: Dossier) -> str:
     track = "straight level track" if grade == 0.0 else f"straight track, grade {1e3 * grade:g} permille"
     wanted = dossier.judgment.wanted
     rails = numbers.listing(wanted.rails) if isinstance(wanted, Requirements) else rails_of(dossier.scenario)
-    disturbed = disturbances_of(dossier.scenario)
+    disturbed = readable(disturbances_of(dossier.scenario))
     return (
         f"{dossier.vehicle.name} on {rails}, {low} to {high} km/h, {track}, sample time {span}"
         f"{f', {disturbed}' if disturbed else ''}. Simulation and proofs only: no data of a vehicle"

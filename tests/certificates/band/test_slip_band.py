@@ -99,7 +99,9 @@ def test_share_of_the_box_is_told_and_leaves_the_claim_open(half, proved, proof)
     findings[CELLS] = replace(findings[CELLS], proof=proof | {"share": "0.5"})
     told = SLIP_BAND.tell(half, accepted(SLIP_BAND.obligations(half), findings))
     assert told.status is Status.UNDECIDED
-    assert told.explanation.startswith("Shown on 50 % of each range about its nominal value, not on all of it.")
+    assert told.explanation.startswith(
+        "Shown on 50 % of each range about its nominal value, not on all of it."
+    )
     assert told.margin is None
 
 

@@ -26,7 +26,7 @@ from wspd_design.reporting.blocks import Cell, Definitions, KeyNumbers, Table
 from wspd_design.reporting.blocks import Status as Shown
 from wspd_design.reporting.sections.summary import summary, verdict
 from wspd_design.reporting.text import Link, plain
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.records import Ending, Sensing
 from wspd_design.studies.judgment import Outcome
 from wspd_design.studies.loop_growth import Growth
 from wspd_design.studies.next_step import Alternative, NextStep
@@ -170,6 +170,13 @@ def test_the_weakest_link_of_an_accepted_design_is_its_smallest_reserve():
     )
     other = drawn(sample_dossier(()), longest_lock=0.0999)
     assert "R3, longest lock above 10 km/h" in plain(_rows(other)["Weakest link"])
+
+
+def test_the_scope_writes_units_as_every_table_does():
+    dossier = sample_dossier(())
+    disturbed = replace(dossier.scenario, sensing=Sensing(accelerometer_noise=0.05))
+    said = plain(_rows(replace(dossier, scenario=disturbed))["Scope"])
+    assert "accelerometer noise 0.05 m/s² rms" in said
 
 
 def test_an_alternative_of_which_no_check_judges_a_requirement_does_not_meet_everything():

@@ -5,6 +5,7 @@ from dataclasses import replace
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Heading
+from wspd_design.reporting.formula_text import readable
 from wspd_design.reporting.sections.other_conditions import VARIANTS
 from wspd_design.reporting.sections.robustness import FAULTS
 from wspd_design.reporting.text import Link, Text
@@ -47,7 +48,7 @@ def _of_scenario(dossier: Dossier) -> list[str]:
     ]
     sensing = scenario.sensing
     exact = replace(sensing, dead_time=None, shortest_pulse=None) == Sensing()
-    disturbances = disturbances_of(scenario)
+    disturbances = readable(disturbances_of(scenario))
     return [
         f"In the stop of this report the track is {numbers.listing(track)}; no cleaning of the rail by the wheels "
         "ahead, no sand.",
