@@ -54,7 +54,7 @@ def decide(problem: Any, text: str) -> Decision:
     found = replay(problem, text)
     made = found.certificate
     with redirect_stdout(StringIO()) as out:
-        _show(Path("forged.json"), "design.toml", found)
+        _show("forged.json", "design.toml", found)
     if made is None:
         return Decision(accepted=found.accepted, status="", shown=(), printed=out.getvalue() + found.reason)
     words = json.dumps(sentences(made), sort_keys=True, ensure_ascii=False)

@@ -1,17 +1,30 @@
 """What page one says about the decision: scope, weakest link, next step, rank and origin, each from a record."""
 
+import math
+from collections.abc import Sequence
+
 from wspd_design.design.requirements import Requirements
 from wspd_design.parameters.units import format_quantity
 from wspd_design.reporting import numbers
 from wspd_design.reporting.brakes import lag_times
 from wspd_design.reporting.figures.drawing import KMH
-from wspd_design.reporting.requirement_words import against_limit, margin
+from wspd_design.reporting.formula_text import readable
+from wspd_design.reporting.requirement_words import against_limit, figure, margin
+from wspd_design.reporting.spreads import words_of
 from wspd_design.reporting.yardsticks import ideal_distance
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.judgment import Requirement
 from wspd_design.studies.next_step import Alternative, NextStep
+
+WORST_OF = {
+    "stopping_distance": "distance",
+    "efficiency_worst": "efficiency",
+    "longest_lock": "longest_lock",
+    "speed_error": "speed_error",
+}
+"""Criteria about the worst stop that the spread over the bounds tells, too, and its names for them."""
 
 
 def scope(dossier: Dossier) -> str:
@@ -22,7 +35,7 @@ def scope(dossier: Dossier) -> str:
     track = "straight level track" if grade == 0.0 else f"straight track, grade {1e3 * grade:g} permille"
     wanted = dossier.judgment.wanted
     rails = numbers.listing(wanted.rails) if isinstance(wanted, Requirements) else rails_of(dossier.scenario)
-    disturbed = disturbances_of(dossier.scenario)
+    disturbed = readable(disturbances_of(dossier.scenario))
     return (
         f"{dossier.vehicle.name} on {rails}, {low} to {high} km/h, {track}, sample time {span}"
         f"{f', {disturbed}' if disturbed else ''}. Simulation and proofs only: no data of a vehicle"
@@ -36,9 +49,9 @@ def weakest(dossier: Dossier) -> str:
         return "no requirement has a margin"
     if row.name == "loop" and dossier.growth is not None:
         return _loop(dossier, row)
-    if dossier.judgment.accepted:
-        return f"{row.id}, {against_limit(row)}: the smallest reserve, {margin(row)}"
-    return f"{row.id}, {against_limit(row)}"
+    reserve = f": the smallest reserve, {margin(row)}" if dossier.judgment.accepted else ""
+    cause = f". {dossier.adhesion_use}" if dossier.idle else ""
+    return f"{row.id}, {against_limit(row)}{reserve}{cause}"
 
 
 def _loop(dossier: Dossier, row: Requirement) -> str:
@@ -62,9 +75,50 @@ def _loop(dossier: Dossier, row: Requirement) -> str:
     return f"{said}. The slip pole reaches {numbers.significant(max(poles), 2)} 1/s (nominal)"
 
 
+def over_all_bounds(dossier: Dossier) -> str:
+    """Set the limits of drawn stops against one stop over all bounds, where those stops hold some numbers."""
+    wanted, found = dossier.judgment.wanted, dossier.uncertainty
+    if not isinstance(wanted, Requirements) or found is None:
+        return ""
+    drawn = {draw.name for draw in wanted.draws}
+    kept_fixed = [
+        each
+        for each in found.drawn
+        if each not in drawn and each.partition(".")[0] not in wanted.within_bounds
+    ]
+    if not kept_fixed:
+        return ""
+    missed: list[str] = []
+    kept: list[str] = []
+    for row in dossier.judgment.limited:
+        spread = found.spread_of(WORST_OF[row.name]) if row.name in WORST_OF else None
+        if spread is None or row.limit is None:
+            continue
+        worst = spread.low if row.at_least else spread.high
+        inside = worst >= row.limit if row.at_least else worst <= row.limit
+        reached = figure(row, worst) if math.isfinite(worst) else "no standstill"
+        (kept if inside else missed).append(f"{row.id} ({reached})")
+    said = [
+        *([f"misses {numbers.listing(missed)}"] if missed else []),
+        *([f"keeps {numbers.listing(kept)}"] if kept else []),
+    ]
+    if not said:
+        return ""
+    fixed = numbers.listing([words_of(each) for each in kept_fixed])
+    return (
+        f"the worst of {found.sets} stops on {rails_of(dossier.scenario)} that draw all numbers {' and '.join(said)}; "
+        f"the stops of the requirements hold {fixed} at their values"
+    )
+
+
 def next_words(dossier: Dossier) -> str:
     """Say what was tried in place of a design that is not accepted; for one that is, which evidence it lacks."""
     found = dossier.next_step
+    if found is None and dossier.idle:
+        return (
+            f"judge it where wheels slide; on {rails_of(dossier.scenario)} no law has anything to do, and no other one "
+            "was tried"
+        )
     if found is None:
         return "nothing that is required is missed; no rung of the ladder below is a measurement on a vehicle"
     tried = (
@@ -74,14 +128,17 @@ def next_words(dossier: Dossier) -> str:
     if not found.tried:
         return "no other law has gains by rules for this vehicle"
     if found.clears:
-        spans = dict.fromkeys(sorted((each.sample_time for each in found.clears), reverse=True))
-        named = [
-            f"sampled every {format_quantity(span, 'ms')} "
-            + numbers.listing([_alternative(each) for each in found.clears if each.sample_time == span])
-            for span in spans
+        sure = [each for each in found.clears if not each.silent]
+        open_ones = [each for each in found.clears if each.silent]
+        met = [
+            *([f"these meet everything: {_named(sure)}"] if sure else []),
+            *(
+                [f"these meet all but {_silent(dossier, open_ones)}: {_named(open_ones)}"]
+                if open_ones
+                else []
+            ),
         ]
-        met = f"these meet everything: {'; '.join(named)} ({tried}{_silent(dossier, found)})"
-        return f"{met}. {_same_law(dossier, found)}".rstrip()
+        return f"{'; '.join(met)} ({tried}). {_same_law(dossier, found)}".rstrip()
     best = found.tried[0]
     return (
         f"nothing meets everything ({tried}); closest is {_alternative(best)} sampled every "
@@ -90,11 +147,21 @@ def next_words(dossier: Dossier) -> str:
     )
 
 
-def _silent(dossier: Dossier, found: NextStep) -> str:
-    """Say which requirement no check judges for some of the alternatives that meet the others."""
-    names = {name for each in found.clears for name in each.silent}
+def _named(some: Sequence[Alternative]) -> str:
+    """Name alternatives with their distances, those of one sample time together."""
+    spans = dict.fromkeys(sorted((each.sample_time for each in some), reverse=True))
+    return "; ".join(
+        f"sampled every {format_quantity(span, 'ms')} "
+        + numbers.listing([_alternative(each) for each in some if each.sample_time == span])
+        for span in spans
+    )
+
+
+def _silent(dossier: Dossier, some: Sequence[Alternative]) -> str:
+    """Say which requirements no check judges for some alternatives."""
+    names = {name for each in some for name in each.silent}
     ids = [row.id for row in dossier.judgment.rows if row.name in names]
-    return f"; of some of them no check judges {numbers.listing(ids)}" if ids else ""
+    return f"{numbers.listing(ids)}, which no check judges for their laws"
 
 
 def _alternative(each: Alternative) -> str:

@@ -141,12 +141,12 @@ def printable(text: str) -> str:
 
 _UNIT_BEHIND = re.compile(
     r"(?<=[\d∞]) (?=(?:km/h|m/s²|m/s|1/s|kN|MN|N|kg|bar|MPa|Pa|GPa|mm|ms|m|s|t|dB|Hz|rad/s|%)(?![\w]))"
-    r"|(?<=[kM]N) (?=m\b)|(?<=\bN) (?=[ms]\b)|(?<=N m) (?=s\b)|(?<=kg) (?=m²)|(?<=\d) (?=±)|(?<=±) (?=\d)"
+    r"|(?<=[kM]N) (?=m\b)|(?<=\bN) (?=[ms]\b)|(?<=N m) (?=s\b)|(?<=kg) (?=m²)|(?<=\d) (?=±)|(?<=[±≤≥<]) (?=\d)"
 )
 
 
 def unbroken(text: str) -> str:
-    """Keep numbers and their units on one line."""
+    """Keep numbers, their units and the signs of limits on one line."""
     return _UNIT_BEHIND.sub("\N{NO-BREAK SPACE}", text)
 
 

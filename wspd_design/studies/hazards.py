@@ -35,8 +35,7 @@ def hazards(own: Trial, found: Robustness | None, vehicle: ParameterSet) -> tupl
     rows: tuple[tuple[str, str, str], ...] = (
         (
             "brake released for long",
-            f"a wheelset brakes with less than a tenth of its torque for at most {longest_release(own.run):.2g} s; "
-            + _watchdog(own, vehicle),
+            f"{_released(own)}; " + _watchdog(own, vehicle),
             "a law that releases without end while its computer fails",
         ),
         (
@@ -70,6 +69,13 @@ def hazards(own: Trial, found: Robustness | None, vehicle: ParameterSet) -> tupl
     )
 
 
+def _released(own: Trial) -> str:
+    longest = longest_release(own.run)
+    if longest == 0.0:
+        return "in this stop no wheelset brakes with less than a tenth of its torque"
+    return f"in this stop a wheelset brakes with less than a tenth of its torque for at most {longest:.2g} s"
+
+
 def _watchdog(own: Trial, vehicle: ParameterSet) -> str:
     entry = vehicle.entries.get("brake.longest_release")
     if entry is None or not isinstance(entry.value, float):
@@ -85,13 +91,15 @@ def _fault(found: Robustness | None, kind: str) -> str:
 
 
 def _patches(found: Robustness | None) -> str:
-    return "" if found is None or found.patches is None else _told(found, found.patches)
+    return (
+        "" if found is None or found.patches is None else f"on a patchy rail: {_told(found, found.patches)}"
+    )
 
 
 def _told(found: Robustness, stop: FaultedStop) -> str:
     if not stop.stopped:
         return "the train does not stop"
-    longer = "" if stop.fault is None else f", {100.0 * (stop.distance / found.plain - 1.0):.2g} % longer"
+    longer = "" if stop.fault is None else f", {100.0 * (stop.distance / found.plain - 1.0):.1f} % longer"
     return f"{stop.distance:.0f} m{longer}, longest lock {max(stop.locks):.2g} s"
 
 
@@ -116,7 +124,7 @@ def _air(own: Trial) -> str:
 def _speed(own: Trial) -> str:
     if math.isnan(own.metrics.speed_error):
         return ""
-    return f"the speed that the law goes by is wrong by at most {100.0 * own.metrics.speed_error:.2g} %"
+    return f"in this stop the speed that the law goes by is wrong by at most {100.0 * own.metrics.speed_error:.2g} %"
 
 
 def _add(said: list[str], value: float, words: Callable[[float], str]) -> None:

@@ -68,8 +68,8 @@ KEY_FIGURES: dict[str, KeyFigure] = {
         ),
         KeyFigure(
             name="slip_rms",
-            title="slip rms about the reference",
-            short="slip rms",
+            title="slip rms, the build-up included",
+            short="slip rms, build-up incl.",
             unit="-",
             column="slip_rms",
             alone=lambda made: made.metrics.slip_rms,

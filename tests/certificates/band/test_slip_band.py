@@ -7,6 +7,7 @@ import pytest
 
 import wspd_design as wd
 from tests.certificates.band.conftest import certificate_of, problem_of
+from wspd_design.certificates.checks.frame import accepted
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
@@ -91,6 +92,25 @@ def test_share_of_the_box_is_part_of_the_statement(half, proof, document):
     proof["share"] = "0.5"
     assert checker(half, half.controller)(proof, Work(PLENTY))["share"] == 0.5
     assert not replay(half, json.dumps(document)).accepted
+
+
+def test_share_of_the_box_is_told_and_leaves_the_claim_open(half, proved, proof):
+    findings = {key: each.stated for key, each in proved.findings.items()}
+    findings[CELLS] = replace(findings[CELLS], proof=proof | {"share": "0.5"})
+    told = SLIP_BAND.tell(half, accepted(SLIP_BAND.obligations(half), findings))
+    assert told.status is Status.UNDECIDED
+    assert told.explanation.startswith(
+        "Shown on 50 % of each range about its nominal value, not on all of it."
+    )
+    assert told.margin is None
+
+
+def test_whole_box_of_low_adhesion_is_proved():
+    certificate = certificate_of(problem_of(1.0, rail=wd.load_rail("low-adhesion")))
+    assert certificate.status is Status.PROVED
+    numbers = certificate.findings[CELLS].numbers
+    assert numbers["share"] == 1.0
+    assert max(numbers["band 0 above"], numbers["band 0 below"]) < 0.0015
 
 
 def test_ellipsoid_that_is_not_there_is_refused(half, proof):

@@ -17,6 +17,7 @@ from tests.unit.reporting.sample_dossier import (
     judged,
     sample_dossier,
     trial,
+    uncertainty,
 )
 from wspd_design.certificates.records import Status
 from wspd_design.design.requirements import Limit
@@ -25,7 +26,7 @@ from wspd_design.reporting.blocks import Cell, Definitions, KeyNumbers, Table
 from wspd_design.reporting.blocks import Status as Shown
 from wspd_design.reporting.sections.summary import summary, verdict
 from wspd_design.reporting.text import Link, plain
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.records import Ending, Sensing
 from wspd_design.studies.judgment import Outcome
 from wspd_design.studies.loop_growth import Growth
 from wspd_design.studies.next_step import Alternative, NextStep
@@ -171,6 +172,49 @@ def test_the_weakest_link_of_an_accepted_design_is_its_smallest_reserve():
     assert "R3, longest lock above 10 km/h" in plain(_rows(other)["Weakest link"])
 
 
+def test_the_scope_writes_units_as_every_table_does():
+    dossier = sample_dossier(())
+    disturbed = replace(dossier.scenario, sensing=Sensing(accelerometer_noise=0.05))
+    said = plain(_rows(replace(dossier, scenario=disturbed))["Scope"])
+    assert "accelerometer noise 0.05 m/s² rms" in said
+
+
+def test_an_alternative_of_which_no_check_judges_a_requirement_does_not_meet_everything():
+    wanted = paper_requirements(sample_dossier().specification)
+    dossier = judged(sample_dossier(()), wanted)
+    tried = (
+        Alternative(law="super-twisting", sample_time=0.1, missed=(), distance=290.4, silent=("loop",)),
+        Alternative(law="torque-feedback", sample_time=0.1, missed=(), distance=292.0),
+    )
+    said = plain(_rows(replace(dossier, next_step=NextStep(tried=tried, stops=1)))["Next"])
+    assert (
+        "these meet everything: sampled every 100 ms torque-feedback (292 m); these meet all but R2, which"
+        in said
+    )
+    assert (
+        "no check judges for their laws: sampled every 100 ms super-twisting (290 m) (2 alternatives" in said
+    )
+
+
+def test_limits_that_fail_beyond_what_the_drawn_stops_vary_stand_on_page_one():
+    dossier = replace(drawn(sample_dossier(())), uncertainty=uncertainty())
+    assert dossier.judgment.accepted
+    said = plain(_rows(dossier)["Over all bounds"])
+    # The stops draw the rail within its bounds and hold the mass; no set of the spread locks a wheel.
+    assert "the stops of the requirements hold mass at" in said
+    assert "stops on polach-wet that draw all numbers keeps R3 (0 s)" in said
+    locking = uncertainty()
+    locking = replace(
+        locking,
+        spreads=tuple(
+            replace(each, high=0.4) if each.name == "longest_lock" else each for each in locking.spreads
+        ),
+    )
+    assert "misses R3 (0.4 s)" in plain(_rows(replace(dossier, uncertainty=locking))["Over all bounds"])
+    assert "Over all bounds" not in _rows(drawn(sample_dossier(())))
+    assert "Over all bounds" not in _rows(replace(judged(sample_dossier(())), uncertainty=uncertainty()))
+
+
 def test_the_next_step_is_what_was_tried():
     dossier = drawn(sample_dossier(()), longest_lock=0.2)
     tried = (
@@ -188,6 +232,18 @@ def test_the_next_step_is_what_was_tried():
         in plain(_rows(worse)["Next"])
     )
     assert "nothing that is required is missed" in plain(_rows(drawn(sample_dossier(())))["Next"])
+
+
+def test_a_brake_that_lets_no_wheel_slide_shows_nothing_about_a_law():
+    idle = "No wheel slides in it: nothing is shown about the law."
+    busy = sample_dossier()
+    assert idle not in plain(verdict(busy).sentence)
+    dossier = replace(busy, idle=True, adhesion_use="The brake asks for 58 %: wheels slide on very-low.")
+    assert plain(verdict(dossier).sentence).endswith(idle)
+    assert "wheels slide on very-low" in plain(_rows(dossier)["Weakest link"])
+    assert "judge it where wheels slide; on polach-wet no law has anything to do" in plain(
+        _rows(dossier)["Next"]
+    )
 
 
 def test_faults_that_a_design_does_not_bear_stand_on_page_one():

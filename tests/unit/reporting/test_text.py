@@ -4,7 +4,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, escape, plain, printable, rich, spoken
+from wspd_design.reporting.text import (
+    CodeSpan,
+    Emphasis,
+    Link,
+    Math,
+    escape,
+    plain,
+    printable,
+    rich,
+    spoken,
+    unbroken,
+)
 
 
 def test_every_kind_of_markup() -> None:
@@ -53,3 +64,8 @@ def test_spoken(source: str, expected: str) -> None:
 @given(st.text())
 def test_printable_text_has_no_control_characters(text: str) -> None:
     assert not any((ord(c) < 32 and c not in "\n\t") or 0x7F <= ord(c) < 0xA0 for c in printable(text))
+
+
+def test_no_line_ends_between_a_limit_and_its_sign_or_unit() -> None:
+    assert unbroken("at most ≤ 0.5 s, < 1 and ≥ 95.5 %") == "at most ≤\xa00.5\xa0s, <\xa01 and ≥\xa095.5\xa0%"
+    assert unbroken("a < b or 3 of 4") == "a < b or 3 of 4"

@@ -80,11 +80,11 @@ def test_limits_name_the_disturbances_of_the_stops():
         return [plain(item) for item in limits(made)[1].items]
 
     calm = said()
-    assert "The track is straight, level and in one condition from end to end" in "".join(calm)
+    assert "the track is straight, level and in one condition from end to end" in "".join(calm)
     assert any("measured without error" in item and "known" in item for item in calm)
     assert not any("disturbed" in item for item in calm)
     disturbed = said(grade=0.005, sensing=Sensing(speed_noise=0.05, dead_time=0.04))
-    assert "The track is straight and in one condition from end to end" in "".join(disturbed)
+    assert "the track is straight and in one condition from end to end" in "".join(disturbed)
     assert not any("measured without error" in item or "dead times" in item for item in disturbed)
     (told,) = (item for item in disturbed if "disturbed" in item)
     assert "grade 5 permille, speed noise 0.05 m/s rms, dead time 40 ms" in told

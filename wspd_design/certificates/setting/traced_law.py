@@ -125,7 +125,7 @@ def law_of_theorem(problem: Problem, family: str) -> str | None:
         return f"no theorem is written for the {title}"
     written = written_law(law, family)
     if written is None:
-        return f"{law.name} does not have the gains and the model of the {title}"
+        return f"it does not have the gains and the model of the {title}"
     found = trace(law)
     if isinstance(found, str):
         return found

@@ -356,7 +356,7 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
         margin=Range(low=None, high=numbers["disk"], unit="-") if numbers else None,
         worst_point=where,
         witness=witness,
-        hypotheses=tuple(hypothesis(findings[key].asked, findings[key]) for key in ("margins", *refuted)),
+        hypotheses=tuple(hypothesis(findings[key].asked, findings[key]) for key in (refuted or ("margins",))),
         assumptions=(
             "frozen train speed",
             "nominal parameters, axle at static load",

@@ -132,7 +132,11 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         margin=Range(low=None, high=1.0 - shown["radius"], unit="-") if shown else None,
         worst_point=where,
         witness=where if refuted else (),
-        hypotheses=tuple(hypothesis(each.asked, each) for each in (poles, bears) if each.numbers),
+        hypotheses=tuple(
+            hypothesis(each.asked, each)
+            for each in ((growing,) if refuted else (poles, bears))
+            if each.numbers
+        ),
         assumptions=(
             "frozen train speed",
             "exact measurement, no computing time",

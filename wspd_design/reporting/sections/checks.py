@@ -154,7 +154,7 @@ def checks(dossier: Dossier) -> tuple[Block, ...]:
         if status is Status.NOT_APPLICABLE:
             found.append(_silent(group[::-1]))
             continue
-        found.append(Paragraph(text=f"{word}: {meaning}."))
+        found.append(Paragraph(text=f"{word} \N{EN DASH} {meaning}."))
         for certificate in group:
             found += shown.check(certificate)
     return tuple(found)

@@ -40,6 +40,7 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
     marked = " Black marks: Table 10 of the paper." if published else ""
     found: list[Block] = [
         Heading(text="Comparison", anchor="comparison"),
+        Paragraph(text=("The same stop with every controller: ", *_contents(published), ".")),
         Figure(
             svg=picture(draw_bars, height=0.6 + BAR_HEIGHT * len(trials)),
             caption=f"Stopping distances. {_parts(dossier)}Dashed: the ideal stop, "
@@ -47,7 +48,6 @@ def comparison(dossier: Dossier) -> tuple[Block, ...]:
             alt=distances_alt(trials),
             anchor="distances",
         ),
-        Paragraph(text=("The same stop with every controller: ", *_contents(published), ".")),
         Paragraph(text=_yardsticks(dossier)),
         Paragraph(text=_ranking(dossier)),
         *_notes(trials),
@@ -139,15 +139,19 @@ def _ranking(dossier: Dossier) -> Text:
     first = worst.metrics.build_up_distance - best.metrics.build_up_distance
     gap = worst.metrics.distance - best.metrics.distance
     return (
-        f"{meaning}Between the shortest stop, ",
-        CodeSpan(text=best.run.controller),
-        f" with {best.metrics.distance:.1f} m, and the longest, ",
+        f"{meaning}The longest stop, ",
         CodeSpan(text=worst.run.controller),
-        f" with {worst.metrics.distance:.1f} m, lie {gap:.1f} m: "
-        f"{numbers.decimals(first, 1)} m until the brake is built up and "
-        f"{numbers.decimals(gap - first, 1)} m after it. {world} The torque integral is a "
+        f" with {worst.metrics.distance:.1f} m, is {gap:.1f} m longer than the shortest, ",
+        CodeSpan(text=best.run.controller),
+        f" with {best.metrics.distance:.1f} m: {_longer(first)} until the brake is built up, {_longer(gap - first)} "
+        f"after it. {world} The torque integral is a "
         "balance of momentum, nearly the same for all, and no measure of air consumption.",
     )
+
+
+def _longer(distance: float) -> str:
+    """Say by how much a stop, or a part of it, is longer than another."""
+    return f"{abs(distance):.1f} m {'longer' if distance >= 0.0 else 'shorter'}"
 
 
 def _stops(trials: tuple[Trial, ...]) -> Table:

@@ -5,7 +5,10 @@ from dataclasses import replace
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Heading
-from wspd_design.reporting.text import Text
+from wspd_design.reporting.formula_text import readable
+from wspd_design.reporting.sections.other_conditions import VARIANTS
+from wspd_design.reporting.sections.robustness import FAULTS
+from wspd_design.reporting.text import Link, Text
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import disturbances_of, rails_of
 from wspd_design.simulation.records import Run, Sensing
@@ -31,7 +34,7 @@ def limits(dossier: Dossier) -> tuple[Block, ...]:
     items: list[Text] = [OF_PLANT[run.plant], *_digits(dossier.trials), *_of_scenario(dossier)]
     return (
         Heading(text="What this report does not show", anchor="limits"),
-        Bullets(items=(*items, *_of_brakes(dossier.vehicle), *EVERYWHERE)),
+        Bullets(items=(*items, *_elsewhere(dossier), *_of_brakes(dossier.vehicle), *EVERYWHERE)),
     )
 
 
@@ -45,9 +48,10 @@ def _of_scenario(dossier: Dossier) -> list[str]:
     ]
     sensing = scenario.sensing
     exact = replace(sensing, dead_time=None, shortest_pulse=None) == Sensing()
-    disturbances = disturbances_of(scenario)
+    disturbances = readable(disturbances_of(scenario))
     return [
-        f"The track is {numbers.listing(track)}; no cleaning of the rail by the wheels ahead, no sand.",
+        f"In the stop of this report the track is {numbers.listing(track)}; no cleaning of the rail by the wheels "
+        "ahead, no sand.",
         "Speeds and torque are measured without error, delay or quantization, and the train speed is known."
         if exact
         else "Speeds and torque have the stated disturbances of their measurement and no other ones.",
@@ -65,6 +69,25 @@ def _of_scenario(dossier: Dossier) -> list[str]:
             if disturbances
             else []
         ),
+    ]
+
+
+def _elsewhere(dossier: Dossier) -> list[Text]:
+    """Refer to the stops in which one of these conditions is another."""
+    places = [
+        *([Link(anchor=VARIANTS)] if dossier.uncertainty is not None else []),
+        *([Link(anchor=FAULTS)] if dossier.robustness is not None else []),
+    ]
+    if not places:
+        return []
+    and_ = (" and ",) if len(places) == 2 else ()
+    listed = (*places[:1], *and_, *places[1:])
+    return [
+        (
+            "Other rails, sensor errors, dead times and faults are tried one at a time, in ",
+            *listed,
+            "; no two of them together.",
+        )
     ]
 
 
@@ -115,8 +138,8 @@ def _digits(trials: tuple[Trial, ...]) -> list[Text]:
     said: list[Text] = []
     if spreads:
         said.append(
-            "A digit that it does not have: some closed loops are sensitive, so that initial speeds that differ "
-            f"by millionths spread the distance: {numbers.listing(spreads)}."
+            "Digits that a sensitive loop does not have: initial speeds that differ by millionths spread the distance "
+            f"of {numbers.listing(spreads)}."
         )
     if unresolved:
         said.append(

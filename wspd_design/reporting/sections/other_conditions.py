@@ -9,6 +9,9 @@ from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.studies.key_figures import KEY_FIGURES, Outcome
 from wspd_design.studies.uncertainty import Uncertainty, Variant
 
+VARIANTS = "uncertainty-variants"
+"""Anchor of the table."""
+
 
 def other_conditions(found: Uncertainty) -> tuple[Block, ...]:
     """Tell single stops under other conditions; those that change no digit in a sentence."""
@@ -40,7 +43,7 @@ def other_conditions(found: Uncertainty) -> tuple[Block, ...]:
         caption="One stop under each condition, in which only this differs from the nominal stop. The sizes of sensor "
         "errors and dead times are chosen, not measured. All numbers: each at the end of its bounds that shortens, or "
         "lengthens, the stop alone.",
-        anchor="uncertainty-variants",
+        anchor=VARIANTS,
     )
     if not same:
         return (table,)

@@ -11,8 +11,8 @@ from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import PATCHES, SINCE, FaultedStop, Robustness
 
-ROBUSTNESS = "robustness"
-"""Anchor of the section."""
+ROBUSTNESS, FAULTS = "robustness", "robustness-table"
+"""Anchors of the section and of its table."""
 
 _FAULTS = {
     "sensor-lost": "speed sensor lost",
@@ -34,7 +34,7 @@ def robustness(dossier: Dossier) -> tuple[Block, ...]:
         Paragraph(
             text=rich(
                 f"The same design, unchanged, where one wheelset has a fault from {SINCE:g} s on; of the axles the "
-                f"one where it does most harm. Stops on {escape(rails)} without a fault take "
+                f"one where it does most harm. The stop on {escape(rails)} without a fault takes "
                 f"{numbers.decimals(found.plain, 1)} m. A stop holds if the train stops and no wheel that a law could "
                 f"keep turning is locked for more than {LONGEST_LOCK:g} s above {judged} km/h. [](#robustness-table) "
                 "lists them."
@@ -69,7 +69,7 @@ def _table(found: Robustness, judged: str) -> Table:
         ),
         caption=f"One fault at a time, and a rail that changes along the track. Lock: the longest one of a wheelset "
         f"above {judged} km/h.",
-        anchor="robustness-table",
+        anchor=FAULTS,
     )
 
 

@@ -1,5 +1,7 @@
 """Where every number comes from."""
 
+from collections.abc import Sequence
+
 from wspd_design.certificates.quantities import outside_claims, quantity_of
 from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
@@ -7,7 +9,7 @@ from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph, Table
 from wspd_design.reporting.sections.design import gain_table
 from wspd_design.reporting.tables import ColumnOf, build
-from wspd_design.reporting.text import references
+from wspd_design.reporting.text import Inline, Link
 from wspd_design.studies.dossier import Dossier
 
 WEAK = ("calibrated", "assumed")
@@ -18,7 +20,9 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
     sets = (dossier.vehicle, dossier.rail, *dossier.other_parameters)
     entries = [entry for each in sets for entry in each.entries.values()]
     weak = sum(entry.status in WEAK for entry in entries)
-    gains = [f"gains-{index}" for index in range(1, len(dossier.compared_designs) + 1)]
+    gains = [
+        (f"gains of {made.name}", f"gains-{index}") for index, made in enumerate(dossier.compared_designs, 1)
+    ]
     found: list[Block] = [
         Heading(text="Sources", anchor="sources"),
         Paragraph(
@@ -26,8 +30,8 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
                 f"All {len(entries)} numbers of the vehicle, the rails, the compared controllers and the constants; "
                 f"{weak} of them are calibrated or assumed. A number without bounds is taken as exactly known. Of a "
                 "number with bounds the tables say who varies it over all of them, and who holds it at its value. "
-                f"{', '.join(map(_called, sets))} and the gains of the compared designs stand in ",
-                *references([*(_anchor(each) for each in sets), *gains]),
+                "Where they stand: ",
+                *_places([*((_called(each), _anchor(each)) for each in sets), *gains]),
                 ".",
             )
         ),
@@ -36,7 +40,7 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
     found += [_table(each, dossier if each in own else None) for each in sets]
     found += [
         gain_table(made, caption=f"Gains of {made.name}, compared.", anchor=anchor)
-        for made, anchor in zip(dossier.compared_designs, gains, strict=True)
+        for made, (_, anchor) in zip(dossier.compared_designs, gains, strict=True)
     ]
     known = known_sources()
     keys = [key for key in dict.fromkeys(entry.source for entry in entries) if key in known]
@@ -58,6 +62,14 @@ def sources(dossier: Dossier) -> tuple[Block, ...]:
             )
         )
     )
+    return tuple(found)
+
+
+def _places(tables: Sequence[tuple[str, str]]) -> tuple[Inline, ...]:
+    """Say in which table each of some sets of numbers stands."""
+    found: list[Inline] = []
+    for name, anchor in tables:
+        found += [", " if found else "", f"{name} in ", Link(anchor=anchor)]
     return tuple(found)
 
 

@@ -21,7 +21,15 @@ from wspd_design.reporting.blocks import (
     Table,
     Verdict,
 )
-from wspd_design.reporting.decision_words import next_words, produced_by, rank, scope, weakest
+from wspd_design.reporting.decision_words import (
+    WORST_OF,
+    next_words,
+    over_all_bounds,
+    produced_by,
+    rank,
+    scope,
+    weakest,
+)
 from wspd_design.reporting.figures.drawing import KMH
 from wspd_design.reporting.requirement_words import (
     against_limit,
@@ -44,13 +52,7 @@ from wspd_design.simulation.records import Ending
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.judgment import Judgment, Requirement
 
-_SPREADS = {
-    "stopping_distance": "distance",
-    "efficiency_worst": "efficiency",
-    "longest_lock": "longest_lock",
-    "vented_air": "vented_air",
-    "speed_error": "speed_error",
-}
+_SPREADS = WORST_OF | {"vented_air": "vented_air"}
 """Figures that the spread over the bounds has under these names."""
 
 _SLIP = "Slip: each wheelset once it has 90 % of its reference. "
@@ -106,9 +108,10 @@ def _stop(dossier: Dossier) -> str:
     if run.ending is not Ending.STOPPED:
         return f"{start} does not end: {run.ending.value}."
     known = figures.ideal_ending is Ending.STOPPED
+    idle = " No wheel slides in it: nothing is shown about the law." if dossier.idle else ""
     return (
         f"{start} takes {numbers.decimals(figures.distance, 0)} m"
-        f"{f', the ideal stop {ideal_distance(figures)}' if known else ''}."
+        f"{f', the ideal stop {ideal_distance(figures)}' if known else ''}.{idle}"
     )
 
 
@@ -220,6 +223,7 @@ def _decision(dossier: Dossier) -> tuple[Definition, ...]:
     rows: tuple[tuple[str, Text], ...] = (
         ("Scope", scope(dossier)),
         ("Weakest link", weakest(dossier)),
+        ("Over all bounds", over_all_bounds(dossier)),
         ("Next", next_words(dossier)),
         ("Against the others", rank(dossier)),
     )

@@ -48,7 +48,7 @@ def uncertainty(dossier: Dossier) -> tuple[Block, ...]:
     anchors = [each.anchor for each in shown if isinstance(each, Figure | Table)]
     return (
         Heading(text="Uncertainty", anchor=UNCERTAINTY),
-        Paragraph(text=(f"{_what_is_drawn(found)} What comes of it stands in ", *references(anchors), ".")),
+        Paragraph(text=(f"{_what_is_drawn(found)} See ", *references(anchors), ".")),
         *shown,
     )
 
@@ -85,7 +85,11 @@ def _spreads(found: Uncertainty) -> Table:
         (
             ColumnOf(title="Figure", read=lambda each: titled(KEY_FIGURES[each.name])),
             *map(value, ("nominal", "low", "p05", "p95", "high")),
-            ColumnOf(title="Worst set", flush_right=True, read=lambda each: str(each.worst.number)),
+            ColumnOf(
+                title="Worst set",
+                flush_right=True,
+                read=lambda each: numbers.NONE if each.low == each.high else str(each.worst.number),
+            ),
         ),
         caption=f"Key figures of the nominal stop and of {found.sets} drawn sets, with the digits that their spread "
         "leaves them. 5 % and 95 %: a twentieth of the sets lie at or below the one, 19 of 20 at or below the other.",
@@ -213,6 +217,8 @@ def _worst_sets(found: Uncertainty, entries: dict[str, Entry]) -> tuple[Block, .
     sets: dict[int, WorstSet] = {}
     of: dict[int, list[str]] = {}
     for each in found.spreads:
+        if each.low == each.high:  # no set is worse than another
+            continue
         sets.setdefault(each.worst.number, each.worst)
         of.setdefault(each.worst.number, []).append(KEY_FIGURES[each.name].title)
     chosen = list(sets.values())

@@ -17,7 +17,7 @@ from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.units import KMH
 
 TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
-CELLS_TRIED = 100  # with an effort of 1
+CELLS_TRIED = 24  # for each share of the box, with an effort of 1
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:

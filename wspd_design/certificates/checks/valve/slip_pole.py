@@ -78,12 +78,12 @@ def nominal_plots(
 
 
 def unstable_speeds(poles: PoleMap, limit: float) -> str:
-    """Say where the nominal pole exceeds a limit."""
+    """Say where the nominal pole exceeds a limit, which need not be that of the nominal valve."""
     import numpy as np
 
     beyond = np.flatnonzero(poles.nominal >= limit)
     if beyond.size == 0:
-        return "With the nominal parameters the pole stays below the limit at all speeds"
+        return f"With nominal vehicle and rail the pole stays below {limit:.4g} 1/s at all speeds"
     low, high = poles.speeds[beyond[0]] * KMH, poles.speeds[beyond[-1]] * KMH
     share = f"{beyond.size} of {len(poles.speeds)} speeds between {low:.3g} and {high:.3g} km/h"
-    return f"With the nominal parameters the pole exceeds the limit at {share}"
+    return f"With nominal vehicle and rail the pole exceeds {limit:.4g} 1/s, the limit of the slowest valve, at {share}"

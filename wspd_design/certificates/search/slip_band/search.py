@@ -68,7 +68,7 @@ def largest_share(
     friction : sequence of Friction
         Proved bounds for each window.
     most_cells : int
-        That may be tried.
+        That may be tried for each share.
     """
     tried = Tried(most=most_cells)
     whole = _all_windows(problem, law, box_of(problem, SHARES[-1]), friction, tried)
@@ -78,21 +78,20 @@ def largest_share(
     alone = _all_windows(problem, law, middle, friction, tried)
     if isinstance(alone, int):  # no box around it can do better
         return Failed(share=SHARES[-1], cell=middle, window=alone, cut=False)
-    shares = list(SHARES)
-    failed: Failed | None = None
-    while shares:
-        # All shares below one whose corners have ellipsoids may be covered, none from one that has not.
-        failed = _failing_corner(problem, law, friction, shares[-1])
-        if failed is None:
-            break
-        shares.pop()
-    while shares:
-        covered = cover(problem, law, friction, shares.pop(), tried)
-        if isinstance(covered, Proof) or tried.exhausted:
-            return covered
-        failed = covered
-    assert failed is not None
-    return failed
+    low, high = 0, len(SHARES)  # numbers of shares: one that is covered, and one that may be
+    best: Proof | Failed | None = None
+    while low < high and (best := _failing_corner(problem, law, friction, SHARES[high - 1])) is not None:
+        high -= 1
+    while low < high:
+        number = (low + high + 1) // 2
+        found = cover(problem, law, friction, SHARES[number - 1], Tried(most=most_cells))
+        if isinstance(found, Proof):
+            low, best = number, found
+        else:
+            high = number - 1
+            best = found if best is None else best
+    assert best is not None
+    return best
 
 
 def _failing_corner(
