@@ -1,6 +1,8 @@
 """How much of the adhesion of a rail a brake asks for: whether its wheels slide at all."""
 
 from wspd_design.analysis.stopping import demanded_adhesion
+from wspd_design.parameters.files import uniform_rails
+from wspd_design.parameters.loading import load_rail
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH
 from wspd_design.simulation.peak import peak_adhesion
@@ -39,5 +41,11 @@ def adhesion_sentence(vehicle: Vehicle, rail: Rail, speeds: tuple[float, float])
         f"{rail.name} gives at {speed * KMH:.3g} km/h under the static load"
     )
     if share < 1.0:
-        return f"{asked}: no wheel slides there and the protection stays idle; choose a rail that gives less."
+        return f"{asked}: no wheel slides there and the protection stays idle; {_where_it_slides(vehicle, speeds)}."
     return f"{asked}: wheels slide without a protection."
+
+
+def _where_it_slides(vehicle: Vehicle, speeds: tuple[float, float]) -> str:
+    """Name the shipped rails that give less than the brake asks for."""
+    rails = [name for name in uniform_rails() if used_adhesion(vehicle, load_rail(name), speeds)[0] >= 1.0]
+    return f"wheels slide on {', '.join(rails)}" if rails else "so it does on every shipped rail"

@@ -49,9 +49,9 @@ def weakest(dossier: Dossier) -> str:
         return "no requirement has a margin"
     if row.name == "loop" and dossier.growth is not None:
         return _loop(dossier, row)
-    if dossier.judgment.accepted:
-        return f"{row.id}, {against_limit(row)}: the smallest reserve, {margin(row)}"
-    return f"{row.id}, {against_limit(row)}"
+    reserve = f": the smallest reserve, {margin(row)}" if dossier.judgment.accepted else ""
+    cause = f". {dossier.adhesion_use}" if dossier.idle else ""
+    return f"{row.id}, {against_limit(row)}{reserve}{cause}"
 
 
 def _loop(dossier: Dossier, row: Requirement) -> str:
@@ -114,6 +114,11 @@ def over_all_bounds(dossier: Dossier) -> str:
 def next_words(dossier: Dossier) -> str:
     """Say what was tried in place of a design that is not accepted; for one that is, which evidence it lacks."""
     found = dossier.next_step
+    if found is None and dossier.idle:
+        return (
+            f"judge it where wheels slide; on {rails_of(dossier.scenario)} no law has anything to do, and no other one "
+            "was tried"
+        )
     if found is None:
         return "nothing that is required is missed; no rung of the ladder below is a measurement on a vehicle"
     tried = (

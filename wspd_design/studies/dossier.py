@@ -13,7 +13,7 @@ from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
 from wspd_design.controllers.offers import Surface
 from wspd_design.controllers.protocol import Law
-from wspd_design.design.adhesion_use import adhesion_sentence
+from wspd_design.design.adhesion_use import adhesion_sentence, used_adhesion
 from wspd_design.design.case import specification_of
 from wspd_design.design.catalog import controller, controller_of, is_design_file
 from wspd_design.design.file import read_design
@@ -71,13 +71,14 @@ class Dossier:
     compared_designs: tuple[Design, ...]  # of the laws among the baselines that have gains
     brake: BrakeSheet  # on full adhesion
     adhesion_use: str  # how much of what the rail gives the brake asks for, in the range of the design
+    idle: bool  # the brake asks for less than the rail gives, and no wheel slides in the design's own stop
     linearizations: tuple[Linearization, ...]  # over speed, at the slip reference
     certificates: tuple[Certificate, ...]
     trials: tuple[Trial, ...]  # the design's own stop first
     phase_plane: PhasePlane | None  # of laws with a sliding surface
     growth: Growth | None  # near the reference; None where no check of the loop speaks about the law
     judgment: Judgment  # by its requirements
-    next_step: NextStep | None  # of a law that is not accepted
+    next_step: NextStep | None  # of a law that is not accepted and had something to do
     robustness: Robustness | None  # where wheelsets differ
     uncertainty: Uncertainty | None  # where numbers have bounds
     scenario: Scenario  # of the stops
@@ -176,6 +177,10 @@ def dossier(
         plant=plant,
         progress=progress,
     )
+    # No other law can do better in a stop that leaves it nothing to do; drawn stops have rails of their own.
+    idle = used_adhesion(of_vehicle, of_rail, asked.speeds)[0] < 1.0 and math.isnan(
+        trials[0].metrics.slip_reached
+    )
     vehicle_name = "" if isinstance(vehicle, Vehicle) else str(vehicle)
     full_adhesion = _full_adhesion(of_vehicle, scenario)
     judged = judgment(
@@ -212,6 +217,7 @@ def dossier(
         compared_designs=tuple(each for _, each in others if each is not None),
         brake=brake_sheet(of_vehicle),
         adhesion_use=adhesion_sentence(of_vehicle, of_rail, asked.speeds),
+        idle=idle,
         linearizations=linearizations,
         certificates=certificates,
         trials=trials,
@@ -219,7 +225,7 @@ def dossier(
         growth=growth,
         judgment=judged,
         next_step=None
-        if judged.accepted
+        if judged.accepted or (idle and isinstance(judged.wanted, StopRequirements))
         else next_step(
             judged,
             law=None if design is None else design.law,

@@ -362,6 +362,7 @@ def sample_dossier(
         compared_designs=(),
         brake=brake_sheet(load_vehicle("er24pc")),
         adhesion_use="The brake asks for much.",
+        idle=False,
         linearizations=tuple(
             linearization(float(v), 2.0 - 8.0 / v) for v in np.geomspace(1.0, INITIAL_SPEED, 12)
         ),

@@ -234,6 +234,18 @@ def test_the_next_step_is_what_was_tried():
     assert "nothing that is required is missed" in plain(_rows(drawn(sample_dossier(())))["Next"])
 
 
+def test_a_brake_that_lets_no_wheel_slide_shows_nothing_about_a_law():
+    idle = "No wheel slides in it: nothing is shown about the law."
+    busy = sample_dossier()
+    assert idle not in plain(verdict(busy).sentence)
+    dossier = replace(busy, idle=True, adhesion_use="The brake asks for 58 %: wheels slide on very-low.")
+    assert plain(verdict(dossier).sentence).endswith(idle)
+    assert "wheels slide on very-low" in plain(_rows(dossier)["Weakest link"])
+    assert "judge it where wheels slide; on polach-wet no law has anything to do" in plain(
+        _rows(dossier)["Next"]
+    )
+
+
 def test_faults_that_a_design_does_not_bear_stand_on_page_one():
     assert "With a fault" not in _rows(replace(sample_dossier(), robustness=faults()))
     locked = replace(faults().faults[0], locks=(0.0, 0.6, 0.0, 0.0))

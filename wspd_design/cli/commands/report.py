@@ -154,6 +154,8 @@ def report(
     )
     first, period, _ = plain(judged.sentence).partition(". ")
     console().print(f"{judged.status.sign} {first}{period}".rstrip(), style=style, markup=False)
+    if computed.idle:
+        console().print(computed.adhesion_use, markup=False)
     for path in paths:
         console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
     if older is not None:

@@ -108,9 +108,10 @@ def _stop(dossier: Dossier) -> str:
     if run.ending is not Ending.STOPPED:
         return f"{start} does not end: {run.ending.value}."
     known = figures.ideal_ending is Ending.STOPPED
+    idle = " No wheel slides in it: nothing is shown about the law." if dossier.idle else ""
     return (
         f"{start} takes {numbers.decimals(figures.distance, 0)} m"
-        f"{f', the ideal stop {ideal_distance(figures)}' if known else ''}."
+        f"{f', the ideal stop {ideal_distance(figures)}' if known else ''}.{idle}"
     )
 
 
