@@ -10,7 +10,7 @@ import pexpect
 import pyte
 import pytest
 
-ROWS, COLUMNS = 30, 60
+ROWS, COLUMNS = 40, 60
 PATIENCE = 30.0  # s
 
 pytestmark = [

@@ -61,8 +61,6 @@ def show_stop(made: Trial, scenario: Scenario, reference: float) -> None:
     for row in _of_brake(figures):
         shown.add_row(*row)
     shown.add_row("valve switches per wheelset", f"{figures.valve_switches}", "")
-    if figures.stopping_time:
-        shown.add_row("the same per second", f"{figures.valve_switches / figures.stopping_time:.1f}", "1/s")
     shown.add_row("samples at a limit", number(100.0 * figures.saturated_share, ".0f"), "%")
     shown.add_row("momentum balance, relative", f"{figures.momentum_residual:.1e}", "-")
     shown.add_row("energy balance, relative", f"{figures.energy_residual:.1e}", "-")

@@ -202,6 +202,7 @@ def _cell(cell: Text | Cell) -> dict[str, Any]:
 
 
 LONG_TEXT = 25  # characters
+LINE = 80  # characters that the columns of long texts have on a line, at least
 SHORT_ROWS, SHORT_TEXT = 8, 1000  # rows and characters of a table that fits any page
 
 
@@ -216,7 +217,7 @@ def _shares(table: Table) -> list[int]:
     """Return for each column its share of the free width; 0 for columns as wide as their content.
 
     Columns of long texts share what the short ones leave, in proportion to their longest text; without a long
-    text all share.
+    text all share. A column is as wide as its longest word.
     """
     longest = [
         max(len(plain(column.title)), *map(_length, cells)) if cells else len(plain(column.title))
@@ -224,7 +225,22 @@ def _shares(table: Table) -> list[int]:
     ]
     if max(longest) < LONG_TEXT:
         return longest
-    return [min(length, 80) if length >= LONG_TEXT else 0 for length in longest]
+    wanted = [min(length, 80) if length >= LONG_TEXT else 0 for length in longest]
+    words = [max(map(_longest_word, column)) for column in zip(_titles(table), *table.rows, strict=True)]
+    return [
+        max(share, -(-word * sum(wanted) // LINE)) if share else 0
+        for share, word in zip(wanted, words, strict=True)
+    ]
+
+
+def _titles(table: Table) -> tuple[Text, ...]:
+    return tuple(column.title for column in table.columns)
+
+
+def _longest_word(cell: Text | Cell) -> int:
+    """Return the characters of the longest part of a cell that no line breaks."""
+    text = cell.text or cell.status.word if isinstance(cell, Cell) else cell
+    return max(map(len, plain(text).split()), default=0)
 
 
 def _is_long(table: Table) -> bool:

@@ -71,7 +71,7 @@ def test_only_a_check_that_decides_a_requirement_decides(statuses):
 @given(STATUSES)
 def test_what_is_refuted_and_decides_nothing_is_told(statuses):
     dossier = sample_dossier(statuses)
-    told = _rows(dossier).get("Refuted, not required", ())
+    told = _rows(dossier).get("Refuted, not counted", ())
     bad = (Status.REFUTED, Status.LIMITATION)
     others = [each.name for each in dossier.certificates[1:] if each.status in bad]
     named = [part.anchor for part in told if isinstance(part, Link)]

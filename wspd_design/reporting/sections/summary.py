@@ -233,7 +233,7 @@ def _decision(dossier: Dossier) -> tuple[Definition, ...]:
 def _beside(dossier: Dossier) -> tuple[Definition, ...]:
     """Return what is to be known beside the requirements."""
     rows: tuple[tuple[str, Text], ...] = (
-        ("Refuted, not required", _told(dossier)),
+        ("Refuted, not counted", _told(dossier)),
         ("With a fault", _fails_with(dossier)),
         ("Assumptions that decide", _assumed(dossier)),
         ("Made by", produced_by(dossier)),
