@@ -1,5 +1,7 @@
 """``wspd report``: what it asks the package for; the report itself is tested elsewhere."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from wspd_design.controllers.family import FAMILIES
@@ -9,6 +11,8 @@ from wspd_design.reporting.sections import summary as summary_module
 from wspd_design.reporting.template import BLANK
 from wspd_design.studies import dossier as dossier_module
 
+COMPUTED = SimpleNamespace(idle=False, adhesion_use="")
+
 
 @pytest.fixture
 def calls(monkeypatch):
@@ -17,10 +21,10 @@ def calls(monkeypatch):
 
     def dossier(made, **options):
         recorded["design"], recorded["options"] = made, options
-        return "dossier"
+        return COMPUTED
 
     def write_report(computed, *paths, template):
-        assert computed == "dossier"
+        assert computed is COMPUTED
         recorded["template"] = template
         recorded["paths"] = [path.name for path in paths]
         for path in paths:
@@ -31,7 +35,7 @@ def calls(monkeypatch):
     found = Verdict(
         status=Status.REFUTED, sentence=("Not fit: 1 of 2 checks refuted (", "a", "). Something else.")
     )
-    monkeypatch.setattr(summary_module, "verdict", lambda computed: found if computed == "dossier" else None)
+    monkeypatch.setattr(summary_module, "verdict", lambda computed: found if computed is COMPUTED else None)
     return recorded
 
 

@@ -85,7 +85,7 @@ COMMANDS = {
     ),
     "report": Entry(
         JUDGING,
-        "Write a report: design, poles, certificates, stops and sources.",
+        "Write a report on a design or any other law: gains, poles, certificates, stops and sources.",
         "Example: wspd report design.toml -o report.html --pdf",
     ),
     "reproduce": Entry(
