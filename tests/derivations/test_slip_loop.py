@@ -18,7 +18,7 @@ def test_every_identity_holds(name):
 
 
 def test_there_are_identities():
-    assert len(RESIDUALS) == 10
+    assert len(RESIDUALS) == 11
 
 
 def test_bend_says_which_way_the_edges_curve():
@@ -109,4 +109,8 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant():
     )
     np.testing.assert_allclose(found, after, rtol=1e-7, atol=1e-10)
     assert generated.part_of_way(SHARE / FILL_TIME, H / SHARE) >= rho >= SHARE / FILL_TIME
-    assert 0.0 <= late <= generated.lateness(SECANT * H)
+    latest = generated.lateness(SECANT * H, pulse / H)
+    assert 0.0 <= late <= latest <= generated.lateness(SECANT * H, 1.0)
+    assert rho >= (mean - torque) / (target - torque) >= rho * (1.0 - pulse / H / 2.0)
+    steady = 1.0 - generated.lateness(SECANT * H, 1.0)  # of a steady drift in its weighted mean
+    assert weighted(lambda t: t / H) == pytest.approx(steady, rel=1e-9)
