@@ -44,7 +44,9 @@ def test_the_page_needs_no_network(html):
     assert not re.findall(r"""(?:src|href|action)\s*=\s*["'](?!#|data:)""", html)
     assert "https://" not in html
     assert "default-src 'none'" in html
-    assert re.findall(r"<script[^>]*>", html) == ["<script>"]  # that of the report, named in the policy by its hash
+    assert re.findall(r"<script[^>]*>", html) == [
+        "<script>"
+    ]  # that of the report, named in the policy by its hash
     assert "fetch(" not in html
     assert "XMLHttpRequest" not in html
 
