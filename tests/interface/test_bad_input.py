@@ -125,7 +125,6 @@ COMMAND_LINES = {
     "output exists": (("design", "-o", "typo.toml"), ("typo.toml", "--force")),
     "output of the wizard exists": (("new", "--yes", "-o", "typo.toml"), ("typo.toml", "--force")),
     "output of a stop exists": (("simulate", "--output", "typo.toml"), ("typo.toml", "--force")),
-    "report of a baseline": (("report", "trenitalia"), ("trenitalia", "afsmc or smc")),
     "report in another format": (("report", "-o", "report.docx"), (".html or .pdf",)),
     "report exists": (("report", "-o", "old.html"), ("old.html", "--force")),
     "report as PDF exists": (("report", "-o", "new.html", "--pdf"), ("new.pdf", "--force")),

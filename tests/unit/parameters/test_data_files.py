@@ -45,7 +45,7 @@ def test_sources_say_how_they_are_known():
 
 
 def test_no_file_is_left_out():
-    others = ("schemas", "specifications")
+    others = ("schemas", "specifications", "requirements")
     folders = [each for each in data_file().iterdir() if each.is_dir() and each.name not in others]
     shipped = {path.name for folder in folders for path in folder.iterdir()}
     assert {f"{name}.toml" for kind, name in ALL_FILES if kind != "constants"} == shipped

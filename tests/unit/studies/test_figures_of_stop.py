@@ -38,7 +38,7 @@ def test_a_release_is_counted_once_the_wheelset_has_braked():
 def test_hazards_say_what_is_shown_and_what_is_not():
     dossier = sample_dossier()
     rows = {each.title: each for each in hazards(dossier.trials[0], faults(), dossier.vehicle)}
-    assert rows["speed sensor lost"].shown == "sensor lost: 306 m, 2 % longer, longest lock 0.1 s"
+    assert rows["speed sensor lost"].shown == "sensor lost: 306 m, 2.0 % longer, longest lock 0.1 s"
     assert "0.5 s at a stretch" in rows["slide below the cut-out speed"].shown
     assert "no watchdog" in rows["brake released for long"].shown
     assert rows["wrong train speed"].shown == ""
