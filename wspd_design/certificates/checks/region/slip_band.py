@@ -36,7 +36,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     law = law_of(cast(Protection, problem.controller))
     found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
     if isinstance(found, Failed):
-        return stated | {CELLS: Stated(effort=Effort(boxes=CELLS_TRIED, undecided=1.0, cut=found.cut))}
+        return stated | {CELLS: Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))}
     return stated | {CELLS: Stated(proof=write(found))}
 
 

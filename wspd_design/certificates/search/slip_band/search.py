@@ -38,20 +38,8 @@ class Failed:
     share: Fraction  # of the box
     cell: Cell
     window: int  # in which no ellipsoid was found, the slowest being 0
+    tried: int  # cells, for this share
     cut: bool  # whether the budget ended the search
-
-
-@dataclass(slots=True)
-class Tried:
-    """How many cells were tried, and how many may be."""
-
-    most: int
-    cells: int = 0
-
-    @property
-    def exhausted(self) -> bool:
-        """Whether none is left."""
-        return self.cells >= self.most
 
 
 def largest_share(
@@ -70,21 +58,20 @@ def largest_share(
     most_cells : int
         That may be tried for each share.
     """
-    tried = Tried(most=most_cells)
-    whole = _all_windows(problem, law, box_of(problem, SHARES[-1]), friction, tried)
+    whole = _all_windows(problem, law, box_of(problem, SHARES[-1]), friction)
     if not isinstance(whole, int):
         return Proof(share=SHARES[-1], friction=tuple(friction), steps=".", cells=(whole,))
     middle = _middle(box_of(problem, SHARES[-1]))
-    alone = _all_windows(problem, law, middle, friction, tried)
+    alone = _all_windows(problem, law, middle, friction)
     if isinstance(alone, int):  # no box around it can do better
-        return Failed(share=SHARES[-1], cell=middle, window=alone, cut=False)
+        return Failed(share=SHARES[-1], cell=middle, window=alone, tried=2, cut=False)
     low, high = 0, len(SHARES)  # numbers of shares: one that is covered, and one that may be
     best: Proof | Failed | None = None
     while low < high and (best := _failing_corner(problem, law, friction, SHARES[high - 1])) is not None:
         high -= 1
     while low < high:
         number = (low + high + 1) // 2
-        found = cover(problem, law, friction, SHARES[number - 1], Tried(most=most_cells))
+        found = cover(problem, law, friction, SHARES[number - 1], most_cells)
         if isinstance(found, Proof):
             low, best = number, found
         else:
@@ -99,15 +86,15 @@ def _failing_corner(
 ) -> Failed | None:
     """Look for a corner of the box that has no ellipsoid at the lowest speed, where it is hardest."""
     box, window = box_of(problem, share), windows_of(problem)[0]
-    for sides in CORNERS:
+    for tried, sides in enumerate(CORNERS, start=1):
         corner = tuple((ends[side], ends[side]) for ends, side in zip(box, sides, strict=True))
         if _one_window(problem, law, corner, window, friction[0], None, ()) is None:
-            return Failed(share=share, cell=corner, window=0, cut=False)
+            return Failed(share=share, cell=corner, window=0, tried=tried, cut=False)
     return None
 
 
 def cover(
-    problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction, tried: Tried
+    problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction, most_cells: int
 ) -> Proof | Failed:
     """Find ellipsoids for a share of the box.
 
@@ -121,34 +108,37 @@ def cover(
         Proved bounds for each window.
     share : Fraction
         Of each range, around its nominal value.
-    tried : Tried
-        Counts the cells.
+    most_cells : int
+        That may be tried.
     """
-    waiting, steps = [box_of(problem, share)], ""
+    waiting, steps, tried = [box_of(problem, share)], "", 0
     cells: list[tuple[Ellipsoid, ...]] = []
     while waiting:
         cell = waiting.pop()
-        found = _all_windows(problem, law, cell, friction, tried)
+        found = _all_windows(problem, law, cell, friction)
+        tried += 1
         if not isinstance(found, int):
             steps, cells = f"{steps}.", [*cells, found]
             continue
         letter = _widest(cell)
+        if letter is None:
+            return Failed(share=share, cell=cell, window=found, tried=tried, cut=False)
         middle = _middle(cell)
-        alone = found if letter is None else _all_windows(problem, law, middle, friction, tried)
+        alone = _all_windows(problem, law, middle, friction)
+        tried += 1
         if isinstance(alone, int):  # no cell around it can do better
-            return Failed(share=share, cell=cell if letter is None else middle, window=alone, cut=False)
-        if letter is None or tried.exhausted:
-            return Failed(share=share, cell=cell, window=found, cut=True)
+            return Failed(share=share, cell=middle, window=alone, tried=tried, cut=False)
+        if tried >= most_cells:
+            return Failed(share=share, cell=cell, window=found, tried=tried, cut=True)
         steps += letter
         waiting += halved(cell, letter)[::-1]
     return Proof(share=share, friction=tuple(friction), steps=steps, cells=tuple(cells))
 
 
 def _all_windows(
-    problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction], tried: Tried
+    problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction]
 ) -> tuple[Ellipsoid, ...] | int:
     """Return the ellipsoids of a cell, or the window in which none was found."""
-    tried.cells += 1
     windows = windows_of(problem)
     found: list[Ellipsoid] = []
     hints: tuple[int, ...] = ()

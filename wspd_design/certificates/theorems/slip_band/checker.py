@@ -18,7 +18,7 @@ from wspd_design.certificates.kernel.arb import Ball, above, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Matrix, Pair, corners, wanted
-from wspd_design.certificates.theorems.slip_band.loop import Loop, loop_law, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Loop, least_of, loop_law, loop_of, most_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, read
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
@@ -164,7 +164,7 @@ def _within(law: LoopLaw, loop: Loop, p: Sequence[Sequence[Ball]], center: Seque
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]
         psis = (_psi(low, begin) / h, _psi(high, end) / h)
         for phi, psi, g, gone in product(
-            (_least(phis), _most(phis)), psis, loop.ranges.effects, (point(0), _most(loop.ranges.parts))
+            (least_of(phis), most_of(phis)), psis, loop.ranges.effects, (point(0), most_of(loop.ranges.parts))
         ):
             way = [each - (k == 3) for k, each in enumerate(asked[:STATES])]
             row = [phi * (k == 0) - g * psi * ((k == 3) + gone * each) for k, each in enumerate(way)]
@@ -228,14 +228,3 @@ def is_positive(matrix: Sequence[Sequence[Any]]) -> bool:
                 a[i][j] = a[i][j] - factor * a[j][k]
                 a[j][i] = a[i][j]
     return True
-
-
-def _least(balls: Sequence[Ball]) -> Ball:
-    found = balls[0]
-    for each in balls[1:]:
-        found = found.min(each)
-    return found
-
-
-def _most(balls: Sequence[Ball]) -> Ball:
-    return -_least([-each for each in balls])

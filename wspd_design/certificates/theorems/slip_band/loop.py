@@ -190,7 +190,7 @@ def _parts(law: BandLaw, fill: Ball, vent: Ball, pulse: Fraction) -> Pair:
     speedups = [
         end for ratio in (point(law.fill_time) / fill, point(law.vent_time) / vent) for end in _ends(ratio)
     ]
-    return _ends(_hull(parts_of((_least(speedups), _most(speedups)), longest)))
+    return _ends(_hull(parts_of((least_of(speedups), most_of(speedups)), longest)))
 
 
 def _seen(law: BandLaw, pulse: Fraction) -> Pair:
@@ -205,7 +205,7 @@ def _dead_band(law: BandLaw, sliding: Ball) -> Ball:
     """Largest wanted change of the torque that the law leaves out [N m]."""
     narrowed = point(law.dead_band_share) * sliding * point(law.inertia) * point(law.approach_rate)
     shortest = -point(law.least_pulse) / point(min(law.fill_time, law.vent_time))
-    return _most([_least([point(law.dead_band), narrowed]), -point(law.full_torque) * shortest.expm1()])
+    return most_of([least_of([point(law.dead_band), narrowed]), -point(law.full_torque) * shortest.expm1()])
 
 
 def _resistance(problem: Problem, speed: Ball, order: int = 0) -> Ball:
@@ -232,12 +232,14 @@ def _hull(balls: Sequence[Ball]) -> Ball:
     return found
 
 
-def _least(balls: Sequence[Ball]) -> Ball:
+def least_of(balls: Sequence[Ball]) -> Ball:
+    """Enclose the smallest of some numbers."""
     found = balls[0]
     for each in balls[1:]:
         found = found.min(each)
     return found
 
 
-def _most(balls: Sequence[Ball]) -> Ball:
-    return -_least([-each for each in balls])
+def most_of(balls: Sequence[Ball]) -> Ball:
+    """Enclose the largest of some numbers."""
+    return -least_of([-each for each in balls])
