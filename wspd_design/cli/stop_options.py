@@ -144,9 +144,8 @@ def _fault(text: str, vehicle: Vehicle) -> Fault:
         )
     kind, axle = found["kind"].lower(), int(found["axle"])
     if kind not in FAULT_KINDS:
-        raise UserError(
-            f'--fault "{text}" names no known fault{did_you_mean(kind, FAULT_KINDS)}; it may be {", ".join(FAULT_KINDS)}'
-        )
+        offer = did_you_mean(kind, FAULT_KINDS)
+        raise UserError(f'--fault "{text}" names no known fault{offer}; it may be {", ".join(FAULT_KINDS)}')
     if not 1 <= axle <= vehicle.wheelsets:
         raise UserError(
             f'--fault "{text}" must name an axle from 1 to {vehicle.wheelsets}, as vehicle {vehicle.name} has'
