@@ -77,7 +77,7 @@ def reproduction_document(made: Reproduction, timestamp: datetime) -> Document:
 
 
 def _limits(made: Reproduction) -> tuple[Block, ...]:
-    sensitive = {each.controller for each in made.evidence.stops if each.check.sensitive}
+    sensitive = {each.controller for each in made.small.evidence.stops if each.check.sensitive}
     return (
         Heading(text="What this page does not show", anchor="limits"),
         Bullets(

@@ -20,6 +20,7 @@ from wspd_design.studies.paper.evidence import (
 )
 from wspd_design.studies.paper.published import load_table10
 from wspd_design.studies.paper.reproduction import FrictionCurve, Reproduction
+from wspd_design.studies.paper.section7 import Section7
 from wspd_design.studies.paper.slip_history import SlipHistory
 from wspd_design.studies.paper.table10 import Table10Row
 
@@ -111,7 +112,7 @@ def sample_evidence(**changes) -> Evidence:
         ideal_fill_time=0.01,
         ideal_sample_time=1e-3,
         fill_time=0.6,
-        load_range=(160e3, 220e3),
+        mean_loads=(220e3, 200e3, 180e3, 160e3),
     )
     return replace(evidence, **changes)
 
@@ -123,20 +124,23 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
     wavenumber = np.linspace(0.3, 2.0, 20)
     distance = np.arange(0.0, 30.0, 0.5)
     return Reproduction(
-        vehicle=load_vehicle("er24pc"),
-        specification=Specification(),
-        trials=trials,
-        table10=tuple(
-            Table10Row(
-                published=each,
-                metrics=trials[each.controller, each.rail].metrics,
-                spread=0.0,
-                momentum=1.57e6,
-            )
-            for each in load_table10().stops
+        small=Section7(
+            plant="planar",
+            vehicle=load_vehicle("er24pc"),
+            specification=Specification(),
+            trials=trials,
+            table10=tuple(
+                Table10Row(
+                    published=each,
+                    metrics=trials[each.controller, each.rail].metrics,
+                    spread=0.0,
+                    momentum=1.57e6,
+                )
+                for each in load_table10().stops
+            ),
+            evidence=evidence,
+            conclusions=conclusions(evidence),
         ),
-        evidence=evidence,
-        conclusions=conclusions(evidence),
         friction=tuple(
             FrictionCurve(rail=rail, speed=speed, slip=slip, force=3e4 * np.tanh(10.0 * slip))
             for rail in RAILS
