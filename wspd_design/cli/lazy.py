@@ -78,6 +78,11 @@ COMMANDS = {
         "Simulate the same stop with several controllers, side by side.",
         "Example: wspd compare design.toml afsmc none",
     ),
+    "ladder": Entry(
+        JUDGING,
+        "Simulate the same stop on every model of the vehicle, and tell which model suffices for what.",
+        "Example: wspd ladder design.toml",
+    ),
     "campaign": Entry(
         JUDGING,
         "Simulate many stops as FILE says; what is finished stays, and the same command goes on from there.",
