@@ -33,7 +33,7 @@ def stops_table(found: Ladder, *, caption: str = "", anchor: str = "") -> Table:
             ColumnOf(title="Mean slip", decimals=3, read=lambda rung: rung.metrics.slip_mean),
             worst("Largest slip", "", 3, lambda axle: axle.slip_max),
             ColumnOf(title="Lock", unit="s", decimals=2, read=lambda rung: rung.lock),
-            worst("Spread of load", "%", 1, lambda axle: PERCENT * axle.load_spread / axle.static_load),
+            worst("Spread of load", "%", 1, lambda axle: PERCENT * axle.relative_spread),
             worst("Vibration", "m/s", 3, lambda axle: axle.vibration),
             ColumnOf(title="Half steps", unit="relative", significant=1, read=lambda rung: rung.step_change),
         ),

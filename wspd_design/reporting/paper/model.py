@@ -97,10 +97,10 @@ def _table6(model: Multibody, vehicle: ParameterSet) -> Table:
         (
             ColumnOf(title="Parameter", read=lambda row: row[0]),
             ColumnOf(title="Paper", flush_right=True, read=lambda row: row[1]),
-            ColumnOf(title="Number here", read=lambda row: _named(row[3])),
+            ColumnOf(title="Number here", read=lambda row: named(row[3])),
             ColumnOf(title="of", read=lambda row: row[2]),
             ColumnOf(title="Value", flush_right=True, read=lambda row: _quantity(entry(row))),
-            ColumnOf(title="Status", read=lambda row: _status(entry(row))),
+            ColumnOf(title="Status", read=lambda row: status_of(entry(row))),
         ),
         caption="Table 6 of the paper, and where its values stand here.",
         anchor="table6",
@@ -152,7 +152,7 @@ def _table8(model: Multibody, kinds: Sequence[_Kind]) -> Table:
                 decimals=2,
                 read=lambda kind: float(model.place(kind.bodies[0].at)[2]),
             ),
-            ColumnOf(title="Status", read=lambda kind: _status_of(model, kind)),
+            ColumnOf(title="Status", read=lambda kind: _status_of_kind(model, kind)),
         ),
         caption=f"In place of Table 8 of the paper, which is lost: masses, moments of inertia about the center of "
         f"gravity, and its height. All bodies together have {numbers.decimals(total, 0)} kg.",
@@ -168,10 +168,10 @@ def _suspension(model: Multibody) -> Table:
     return build(
         entries,
         (
-            ColumnOf(title="Number", read=lambda entry: _named(entry.name)),
+            ColumnOf(title="Number", read=lambda entry: named(entry.name)),
             ColumnOf(title="Value", flush_right=True, read=_quantity),
             ColumnOf(title="Bounds", flush_right=True, read=_bounds),
-            ColumnOf(title="Status", read=_status),
+            ColumnOf(title="Status", read=status_of),
             ColumnOf(
                 title="Source, place",
                 read=lambda entry: f"{entry.source}: {entry.at}" + (f". {entry.note}" if entry.note else ""),
@@ -182,20 +182,22 @@ def _suspension(model: Multibody) -> Table:
     )
 
 
-def _status_of(model: Multibody, kind: _Kind) -> str:
+def _status_of_kind(model: Multibody, kind: _Kind) -> str:
     """Return the status of what makes a body: the weakest of its numbers; the remainder is inferred with the others."""
     own = [entry for name, entry in model.entries.items() if name.startswith(f"{kind.name}.")]
     weak = [entry for entry in own if is_inferred(entry)]
     if any(body.name == model.remainder for body in kind.bodies):
         return "inferred: mass is what all others leave"
-    return f"inferred: {weak[0].status}" if weak else _status(own[0])
+    return f"inferred: {weak[0].status}" if weak else status_of(own[0])
 
 
-def _named(name: str) -> str:
+def named(name: str) -> str:
+    """Write the name of a number in words."""
     return name.replace(".", ": ").replace("_", " ")
 
 
-def _status(entry: Entry) -> str:
+def status_of(entry: Entry) -> str:
+    """Write the status of a number with the mark of what no source states."""
     return f"inferred: {entry.status}" if is_inferred(entry) else entry.status
 
 

@@ -21,6 +21,7 @@ from wspd_design.studies.paper.disturbances import (
     track_channel,
 )
 from wspd_design.studies.paper.evidence import CONTROLLERS
+from wspd_design.studies.paper.locomotive import OnLocomotive
 from wspd_design.studies.paper.published import load_table10
 from wspd_design.studies.paper.section7 import Section7, scenarios, section7
 from wspd_design.studies.provenance import Provenance, provenance
@@ -50,6 +51,7 @@ class Reproduction:
     """Everything that the page about the paper shows."""
 
     small: Section7  # four axles with weight transfer
+    locomotive: OnLocomotive | None  # the multibody model; None where it was left out
     friction: tuple[FrictionCurve, ...]
     spectra: TrackSpectrum
     track: tuple[TrackChannel, ...]
