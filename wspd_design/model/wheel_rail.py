@@ -19,7 +19,9 @@ from wspd_design.parameters.records import Contact, Rail
 
 _LEAST_LOAD = 1.0  # N; the creep force of a lighter wheel is in proportion to its load
 _LEAST_APPROACH = 1e-15  # m; keeps the slope of the normal force finite on a lifted wheel
-_HALF_TURNED = 3.0  # -, squared gradient where the force has turned halfway; as Kalker's simplified theory has it
+_HALF_TURNED = (
+    3.0  # -, squared gradient where the force has turned halfway; as Kalker's simplified theory has it
+)
 _NOTHING = 1e-60  # square of a creepage; keeps the direction of no creepage defined
 
 
