@@ -299,7 +299,7 @@ def check_keys(
             raise UserError(f"unknown key {prefix}{key} in {where}; {near_or_allowed(key, known, prefix)}")
     for key in needed:
         if key not in table:
-            raise UserError(f"{prefix}{key} is missing in {where}; add it (docs/design-to-requirements.md)")
+            raise UserError(f"{prefix}{key} is missing in {where}; add it (wspd docs design-to-requirements)")
 
 
 def texts(value: object, name: str, where: str, *, empty: bool = False) -> tuple[str, ...]:
