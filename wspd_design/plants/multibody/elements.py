@@ -76,9 +76,7 @@ def _relative(
     apart = subtract(on_second.displacement, on_first.displacement)
     arm = add(on_first.arm, apart)
     # A point of the first body that is where the second one is.
-    there = add(
-        first.velocity, outward(first.axes, cross(first.frame_turning, inward(first.axes, arm)))
-    )
+    there = add(first.velocity, outward(first.axes, cross(first.frame_turning, inward(first.axes, arm))))
     return (
         inward(first.axes, apart),
         inward(first.axes, subtract(on_second.velocity, there)),
@@ -94,15 +92,12 @@ def _pair(forces: Forces, between: tuple[str, str], force: Vector, arms: tuple[V
 
 
 def _spring(model: Multibody, spring: Spring, bodies: Mapping[str, BodyMotion], forces: Forces) -> None:
-    numbers = [
-        tuple(model.numbers.get(f"{spring.kind}.{key}_{axis}", 0.0) for axis in _AXES)
-        for key in ("stiffness", "damping")
-    ]
-    if not spring.carries and not any(f"{spring.kind}.{key}_{axis}" in model.numbers for key in ("stiffness", "damping") for axis in _AXES):
+    keys = {key: [f"{spring.kind}.{key}_{axis}" for axis in _AXES] for key in ("stiffness", "damping")}
+    if not any(name in model.numbers for names in keys.values() for name in names):
         return
+    stiffness, damping = ([model.numbers.get(name, 0.0) for name in names] for names in keys.values())
     displacement, velocity, *arms = _relative(model, spring, bodies)
     lift = model.preloads[spring.name] if spring.carries else 0.0
-    (stiffness, damping) = numbers
     elastic = [k * d for k, d in zip(stiffness, displacement, strict=True)]
     viscous = [c * d for c, d in zip(damping, velocity, strict=True)]
     x, y, z = (-(a + b) for a, b in zip(elastic, viscous, strict=True))

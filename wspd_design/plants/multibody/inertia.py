@@ -13,9 +13,7 @@ from wspd_design.plants.multibody.records import Multibody
 from wspd_design.plants.multibody.vectors import cross
 
 
-def inertia(
-    model: Multibody, bodies: Mapping[str, BodyMotion], q: Any, v: Any
-) -> tuple[Any, Any, Number]:
+def inertia(model: Multibody, bodies: Mapping[str, BodyMotion], q: Any, v: Any) -> tuple[Any, Any, Number]:
     """Return mass matrix [n x n], inertial forces [n x 1] and kinetic energy [J]."""
     import casadi as ca
 
@@ -23,7 +21,7 @@ def inertia(
     for body in model.bodies:
         motion = bodies[body.name]
         mass, moments = model.mass(body), model.inertia(body)
-        rates = ca.vertcat(*motion.velocity, *motion.turning)
+        rates: Any = ca.vertcat(*motion.velocity, *motion.turning)
         weights = ca.vertcat(mass, mass, mass, *moments)
         jacobian = ca.jacobian(rates, v)
         bias = weights * ca.jtimes(rates, q, v)

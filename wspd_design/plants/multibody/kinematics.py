@@ -1,7 +1,7 @@
 """Where the bodies of a vehicle are and how they move, with exact rotations.
 
-Track axes: x forward, y to the left, z up. A free body turns by yaw, then roll, then pitch: R = Rz Rx Ry. The frame of a
-wheelset is Rz Rx alone: it does not spin, and the pitch of the wheelset is its turn in this frame. Neither does the
+Track axes: x forward, y to the left, z up. A free body turns by yaw, then roll, then pitch: R = Rz Rx Ry. The frame of
+a wheelset is Rz Rx alone: it does not spin, and the pitch of the wheelset is its turn in this frame. Neither does the
 frame of a rotor, which is that of its motor.
 """
 

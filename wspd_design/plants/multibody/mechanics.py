@@ -112,9 +112,7 @@ def _brake_directions(model: Multibody, bodies: Mapping[str, BodyMotion], v: Any
     return ca.sparsify(ca.horzcat(*columns))
 
 
-def _brake_direction(
-    model: Multibody, brake: CaliperBrake, bodies: Mapping[str, BodyMotion], v: Any
-) -> Any:
+def _brake_direction(model: Multibody, brake: CaliperBrake, bodies: Mapping[str, BodyMotion], v: Any) -> Any:
     wheelset, frame = bodies[brake.wheelset], bodies[brake.frame]
     between = model.offset(wheelset.body.at, frame.body.at)
     apart = add(between, subtract(wheelset.displacement, frame.displacement))

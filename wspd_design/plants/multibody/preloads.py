@@ -1,7 +1,8 @@
 """Preloads with which a vehicle is at rest where its places are: no static run is needed.
 
-The vertical forces of all springs that carry, and of all wheels, that hold every body; of the many that do, those with
-the least sum of squares.
+The vertical forces of all springs that carry, and of all wheels, that hold every body: of the many that do, those with
+the least sum of squares. Where the two wheels of an axle carry different loads, their cones push the wheelset sideways;
+at rest the rails hold it by friction, with a force that stays.
 """
 
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 from wspd_design.parameters.errors import UserError
 from wspd_design.plants.multibody.mechanics import mechanics
 from wspd_design.plants.multibody.records import Multibody
+from wspd_design.plants.multibody.wheels import Wheel
 
 _HELD = 1e-9  # of the weight: what may be left of it in any coordinate
 
@@ -44,11 +46,18 @@ def at_rest(model: Multibody) -> tuple[Any, Any]:
 
     names, n = model.preload_names, len(model.coordinates)
     q, v, p = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("p", len(names))
-    loaded = mechanics(model.with_preloads(dict(zip(names, ca.vertsplit(p), strict=True))), q, v)
+    loaded_model = model.with_preloads(dict(zip(names, ca.vertsplit(p), strict=True)))
+    loaded = mechanics(loaded_model, q, v)
     force = loaded.force
-    for k, wheel in enumerate(loaded.wheels):
-        own = slice(wheel.first, wheel.first + 6)
-        force[own] += wheel.approach_row.T * p[len(names) - len(loaded.wheels) + k]
+    for wheel in loaded.wheels:
+        force[wheel.first : wheel.first + 6] += force_at_rest(loaded_model, wheel)
     values = ca.Function("rest", [q, v, p], [force, ca.jacobian(force, p)])(0, 0, 0)
     pull, load = (np.array(value) for value in values)
     return pull[:, 0], load
+
+
+def force_at_rest(model: Multibody, wheel: Wheel) -> Any:
+    """Return what a wheel puts on the coordinates of its wheelset at rest [6]: its load, and half of what holds it."""
+    name = model.wheelset_names[wheel.axle]
+    load, sideways = model.preloads[f"{name}.{wheel.side}"], model.preloads[f"{name}.sideways"]
+    return -wheel.approach_row.T * load + wheel.displacement_row.T * (0.5 * sideways)

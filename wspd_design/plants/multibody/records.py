@@ -156,8 +156,12 @@ class Multibody:
 
     @property
     def preload_names(self) -> tuple[str, ...]:
-        """What carries weight at rest: springs by their names, then wheels."""
-        return (*(spring.name for spring in self.springs if spring.carries), *self.wheel_names)
+        """What holds the vehicle at rest: springs by their names, wheels, and rails sideways under each wheelset."""
+        return (
+            *(spring.name for spring in self.springs if spring.carries),
+            *self.wheel_names,
+            *(f"{name}.sideways" for name in self.wheelset_names),
+        )
 
     @property
     def bounds(self) -> Bounds:

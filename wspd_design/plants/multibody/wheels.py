@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from wspd_design.model.number import Number, sqrt
 from wspd_design.model.wheel_profile import WheelProfile, cone
 from wspd_design.plants.multibody.kinematics import first_coordinates
-from wspd_design.plants.multibody.records import SIDES, Body, Multibody
+from wspd_design.plants.multibody.records import SIDES, Multibody
 
 _SIGNS = dict(zip(SIDES, (1.0, -1.0), strict=True))
 
@@ -32,7 +32,9 @@ class Wheel(NamedTuple):
     position: Any  # 3, of the contact point against its place at rest, m
     approach: Number  # m, of wheel and rail beyond that at rest
     approach_row: Any  # 1 x 6
-    velocity: tuple[Number, Number, Number]  # of the rim against the rail, forward and left, m/s; about the normal, rad/s
+    velocity: tuple[
+        Number, Number, Number
+    ]  # of the rim against the rail, forward and left, m/s; about the normal, rad/s
     velocity_rows: tuple[Any, Any, Any]  # 1 x 6 each
     displacement: Number  # m, of the wheelset in the track, to the left
     displacement_row: Any  # 1 x 6
@@ -83,7 +85,7 @@ def _wheel(
     import casadi as ca
 
     own = slice(first, first + 6)
-    x, y, z, roll, pitch, yaw = ca.vertsplit(q[own])
+    x, y, z, roll, _, yaw = ca.vertsplit(q[own])
     forward_rate, left_rate, up_rate, roll_rate, pitch_rate, yaw_rate = ca.vertsplit(v[own])
     sign, half = _SIGNS[side], model.numbers["wheel_half_spacing"]
     radius = model.numbers["wheel_radius"]
@@ -115,7 +117,7 @@ def _wheel(
         approach=approach,
         approach_row=ca.jacobian(approach, q)[:, own],
         velocity=velocity,
-        velocity_rows=tuple(ca.jacobian(each, v)[:, own] for each in velocity),  # type: ignore[arg-type]
+        velocity_rows=tuple(ca.jacobian(each, v)[:, own] for each in velocity),
         displacement=displacement,
         displacement_row=ca.jacobian(displacement, q)[:, own],
         roll=roll,
