@@ -10,6 +10,7 @@ from wspd_design.cli.summary import Summary
 from wspd_design.design.case import Case
 from wspd_design.exchange.campaign_forms import CAMPAIGN, CAMPAIGNS
 from wspd_design.exchange.check_forms import VERIFICATION
+from wspd_design.exchange.ladder_forms import LADDER
 from wspd_design.exchange.objects import linearization_point_object, scenario_object, timed_check_object
 from wspd_design.exchange.stop_forms import COMPARISON
 from wspd_design.exchange.study_forms import LINEARIZATION
@@ -18,6 +19,8 @@ from wspd_design.simulation.records import Scenario
 
 if TYPE_CHECKING:
     from wspd_design.analysis.linearization import Linearization
+    from wspd_design.studies.ladder import Ladder
+    from wspd_design.studies.rung import AxleFigures, Rung
 
 
 def witness_object(start: WitnessStart, left_after: float | None = None) -> dict[str, Any]:
@@ -74,6 +77,58 @@ def campaigns_object(campaigns: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def comparison_object(stops: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Return several stops in the order of the command line."""
     return {"schema": COMPARISON.schema, "stops": list(stops), "version": program_version()}
+
+
+def ladder_object(found: "Ladder", scenario: Scenario) -> dict[str, Any]:
+    """Return the same stop on several models."""
+    first = found.rungs[0].run
+    return {
+        "schema": LADDER.schema,
+        "controller": found.controller,
+        "vehicle": found.vehicle,
+        "rail": found.rail,
+        "initial_speed_m_s": found.initial_speed,
+        "scenario": scenario_object(scenario, dead_time=first.dead_time, shortest_pulse=first.shortest_pulse),
+        "rungs": [_rung(each) for each in found.rungs],
+        "agreements": [
+            {
+                "measure": each.measure.name,
+                "tolerance": each.measure.tolerance,
+                "deviations": each.deviations,
+                "suffices": found.rungs[each.suffices].title,
+            }
+            for each in found.agreements
+        ],
+        "version": program_version(),
+    }
+
+
+def _rung(rung: "Rung") -> dict[str, Any]:
+    return {
+        "title": rung.title,
+        "plant": rung.plant,
+        "distance_m": rung.metrics.distance,
+        "stopping_time_s": rung.metrics.stopping_time,
+        "slip_mean": rung.metrics.slip_mean,
+        "axles": [_rung_axle(each) for each in rung.axles],
+        "step_change": rung.step_change,
+    }
+
+
+def _rung_axle(axle: "AxleFigures") -> dict[str, float]:
+    return {
+        "slip_mean": axle.slip_mean,
+        "slip_max": axle.slip_max,
+        "static_load_N": axle.static_load,
+        "braking_load_N": axle.braking_load,
+        "wheel_load_spread_N": axle.load_spread,
+        "least_load_N": axle.least_load,
+        "longest_lock_s": axle.lock,
+        "vibration_m_s": axle.vibration,
+        "vibration_frequency_Hz": axle.vibration_frequency,
+        "vibration_speed_m_s": axle.vibration_speed,
+        "vibration_slip": axle.vibration_slip,
+    }
 
 
 def verification_object(

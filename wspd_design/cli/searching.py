@@ -25,7 +25,7 @@ from wspd_design.parameters.units import units_of
 if TYPE_CHECKING:
     from wspd_design.design.finding import Found
 
-SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (docs/design-to-requirements.md)"
+SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (wspd docs design-to-requirements)"
 
 _BY_RAIL = {
     "mean eff.": "efficiency_mean",

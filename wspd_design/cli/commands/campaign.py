@@ -21,7 +21,7 @@ _SHARD = re.compile(r"(?P<number>\d+)/(?P<of>\d+)")
 
 def campaign(
     *,
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="What to simulate (docs/campaigns.md).")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="What to simulate (wspd docs campaigns).")],
     store: Annotated[
         Path | None,
         typer.Option(

@@ -54,7 +54,7 @@ def report(
             "--requirements",
             metavar="TEMPLATE|FILE.toml",
             help=f"Judge by these in place of those of the design: {', '.join(TEMPLATES)}, or a table of your own "
-            "(docs/requirements.md).",
+            "(wspd docs requirements).",
         ),
     ] = None,
     template: Annotated[
