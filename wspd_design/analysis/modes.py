@@ -1,7 +1,6 @@
 """Modes of small vibrations: eigenvalues, damping, and names from where the energy of motion is."""
 
 import math
-import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -33,7 +32,6 @@ _DIRECTIONS = {
     "turn": "turn",
 }
 _SPECIAL = {("rotor", "turn"): "driveline"}
-_NUMBERED = re.compile(r"_(\d+[a-z]*|[a-z]?\d+|left|right|[lr])$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +41,8 @@ class SmallMotion:
     Contact and gyroscopic terms may make D and K unsymmetric.
     """
 
-    coordinates: tuple[str, ...]  # such as "car_body.z": a body and a direction
+    coordinates: tuple[str, ...]  # such as "bogie_1.z": a body and a direction
+    kinds: tuple[str, ...]  # what each of these bodies is, such as "bogie"
     mass: "Matrix"  # (n, n), symmetric and positive definite
     damping: "Matrix"  # (n, n)
     stiffness: "Matrix"  # (n, n)
@@ -76,7 +75,7 @@ class Mode:
     name: str
     pole: complex  # 1/s
     shares: tuple[Share, ...]  # largest first
-    shape: "Shape"  # (n,), of the coordinates; largest velocity energy 1, phase of the leading coordinate 0
+    shape: "Shape"  # (n,), of the coordinates, of unit kinetic energy; the strongest has phase 0
 
     @property
     def oscillates(self) -> bool:
@@ -154,67 +153,50 @@ def _mode(motion: SmallMotion, pole: complex, shape: "Shape") -> Mode:
     turned = shape * np.exp(-1j * np.angle(shape[lead]))
     turned = turned / np.sqrt(np.real(np.conj(turned) @ (motion.mass @ turned)))
     parts: dict[tuple[str, str], float] = {}
-    for coordinate, part in zip(motion.coordinates, energy, strict=True):
-        body, direction = body_and_direction(coordinate)
-        key = (kind_of(body), direction)
+    for key, part in zip(_motions(motion), energy, strict=True):
         parts[key] = parts.get(key, 0.0) + float(part)
     shares = tuple(
         Share(kind=kind, direction=direction, share=share)
         for (kind, direction), share in sorted(parts.items(), key=lambda item: -item[1])
     )
-    name = _name(motion.coordinates, energy, turned, shares)
-    return Mode(name=name, pole=pole, shares=shares, shape=turned)
+    return Mode(name=_name(motion, energy, turned, shares), pole=pole, shares=shares, shape=turned)
 
 
-def body_and_direction(coordinate: str) -> tuple[str, str]:
+def _motions(motion: SmallMotion) -> list[tuple[str, str]]:
+    """Kind of body and direction of every coordinate."""
+    return [(kind, _split(each)[1]) for kind, each in zip(motion.kinds, motion.coordinates, strict=True)]
+
+
+def _split(coordinate: str) -> tuple[str, str]:
     """Split the name of a coordinate, ``"bogie_1.z"``, into body and direction."""
     body, _, direction = coordinate.rpartition(".")
     return body, direction
 
 
-def kind_of(body: str) -> str:
-    """Return what a body is called without its number: ``"bogie"`` for ``"bogie_1"``."""
-    kind = body
-    while (shorter := _NUMBERED.sub("", kind)) != kind:
-        kind = shorter
-    return kind
-
-
-def _name(
-    coordinates: Sequence[str], energy: "Matrix", shape: "Shape", shares: tuple[Share, ...]
-) -> str:
+def _name(motion: SmallMotion, energy: "Matrix", shape: "Shape", shares: tuple[Share, ...]) -> str:
     """Say which bodies move and how, from the largest share of the energy."""
     import numpy as np
 
-    leading = shares[0]
-    of_kind = [
-        place
-        for place, coordinate in enumerate(coordinates)
-        if (kind_of(body_and_direction(coordinate)[0]), body_and_direction(coordinate)[1])
-        == (leading.kind, leading.direction)
-    ]
-    special = _SPECIAL.get((leading.kind, leading.direction))
-    how = special or _DIRECTIONS.get(leading.direction, leading.direction)
-    if special is None and len(of_kind) == 1:
-        how = _level(coordinates, shape, shares) or how
-    parts = energy[of_kind]
-    strongest = of_kind[int(np.argmax(parts))]
-    alone = energy[strongest] >= _ALONE * parts.sum()
-    kind = leading.kind.replace("_", " ")
+    kind, direction = shares[0].kind, shares[0].direction
+    places = [place for place, each in enumerate(_motions(motion)) if each == (kind, direction)]
+    parts = energy[places]
+    strongest, _ = _split(motion.coordinates[places[int(np.argmax(parts))]])
+    alone = parts.max() >= _ALONE * parts.sum()
+    special = _SPECIAL.get((kind, direction))
     if special is not None:
-        number = body_and_direction(coordinates[strongest])[0].removeprefix(f"{leading.kind}_")
-        return f"{how} of axle {number}" if alone and len(of_kind) > 1 else how
-    if len(of_kind) == 1:
-        return f"{kind} {how}"
+        return f"{special} {strongest.removeprefix(f'{kind}_')}" if alone and len(places) > 1 else special
+    how = _DIRECTIONS.get(direction, direction)
+    if len(places) == 1:
+        return f"{_spoken(strongest)} {_level(motion, shape, shares) or how}"
     if alone:
-        return f"{body_and_direction(coordinates[strongest])[0].replace('_', ' ')} {how}"
-    if len(of_kind) == 2:
-        together = np.real(shape[of_kind[0]] * np.conj(shape[of_kind[1]])) > 0.0
-        return f"{_plural(kind)} {how}, {'in phase' if together else 'in opposition'}"
-    return f"{_plural(kind)} {how}"
+        return f"{_spoken(strongest)} {how}"
+    if len(places) == 2:
+        together = np.real(shape[places[0]] * np.conj(shape[places[1]])) > 0.0
+        return f"{_plural(_spoken(kind))} {how}, {'in phase' if together else 'in opposition'}"
+    return f"{_plural(_spoken(kind))} {how}"
 
 
-def _level(coordinates: Sequence[str], shape: "Shape", shares: tuple[Share, ...]) -> str:
+def _level(motion: SmallMotion, shape: "Shape", shares: tuple[Share, ...]) -> str:
     """Tell lower from upper sway where a body sways and rolls in one mode; empty elsewhere.
 
     With x forward, y left and z up a point at height h above the center moves y - h roll. Where y and roll have
@@ -222,22 +204,17 @@ def _level(coordinates: Sequence[str], shape: "Shape", shares: tuple[Share, ...]
     """
     import numpy as np
 
-    leading = shares[0]
-    if leading.direction not in ("y", "roll"):
+    kind, direction = shares[0].kind, shares[0].direction
+    other = {"y": "roll", "roll": "y"}.get(direction)
+    if not any((each.kind, each.direction) == (kind, other) and each.share >= _MIXED for each in shares):
         return ""
-    other = "roll" if leading.direction == "y" else "y"
-    mixed = any(
-        each.kind == leading.kind and each.direction == other and each.share >= _MIXED for each in shares
-    )
-    if not mixed:
-        return ""
-    places = {
-        body_and_direction(coordinate)[1]: place
-        for place, coordinate in enumerate(coordinates)
-        if kind_of(body_and_direction(coordinate)[0]) == leading.kind
-    }
-    along = np.real(shape[places["y"]] * np.conj(shape[places["roll"]]))
-    return "lower sway" if along < 0.0 else "upper sway"
+    motions = _motions(motion)
+    sway, roll = shape[motions.index((kind, "y"))], shape[motions.index((kind, "roll"))]
+    return "lower sway" if np.real(sway * np.conj(roll)) < 0.0 else "upper sway"
+
+
+def _spoken(name: str) -> str:
+    return name.replace("_", " ")
 
 
 def _plural(kind: str) -> str:
