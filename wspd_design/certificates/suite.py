@@ -83,6 +83,7 @@ def verify(
     budget: Budget = DEFAULT_BUDGET,
     stored: Path | None = None,
     figures: bool = True,
+    found: Callable[[Certificate], object] = lambda _: None,
 ) -> tuple[Certificate, ...]:
     """Run the checks.
 
@@ -101,6 +102,8 @@ def verify(
         again.
     figures : bool
         Whether to sample the curves and maps that a report shows beside the verdicts.
+    found : callable, optional
+        Told each certificate as soon as it is there, for those who keep what is finished.
 
     Returns
     -------
@@ -122,8 +125,12 @@ def verify(
         _agree("slip reference", problem.slip, problem.controller.slip_reference)
         _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
     wanted = [CHECKS[name] for name in NAMES if only is None or name in only]
+    certificates = []
     with remembering():
-        return tuple(_run(check, problem, progress, budget, stored, figures) for check in wanted)
+        for check in wanted:
+            certificates.append(_run(check, problem, progress, budget, stored, figures))
+            found(certificates[-1])
+    return tuple(certificates)
 
 
 def _run(

@@ -92,7 +92,7 @@ def _loads(text: str, vehicle: Vehicle, seed: int) -> LoadIrregularity:
     track, channel = load_track_spectrum("erri-b176"), "vertical-high"
     return irregular_load(
         vehicle,
-        synthesize(track, channel, seed=seed),
+        synthesize(track, (channel,), seed=seed),
         sigma=standard_deviation(track, channel),
         spread=spread,
     )

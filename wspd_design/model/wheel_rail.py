@@ -180,11 +180,13 @@ def creep_forces(
     gradient = creep_gradient(creep, carried, friction, stiffness)
     sliding = gradient * gradient / (1.0 + gradient * gradient)
     sideways = (1.0 - sliding) * elastic + sliding * lateral
-    # Points that spin alone makes slide do so in all directions: a part of the force that cancels out.
-    whole = _length(longitudinal, sideways, sliding * weight * turning)
+    # What spin makes slide does so in all directions, and that part of the force cancels out: the force of spin alone
+    # falls as one over the spin in the end, as it does in Kalker's simplified theory.
+    around = 0.5 * sliding * (1.0 - sliding) * (weight * turning) ** 2
+    whole = sqrt(longitudinal * longitudinal + sideways * sideways + around + _NOTHING)
     return force * longitudinal / whole, force * sideways / whole
 
 
-def _length(*parts: Number) -> Number:
+def _length(longitudinal: Number, lateral: Number) -> Number:
     """Length of a vector of creepages, with a derivative at zero too."""
-    return sqrt(sum(part * part for part in parts) + _NOTHING)
+    return sqrt(longitudinal * longitudinal + lateral * lateral + _NOTHING)

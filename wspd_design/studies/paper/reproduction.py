@@ -109,7 +109,7 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
     spectra = load_track_spectrum("erri-b176")
     sigma = standard_deviation(spectra, "vertical-high")
     load = irregular_load(
-        vehicle, synthesize(spectra, "vertical-high", seed=seed), sigma=sigma, spread=LOAD_SPREAD
+        vehicle, synthesize(spectra, ("vertical-high",), seed=seed), sigma=sigma, spread=LOAD_SPREAD
     )
     disturbances = [
         disturbance(
