@@ -56,7 +56,7 @@ def layout(kernels: Kernels) -> Layout:
             {
                 "speed": 1,
                 "axle": kernels.axle_states * axles,  # first the wheel speeds
-                "transfer": 2 * kernels.transfers,
+                "rest": kernels.rest_states,
                 "distance": 1,
                 "locked": axles,
                 "held": axles,
@@ -67,7 +67,7 @@ def layout(kernels: Kernels) -> Layout:
                 "filled": axles,
                 "damping": axles,
                 "time": 1,
-                "rates": 2 + kernels.axle_states * axles + 2 * kernels.transfers,  # the present stage
+                "rates": 2 + kernels.axle_states * axles + kernels.rest_states,  # the present stage
                 "integrands": INTEGRATED * axles + 2,
                 "force": axles,
                 "slip": axles,

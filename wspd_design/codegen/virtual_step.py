@@ -69,7 +69,7 @@ class _Step:
         """Put together what is integrated with stages."""
         import casadi as ca
 
-        return ca.vertcat(*(state[name] for name in ("speed", "axle", "transfer", "distance")))
+        return ca.vertcat(*(state[name] for name in ("speed", "axle", "rest", "distance")))
 
     def observed(self) -> Any:
         """The state with the present stage worked out anew."""
@@ -114,7 +114,7 @@ class _Step:
         after |= {
             "speed": speed,
             "axle": ca.vertcat(wheel, reached[1 + axles : 1 + now["axle"].size1()]),
-            "transfer": reached[1 + now["axle"].size1() : -1],
+            "rest": reached[1 + now["axle"].size1() : -1],
             "distance": reached[-1],
             "locked": locked,
             "held": held,
@@ -211,7 +211,7 @@ class _Step:
         now = self.state
         return ca.vertcat(
             *(
-                self.kernels.slope(
+                self.kernels.split.slope(
                     self.per_axle("lane_constants", a),
                     speed,
                     states[a :: self.axles],
@@ -247,24 +247,23 @@ class _Step:
         first = 1 + self.kernels.axle_states * self.axles
         table = self.given["load_factors"]
         here, rise = table[1 : 1 + self.axles], table[1 + self.axles :]
-        loads = self.kernels.loads(self.given["stop_constants"], motion[first:-1])
+        loads = self.kernels.split.loads(self.given["stop_constants"], motion[first:-1])
         return loads * (here + rise * (motion[-1] - table[0]))
 
     def _observe(self, state: dict[str, Any]) -> dict[str, Any]:
         """Work out the present stage; wheels whose brake gives less than rail or slip take are let go."""
         import casadi as ca
 
-        motion, radius, torque = self.motion(state), self.given["radius"], state["torque"]
+        motion, torque = self.motion(state), state["torque"]
         load = self._loads(motion)
         begins = [
-            self.kernels.contact(self.per_axle("lane_constants", a), load[a]) for a in range(self.axles)
+            self.kernels.split.contact(self.per_axle("lane_constants", a), load[a]) for a in range(self.axles)
         ]
         state = {**state, "contact": ca.reshape(ca.horzcat(*begins).T, -1, 1)}
         for _ in range(2):
             stage = self._stage(motion, state["time"], torque, state["level"], state["damping"], state)
-            brake = stage.given * (1.0 - BALANCED)
-            state["locked"] = where(brake < 2.0 * radius * stage.force, 0.0, state["locked"])
-            state["held"] = where(brake < stage.passed, 0.0, state["held"])
+            lacks = stage.given * (1.0 - BALANCED) < stage.passed
+            state |= {name: where(lacks, 0.0, state[name]) for name in ("locked", "held")}
         return {
             **state,
             **{name: getattr(stage, name) for name in Stage._fields if name in state},
@@ -278,10 +277,10 @@ class _Step:
         import casadi as ca
 
         given, size = self.given, self.kernels.axle_states * self.axles
-        speed, states, transfer = motion[0], motion[1 : 1 + size], motion[1 + size : -1]
+        speed, states, rest = motion[0], motion[1 : 1 + size], motion[1 + size : -1]
         wheel, radius, load = states[: self.axles], given["radius"], self._loads(motion)
         axles = [
-            self.kernels.axle(
+            self.kernels.split.axle(
                 self.per_axle("lane_constants", a),
                 speed,
                 states[a :: self.axles],
@@ -300,8 +299,8 @@ class _Step:
             for column in zip(*axles, strict=True)
         )
         rolling, others = rolling[: self.axles], rolling[self.axles :]
-        acceleration, resistance, transferring = self.kernels.train(
-            given["stop_constants"], speed, force, transfer, time
+        acceleration, resistance, rest_rates = self.kernels.split.train(
+            given["stop_constants"], speed, force, rest, time
         )
         if self.holding:
             held_slip, slope = self._held_slip(speed)
@@ -321,7 +320,7 @@ class _Step:
             resistance,
             resistance * speed,
         )
-        rates = ca.vertcat(acceleration, rolling, others, transferring, speed)
+        rates = ca.vertcat(acceleration, rolling, others, rest_rates, speed)
         return Stage(
             motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed, braking, dynamic
         )
@@ -357,13 +356,9 @@ class _Step:
             ca.vertcat(
                 motion[0] - target,
                 where(
-                    now["locked"],
-                    stage.given - 2.0 * given["radius"] * stage.force,
-                    where(
-                        now["held"],
-                        stage.given - stage.passed,
-                        motion[1 : 1 + axles] - self._rolling(motion[0]),
-                    ),
+                    now["locked"] + now["held"],
+                    stage.given - stage.passed,
+                    motion[1 : 1 + axles] - self._rolling(motion[0]),
                 ),
             )
             for motion, stage in zip(ends, (stages[0], stages[2], stages[3]), strict=True)

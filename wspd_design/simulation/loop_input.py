@@ -19,7 +19,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Rail, Vehicle
 from wspd_design.plants.planar import Planar
-from wspd_design.plants.protocol import Plant
+from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.records import LoadIrregularity, Scenario, Sensing, Start
 from wspd_design.simulation.runaway import runs_away
 from wspd_design.simulation.start import available_torque
@@ -48,7 +48,7 @@ def loop_input(
     """Numbers of one or several stops for the closed loop.
 
     Stops side by side share the kind of the plant, its number of wheelsets and the controller. Steps are at most
-    ``LONGEST_STEP`` long where no other length is given, over the refinement.
+    ``LONGEST_STEP`` long where no other length is given, and no longer than the plant allows, over the refinement.
     """
     import numpy as np
 
@@ -65,10 +65,17 @@ def loop_input(
     return LoopInput(
         stop_parameters=np.array(columns[0]).T,
         lane_parameters=np.array([row for axle in columns for row in axle]).T,
+        numbers=np.array([plant.numbers if is_coupled(plant) else () for plant, _ in cases]).T,
         speeds=np.array([each.initial_speed for _, each in cases]),
         wheel_speeds=np.tile([_rim_speed(each) / p.vehicle.wheel_radius for p, each in cases], axles),
+        rest=np.array([_rest(*case) for case in cases]).T,
         pressures=np.tile([_pressure(p.vehicle.brake, each.start) for p, each in cases], axles),
-        settings=_settings(cases, controller, refinement, longest_step or LONGEST_STEP),
+        settings=_settings(
+            cases,
+            controller,
+            refinement,
+            min(longest_step or LONGEST_STEP, *(plant.longest_step for plant, _ in cases)),
+        ),
         disturbances=np.array([_disturbances(p.vehicle.brake, each.sensing) for p, each in cases]).T,
         faults=np.array([column for rows in zip(*map(_faults, cases), strict=True) for column in rows]).T,
         seeds=np.array([each.seed for each in scenarios], dtype=np.uint64),
@@ -139,6 +146,11 @@ def _check_start(vehicle: Vehicle, start: Start) -> None:
 
 def _rim_speed(scenario: Scenario) -> float:
     return scenario.initial_speed * (1.0 - scenario.start.slip)
+
+
+def _rest(plant: Plant, scenario: Scenario) -> tuple[float, ...]:
+    turning = _rim_speed(scenario) / plant.vehicle.wheel_radius
+    return plant.rest_at(scenario.initial_speed, (turning,) * plant.axles)
 
 
 def _pressure(brake: Brake, start: Start) -> float:

@@ -1,7 +1,8 @@
 """What goes into a simulated stop and what comes out of it."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, get_args
 
@@ -309,6 +310,7 @@ class Run:
         None  # K above that before the stop, per wheelset, where friction depends on it
     )
     track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
+    further: "Mapping[str, Trace]" = field(default_factory=dict)  # per wheelset, what a coupled plant adds
 
     @property
     def train(self) -> str:
