@@ -62,7 +62,7 @@ def axles_table(found: Ladder, *, caption: str = "", anchor: str = "") -> Table:
             of_axle("spread", "kN", 2, lambda axle: axle.load_spread / KILO),
             of_axle("Vibration", "m/s", 3, lambda axle: axle.vibration),
             of_axle("at", "Hz", 1, lambda axle: axle.vibration_frequency),
-            of_axle("and", "km/h", 0, lambda axle: axle.vibration_speed * KMH),
+            of_axle("speed", "km/h", 0, lambda axle: axle.vibration_speed * KMH),
         ),
         caption=caption,
         anchor=anchor,

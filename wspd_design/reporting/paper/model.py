@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from wspd_design.parameters.entry import STATUSES
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.plants.multibody.records import Body, Multibody
 from wspd_design.reporting import numbers
@@ -172,10 +173,8 @@ def _suspension(model: Multibody) -> Table:
             ColumnOf(title="Value", flush_right=True, read=_quantity),
             ColumnOf(title="Bounds", flush_right=True, read=_bounds),
             ColumnOf(title="Status", read=status_of),
-            ColumnOf(
-                title="Source, place",
-                read=lambda entry: f"{entry.source}: {entry.at}" + (f". {entry.note}" if entry.note else ""),
-            ),
+            ColumnOf(title="Source", read=lambda entry: entry.source),
+            ColumnOf(title="Remark", read=lambda entry: entry.note),
         ),
         caption="Springs, dampers, rods, drive and brake, of which the paper prints none.",
         anchor="suspension",
@@ -188,7 +187,7 @@ def _status_of_kind(model: Multibody, kind: _Kind) -> str:
     weak = [entry for entry in own if is_inferred(entry)]
     if any(body.name == model.remainder for body in kind.bodies):
         return "inferred: mass is what all others leave"
-    return f"inferred: {weak[0].status}" if weak else status_of(own[0])
+    return status_of(max(weak or own, key=lambda entry: STATUSES.index(entry.status)))
 
 
 def named(name: str) -> str:

@@ -94,6 +94,7 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
     ]
     return Reproduction(
         small=small,
+        locomotive=None,
         friction=tuple(_friction(vehicle, each.rail, v) for each in stops.values() for v in FRICTION_SPEEDS),
         spectra=spectra,
         track=tuple(track_channel(spectra, channel, seed=seed) for channel in CHANNELS),
