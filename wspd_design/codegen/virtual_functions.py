@@ -35,7 +35,7 @@ def step_functions(
         if kernels.coupled
         else Step(kernels, places, state, given, holding=holding)
     )
-    inputs = [state, given, table]
+    inputs: list[Any] = [state, given, table]
     observe = ca.Function("observe", inputs, ca.cse([step.observed()]))
     single = ca.Function("step", inputs, ca.cse(step.outputs()))
     repeated = {}

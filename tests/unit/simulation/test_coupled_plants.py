@@ -116,7 +116,7 @@ def test_without_a_compiler_the_track_is_the_same(er24pc, make_controller):
 
 
 def test_an_irregular_track_needs_a_plant_that_rolls_over_it(er24pc, make_controller):
-    with pytest.raises(UserError, match='"planar" does not; take "locomotive"'):
+    with pytest.raises(UserError, match='"planar" does not; take the plant "locomotive"'):
         simulate_on(Planar(er24pc), make_controller("none"), replace(WET, irregularities="low"))
     even = LoadIrregularity(spacing=1.0, factors=((1.0,),) * 4)
     with pytest.raises(UserError, match="works out its wheel loads itself"):
