@@ -22,7 +22,7 @@ def found(er24pc, make_controller):
         make_controller("afsmc"),
         scenario,
         slip_reference=0.14,
-        plants=models_of(er24pc),
+        models=models_of(er24pc),
     )
 
 

@@ -80,7 +80,7 @@ def ladder(
             case.controller,
             stop,
             slip_reference=case.specification.slip,
-            plants=models_of(case.vehicle),
+            models=models_of(case.vehicle),
             progress=tell,
         )
     if as_json:
