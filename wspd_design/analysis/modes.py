@@ -65,7 +65,9 @@ class SmallMotion:
         for name, motion in self.neutral.items():
             against[:, self.coordinates.index(name)] -= motion
         above = np.hstack([np.zeros((len(kept), len(kept))), against[kept]])
-        return np.vstack([above, -np.linalg.solve(self.mass, np.hstack([self.stiffness[:, kept], self.damping]))])
+        return np.vstack(
+            [above, -np.linalg.solve(self.mass, np.hstack([self.stiffness[:, kept], self.damping]))]
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

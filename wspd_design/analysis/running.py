@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     Matrix = NDArray[np.float64]
 
-_STEPS = 50  # of Newton's method
+_STEPS = 30  # of Newton's method
+_PLANE = ("x", "z", "pitch", "turn")  # directions of motion in the plane of symmetry
 _HELD = 1e-9  # of the weight: what may be left of it in steady running
 _FASTEST = 150.0  # m/s
 _FORWARD = 0  # the coordinate of the vehicle
@@ -43,7 +44,7 @@ class RunningVehicle:
 
     @property
     def neutral(self) -> "dict[str, Matrix]":
-        """Motion that no force opposes, by the coordinate that stands for it: all forward, then each wheelset turning."""
+        """Motion that no force opposes, by the coordinate that stands for it: all forward, each wheelset turning."""
         import numpy as np
 
         names = self.model.coordinates
@@ -72,9 +73,14 @@ class SteadyRunning:
     slips: "Matrix"  # (axles,), positive when braking
     loads: "Matrix"  # (axles, 2), N, of left and right wheel
     coordinates: "Matrix"  # (n,), from rest on the track, m and rad
+    sideways: float  # N or N m, the largest force that is left out of the plane of symmetry
     motion: SmallMotion
-    from_inputs: "Matrix"  # (n, 2 axles), generalized forces of 1 N m on each axle, then of 1 m of track under each
-    to_outputs: "Matrix"  # (4 axles, 2 n + 2 axles), slip and load of each wheel by coordinates, rates, inputs
+    from_inputs: (
+        "Matrix"  # (n, 2 axles), generalized forces of 1 N m on each axle, then of 1 m of track under each
+    )
+    to_outputs: (
+        "Matrix"  # (4 axles, 2 n + 2 axles), slip and load of each wheel by coordinates, rates, inputs
+    )
 
 
 def running_vehicle(model: Multibody, contact: WheelRail, rail: Rail) -> RunningVehicle:
@@ -125,11 +131,13 @@ def running_vehicle(model: Multibody, contact: WheelRail, rail: Rail) -> Running
 
 
 def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> SteadyRunning:
-    """Find steady running: rolling, or with the torques that hold one slip at all wheelsets.
+    """Find steady running straight on: rolling, or with the torques that hold one slip at all wheelsets.
 
-    Newton's method on the balance of all coordinates. Unknown are the coordinates but those of neutral motion, the
-    acceleration of the train, and of each wheelset its speed where it rolls or its torque where it slides. A sliding
-    wheelset has the speed (1 - slip) V/R and slows down with the train; all bodies share the speed V and its rate.
+    Newton's method on the balance of all coordinates in the plane of symmetry. Unknown are these coordinates but those
+    of neutral motion, the acceleration of the train, and of each wheelset its speed where it rolls or its torque where
+    it slides. A sliding wheelset has the speed (1 - slip) V/R and slows down with the train; all bodies share the speed
+    V and its rate. Sideways the vehicle stays where it is: a sliding wheel guides so little that the weight of a
+    gearbox beside the middle would take seconds to push the vehicle to one rail, long after the stop has gone on.
 
     Parameters
     ----------
@@ -156,7 +164,8 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
         )
     model, neutral = vehicle.model, vehicle.neutral
     n, axles = len(model.coordinates), model.wheelsets
-    kept = [k for k, name in enumerate(model.coordinates) if name not in neutral]
+    plane = [k for k, name in enumerate(model.coordinates) if name.rpartition(".")[2] in _PLANE]
+    kept = [k for k in plane if model.coordinates[k] not in neutral]
     forward, *others = neutral.values()
     turning = np.array(others).T
     radius = model.numbers["wheel_radius"]
@@ -170,18 +179,18 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
             q, v, slowing * acceleration, torques, track, model.numbers["conicity"], preloads
         )
         left, mass, seen, by_place, by_rate, by_input, *derivatives = (np.array(each) for each in found)
-        if np.abs(left).max() < _HELD * model.numbers["mass"]:
+        if np.abs(left[plane]).max() < _HELD * model.numbers["mass"]:
             break
         of_axles = by_input[:, :axles] if slip else by_rate @ turning
         columns = np.column_stack([by_place[:, kept], of_axles, mass @ slowing])
-        step = np.linalg.solve(columns, -left[:, 0])
+        step = np.linalg.solve(columns[plane], -left[plane, 0])
         q[kept] += step[: len(kept)]
         (torques if slip else spins).__iadd__(step[len(kept) : -1])
         acceleration += step[-1]
     else:
         raise UserError(
-            f"multibody vehicle {model.name} has no steady state at slip {slip:g} and {speed:g} m/s that Newton's method "
-            f"finds in {_STEPS} steps; choose a smaller slip or another speed"
+            f"multibody vehicle {model.name} has no steady state at slip {slip:g} and {speed:g} m/s that Newton's "
+            f"method finds in {_STEPS} steps; choose a smaller slip or another speed"
         )
     return SteadyRunning(
         speed=speed,
@@ -198,6 +207,7 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
             stiffness=by_place,
             neutral=neutral,
         ),
+        sideways=float(np.abs(np.delete(left, plane)).max()),
         from_inputs=-by_input,
         to_outputs=np.hstack(derivatives),
     )
