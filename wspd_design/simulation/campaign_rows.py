@@ -100,7 +100,8 @@ def make_plan(
 
 def plan_key(plan: Plan) -> str:
     """Return the content key of a campaign: the same for the same rows."""
-    return fingerprint(_KEY_FORMAT, plan)
+    plant = plant_of(plan.plant, plan.vehicle)
+    return fingerprint(_KEY_FORMAT, plan, *((plant.model,) if is_coupled(plant) else ()))
 
 
 @cache
