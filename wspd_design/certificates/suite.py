@@ -31,7 +31,7 @@ from wspd_design.certificates.checks.sliding import (
 from wspd_design.certificates.checks.stop import overshoot, stop_bound, tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.memory import remembering
-from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.records import Certificate, Certificates, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
 from wspd_design.certificates.search.progress import Listener, listening
@@ -83,7 +83,7 @@ def verify(
     budget: Budget = DEFAULT_BUDGET,
     stored: Path | None = None,
     figures: bool = True,
-) -> tuple[Certificate, ...]:
+) -> Certificates:
     """Run the checks.
 
     Parameters
@@ -104,8 +104,8 @@ def verify(
 
     Returns
     -------
-    tuple of Certificate
-        In the order of :data:`NAMES`.
+    Certificates
+        A tuple in the order of :data:`NAMES`.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def verify(
         _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
     wanted = [CHECKS[name] for name in NAMES if only is None or name in only]
     with remembering():
-        return tuple(_run(check, problem, progress, budget, stored, figures) for check in wanted)
+        return Certificates(_run(check, problem, progress, budget, stored, figures) for check in wanted)
 
 
 def _run(
