@@ -149,8 +149,9 @@ def linearize(
     if speed_kmh is not None:
         return linearized(vehicle, rail, slip=slip, speed=speed_kmh / KMH)
     assert speed is not None
+    found = linearized(vehicle, rail, slip=slip, speed=speed)
     notice_of_speed(speed, "speed", f"for {speed:g} km/h write speed_kmh={speed:g}")
-    return linearized(vehicle, rail, slip=slip, speed=speed)
+    return found
 
 
 def linearized(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Linearization:

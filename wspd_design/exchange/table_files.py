@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 FORMATS = (".csv", ".parquet", ".mat")
 _BLOCK = 1000  # rows that are Python objects at a time
-_HEAD = 116  # bytes at the begin of a MATLAB file that tell in words what it is, with the date
+_HEAD = 116  # bytes at the head of a MATLAB file that tell in words what it is, with the date
 _LONGEST_NAME = 63  # of a variable of MATLAB
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from wspd_design.parameters.brake_checks import check_further_brakes
-from wspd_design.parameters.contradictions import check_heights, tell
+from wspd_design.parameters.contradictions import tell
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import contradiction, masses_contradict
 from wspd_design.parameters.records import Rail, Vehicle
@@ -16,11 +16,12 @@ from wspd_design.parameters.units import KMH, format_quantity, units_of
 
 _LOADED = {Vehicle: "load_vehicle", Rail: "load_rail"}
 _NUMERALS_OF_KMH = 56.0  # m/s, 200 km/h: above it a number is more often one of km/h
+_MAY_VANISH = "_height"  # a vehicle without heights transfers no load
 _SHOWN = 40  # characters of a text that a sentence repeats
 
 
 def check_vehicle(vehicle: object, *, by: str, whole: bool = True) -> None:
-    """Refuse what is no vehicle, and one whose numbers no vehicle has.
+    """Refuse what is not a vehicle, and one whose numbers no vehicle has.
 
     Parameters
     ----------
@@ -44,7 +45,7 @@ def check_vehicle(vehicle: object, *, by: str, whole: bool = True) -> None:
 
 
 def check_rail(rail: object, *, by: str) -> None:
-    """Refuse what is no rail, and one whose numbers no rail has; as :func:`check_vehicle`."""
+    """Refuse what is not a rail, and one whose numbers no rail has; as :func:`check_vehicle`."""
     if not isinstance(rail, Rail):
         raise UserError(_other(rail, Rail, by))
     wrong = _wrong_numbers(rail, "rail")
@@ -53,7 +54,7 @@ def check_rail(rail: object, *, by: str) -> None:
 
 
 def check_record(value: object, kind: type, *, by: str, remedy: str) -> None:
-    """Refuse what is no record of a kind.
+    """Refuse what is not a record of a kind.
 
     Parameters
     ----------
@@ -96,14 +97,19 @@ def _other(value: object, kind: type, by: str) -> str:
 
 @lru_cache(maxsize=256)
 def _wrong_numbers(record: Vehicle | Rail, kind: Kind) -> str:
-    """Say which number of a record a file could not have, or nothing."""
+    """Say which number of a record is impossible, or nothing; what no railway has is told by a warning."""
+    strange = []
     for name, quantity in schema_of(kind, record.name).items():
         if quantity.shape not in ("number", "vector"):
             continue
         for value, usual in _stated(record, name):
-            wrong = "" if value == usual else _wrong(value, quantity)
+            if value == usual:
+                continue
+            wrong = _impossible(value, quantity, zero=name.endswith(_MAY_VANISH))
             if wrong:
                 return f"{name} of {kind} {record.name} {wrong}"
+            strange += [f"{name} of {kind} {record.name} {said}" for said in _implausible(value, quantity)]
+    tell("; ".join(strange[:1]))
     return ""
 
 
@@ -122,19 +128,23 @@ def _stated(record: Vehicle | Rail, name: str) -> "Iterator[tuple[Any, Any]]":
         yield value, usual
 
 
-def _wrong(value: Any, quantity: Quantity) -> str:
+def _impossible(value: Any, quantity: Quantity, *, zero: bool) -> str:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return f"is {described(value)}; give a number in SI units"
-    unit = units_of(quantity.dimension)[0]
-    given = format_quantity(value, unit)
+    given = format_quantity(value, units_of(quantity.dimension)[0])
     if not math.isfinite(value):
         return f"= {given} must be finite"
-    if not quantity.admits(value):
+    if not quantity.admits(value) and not (zero and value == 0.0):
         return f"= {given} must be {quantity.range_text}"
-    low, high = quantity.plausible or (-math.inf, math.inf)
-    if not low <= value <= high:
-        return f"= {given}; railways have {low:g} to {high:g}{'' if unit == '-' else f' {unit}'}; correct it"
     return ""
+
+
+def _implausible(value: float, quantity: Quantity) -> Iterator[str]:
+    low, high = quantity.plausible or (-math.inf, math.inf)
+    if not low <= value <= high and value != 0.0:
+        unit = units_of(quantity.dimension)[0]
+        ends = f"{low:g} to {high:g}{'' if unit == '-' else f' {unit}'}"
+        yield f"= {format_quantity(value, unit)}; railways have {ends}"
 
 
 @lru_cache(maxsize=256)
@@ -148,7 +158,6 @@ def _contradicting(vehicle: Vehicle) -> str:
         return f"{masses}; change the three together, for example with dataclasses.replace"
     try:
         check_further_brakes(vehicle)
-        check_heights(vehicle)
     except UserError as error:
         return str(error)
     return ""

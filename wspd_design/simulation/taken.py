@@ -11,7 +11,7 @@ _LAW = ("sample_time", "start", "step")
 
 
 def check_stop(vehicle: Vehicle, controller: Law, scenario: Scenario, plant: str, *, by: str) -> None:
-    """Refuse what is no vehicle, law or stop, and a vehicle whose numbers contradict each other.
+    """Refuse what is not a vehicle, law or stop, and a vehicle whose numbers contradict each other.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def check_stop(vehicle: Vehicle, controller: Law, scenario: Scenario, plant: str
 
 
 def check_law(controller: object, *, by: str) -> None:
-    """Refuse what is no law: the name of one, a design that was not built, a class in place of an instance."""
+    """Refuse the name of a law, a design that was not built, a class in place of an instance, and all else."""
     if isinstance(controller, type):
         raise UserError(
             f"{by} takes a law, not the class {controller.__name__}; make one of it, {controller.__name__}(...)"
