@@ -2,8 +2,8 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from wspd_design.parameters.errors import UserError
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
     Shape = NDArray[np.complex128]
 
-_NEUTRAL = 1e-4
-"""Rate [1/s] below which an eigenvalue counts as zero: rounding lifts a double zero to about the root of its own."""
+_NEUTRAL = 1e-6
+"""Rate [1/s] below which an eigenvalue counts as zero: a vehicle without resistance keeps any speed."""
 _REAL = 1e-6  # share of an eigenvalue by which it may leave the real axis through rounding
 
 _ALONE = 0.75  # share of the energy of bodies of one kind from which a mode is one body's
@@ -38,7 +38,9 @@ _SPECIAL = {("rotor", "turn"): "driveline"}
 class SmallMotion:
     """Small motion about a steady state: M a + D v + K q = 0 in the deviations of n coordinates.
 
-    Contact and gyroscopic terms may make D and K unsymmetric.
+    Contact and gyroscopic terms may make D and K unsymmetric. What is neutral is motion that no force opposes: a
+    vehicle may stand anywhere, and wheels may have turned by any angle. Each neutral motion has one coordinate that
+    stands for it and moves by 1, while those of all others stay.
     """
 
     coordinates: tuple[str, ...]  # such as "bogie_1.z": a body and a direction
@@ -46,14 +48,26 @@ class SmallMotion:
     mass: "Matrix"  # (n, n), symmetric and positive definite
     damping: "Matrix"  # (n, n)
     stiffness: "Matrix"  # (n, n)
+    neutral: "Mapping[str, Matrix]" = field(default_factory=dict)  # (n,) by the coordinate that stands for it
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states: coordinates without neutral ones, against which they count, then all rates."""
+        kept = tuple(name for name in self.coordinates if name not in self.neutral)
+        return (*kept, *(f"{name}'" for name in self.coordinates))
 
     def state_matrix(self) -> "Matrix":
-        """Return the matrix (2n, 2n) of the rates of coordinates and velocities."""
+        """Return the matrix of the rates of :attr:`states`."""
         import numpy as np
 
-        n = len(self.coordinates)
-        below = -np.linalg.solve(self.mass, np.hstack([self.stiffness, self.damping]))
-        return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), below])
+        kept = [k for k, name in enumerate(self.coordinates) if name not in self.neutral]
+        against = np.eye(len(self.coordinates))
+        for name, motion in self.neutral.items():
+            against[:, self.coordinates.index(name)] -= motion
+        above = np.hstack([np.zeros((len(kept), len(kept))), against[kept]])
+        return np.vstack(
+            [above, -np.linalg.solve(self.mass, np.hstack([self.stiffness[:, kept], self.damping]))]
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +89,7 @@ class Mode:
     name: str
     pole: complex  # 1/s
     shares: tuple[Share, ...]  # largest first
-    shape: "Shape"  # (n,), of the coordinates, of unit kinetic energy; the strongest has phase 0
+    shape: "Shape"  # (n,), rates of the coordinates, of unit kinetic energy; the strongest has phase 0
 
     @property
     def oscillates(self) -> bool:
@@ -121,7 +135,7 @@ def undamped_frequencies(mass: "Matrix", stiffness: "Matrix") -> "Matrix":
 def modes(motion: SmallMotion) -> tuple[Mode, ...]:
     """Return the modes of small motion: those that oscillate by rising frequency, then the real ones, fastest last.
 
-    Neutral motion (a vehicle may stand anywhere, and wheels may have turned by any angle) is left out.
+    Neutral motion is left out.
 
     Parameters
     ----------
@@ -138,16 +152,16 @@ def modes(motion: SmallMotion) -> tuple[Mode, ...]:
         if abs(value) < _NEUTRAL or (value.imag < 0.0 and not real):
             continue
         pole = complex(value.real, 0.0) if real else complex(value)
-        found.append(_mode(motion, pole, vector[:n]))
+        found.append(_mode(motion, pole, vector[-n:]))
     found.sort(key=lambda mode: (not mode.oscillates, mode.frequency, abs(mode.pole)))
     return _distinct(found)
 
 
 def _mode(motion: SmallMotion, pole: complex, shape: "Shape") -> Mode:
-    """Name one mode by the kinetic energy of its shape."""
+    """Name one mode by the kinetic energy of its rates."""
     import numpy as np
 
-    energy = np.real(np.conj(shape) * (motion.mass @ shape))  # all velocities are the pole times the shape
+    energy = np.real(np.conj(shape) * (motion.mass @ shape))
     energy = energy / energy.sum()
     lead = int(np.argmax(energy))
     turned = shape * np.exp(-1j * np.angle(shape[lead]))

@@ -112,7 +112,7 @@ def vehicle_motion(
         force[k] -= _PER_AXLE * damping * v[k]
     touching = []
     for wheel in equations.wheels:
-        one = _wheel_on_rail(model, wheel, contact, rails[wheel.axle], reference)
+        one = wheel_on_rail(model, wheel, contact, rails[wheel.axle], reference)
         force[wheel.first : wheel.first + 6] += one.force
         touching.append(one)
 
@@ -158,7 +158,7 @@ def vehicle_motion(
     return _at_state(model, motion, (q, v), (speed, wheel_speeds, rest))
 
 
-class _OnRail(NamedTuple):
+class OnRail(NamedTuple):
     """One wheel that touches its rail."""
 
     force: Any  # 6, on the coordinates of the wheelset
@@ -167,9 +167,10 @@ class _OnRail(NamedTuple):
     slip: Number  # -
 
 
-def _wheel_on_rail(
+def wheel_on_rail(
     model: Multibody, wheel: Wheel, contact: WheelRail, rail: Rail, reference: Number
-) -> _OnRail:
+) -> OnRail:
+    """Return what one wheel does on its rail; creepages are velocities over the reference speed [m/s]."""
     stiffness, at_rest = contact.normal_stiffness, model.preloads[model.wheel_names[_index(wheel)]]
     approach_at_rest = (at_rest / stiffness) ** (2.0 / 3.0)
     load = normal_force(approach_at_rest + wheel.approach, stiffness)
@@ -180,7 +181,7 @@ def _wheel_on_rail(
     sideways = 0.5 * model.preloads[f"{model.wheelset_names[wheel.axle]}.sideways"]
     flange = 0.5 * flange_force(wheel.displacement, model.numbers["flange_clearance"], stiffness)
     force += (sideways - flange) * wheel.displacement_row
-    return _OnRail(force=force.T, load=load, creep_force=along, slip=longitudinal)
+    return OnRail(force=force.T, load=load, creep_force=along, slip=longitudinal)
 
 
 def _index(wheel: Wheel) -> int:
