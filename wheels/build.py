@@ -132,6 +132,7 @@ def build_wheel(name: str, output: Path) -> None:
             shutil.copy(ROOT / file, copy)
         ignored = shutil.ignore_patterns("__pycache__", "prebuilt")
         shutil.copytree(ROOT / "wspd_design", copy / "wspd_design", ignore=ignored)
+        shutil.copytree(ROOT / "docs", copy / "docs")
         prebuilt = copy / "wspd_design" / "codegen" / "prebuilt"
         prebuilt.mkdir()
         compile_plants(PLATFORMS[name], prebuilt)

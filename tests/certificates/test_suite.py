@@ -227,7 +227,7 @@ def test_a_search_without_effort_says_nothing_infinite_and_nothing_false(make_pr
 
 
 def test_unknown_check_is_refused_with_the_nearest_name(make_problem, make_controller):
-    with pytest.raises(UserError, match='"reching", did you mean "reaching"'):
+    with pytest.raises(UserError, match=r'"reching" \(did you mean "reaching"\?\)'):
         verify(make_problem(make_controller("none")), only=("reching",))
 
 

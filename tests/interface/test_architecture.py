@@ -77,3 +77,18 @@ def test_the_ten_answers_are_true():
 def test_the_page_is_short_and_the_readme_leads_to_it():
     assert len(PAGE.splitlines()) < 250
     assert "docs/architecture.md" in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def same_names(folder):
+    """Names that several test files share, outside of packages: pytest would refuse all but the first one."""
+    files = [path for path in folder.rglob("test_*.py") if not (path.parent / "__init__.py").exists()]
+    names = [path.name for path in files]
+    return sorted({name for name in names if names.count(name) > 1})
+
+
+def test_every_test_file_has_a_name_of_its_own(tmp_path):
+    assert same_names(ROOT / "tests") == []
+    for room in ("certificates", "interface"):
+        (tmp_path / room).mkdir()
+        (tmp_path / room / "test_replay.py").touch()
+    assert same_names(tmp_path) == ["test_replay.py"]

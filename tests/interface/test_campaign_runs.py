@@ -205,7 +205,7 @@ BASE = 'stops = 2\nspeed = "10 km/h"\n'
         ("", "campaign.toml does not say how many stops; add a line such as stops = 1000"),
         ("stops = 0", "stops = 0 in campaign.toml must be at least 1"),
         ('stops = "many"', "stops = 'many' in campaign.toml must be a whole number"),
-        ("stops = 1\nspede = 3", 'unknown key in campaign.toml: "spede", did you mean "speed"?'),
+        ("stops = 1\nspede = 3", 'unknown key in campaign.toml: "spede" (did you mean "speed"?)'),
         (BASE + "controllers = []", "controllers = [] in campaign.toml must name one or more"),
         (BASE + 'rails = ["polach-wet", "polach-wet"]', "each once"),
         (BASE + 'rails = "polach-wet"', "must be a list of texts"),

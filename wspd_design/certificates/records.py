@@ -179,7 +179,7 @@ class Certificate:
     reference: str = ""
     model_hash: str = ""
     remark: str = ""
-    seconds: float = 0.0
+    seconds: float = 0.0  # of the search; none where a file was accepted again
     findings: Mapping[str, "Finding"] = field(default_factory=dict, repr=False)
     series: tuple[Series, ...] = field(default=(), repr=False)
     maps: tuple[Map, ...] = field(default=(), repr=False)
@@ -190,6 +190,11 @@ class Certificate:
 
     def _repr_html_(self) -> str:
         return str(later("notebook.proofs", "certificate_card")(self))
+
+    @property
+    def searched(self) -> bool:
+        """Whether a search found it, in place of a file that was accepted again."""
+        return self.seconds > 0.0 and self.status is not Status.NOT_APPLICABLE
 
     @property
     def boxes(self) -> int:

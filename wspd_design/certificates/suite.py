@@ -1,7 +1,6 @@
 """All checks of a closed loop: run them, or take what was proved before and is accepted again."""
 
 from collections.abc import Callable, Collection, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 
 from wspd_design.certificates.checks.adaptive import (
@@ -38,6 +37,7 @@ from wspd_design.certificates.search.progress import Listener, listening
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.controllers.offers import Linear
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.words import did_you_mean
 
 CHECKS: Mapping[str, Check] = {
     each.name: each
@@ -83,6 +83,7 @@ def verify(
     budget: Budget = DEFAULT_BUDGET,
     stored: Path | None = None,
     figures: bool = True,
+    found: Callable[[Certificate], object] = lambda _: None,
 ) -> Certificates:
     """Run the checks.
 
@@ -101,6 +102,8 @@ def verify(
         again.
     figures : bool
         Whether to sample the curves and maps that a report shows beside the verdicts.
+    found : callable, optional
+        Told each certificate as soon as it is there, for those who keep what is finished.
 
     Returns
     -------
@@ -114,16 +117,20 @@ def verify(
     """
     for name in only or ():
         if name not in NAMES:
-            near = get_close_matches(name, NAMES, n=1)
-            offer = f', did you mean "{near[0]}"?' if near else ""
-            raise UserError(f'unknown check "{name}"{offer}; available: {", ".join(NAMES)}')
+            raise UserError(
+                f'unknown check "{name}"{did_you_mean(name, NAMES)}; available: {", ".join(NAMES)}'
+            )
     _agree("sample time", problem.sample_time, problem.controller.sample_time)
     if isinstance(problem.controller, Linear):
         _agree("slip reference", problem.slip, problem.controller.slip_reference)
         _agree("wheel radius", problem.vehicle.wheel_radius, problem.controller.wheel_radius)
     wanted = [CHECKS[name] for name in NAMES if only is None or name in only]
+    certificates = []
     with remembering():
-        return Certificates(_run(check, problem, progress, budget, stored, figures) for check in wanted)
+        for check in wanted:
+            certificates.append(_run(check, problem, progress, budget, stored, figures))
+            found(certificates[-1])
+    return Certificates(certificates)
 
 
 def _run(

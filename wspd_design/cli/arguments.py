@@ -1,11 +1,10 @@
 """Arguments that several commands read in the same way."""
 
-from difflib import get_close_matches
-
 from wspd_design.cli.options import CONTROLLER, QUARTER
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.units import parse_quantity
+from wspd_design.parameters.words import did_you_mean
 from wspd_design.plants.names import PLANTS
 
 
@@ -29,9 +28,7 @@ def chosen(argument: str | None, option: str | None) -> str:
 def check_plant(name: str) -> None:
     """Refuse a plant that does not exist."""
     if name not in PLANTS:
-        near = get_close_matches(name, PLANTS, n=1)
-        offer = f', did you mean "{near[0]}"?' if near else ""
-        raise UserError(f'unknown plant "{name}"{offer}; available: {", ".join(PLANTS)}')
+        raise UserError(f'unknown plant "{name}"{did_you_mean(name, PLANTS)}; available: {", ".join(PLANTS)}')
 
 
 def check_quarter(name: str, command: str) -> None:

@@ -8,10 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from wspd_design.cli.console import console, print_json, progress_bar, spaced
-from wspd_design.cli.exit_codes import INTERRUPTED
+from wspd_design.cli.console import console, interrupted, print_json, progress_bar, spaced
 from wspd_design.cli.from_witness import WitnessStart
 from wspd_design.cli.json_objects import campaign_object, campaigns_object
 from wspd_design.cli.summary import Summary, summarize
@@ -217,12 +214,6 @@ def labelled(campaigns: Sequence[Campaign]) -> "Iterator[NDArray[Any]]":
             for name in rows.dtype.names or ():
                 block[name] = rows[name]
             yield block
-
-
-def interrupted(what: str) -> typer.Exit:
-    """Say what an interrupt left, and return the exit that ends the command."""
-    print(f"wspd: interrupted after {what}.", file=sys.stderr)
-    return typer.Exit(INTERRUPTED)
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from difflib import get_close_matches
 from pathlib import Path
 from types import UnionType
 from typing import Any, get_args, get_type_hints
@@ -16,6 +15,7 @@ from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, load_case
 from wspd_design.design.draw_table import read_draws
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries, read_toml
+from wspd_design.parameters.words import did_you_mean
 from wspd_design.simulation.campaign import CHECK_EVERY
 from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.draws import FILE_KINDS, within_bounds
@@ -173,6 +173,4 @@ def _disturbances(table: dict[str, Any], where: str) -> StopOptions:
 
 def _known(key: str, names: list[str], what: str) -> None:
     if key not in names:
-        near = get_close_matches(key, names, n=1)
-        offer = f', did you mean "{near[0]}"?' if near else ""
-        raise UserError(f'unknown {what}: "{key}"{offer}; it may have {", ".join(names)}')
+        raise UserError(f'unknown {what}: "{key}"{did_you_mean(key, names)}; it may have {", ".join(names)}')

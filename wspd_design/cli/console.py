@@ -10,12 +10,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import typer
 from rich import box
 from rich.console import Console
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from wspd_design.cli.exit_codes import INTERRUPTED
 from wspd_design.exchange.plain import finite
 
 _MINUTE = 60.0  # s, between two lines of progress
@@ -120,6 +122,12 @@ class ProgressLines:
 def _duration(seconds: float) -> str:
     minutes = round(seconds / 60.0)
     return f"{minutes} min" if minutes < 120 else f"{minutes / 60.0:.1f} h"
+
+
+def interrupted(what: str) -> typer.Exit:
+    """Say what an interrupt left, and return the exit that ends the command."""
+    print(f"wspd: interrupted after {what}.", file=sys.stderr)
+    return typer.Exit(INTERRUPTED)
 
 
 def is_interactive() -> bool:

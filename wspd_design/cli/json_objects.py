@@ -10,6 +10,8 @@ from wspd_design.cli.summary import Summary
 from wspd_design.design.case import Case
 from wspd_design.exchange.campaign_forms import CAMPAIGN, CAMPAIGNS
 from wspd_design.exchange.check_forms import VERIFICATION
+from wspd_design.exchange.ladder_forms import LADDER
+from wspd_design.exchange.ladder_objects import rungs_object
 from wspd_design.exchange.objects import linearization_point_object, scenario_object, timed_check_object
 from wspd_design.exchange.stop_forms import COMPARISON
 from wspd_design.exchange.study_forms import LINEARIZATION
@@ -18,6 +20,7 @@ from wspd_design.simulation.records import Scenario
 
 if TYPE_CHECKING:
     from wspd_design.analysis.linearization import Linearization
+    from wspd_design.studies.ladder import Ladder
 
 
 def witness_object(start: WitnessStart, left_after: float | None = None) -> dict[str, Any]:
@@ -74,6 +77,21 @@ def campaigns_object(campaigns: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def comparison_object(stops: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """Return several stops in the order of the command line."""
     return {"schema": COMPARISON.schema, "stops": list(stops), "version": program_version()}
+
+
+def ladder_object(found: "Ladder", scenario: Scenario) -> dict[str, Any]:
+    """Return the same stop on several models."""
+    first = found.rungs[0].run
+    return {
+        "schema": LADDER.schema,
+        "controller": found.controller,
+        "vehicle": found.vehicle,
+        "rail": found.rail,
+        "initial_speed_m_s": found.initial_speed,
+        "scenario": scenario_object(scenario, dead_time=first.dead_time, shortest_pulse=first.shortest_pulse),
+        **rungs_object(found),
+        "version": program_version(),
+    }
 
 
 def verification_object(

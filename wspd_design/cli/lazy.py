@@ -78,6 +78,11 @@ COMMANDS = {
         "Simulate the same stop with several controllers, side by side.",
         "Example: wspd compare design.toml afsmc none",
     ),
+    "ladder": Entry(
+        JUDGING,
+        "Simulate the same stop on every model of the vehicle, and tell which model suffices for what.",
+        "Example: wspd ladder design.toml",
+    ),
     "campaign": Entry(
         JUDGING,
         "Simulate many stops as FILE says; what is finished stays, and the same command goes on from there.",
@@ -118,10 +123,15 @@ COMMANDS = {
         "Print the JSON Schema of vehicle or rail files, for editors.",
         "Example: wspd schema vehicle -o wspd-vehicle.json",
     ),
+    "docs": Entry(
+        KNOWING,
+        "Show a page of the documentation that came with the program, or list all of them.",
+        "Examples: wspd docs own-controller; wspd docs theory#band | less",
+    ),
     "doctor": Entry(
         KNOWING,
         "Look whether all that is needed is there: packages, fonts, folders, compiler, terminal.",
-        "Example: wspd doctor",
+        "Example: wspd doctor; for a bug report: wspd doctor --report",
     ),
 }
 """In the order of the help."""

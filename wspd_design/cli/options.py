@@ -31,7 +31,7 @@ DESIGN_FILE = "design.toml"
 CASE = "Case"
 _CONTROLLERS = (
     f"{', '.join(FAMILIES)}, a design file, which brings its own case, or FILE.py:NAME "
-    f"(docs/own-controller.md). {', '.join(family.name for family in with_presets())} also with "
+    f"(wspd docs own-controller). {', '.join(family.name for family in with_presets())} also with "
     f":{' or :'.join(PRESETS)} for their tables; without, those that belong to the vehicle."
 )
 
@@ -105,7 +105,7 @@ FromWitnessOption: TypeAlias = Annotated[
         "--from-witness",
         metavar="FILE",
         help="Start at the witness of a certificate that is REFUTED: its slip, speed, mass, inertia and mu0, full "
-        "supply, and the torque that holds the slip (docs/json.md).",
+        "supply, and the torque that holds the slip (wspd docs json).",
         show_default=False,
         rich_help_panel=CASE,
     ),
@@ -139,6 +139,6 @@ EffortOption: TypeAlias = Annotated[
     ),
 ]
 JsonOption: TypeAlias = Annotated[
-    bool, typer.Option("--json", help="Print one JSON object and nothing else (docs/json.md).")
+    bool, typer.Option("--json", help="Print one JSON object and nothing else (wspd docs json).")
 ]
 ForceOption: TypeAlias = Annotated[bool, typer.Option("--force", help="Replace an existing file.")]

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from wspd_design.cli.campaign import interrupted
-from wspd_design.cli.console import console, print_written, progress_bar, spaced, table
+from wspd_design.cli.console import console, interrupted, print_written, progress_bar, spaced, table
 from wspd_design.cli.output import check_output, write_text
 from wspd_design.design.criteria import CRITERIA
 from wspd_design.design.file import seen_from, write_design
@@ -25,7 +24,7 @@ from wspd_design.parameters.units import units_of
 if TYPE_CHECKING:
     from wspd_design.design.finding import Found
 
-SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (docs/design-to-requirements.md)"
+SPECIFICATIONS = f"{', '.join(shipped_specifications())} or a .toml file (wspd docs design-to-requirements)"
 
 _BY_RAIL = {
     "mean eff.": "efficiency_mean",

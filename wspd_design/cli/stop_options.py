@@ -3,7 +3,6 @@
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 
 from wspd_design.cli.disturbances import StopOptions
@@ -12,6 +11,7 @@ from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail, load_rail_profile, load_track_spectrum
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import Dimension, parse_quantity
+from wspd_design.parameters.words import did_you_mean
 from wspd_design.simulation.records import FAULT_KINDS, Fault, LoadIrregularity, Patch, Scenario, Sensing
 from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
 
@@ -92,7 +92,7 @@ def _loads(text: str, vehicle: Vehicle, seed: int) -> LoadIrregularity:
     track, channel = load_track_spectrum("erri-b176"), "vertical-high"
     return irregular_load(
         vehicle,
-        synthesize(track, channel, seed=seed),
+        synthesize(track, (channel,), seed=seed),
         sigma=standard_deviation(track, channel),
         spread=spread,
     )
@@ -144,8 +144,7 @@ def _fault(text: str, vehicle: Vehicle) -> Fault:
         )
     kind, axle = found["kind"].lower(), int(found["axle"])
     if kind not in FAULT_KINDS:
-        near = get_close_matches(kind, FAULT_KINDS, n=1)
-        offer = f', did you mean "{near[0]}"?' if near else ""
+        offer = did_you_mean(kind, FAULT_KINDS)
         raise UserError(f'--fault "{text}" names no known fault{offer}; it may be {", ".join(FAULT_KINDS)}')
     if not 1 <= axle <= vehicle.wheelsets:
         raise UserError(

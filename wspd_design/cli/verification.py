@@ -5,12 +5,13 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import typer
 from rich.console import Group
 from rich.padding import Padding
 from rich.text import Text
 
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
-from wspd_design.cli.console import console, progress, spaced, table
+from wspd_design.cli.console import console, interrupted, progress, spaced, table
 from wspd_design.cli.exit_codes import GOOD, REFUTED, UNDECIDED
 
 
@@ -37,18 +38,46 @@ _SHOWN = {
 }
 
 
+class Ran(NamedTuple):
+    """What a run of the checks came to."""
+
+    certificates: tuple[Certificate, ...]
+    complete: bool  # False after an interrupt, with what was finished before
+
+
 def run_checks(
     problem: Problem,
     only: Collection[str] | None,
     effort: float,
     stored: Path | None,
     folder: Path | None = None,
-) -> tuple[Certificate, ...]:
-    """Run the checks with their progress on standard error; write them if there is a folder."""
+) -> Ran:
+    """Run the checks with their progress on standard error; write each into the folder, if there is one."""
     from wspd_design.design.certification import certify
 
-    with progress() as tell:
-        return certify(problem, only=only, effort=effort, stored=stored, folder=folder, progress=tell)
+    finished: list[Certificate] = []
+    try:
+        with progress() as tell:
+            certify(
+                problem,
+                only=only,
+                effort=effort,
+                stored=stored,
+                folder=folder,
+                progress=tell,
+                found=finished.append,
+            )
+    except KeyboardInterrupt:
+        return Ran(tuple(finished), complete=False)
+    return Ran(tuple(finished), complete=True)
+
+
+def interrupted_checks(ran: Ran, only: Collection[str] | None, kept: str) -> typer.Exit:
+    """Say what an interrupt left of the checks, and return the exit that ends the command."""
+    from wspd_design.certificates.suite import NAMES
+
+    wanted = len(NAMES) if only is None else len(set(only))
+    return interrupted(f"{len(ran.certificates)} of {wanted} checks{kept}")
 
 
 def exit_code(certificates: Sequence[Certificate], *, asked: bool) -> int:

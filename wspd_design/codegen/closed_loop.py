@@ -93,6 +93,7 @@ class ClosedLoop:
             "load_factor": given.load_factors,
             "load_spacing": given.load_spacings,
             "hold": given.held_slips,
+            "track": given.track,
             "trace": trace if given.trace_rows else None,
         }
         keep = [np.ascontiguousarray(a, dtype=np.float64) for a in arrays.values() if a is not None]
@@ -108,8 +109,11 @@ class ClosedLoop:
             first, second = given.held_speeds
             head.hold_points = given.held_slips.shape[1]
             head.hold_first, head.hold_spacing = math.log(first), math.log(second / first)
-        numbers = (given.stop_parameters, given.lane_parameters)
-        initial = (given.speeds, given.wheel_speeds, given.pressures)
+        if given.track is not None:
+            head.track_points, head.track_again = given.track.shape[1], given.track_again
+            head.track_spacing = given.track_spacing
+        numbers = (given.stop_parameters, given.lane_parameters, given.numbers)
+        initial = (given.speeds, given.wheel_speeds, given.rest, given.pressures)
         blocks = [np.ascontiguousarray(block, dtype=np.float64) for block in (*numbers, *initial)]
         self._library.wspd_begin(buffer, *(pointer(block) for block in blocks))
         return buffer, trace, [keep, seeds, blocks]
@@ -211,11 +215,13 @@ _TEMPLATES = ("motion.c", "adhering.c", "steps.c", "events.c", "sensors.c", "clo
 
 def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
     """Return the C source of the loop of a plant with any law."""
-    places = {
+    places: dict[str, float] = {
         "STOPS": stops,
         "AXLES": kernels.axles,
         "AXLE_STATES": kernels.axle_states,
-        "TRANSFERS": kernels.transfers,
+        "REST_STATES": kernels.rest_states,
+        "COUPLED": int(kernels.coupled),
+        "FURTHER": kernels.whole.further if kernels.coupled else 0,
         "PARAMETERS": len(PARAMETERS),
         "RADIUS": PARAMETERS.index(("vehicle", "wheel_radius")),
         "MAX_TORQUE": PARAMETERS.index(("brake", "max_torque")),
@@ -237,15 +243,22 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
     places["KINKS"] = kernels.kinks.size1_out(0)
     for name in ("stop_constants", "lane_constants", "window_constants"):
         places[name.upper()] = getattr(kernels, name).size1_out(0)
+    lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
+    of_stop, of_lane = [kernels.stop_constants, kernels.demand], [kernels.lane_constants]
+    if kernels.coupled:
+        whole = kernels.whole
+        places |= {"NUMBERS": whole.numbers, "VEHICLE_CONSTANTS": whole.vehicle_constants.size1_out(0)}
+        of_stop += [whole.vehicle_constants, whole.vehicle]
+        of_lane += [whole.brakes]
+    else:
+        split = kernels.split
+        of_stop += [split.loads, split.train]
+        of_lane += [split.contact, split.axle, split.slope]
+    of_valves = [kernels.window_constants, kernels.actuator, *((kernels.kinks,) if places["KINKS"] else ())]
     folder = files("wspd_design").joinpath("codegen", "templates")
     parts = [f"#define {name} {value}\n" for name, value in places.items()]
     parts += [folder.joinpath(name).read_text() for name in ("elementary.h", "random.h")]
-    lanes, twice = "(AXLES * STOPS)", "(2 * AXLES * STOPS)"  # twice: middle and end of a step at once
-    groups = {
-        "STOPS": (kernels.stop_constants, kernels.loads, kernels.train, kernels.demand),
-        lanes: (kernels.lane_constants, kernels.contact, kernels.axle, kernels.slope),
-        twice: (kernels.window_constants, kernels.actuator, *((kernels.kinks,) if places["KINKS"] else ())),
-    }
+    groups = {"STOPS": of_stop, lanes: of_lane, twice: of_valves}
     parts += [emit(kernel, width) for width, group in groups.items() for kernel in group]
     parts += [folder.joinpath(name).read_text() for name in _TEMPLATES]
     return "".join(parts)

@@ -118,6 +118,10 @@ class Head(ctypes.Structure):
         ("hold_points", ctypes.c_long),
         ("hold_first", ctypes.c_double),
         ("hold_spacing", ctypes.c_double),
+        ("track", DOUBLES),
+        ("track_points", ctypes.c_long),
+        ("track_again", ctypes.c_long),
+        ("track_spacing", ctypes.c_double),
         ("trace", DOUBLES),
         ("trace_rows", ctypes.c_long),
         ("trace_used", ctypes.c_long),
@@ -130,8 +134,10 @@ class LoopInput:
 
     stop_parameters: "Array"  # (PARAMETERS, stops)
     lane_parameters: "Array"  # (PARAMETERS, lanes)
+    numbers: "Array"  # (numbers, stops), of a coupled plant beyond those of its vehicle
     speeds: "Array"  # (stops,), initial [m/s]
     wheel_speeds: "Array"  # (lanes,), initial [rad/s]
+    rest: "Array"  # (further states of the plant, stops), initial
     pressures: "Array"  # (lanes,), of the cylinders, initial [Pa]
     settings: Settings
     disturbances: "Array"  # (DISTURBANCES, stops)
@@ -143,6 +149,9 @@ class LoopInput:
     load_spacings: "Array | None" = None  # (stops,) [m]
     held_slips: "Array | None" = None  # (lanes, points), what an ideal brake never exceeds
     held_speeds: tuple[float, float] = (1.0, 1.0)  # m/s, first and second of the points, evenly spaced in log
+    track: "Array | None" = None  # (stops, points, 6): value and slope over distance of each channel
+    track_again: int = 0  # point that comes after the last one
+    track_spacing: float = 1.0  # m
     trace_rows: int = 0
 
     @property
@@ -171,7 +180,7 @@ class LoopOutput:
     lane_totals: dict[str, "Array"]  # (lanes,) each
     stop_totals: dict[str, "Array"]  # (stops,) each
     wheel_speeds: "Array"  # (lanes,)
-    trace: "Array"  # (rows, 3 + (5 + states of an axle) axles), of the first stop
+    trace: "Array"  # (rows, 3 + (5 + states of an axle) axles + further traces), of the first stop
     samples: "Array"  # time, then by stop: state of the law, fill and vent of each wheelset, what it saw
     bad_command: tuple[float, float, float]  # time, fill, vent
     steps: int

@@ -1,16 +1,15 @@
-"""One integration step of the closed loop as a CasADi function, and several of them in one call.
+"""One integration step of the closed loop in CasADi.
 
 The formulas are those of ``motion.c``, ``adhering.c``, ``steps.c`` and ``events.c`` in ``templates/``. Steps beyond
 the goal, and one that would go across an event, leave the state as it is, so that a call may hold more steps than are
 needed.
 """
 
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 from wspd_design.codegen.kernels import PARAMETERS, Kernels
 from wspd_design.codegen.virtual_adhering import STEADY, Adhering, Stage, settling_rates, weighted_sum
-from wspd_design.codegen.virtual_layout import INTEGRATED, Layout, layout
+from wspd_design.codegen.virtual_layout import INTEGRATED, Layout
 from wspd_design.model.number import maximum, minimum, where
 
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
@@ -21,39 +20,12 @@ SPEED_SHARE = 0.1  # of the speed, that a step may take from it where the slope 
 EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event of a wheel
 
 
-class StepFunctions(NamedTuple):
-    """What runs a stop without a compiler."""
+class Step:
+    """The expressions of one step of a plant that splits."""
 
-    layout: Layout
-    observe: Any  # (state, inputs) -> state with the present stage
-    single: Any  # (state, inputs) -> state, row with what follows it
-    batches: dict[int, Any]  # number of steps -> (state, inputs) -> state, one column per step
-
-
-def step_functions(kernels: Kernels, *, holding: bool, batches: Iterable[int]) -> StepFunctions:
-    """Build the functions of a plant; ``holding`` for the ideal brake that never exceeds a slip."""
-    import casadi as ca
-
-    places = layout(kernels)
-    state, given = ca.SX.sym("state", places.states), ca.SX.sym("given", places.inputs)
-    step = _Step(kernels, places, state, given, holding)
-    observe = ca.Function("observe", [state, given], ca.cse([step.observed()]))
-    single = ca.Function("step", [state, given], ca.cse(step.outputs()))
-    repeated = {}
-    for number in batches:
-        following, rows = ca.MX.sym("state", places.states), []
-        inputs = [following, ca.MX.sym("given", places.inputs)]
-        for _ in range(number):
-            following, row = single(following, inputs[1])
-            rows.append(row)
-        repeated[number] = ca.Function(f"steps{number}", inputs, [following, ca.horzcat(*rows)])
-    return StepFunctions(layout=places, observe=observe, single=single, batches=repeated)
-
-
-class _Step:
-    """The expressions of one step."""
-
-    def __init__(self, kernels: Kernels, places: Layout, state: Any, given: Any, holding: bool) -> None:
+    def __init__(
+        self, kernels: Kernels, places: Layout, state: Any, given: Any, *, holding: bool = False
+    ) -> None:
         self.kernels, self.holding, self.axles = kernels, holding, places.axles
         self.whole, self.places = state, places
         self.state = {name: state[place] for name, place in places.state.items()}
@@ -69,7 +41,7 @@ class _Step:
         """Put together what is integrated with stages."""
         import casadi as ca
 
-        return ca.vertcat(*(state[name] for name in ("speed", "axle", "transfer", "distance")))
+        return ca.vertcat(*(state[name] for name in ("speed", "axle", "rest", "distance")))
 
     def observed(self) -> Any:
         """The state with the present stage worked out anew."""
@@ -78,6 +50,7 @@ class _Step:
         return ca.vertcat(*self._observe(dict(self.state)).values())
 
     def outputs(self) -> list[Any]:
+        """The state after the step, and a row with what follows it."""
         import casadi as ca
 
         now, given, axles = self.state, self.given, self.axles
@@ -92,7 +65,7 @@ class _Step:
             *(now[name] for name in Stage._fields[2:]),
         )
         stages = [present]
-        wheels = Adhering(motion, h, settling, given)
+        wheels = self._wheels(motion, h, settling)
         for share, column, time in ((0.5, 0, middle), (0.5, 0, middle), (1.0, 1, following)):
             at = wheels.placed(motion + share * h * stages[-1].rates, wheels.moved(stages))
             stages.append(self._stage(at, time, torque[column], level[column], damping[column], now))
@@ -114,7 +87,7 @@ class _Step:
         after |= {
             "speed": speed,
             "axle": ca.vertcat(wheel, reached[1 + axles : 1 + now["axle"].size1()]),
-            "transfer": reached[1 + now["axle"].size1() : -1],
+            "rest": reached[1 + now["axle"].size1() : -1],
             "distance": reached[-1],
             "locked": locked,
             "held": held,
@@ -150,7 +123,7 @@ class _Step:
                 after["passed"],
                 after["load"],
             ),
-            *(after["given"], after["dynamic"], after["axle"][axles:]),
+            *(after["given"], after["dynamic"], after["axle"][axles:], after["further"]),
             *(made, share, after["lane"][(INTEGRATED - 1) * axles : integrated]),
         )
         return [where(made, ca.vertcat(*after.values()), self.whole), row]
@@ -167,6 +140,10 @@ class _Step:
         last = time + h > given["until"] - 1e-12
         h = where(last, span, h) * given["scale"]
         return h, where(last, where(given["scale"] < 1.0, time + h, given["until"]), time + h), settling
+
+    def _wheels(self, motion: Any, h: Any, settling: Any) -> Any:
+        """What becomes of wheels that adhere within the step."""
+        return Adhering(motion, h, settling, self.given)
 
     def _allowed(self, span: Any) -> tuple[Any, Any]:
         """Step that the slopes of the creep curves allow, now and where the wheels would be after a step.
@@ -211,7 +188,7 @@ class _Step:
         now = self.state
         return ca.vertcat(
             *(
-                self.kernels.slope(
+                self.kernels.split.slope(
                     self.per_axle("lane_constants", a),
                     speed,
                     states[a :: self.axles],
@@ -247,24 +224,23 @@ class _Step:
         first = 1 + self.kernels.axle_states * self.axles
         table = self.given["load_factors"]
         here, rise = table[1 : 1 + self.axles], table[1 + self.axles :]
-        loads = self.kernels.loads(self.given["stop_constants"], motion[first:-1])
+        loads = self.kernels.split.loads(self.given["stop_constants"], motion[first:-1])
         return loads * (here + rise * (motion[-1] - table[0]))
 
     def _observe(self, state: dict[str, Any]) -> dict[str, Any]:
         """Work out the present stage; wheels whose brake gives less than rail or slip take are let go."""
         import casadi as ca
 
-        motion, radius, torque = self.motion(state), self.given["radius"], state["torque"]
+        motion, torque = self.motion(state), state["torque"]
         load = self._loads(motion)
         begins = [
-            self.kernels.contact(self.per_axle("lane_constants", a), load[a]) for a in range(self.axles)
+            self.kernels.split.contact(self.per_axle("lane_constants", a), load[a]) for a in range(self.axles)
         ]
         state = {**state, "contact": ca.reshape(ca.horzcat(*begins).T, -1, 1)}
         for _ in range(2):
             stage = self._stage(motion, state["time"], torque, state["level"], state["damping"], state)
-            brake = stage.given * (1.0 - BALANCED)
-            state["locked"] = where(brake < 2.0 * radius * stage.force, 0.0, state["locked"])
-            state["held"] = where(brake < stage.passed, 0.0, state["held"])
+            lacks = stage.given * (1.0 - BALANCED) < stage.passed
+            state |= {name: where(lacks, 0.0, state[name]) for name in ("locked", "held")}
         return {
             **state,
             **{name: getattr(stage, name) for name in Stage._fields if name in state},
@@ -278,10 +254,10 @@ class _Step:
         import casadi as ca
 
         given, size = self.given, self.kernels.axle_states * self.axles
-        speed, states, transfer = motion[0], motion[1 : 1 + size], motion[1 + size : -1]
+        speed, states, rest = motion[0], motion[1 : 1 + size], motion[1 + size : -1]
         wheel, radius, load = states[: self.axles], given["radius"], self._loads(motion)
         axles = [
-            self.kernels.axle(
+            self.kernels.split.axle(
                 self.per_axle("lane_constants", a),
                 speed,
                 states[a :: self.axles],
@@ -300,8 +276,8 @@ class _Step:
             for column in zip(*axles, strict=True)
         )
         rolling, others = rolling[: self.axles], rolling[self.axles :]
-        acceleration, resistance, transferring = self.kernels.train(
-            given["stop_constants"], speed, force, transfer, time
+        acceleration, resistance, rest_rates = self.kernels.split.train(
+            given["stop_constants"], speed, force, rest, time
         )
         if self.holding:
             held_slip, slope = self._held_slip(speed)
@@ -309,21 +285,37 @@ class _Step:
             taken = 2.0 * (radius * force - damped) - given["inertia"] * following
             rolling = where(state["held"], following, rolling)
             passed = where(state["held"], taken, passed)
-        integrands = (
+        return Stage(
+            motion=motion,
+            torque=torque,
+            rates=ca.vertcat(acceleration, rolling, others, rest_rates, speed),
+            integrands=self._integrands(speed, wheel, passed, damped, force, slip, resistance),
+            force=force,
+            slip=slip,
+            load=load,
+            passed=passed,
+            given=braking,
+            dynamic=dynamic,
+            further=ca.SX(0, 1),
+        )
+
+    def _integrands(
+        self, speed: Any, wheel: Any, passed: Any, damped: Any, force: Any, slip: Any, resistance: Any
+    ) -> Any:
+        """What the totals of wheelsets and stop are integrals of."""
+        import casadi as ca
+
+        return ca.vertcat(
             passed,
             2.0 * damped,
             passed * wheel,
-            2.0 * force * (speed - radius * wheel),
+            2.0 * force * (speed - self.given["radius"] * wheel),
             2.0 * damped * wheel,
             slip,
             slip * slip,
             wheel,
             resistance,
             resistance * speed,
-        )
-        rates = ca.vertcat(acceleration, rolling, others, transferring, speed)
-        return Stage(
-            motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed, braking, dynamic
         )
 
     def _held_slip(self, speed: Any) -> tuple[Any, Any]:
@@ -357,18 +349,14 @@ class _Step:
             ca.vertcat(
                 motion[0] - target,
                 where(
-                    now["locked"],
-                    stage.given - 2.0 * given["radius"] * stage.force,
-                    where(
-                        now["held"],
-                        stage.given - stage.passed,
-                        motion[1 : 1 + axles] - self._rolling(motion[0]),
-                    ),
+                    now["locked"] + now["held"],
+                    stage.given - stage.passed,
+                    motion[1 : 1 + axles] - self._rolling(motion[0]),
                 ),
             )
             for motion, stage in zip(ends, (stages[0], stages[2], stages[3]), strict=True)
         ]
-        first = ca.SX(1.0)
+        first: Any = 1.0
         for event in range(1 + axles):
             begin, middle, end = (value[event] for value in values)
             crosses = where(begin > 0.0, minimum(middle, end) < 0.0, 0.0)

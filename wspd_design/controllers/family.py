@@ -6,7 +6,6 @@ A new law needs its class and its record of gains, a row here, and the rule that
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Any, TypeAlias
 
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
@@ -39,6 +38,7 @@ from wspd_design.controllers.wheel_law import WheelLaw
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_knorr_bremse, load_mitsubishi, load_trenitalia
 from wspd_design.parameters.schema import PRESETS, Preset
+from wspd_design.parameters.words import did_you_mean
 
 INDUSTRY = "law of the industry"
 
@@ -307,9 +307,7 @@ def tunable_family(name: str) -> Family:
 
 def _no_such_law(name: str, what: str, families: tuple[Family, ...]) -> UserError:
     names = [each.name for each in families]
-    near = get_close_matches(name, names, n=1)
-    offer = f' (did you mean "{near[0]}"?)' if near else ""
-    return UserError(f'law "{name}" cannot be {what}{offer}; choose {" or ".join(names)}')
+    return UserError(f'law "{name}" cannot be {what}{did_you_mean(name, names)}; choose {" or ".join(names)}')
 
 
 def preset_of(family: Family, name: str) -> Preset:

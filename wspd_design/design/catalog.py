@@ -1,6 +1,5 @@
 """Controllers by name: the paper's, the designed ones, the baselines, and design files."""
 
-from difflib import get_close_matches
 from pathlib import Path
 
 from wspd_design.controllers.family import FAMILIES, preset_of
@@ -14,6 +13,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.words import did_you_mean
 
 
 def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: Specification) -> Law:
@@ -98,9 +98,7 @@ def is_design_file(name_or_path: str) -> bool:
 
 
 def _unknown(name: str) -> str:
-    near = get_close_matches(name, FAMILIES, n=1)
-    offer = f', did you mean "{near[0]}"?' if near else ""
     return (
-        f'unknown controller "{name}"{offer}; available: {", ".join(FAMILIES)}, '
+        f'unknown controller "{name}"{did_you_mean(name, FAMILIES)}; available: {", ".join(FAMILIES)}, '
         "or the path of a design file ending in .toml"
     )

@@ -32,6 +32,7 @@ def certify(
     folder: str | Path | None = None,
     stored: Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
+    found: Callable[[Certificate], object] = lambda _: None,
 ) -> Certificates:
     """Prove or refute what can be said about a design.
 
@@ -48,12 +49,14 @@ def certify(
     effort : float
         Of each search, as a multiple of the usual work, which is counted.
     folder : str or Path, optional
-        Where to write one file for each check that speaks about the design; files of the same names are replaced.
-        Nothing is written by default.
+        Where to write one file for each check that speaks about the design, as soon as it is there; files of the same
+        names are replaced. Nothing is written by default.
     stored : Path, optional
         Folder of certificates to take what is accepted from, in place of the one beside the design.
     progress : callable, optional
         Told what is being done.
+    found : callable, optional
+        Told each certificate as soon as it is there.
 
     Returns
     -------
@@ -71,17 +74,21 @@ def certify(
     problem = problem_of(design, vehicle=vehicle, rail=rail)
     if not effort > 0.0:
         raise UserError(f"effort = {effort:g} must be above 0, a multiple of the usual work")
-    certificates = suite.verify(
+
+    def keep(certificate: Certificate) -> None:
+        if folder is not None:
+            write_certificates([certificate], Path(folder))
+        found(certificate)
+
+    return suite.verify(
         problem,
         only=only or None,
         progress=progress,
         budget=Budget(effort=effort),
         stored=stored or stored_beside(design),
         figures=False,
+        found=keep,
     )
-    if folder is not None:
-        write_certificates(certificates, Path(folder))
-    return certificates
 
 
 def check(
@@ -147,11 +154,39 @@ def folder_beside(design: str | Path) -> Path:
 
 
 def stored_beside(design: Loop) -> Path | None:
-    """Return the folder of certificates beside a design file, if there is one."""
-    if not isinstance(design, (str, Path)) or not is_design_file(str(design)):
+    """Return the folder of certificates beside a design file or an own controller, if there is one."""
+    if not isinstance(design, (str, Path)) or not (
+        is_design_file(str(design)) or is_own_controller(str(design))
+    ):
         return None
     folder = folder_beside(design)
     return folder if folder.is_dir() else None
+
+
+def refused_beside(
+    name: str,
+    design: Loop,
+    *,
+    vehicle: Vehicle | str | Path | None = None,
+    rail: Rail | str | Path | None = None,
+) -> str | None:
+    """Say why the file of a check beside a design is not taken; None where there is no file.
+
+    Parameters
+    ----------
+    name : str
+        Of the check.
+    design, vehicle, rail
+        As in :func:`certify`.
+    """
+    folder = stored_beside(design)
+    path = None if folder is None else folder / f"{name}.json"
+    if path is None or not path.is_file():
+        return None
+    found = check(path, design, vehicle=vehicle, rail=rail)
+    if found.certificate is not None and found.unchecked:
+        return f"{found.certificate.status.name} is nothing that a checker decides"
+    return found.reason
 
 
 def write_certificates(certificates: Sequence[Certificate], folder: Path) -> dict[str, int]:

@@ -4,7 +4,6 @@ import json
 import math
 import os
 from dataclasses import fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,7 @@ from wspd_design.design.requirements import read_requirements, requirements_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
 from wspd_design.parameters.laden import LADEN
+from wspd_design.parameters.words import near_or_allowed
 from wspd_design.parameters.writing import write_whole
 
 SCHEMA = "wspd-design/2"
@@ -190,9 +190,7 @@ def _check_keys(
 ) -> None:
     for key in table:
         if key not in (*known, *optional):
-            near = get_close_matches(key, known, n=1)
-            remedy = f"did you mean {prefix}{near[0]}?" if near else f"allowed: {', '.join(known)}"
-            raise UserError(f"unknown key {prefix}{key} in {where}; {remedy}")
+            raise UserError(f"unknown key {prefix}{key} in {where}; {near_or_allowed(key, known, prefix)}")
     for key in known:
         if key not in table:
             raise UserError(f"{prefix}{key} is missing in {where}; re-run wspd design")

@@ -18,7 +18,7 @@ _MODULE_PREFIX = "wspd_own_controller."
 _ATTRIBUTES = ("name", "sample_time", "start", "step")
 _PROBES = tuple(Measurement(speed, speed * ratio, 2e4) for speed in (30.0, 10.0) for ratio in (1.8, 1.2, 0.1))
 _PRESSURES = 2e5, 6e5  # Pa, of a brake cylinder and of the reservoir while it is probed
-_HOW = "see docs/own-controller.md"
+_HOW = "see wspd docs own-controller"
 
 
 def is_own_controller(name: str) -> bool:

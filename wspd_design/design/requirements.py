@@ -7,7 +7,6 @@ design by the same stops again.
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from wspd_design.design.criteria import CRITERIA, Criterion
 from wspd_design.design.draw_table import dimension_of, draws_text, flat, number_of, quantity_text, read_draws
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import beside, uniform_rails
+from wspd_design.parameters.words import near_or_allowed
 from wspd_design.simulation.draws import FILE_KINDS, Draw
 
 _KEYS = ("rails", "within_bounds", "certificates", "stable_within", "held_out", "limits", "stop", "draw")
@@ -296,12 +296,10 @@ def check_keys(
     """Refuse keys that are not known, and tables that lack one that is needed."""
     for key in table:
         if key not in known:
-            near = get_close_matches(key, known, n=1)
-            remedy = f"did you mean {prefix}{near[0]}?" if near else f"allowed: {', '.join(known)}"
-            raise UserError(f"unknown key {prefix}{key} in {where}; {remedy}")
+            raise UserError(f"unknown key {prefix}{key} in {where}; {near_or_allowed(key, known, prefix)}")
     for key in needed:
         if key not in table:
-            raise UserError(f"{prefix}{key} is missing in {where}; add it (docs/design-to-requirements.md)")
+            raise UserError(f"{prefix}{key} is missing in {where}; add it (wspd docs design-to-requirements)")
 
 
 def texts(value: object, name: str, where: str, *, empty: bool = False) -> tuple[str, ...]:

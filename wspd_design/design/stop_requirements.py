@@ -84,7 +84,7 @@ def named_requirements(written: str, specification: Specification) -> StopRequir
     if not written.endswith(".toml"):
         raise UserError(
             f'requirements "{written}" are neither a template ({", ".join(TEMPLATES)}) nor a .toml file; write a table '
-            "[requirements] into a file (docs/requirements.md)"
+            "[requirements] into a file (wspd docs requirements)"
         )
     path = Path(written)
     document = read_toml(path, written)

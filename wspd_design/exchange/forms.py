@@ -15,6 +15,7 @@ UNITS = {
     "_Nms": "N m s",
     "_Nm": "N m",
     "_kg": "kg",
+    "_Hz": "Hz",
     "_N": "N",
     "_m": "m",
     "_s": "s",

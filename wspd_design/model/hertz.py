@@ -2,7 +2,7 @@
 
 import math
 
-from wspd_design.model.kalker import longitudinal_coefficient
+from wspd_design.model.kalker import creep_coefficients
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Contact
 
@@ -54,7 +54,7 @@ def contact_from_radii(
         shear_modulus=young / (2.0 * (1.0 + poisson)),
         semi_axis_rolling=rolling,
         semi_axis_lateral=lateral,
-        kalker_c11=longitudinal_coefficient(rolling, lateral, poisson),
+        kalker_c11=creep_coefficients(rolling, lateral, poisson).c11,
         reference_load=wheel_load,
     )
 

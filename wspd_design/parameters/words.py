@@ -1,6 +1,6 @@
 """What people call the numbers of a vehicle or a rail, and the keys that they have here."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import get_close_matches
 
 from wspd_design.parameters.errors import UserError
@@ -134,6 +134,12 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Offer the nearest of the known words, in brackets; empty where none is near."""
     close = get_close_matches(word.lower(), list(known), n=1, cutoff=0.5)
     return f' (did you mean "{close[0]}"?)' if close else ""
+
+
+def near_or_allowed(key: str, known: Sequence[str], prefix: str = "") -> str:
+    """Offer the nearest of the keys that a table may have, or all of them: the end of a sentence."""
+    close = get_close_matches(key.lower(), known, n=1, cutoff=0.5)
+    return f"did you mean {prefix}{close[0]}?" if close else f"allowed: {', '.join(known)}"
 
 
 def _half(raw: object) -> str:

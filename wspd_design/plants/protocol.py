@@ -1,12 +1,14 @@
 """What a plant is: the longitudinal motion of a vehicle whose wheelsets are braked one by one.
 
-The state of a plant is the train speed, the states of every wheelset (the first is its wheel speed) and the load
-transfers with their rates of change. The closed loop takes all numbers of axles and states from here, runs the
-functions on CasADi symbols and compiles what comes out; ``vehicle`` then carries symbols in place of numbers.
+The state of a plant is the train speed, the states of every wheelset (the first is its wheel speed) and the rest. A
+plant may *split*: its motion is that of one wheelset at a time and of the train, and the rest are the load transfers
+with their rates of change. Or it is *coupled*: its whole right-hand side is one function. The closed loop takes all
+numbers of axles and states from here, runs the functions on CasADi symbols and compiles what comes out; ``vehicle``
+then carries symbols in place of numbers.
 """
 
 import math
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, TypeGuard
 
 from wspd_design.model.number import Number
 from wspd_design.parameters.records import Rail, Vehicle
@@ -17,6 +19,14 @@ class AxleCondition(NamedTuple):
 
     stiffness: Number  # N, initial slope of the creep force
     damping: Number  # N m s per wheel
+
+
+class BrakeTorques(NamedTuple):
+    """Brakes of one wheelset at one instant."""
+
+    braking: Number  # N m, of all brakes
+    dynamic: Number  # N m, of these that of the electrodynamic brake
+    warming: tuple[Number, ...]  # K/s, of the pads where their temperature is a state
 
 
 class AxleMotion(NamedTuple):
@@ -36,6 +46,19 @@ class TrainMotion(NamedTuple):
     acceleration: Number  # m/s2
     resistance: Number  # N, running resistance and track brake
     transfer_rates: tuple[Number, ...]  # of the load transfers and of their rates
+
+
+class CoupledMotion(NamedTuple):
+    """A whole vehicle at one instant; forces and loads are per wheel, means of both wheels of an axle."""
+
+    acceleration: Number  # m/s2, of the train
+    wheel_rates: tuple[Number, ...]  # rad/s2
+    rest_rates: tuple[Number, ...]  # of the rest, in its order
+    creep_forces: tuple[Number, ...]  # N, positive where they brake
+    slips: tuple[Number, ...]  # -
+    wheel_loads: tuple[Number, ...]  # N
+    transmitted: tuple[Number, ...]  # N m per wheelset; what a lock takes, as long as the brake gives more
+    further: tuple[tuple[Number, ...], ...] = ()  # one row for each of the further traces, one number an axle
 
 
 class Plant(Protocol):
@@ -58,8 +81,12 @@ class Plant(Protocol):
         """Number of states of one wheelset."""
 
     @property
-    def transfers(self) -> int:
-        """Number of load transfers; each is a state, and so is its rate."""
+    def rest_states(self) -> int:
+        """Number of states beyond the train speed and those of the wheelsets."""
+
+    @property
+    def longest_step(self) -> float:
+        """Longest step that motions beside that of the slip allow [s]."""
 
     @property
     def alike(self) -> bool:
@@ -71,6 +98,38 @@ class Plant(Protocol):
 
     def on(self, vehicle: Vehicle) -> "Plant":
         """Return the same plant with the numbers of another vehicle of as many wheelsets."""
+
+    def rest_at(self, speed: float, wheel_speeds: tuple[float, ...]) -> tuple[float, ...]:
+        """Return the rest of the state where a stop begins, in equilibrium at a train speed and wheel speeds."""
+
+    def wheel_damping(self, time: Number) -> Number:
+        """Damping of a wheel some time [s] after the brake was applied [N m s]."""
+
+    def brake_torques(
+        self, states: tuple[Number, ...], torque: Number, dynamic_level: Number
+    ) -> BrakeTorques:
+        """Torques on one wheelset under the nominal one of its friction brake, and what warms its pads.
+
+        The torque per wheelset [N m] is that of eq. (12); the level is the share to which the electrodynamic brake is
+        built up.
+        """
+
+    def track_brake_force(self, speed: Number, time: Number) -> Number:
+        """Force of the magnets on the train, some time [s] after the brake was applied [N]."""
+
+    def loads_at_rest(self) -> tuple[Number, ...]:
+        """Vertical load of one wheel of each axle before any load moves [N]."""
+
+    def creep_rate(self, rail: Rail, speed: Number) -> Number:
+        """Fastest rate of the slip on the adhering side, which limits an explicit step [1/s]."""
+
+
+class SplitPlant(Plant, Protocol):
+    """A plant whose wheelsets meet in the train and in the load transfers alone."""
+
+    @property
+    def transfers(self) -> int:
+        """Number of load transfers; each is a state, and so is its rate."""
 
     def wheel_loads(self, transfers: tuple[Number, ...]) -> tuple[Number, ...]:
         """Vertical load of one wheel of each axle under the load transfers and their rates [N]."""
@@ -109,5 +168,71 @@ class Plant(Protocol):
         The time counts from the application of the brake, and the resistance is with that of a track brake.
         """
 
-    def creep_rate(self, rail: Rail, speed: Number) -> Number:
-        """Fastest rate of the slip on the adhering side, which limits an explicit step [1/s]."""
+
+TRACK_CHANNELS = ("vertical", "lateral", "cross_level")
+"""Irregularities of the track [m, m, rad] that a coupled plant sees under each wheelset."""
+
+
+class CoupledPlant(Plant, Protocol):
+    """A plant whose right-hand side is one function."""
+
+    @property
+    def number_names(self) -> tuple[str, ...]:
+        """Names of its numbers beyond those of the vehicle, in the order of ``numbers``."""
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Numbers beyond those of the vehicle, or that follow from them."""
+
+    @property
+    def further_traces(self) -> tuple[str, ...]:
+        """Names of the traces that it adds, each with one number an axle."""
+
+    def motion(
+        self,
+        rails: tuple[Rail, ...],
+        *,
+        numbers: tuple[Number, ...],
+        speed: Number,
+        wheel_speeds: tuple[Number, ...],
+        rest: tuple[Number, ...],
+        torques: tuple[Number, ...],
+        locked: tuple[Number, ...],
+        damping: tuple[Number, ...],
+        track: tuple[tuple[Number, ...], ...],
+        resistance: Number,
+        grade_force: Number,
+    ) -> CoupledMotion:
+        """Rates of all states, and what else the loop follows.
+
+        Parameters
+        ----------
+        rails : tuple of Rail
+            Below each axle.
+        numbers : tuple of number
+            In the order of ``number_names``.
+        speed, wheel_speeds, rest
+            The state [m/s; rad/s].
+        torques : tuple of number
+            Of all brakes of each wheelset [N m].
+        locked : tuple of number
+            1 for a wheelset that does not turn, 0 for another.
+        damping : tuple of number
+            Of one wheel of each axle [N m s].
+        track : tuple of tuple of number
+            Irregularities below each axle, one row for each of ``TRACK_CHANNELS``.
+        resistance : number
+            Running resistance with that of a track brake and the pull of the grade [N].
+        grade_force : number
+            The last of these alone [N].
+        """
+
+
+def is_coupled(plant: Plant) -> TypeGuard[CoupledPlant]:
+    """Tell whether the right-hand side of a plant is one function."""
+    return hasattr(plant, "motion")
+
+
+def is_split(plant: Plant) -> TypeGuard[SplitPlant]:
+    """Tell whether a plant has a function for each wheelset."""
+    return hasattr(plant, "axle_motion")

@@ -173,4 +173,4 @@ def _without_drop_out(vehicle: Vehicle) -> Vehicle:
 def _load_shares(plant: Plant) -> list[float]:
     """Load of each axle before any load moves, over the mean static load."""
     mean = static_wheel_load(plant.vehicle)
-    return [load / mean for load in plant.wheel_loads((0.0,) * (2 * plant.transfers))]
+    return [load / mean for load in plant.loads_at_rest()]

@@ -23,7 +23,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
-from wspd_design.plants.protocol import Plant
+from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.loop_input import RECORD_INTERVAL, first_slip, loop_input, sample_rows
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
 from wspd_design.simulation.runaway import runs_away
@@ -129,15 +129,13 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
     columns = 1 if plant.alike else axles
     lane, stop = output.lane_totals, {name: float(x[0]) for name, x in output.stop_totals.items()}
     braked, valved = np.array(plant.vehicle.braked), np.array(plant.vehicle.brake_shares) > 0.0
-    start = _first_row(plant, scenario, output)
-    trace = np.vstack([start, output.trace])
-    wheel, slip, passed, load, given, dynamic, *warmth = (
+    trace = output.trace
+    if not is_coupled(plant):
+        trace = np.vstack([_first_row(plant, scenario, output), trace])
+    wheel, slip, passed, load, given, dynamic, *others = (
         trace[:, begin : begin + columns] for begin in range(3, trace.shape[1], axles)
     )
-    friction = given - dynamic
-    friction[0] = trace[0, 3 + 4 * axles :][
-        :columns
-    ]  # told by the pressures as it is, whatever the pads make of it
+    warmth, further = others[: plant.axle_states - 1], others[plant.axle_states - 1 :]
     band = lane["slip_band"][lane["slip_band"] >= 0.0]
     told_speed, _ = places_told(controller)
     return Run(
@@ -159,7 +157,7 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
         slip=slip,
         torque=passed,
         wheel_load=load,
-        cylinder_pressure=_pressures(plant, scenario, trace[:, 0], friction, wheel, warmth),
+        cylinder_pressure=_pressures(plant, scenario, trace[:, 0], given - dynamic, wheel, warmth),
         axle_samples=tuple(
             _samples(output.samples, axle, axles=axles, vehicle=acts_on_vehicle(controller))
             if valved[axle]
@@ -194,7 +192,8 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
         shared_state=acts_on_vehicle(controller),
         memory=tuple(getattr(controller, "memory", ())),
         dynamic_torque=None if plant.vehicle.dynamic is None else dynamic,
-        pad_temperature=warmth[0] if plant.vehicle.pads is not None and warmth else None,
+        pad_temperature=warmth[0] if warmth else None,
+        further=dict(zip(plant.further_traces, further, strict=True)) if is_coupled(plant) else {},
         track_brake_force=None
         if magnets is None
         else np.array(
@@ -220,7 +219,8 @@ def _pressures(
         made *= (1.0 + torque_disturbance(brake, time + scenario.start.braking_time))[:, None]
     if pads is not None:
         made *= pad_factor(pads, vehicle.wheel_radius * wheel, warmth[0] if warmth else 0.0)
-    made[0] = 1.0
+    if not is_coupled(plant):
+        made[0] = 1.0  # the first row is told by the pressures alone
     valved = full > 0.0
     pressures = np.zeros_like(friction)
     pressures[:, valved] = friction[:, valved] / made[:, valved] / full[valved] * brake.max_pressure
@@ -253,7 +253,7 @@ def _first_row(plant: Plant, scenario: Scenario, output: LoopOutput) -> "NDArray
     import numpy as np
 
     speed, slip, axles = scenario.initial_speed, scenario.start.slip, plant.axles
-    loads = plant.wheel_loads((0.0,) * (2 * plant.transfers))
+    loads = plant.loads_at_rest()
     referred = slip * min(speed / constants().slip_regularization_speed, 1.0)
     alike = (speed * (1.0 - slip) / plant.vehicle.wheel_radius, referred)
     at_rest = len(output.samples) == 0  # a start below the stop speed

@@ -56,8 +56,11 @@ def test_only_what_moves_is_left():
 def test_the_creep_force_divides_three_times(er24pc):
     kernels = plant_kernels(Planar(er24pc), disturbed=False)
     # slip, area of adhesion, and angle
-    assert operations(kernels.axle).count(ca.OP_DIV) + operations(kernels.axle).count(ca.OP_ATAN2) == 3
-    assert ca.OP_DIV not in operations(kernels.train)
+    assert (
+        operations(kernels.split.axle).count(ca.OP_DIV) + operations(kernels.split.axle).count(ca.OP_ATAN2)
+        == 3
+    )
+    assert ca.OP_DIV not in operations(kernels.split.train)
     assert ca.OP_DIV not in operations(kernels.actuator)
 
 
@@ -72,12 +75,12 @@ def test_the_axle_kernel_is_the_model(er24pc, rail_name):
         speed, share, load = RNG.uniform(0.01, 40.0), RNG.uniform(-0.02, 1.0), RNG.uniform(4e4, 1.5e5)
         wheel = (1.0 - share) * speed / er24pc.wheel_radius
         (contact,) = evaluated(
-            kernels.contact, constants, load * RNG.uniform(0.98, 1.02)
+            kernels.split.contact, constants, load * RNG.uniform(0.98, 1.02)
         )  # a step began there
         stiffness = adhesion.contact_stiffness(er24pc.contact, load)
         force, rolling, slip, damping, passed, given, dynamic = (
             float(x[0])
-            for x in evaluated(kernels.axle, constants, speed, wheel, load, 2e4, 1.0, 0.0, contact, 0.2)
+            for x in evaluated(kernels.split.axle, constants, speed, wheel, load, 2e4, 1.0, 0.0, contact, 0.2)
         )
         referred = (speed - er24pc.wheel_radius * wheel) / max(speed, 0.1)
         expected = adhesion.creep_force(
@@ -88,6 +91,6 @@ def test_the_axle_kernel_is_the_model(er24pc, rail_name):
         balance = (er24pc.wheel_radius * force - 1e4 - damping) / er24pc.wheel_inertia
         assert rolling == pytest.approx(balance, rel=1e-9, abs=1e-9)
         assert (passed, given, dynamic) == (2e4, 2e4, 0.0)  # there is no electrodynamic brake
-        locked = evaluated(kernels.axle, constants, speed, wheel, load, 2e4, 1.0, 1.0, contact, 0.2)
+        locked = evaluated(kernels.split.axle, constants, speed, wheel, load, 2e4, 1.0, 1.0, contact, 0.2)
         assert float(locked[1][0]) == 0.0
         assert float(locked[4][0]) == pytest.approx(2.0 * er24pc.wheel_radius * force, rel=1e-12, abs=1e-6)

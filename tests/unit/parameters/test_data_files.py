@@ -9,7 +9,9 @@ from wspd_design.parameters import loading
 from wspd_design.parameters.entry import STATUSES
 from wspd_design.parameters.files import data_file, read_toml
 from wspd_design.parameters.schema import PRESETS
+from wspd_design.plants.multibody.loading import available_multibodies, load_multibody
 
+MULTIBODIES = [("multibody", name) for name in available_multibodies()]
 ALL_FILES = [
     (kind, name)
     for kind in ("constants", "vehicle", "rail", "controller", "track")
@@ -17,9 +19,13 @@ ALL_FILES = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "name"), ALL_FILES)
+def load(kind, name):
+    return load_multibody(name) if kind == "multibody" else loading.load_entries(kind, name)
+
+
+@pytest.mark.parametrize(("kind", "name"), ALL_FILES + MULTIBODIES)
 def test_every_number_has_a_known_source_a_place_and_a_status(kind, name):
-    parameters = loading.load_entries(kind, name)
+    parameters = load(kind, name)
     assert parameters.title != name
     for entry in parameters.entries.values():
         assert entry.source in loading.sources(), entry.name
@@ -34,7 +40,7 @@ def test_every_number_has_a_known_source_a_place_and_a_status(kind, name):
 
 
 def test_every_source_is_used():
-    used = {e.source for kind, name in ALL_FILES for e in loading.load_entries(kind, name).entries.values()}
+    used = {e.source for file in ALL_FILES + MULTIBODIES for e in load(*file).entries.values()}
     assert used == set(loading.sources())
 
 
@@ -48,7 +54,7 @@ def test_no_file_is_left_out():
     others = ("schemas", "specifications", "requirements")
     folders = [each for each in data_file().iterdir() if each.is_dir() and each.name not in others]
     shipped = {path.name for folder in folders for path in folder.iterdir()}
-    assert {f"{name}.toml" for kind, name in ALL_FILES if kind != "constants"} == shipped
+    assert {f"{name}.toml" for kind, name in ALL_FILES + MULTIBODIES if kind != "constants"} == shipped
 
 
 # Table 6 of the paper, in its own units.

@@ -171,8 +171,8 @@ class Warming(Quarter):
     def axle_states(self):
         return 2
 
-    def axle_condition(self, *, time, wheel_load):  # noqa: ARG002
-        return Quarter(self.vehicle).axle_condition(time=0.0, wheel_load=wheel_load)
+    def wheel_damping(self, time):  # noqa: ARG002
+        return Quarter(self.vehicle).wheel_damping(0.0)
 
     def axle_motion(self, rail, *, states, condition, **given):
         from wspd_design.model.number import exp

@@ -105,12 +105,12 @@ def test_wheel_never_runs_backwards(locked_and_released, stop):
 def test_a_lock_that_is_held_too_long_is_seen(monkeypatch, er24pc, rail, locked_and_released):
     # The planted fault: the lock is left at half of what the rail gives, 0.6 s ln 2 of venting too late.
     true = closed_loop.closed_loop_source
-    condition = "given < 2.0 * radius[l] * at->force[l]"
+    condition = "(1.0 - BALANCED) < at->passed[l]"
 
     def faulty(*arguments, **options):
         source = true(*arguments, **options)
         assert condition in source
-        return source.replace(condition, condition.replace("2.0", "1.0"))
+        return source.replace(condition, condition.replace("at", "0.5 * at"))
 
     monkeypatch.setattr(closed_loop, "closed_loop_source", faulty)
     named = replace(er24pc, name="held too long")  # so that the loop is made anew

@@ -137,8 +137,8 @@ def test_the_virtual_machine_has_the_same_order(end_of):
 FROZEN = """choose_steps(loop, next);
     Motion middle = loop->now;
     WIDE double load[LANES];
-    for (int k = 0; k < TRANSFERS * STOPS; k++)
-        middle.transfer[k] += 0.5 * loop->step[k % STOPS] * loop->now.transfer[TRANSFERS * STOPS + k];
+    for (int k = 0, half = REST_STATES / 2 * STOPS; k < half; k++)
+        middle.rest[k] += 0.5 * loop->step[k % STOPS] * loop->now.rest[half + k];
     load_wheels(loop, &middle, load);
     contact_kernel(loop->lane_fixed, load, loop->contact);"""
 FAULTS = {

@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.campaign import Extent, interrupted, simulate_series, tell_series
+from wspd_design.cli.campaign import Extent, simulate_series, tell_series
 from wspd_design.cli.campaign_file import read_campaign
+from wspd_design.cli.console import interrupted
 from wspd_design.cli.executors import EXECUTORS, executor
 from wspd_design.cli.tables import check_table
 from wspd_design.parameters.errors import UserError
@@ -21,7 +22,7 @@ _SHARD = re.compile(r"(?P<number>\d+)/(?P<of>\d+)")
 
 def campaign(
     *,
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="What to simulate (docs/campaigns.md).")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="What to simulate (wspd docs campaigns).")],
     store: Annotated[
         Path | None,
         typer.Option(

@@ -15,6 +15,7 @@ from wspd_design.cli.console import console, spaced, table
 from wspd_design.cli.output import check_folder
 from wspd_design.cli.verification import (
     exit_code,
+    interrupted_checks,
     margin_text,
     run_checks,
     show_claims,
@@ -63,7 +64,8 @@ def certify(
     folder = output if output is not None else folder_beside(design)
     check_folder(folder, force=force)
     problem = problem_of_case(case)
-    certificates = run_checks(problem, only, effort, stored_beside(design), folder)
+    ran = run_checks(problem, only, effort, stored_beside(design), folder)
+    certificates = ran.certificates
     sizes = {
         each.name: (folder / file_name(each)).stat().st_size
         for each in certificates
@@ -72,6 +74,11 @@ def certify(
     show_claims(problem, certificates)
     _show(certificates, sizes)
     show_counts(certificates)
+    if not ran.complete:
+        go_on = (
+            "; the same command with --force goes on from there" if stored_beside(design) == folder else ""
+        )
+        raise interrupted_checks(ran, only, f"; their files are in {folder}{go_on}" if sizes else "")
     show_not_varied(problem, certificates)
     if sizes:
         console().print(Text(f"\nWritten: {folder}/NAME.json, {len(sizes)} file{'s' * (len(sizes) != 1)}"))

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
+from typing import Annotated
 
 import typer
 from rich.text import Text
@@ -57,12 +58,24 @@ class Finding:
     remedy: str = ""
 
 
-def doctor() -> None:
+def doctor(
+    report: Annotated[
+        bool,
+        typer.Option("--report", help="Print it as a text for bug reports, without paths or names of files."),
+    ] = False,
+) -> None:
     """Look whether all that is needed is there: packages, fonts, folders, compiler, terminal.
 
     Exit code 0 when nothing that is needed is missing, else 1.
     """
     findings = examine()
+    missing = [finding.name for finding in findings if finding.needed and not finding.good]
+    if report:
+        from wspd_design.cli.bug_report import bug_report
+
+        rows = [(each.name, f"{'' if each.good else '! '}{each.found}") for each in findings]
+        print(bug_report(rows), end="")
+        raise typer.Exit(REFUTED if missing else GOOD)
     shown = table("", "What", "Found")
     for finding in findings:
         sign, style = ("✓", "green") if finding.good else ("✗", "red") if finding.needed else ("-", "yellow")
@@ -72,7 +85,6 @@ def doctor() -> None:
         shown.add_row(Text(sign, style=style), finding.name, found)
     out = console()
     out.print(spaced(shown))
-    missing = [finding.name for finding in findings if finding.needed and not finding.good]
     out.print(
         f"Missing: {', '.join(missing)}." if missing else "All that is needed is there.",
         style="bold red" if missing else "bold green",

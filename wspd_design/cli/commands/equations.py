@@ -10,6 +10,7 @@ from rich.text import Text
 from wspd_design.cli.console import console, spaced, table
 from wspd_design.parameters.equations import VERDICTS, Equation, load_equations
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.words import did_you_mean
 
 _STYLES = dict(zip(VERDICTS, ("green", "red", "yellow", "cyan", "dim"), strict=True))
 _CERTAINTY = {
@@ -33,9 +34,9 @@ def equations(
         _show_one(_find(number, known))
         return
     if verdict is not None and verdict not in VERDICTS:
-        near = get_close_matches(verdict, VERDICTS, n=1)
-        offer = f' (did you mean "{near[0]}"?)' if near else ""
-        raise UserError(f'--verdict "{verdict}" is unknown{offer}; choose {", ".join(VERDICTS)}')
+        raise UserError(
+            f'--verdict "{verdict}" is unknown{did_you_mean(verdict, VERDICTS)}; choose {", ".join(VERDICTS)}'
+        )
     _show_all([equation for equation in known if verdict is None or verdict in equation.verdicts])
 
 

@@ -17,7 +17,7 @@ from wspd_design.parameters.units import format_quantity
 
 RAIL_FILE = "rail.toml"
 _COMMENTS = (
-    "Written by wspd new rail. Every number may be changed; docs/vehicle-files.md says what each one means.",
+    "Written by wspd new rail. Every number may be changed; wspd docs vehicle-files says what each one means.",
     "Bounds are 20 % about each number, an engineering estimate that proofs and campaigns go through.",
 )
 

@@ -21,7 +21,7 @@ from wspd_design.studies.new_vehicle import ELECTRIC, PIPE, Wanted, derived_entr
 
 VEHICLE_FILE = "vehicle.toml"
 _COMMENTS = (
-    "Written by wspd new vehicle. Every number may be changed; docs/vehicle-files.md says what each one means.",
+    "Written by wspd new vehicle. Every number may be changed; wspd docs vehicle-files says what each one means.",
     "Bounds are estimates of the uncertainty, which proofs and campaigns go through; a number without bounds is taken",
     'as exactly known. Short forms such as mass = "45 t" are read, too.',
 )

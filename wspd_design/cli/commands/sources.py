@@ -1,7 +1,6 @@
 """``wspd sources``: every number of a parameter file with where it comes from."""
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +16,7 @@ from wspd_design.parameters.loading import sources as known_sources
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.schema import Kind, schema_of
 from wspd_design.parameters.units import format_quantity
+from wspd_design.parameters.words import did_you_mean
 
 _KINDS: tuple[Kind, ...] = ("vehicle", "rail", "controller", "track", "constants")
 
@@ -45,9 +45,9 @@ def _kind_of(name: str) -> Kind:
         if name in available(kind):
             return kind
     everything = [known for kind in _KINDS for known in available(kind)]
-    near = get_close_matches(name, everything, n=1)
-    offer = f' (did you mean "{near[0]}"?)' if near else ""
-    raise UserError(f'no parameter set is called "{name}"{offer}; "wspd sources" lists all of them')
+    raise UserError(
+        f'no parameter set is called "{name}"{did_you_mean(name, everything)}; "wspd sources" lists all of them'
+    )
 
 
 def _show_names() -> None:

@@ -1,13 +1,13 @@
 """Answers that were kept when the wizard was left before its end."""
 
 import json
-from difflib import get_close_matches
 from pathlib import Path
 
 from wspd_design.cli.output import write_text
 from wspd_design.cli.wizard.steps import Answers, Step
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
+from wspd_design.parameters.words import near_or_allowed
 
 SCHEMA = "wspd-draft/1"
 ENDING = ".part"
@@ -39,9 +39,7 @@ def read_draft(path: Path, steps: tuple[Step, ...]) -> dict[str, str]:
     known = [step.key for step in steps]
     for key, value in document["answers"].items():
         if key not in known:
-            near = get_close_matches(key, known, n=1)
-            remedy = f"did you mean {near[0]}?" if near else f"allowed: {', '.join(known)}"
-            raise UserError(f"unknown answer {key} in {path}; {remedy}")
+            raise UserError(f"unknown answer {key} in {path}; {near_or_allowed(key, known)}")
         if not isinstance(value, str):
             raise UserError(f"{key} = {value} in {path} must be text; put it in quotes")
     return dict(document["answers"])

@@ -1,6 +1,6 @@
 /* Closed loop of vehicles with a sampled law: steps, their ends, samples, results. */
 
-#define ROW (3 + (5 + AXLE_STATES) * AXLES) /* of the trace */
+#define ROW (3 + (5 + AXLE_STATES) * AXLES + FURTHER) /* of the trace */
 
 static void write_trace(Loop *loop)
 {
@@ -17,6 +17,8 @@ static void write_trace(Loop *loop)
         row[5 * AXLES + a] = stage->dynamic[a * STOPS];
         for (int k = 1; k < AXLE_STATES; k++) row[(5 + k) * AXLES + a] = loop->now.wheel[k * LANES + a * STOPS];
     }
+    row += (5 + AXLE_STATES) * AXLES;
+    for (int k = 0; k < FURTHER; k++) row[k] = stage->further[k * STOPS];
 }
 
 /* What was filled into the cylinder since its pattern began, for good; nothing where it was let down. */
@@ -42,19 +44,26 @@ static int advance(Loop *loop)
     const Motion *const at[4] = {&loop->now, &moved[0], &moved[1], &moved[2]};
     const Stage *const stage[4] = {&loop->present, &further[0], &further[1], &further[2]};
     WIDE double next[STOPS], pressure[2 * LANES], torque[2 * LANES], filled[2 * LANES], damping[2 * LANES];
-    WIDE double lane_step[LANES], slid[LANES], time[2 * STOPS], level[2 * LANES];
+    WIDE double lane_step[LANES], time[2 * STOPS], level[2 * LANES];
+    #if !COUPLED
     Exponential wheels;
+    #endif
     double *step = loop->step, stop_speed = loop->set.stop_speed;
     if (loop->patches > 0) lay_rails(loop);
     choose_steps(loop, next);
     for (int cuts = 0;; cuts++) { /* an event is found by interpolation, and once more */
         follow_valves(loop, next, time, pressure, torque, filled, damping, level);
         spread(step, lane_step);
+        #if !COUPLED
+        WIDE double slid[LANES];
         int adhering = begin_exponential(loop, lane_step, &wheels);
+        #endif
         for (int k = 0; k < 3; k++) {
             int last = k == 2, later = last * LANES; /* the last stage stands at the end of the step */
             move(&loop->now, at[k], stage[k], step, lane_step, k == 2 ? 1.0 : 0.5, &moved[k]);
+            #if !COUPLED
             if (adhering) slide_exponential(loop, at, stage, k, &wheels, slid), place_exponential(loop, &wheels, slid, &moved[k]);
+            #endif
             evaluate(loop, &moved[k], time + last * STOPS, torque + later, level + later, damping + later, &further[k]);
         }
         #define ACCELERATION(k) stage[k]->acceleration[s]
@@ -64,13 +73,14 @@ static int advance(Loop *loop)
             EACH_LANE reached.wheel[k * LANES + l] =
                 loop->now.wheel[k * LANES + l] + lane_step[l] * (1.0 / 6.0) * SUM(TURNED);
         }
+        #if !COUPLED
         if (adhering) end_exponential(loop, at, stage, lane_step, &wheels, &reached);
+        #endif
         if (cuts == 2 || !shorten(loop, at, stage, &reached, next)) break;
     }
-    for (int k = 0; k < TRANSFER_STATES; k++) {
-        #define TRANSFERRED(j) stage[j]->transfer[k * STOPS + s]
-        EACH_STOP reached.transfer[k * STOPS + s] =
-            loop->now.transfer[k * STOPS + s] + step[s] * (1.0 / 6.0) * SUM(TRANSFERRED);
+    for (int k = 0; k < REST_STATES; k++) {
+        #define REST(j) stage[j]->rest[k * STOPS + s]
+        EACH_STOP reached.rest[k * STOPS + s] = loop->now.rest[k * STOPS + s] + step[s] * (1.0 / 6.0) * SUM(REST);
     }
     integrate(loop, at, stage, lane_step);
     EACH_STOP reached.distance[s] = loop->stop[DISTANCE * STOPS + s];
@@ -290,9 +300,9 @@ long wspd_samples(const Loop *loop)
     return most;
 }
 
-/* Put every stop at its initial speeds and cylinder pressures, with closed valves. */
-void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *speed, const double *wheel,
-                const double *pressure)
+/* Put every stop at its initial state and cylinder pressures, with closed valves. */
+void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *number, const double *speed,
+                const double *wheel, const double *rest, const double *pressure)
 {
     WIDE double present[2 * LANES] = {0}, pressures[2 * LANES], torques[2 * LANES];
     WIDE double filled[2 * LANES], damping[2 * LANES], level[2 * LANES];
@@ -301,7 +311,14 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
     for (int k = 0; k < PARAMETERS; k++)
         for (int l = 0; l < 2 * LANES; l++) loop->lp2[k * 2 * LANES + l] = lp[k * LANES + l % LANES];
     stop_constants(sp, loop->stop_fixed);
-    lane_constants(lp, loop->lane_fixed);
+    #if COUPLED
+    memcpy(loop->sp, sp, sizeof loop->sp);
+    memcpy(loop->number, number, sizeof loop->number);
+    #else
+    (void)number;
+    #endif
+    work_out_lanes(loop);
+    memcpy(loop->now.rest, rest, sizeof loop->now.rest);
     loop->recorded = -1.0;
     loop->running = STOPS;
     for (int s = 0; s < STOPS; s++) loop->active[s] = 1.0, loop->now.speed[s] = speed[s];
@@ -316,6 +333,7 @@ void wspd_begin(Loop *loop, const double *sp, const double *lp, const double *sp
         loop->torque[l] = torques[l], loop->damping[l] = damping[l], loop->level[l] = level[l];
     }
     observe(loop);
+    if (COUPLED && loop->trace) write_trace(loop);
     for (int s = 0; s < STOPS; s++) {
         loop->stop[END_SPEED * STOPS + s] = speed[s];
         if (speed[s] <= loop->set.stop_speed) finish(loop, s); /* at rest already */

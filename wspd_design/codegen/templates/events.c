@@ -25,8 +25,7 @@ static double before_event(const Loop *loop, int s, const Motion *const at[4], c
             double slope, limit = 0.0;
             double fast = moved->speed[s];
             if (loop->hold) limit = fast * (1.0 - held_slip(loop, l, fast, hold_place(loop, fast), &slope)) / radius[l];
-            if (loop->locked[l] != 0.0) value[k] = taken->given[l] - 2.0 * radius[l] * taken->force[l];
-            else if (loop->held[l] != 0.0) value[k] = taken->given[l] - taken->passed[l];
+            if (loop->locked[l] != 0.0 || loop->held[l] != 0.0) value[k] = taken->given[l] - taken->passed[l];
             else value[k] = moved->wheel[l] - limit;
         }
         int below = value[0] > 0.0 && (value[1] < 0.0 || value[2] < 0.0);
@@ -60,15 +59,15 @@ static INLINE int changes_hold(const Loop *loop, const Motion *middle, const Mot
 static INLINE int shorten(Loop *loop, const Motion *const at[4], const Stage *const stage[4], const Motion *reached,
                           double *next)
 {
-    const double *radius = loop->lp + RADIUS * LANES, judging = loop->set.judging_speed;
+    const double judging = loop->set.judging_speed;
     double any = 0.0;
     WIDE double target[STOPS];
     EACH_STOP target[s] = at[0]->speed[s] > judging ? judging : loop->set.stop_speed;
     for (int s = 0; s < STOPS; s++) any = reached->speed[s] < target[s] ? 1.0 : any;
     for (int l = 0; l < LANES; l++) {
-        double taken = 2.0 * radius[l] * stage[2]->force[l], later = 2.0 * radius[l] * stage[3]->force[l];
+        int lacks = stage[2]->given[l] < stage[2]->passed[l] || stage[3]->given[l] < stage[3]->passed[l];
         any = at[2]->wheel[l] < 0.0 || reached->wheel[l] < 0.0 ? 1.0 : any;
-        any = loop->locked[l] != 0.0 && (stage[2]->given[l] < taken || stage[3]->given[l] < later) ? 1.0 : any;
+        any = loop->locked[l] != 0.0 && lacks ? 1.0 : any;
     }
     if (any == 0.0 && !(loop->hold && changes_hold(loop, at[2], reached, stage))) return 0;
     any = 0.0;

@@ -2,13 +2,13 @@
 
    Lane a * STOPS + s is axle a of stop s; element k of a vector over lanes stands at k * LANES + lane. Every stop
    has its own time, so that its numbers do not depend on the stops beside it. Between two samples the cylinder
-   pressure has a closed form; speed, states of the axles and load transfers are integrated by Runge-Kutta of order
-   four with a step that the slope of the creep curve allows and that ends at every valve edge. Wheel lock is a state:
+   pressure has a closed form; speed, states of the axles and the rest (load transfers, or the many states of a coupled
+   plant, whose right-hand side is one kernel) are integrated by Runge-Kutta of order four with a step that the slope of the creep curve allows and that ends at every valve edge. Wheel lock is a state:
    a locked wheel passes on what the rail gives, until the brake gives less. What the right-hand side does not follow
    smoothly is an event, and the step is cut there: lock and release, the ends of a rail, the judging and the stop
    speed. */
 #define LANES (AXLES * STOPS)
-#define TRANSFER_STATES (2 * TRANSFERS) /* the load transfers, then their rates */
+#define CHANNELS 3 /* of the irregularities of the track: vertical, lateral, cross level */
 #define SHORTEST 1e-9 /* s: edges closer together than this are one */
 #define BALANCED 1e-10 /* relative: torques that differ by less are equal, so that an event ends where it was found */
 #define SPEED_SHARE 0.1 /* of the speed, that a step may take from it where the slope limit is one */
@@ -33,14 +33,14 @@ typedef struct {
 typedef struct {
     WIDE double speed[STOPS];
     WIDE double wheel[AXLE_STATES * LANES]; /* and the further states of the axle */
-    WIDE double transfer[TRANSFER_STATES * STOPS];
+    WIDE double rest[REST_STATES * STOPS];
     WIDE double distance[STOPS];
 } Motion;
 
 typedef struct {
     WIDE double acceleration[STOPS]; /* rates of Motion; that of the distance is its speed */
     WIDE double wheel[AXLE_STATES * LANES];
-    WIDE double transfer[TRANSFER_STATES * STOPS];
+    WIDE double rest[REST_STATES * STOPS];
     WIDE double force[LANES];
     WIDE double slip[LANES];
     WIDE double damping[LANES];
@@ -49,6 +49,7 @@ typedef struct {
     WIDE double given[LANES];        /* torque of all brakes; a locked or held wheel passes on less */
     WIDE double dynamic[LANES];      /* of these the torque of the electrodynamic brake */
     WIDE double resistance[STOPS];
+    WIDE double further[FURTHER * STOPS]; /* traces of coupled plants */
 } Stage;
 
 typedef struct {                /* a step of one wheelset within which a pulse of its pulse wheel came */
@@ -72,10 +73,17 @@ typedef struct {
     const double *hold;         /* slip that an ideal brake never exceeds, per lane over log of speed, or null */
     long hold_points;
     double hold_first, hold_spacing;
+    const double *track;        /* per stop and point: value and slope over distance of each channel, or null */
+    long track_points, track_again; /* points of a stop, and the one that comes after the last */
+    double track_spacing;
     double *trace;              /* of the first stop */
     long trace_rows, trace_used;
     /* from here on: the state of the loop */
     WIDE double lp[PARAMETERS * LANES], lp2[PARAMETERS * 2 * LANES]; /* the second twice, for middle and end of a step */
+    #if COUPLED
+    WIDE double sp[PARAMETERS * STOPS], number[NUMBERS * STOPS];
+    WIDE double vehicle_fixed[VEHICLE_CONSTANTS * STOPS];
+    #endif
     WIDE double stop_fixed[STOP_CONSTANTS * STOPS];        /* constants of the kernels */
     WIDE double lane_fixed[LANE_CONSTANTS * LANES];
     WIDE double window_fixed[WINDOW_CONSTANTS * 2 * LANES]; /* of the valve pattern */
@@ -140,11 +148,28 @@ static double load_at(const Loop *loop, int lane, double distance)
     return row[0] + (place - (double)k) * (row[1] - row[0]);
 }
 
+#if COUPLED
+/* Irregularities below a wheelset: cubic between the points of a table that begins on level track and repeats its end. */
+static void track_below(const Loop *loop, int lane, double distance, double *out)
+{
+    double h = loop->track_spacing, place = (distance - loop->lp[OFFSET * LANES + lane]) / h;
+    place = place > 0.0 ? place : 0.0;
+    long k = (long)place, points = loop->track_points, again = loop->track_again;
+    double x = place - (double)k, y = 1.0 - x;
+    if (k >= points) k = again + (k - again) % (points - again);
+    const double *table = loop->track + (lane % STOPS) * points * 2 * CHANNELS;
+    const double *from = table + k * 2 * CHANNELS, *to = table + (k + 1 < points ? k + 1 : again) * 2 * CHANNELS;
+    for (int c = 0; c < CHANNELS; c++)
+        out[c * LANES + lane] = y * y * ((1.0 + 2.0 * x) * from[2 * c] + h * x * from[2 * c + 1])
+            + x * x * ((1.0 + 2.0 * y) * to[2 * c] - h * y * to[2 * c + 1]);
+}
+#else
 static inline void load_wheels(const Loop *loop, const Motion *at, double *load)
 {
-    loads_kernel(loop->stop_fixed, at->transfer, load);
+    loads_kernel(loop->stop_fixed, at->rest, load);
     for (int l = 0; loop->load_factor && l < LANES; l++) load[l] *= load_at(loop, l, at->distance[l % STOPS]);
 }
+#endif
 
 /* Place of a speed in the table of the slips to be held. */
 static inline double hold_place(const Loop *loop, double speed)
@@ -185,6 +210,18 @@ static void hold_wheels(const Loop *loop, const Motion *at, Stage *out)
     }
 }
 
+#if COUPLED
+static INLINE void evaluate(const Loop *loop, const Motion *at, const double *time, const double *torque,
+                            const double *level, const double *damping, Stage *out)
+{
+    WIDE double track[CHANNELS * LANES] = {0};
+    for (int l = 0; loop->track && l < LANES; l++) track_below(loop, l, at->distance[l % STOPS], track);
+    brakes_kernel(loop->lane_fixed, at->wheel, torque, level, out->given, out->dynamic, out->wheel + LANES);
+    vehicle_kernel(loop->vehicle_fixed, at->speed, at->wheel, at->rest, out->given, loop->locked, damping, track, time,
+                   out->acceleration, out->wheel, out->rest, out->force, out->slip, out->damping, out->passed, out->load,
+                   out->resistance, out->further);
+}
+#else
 static INLINE void evaluate(const Loop *loop, const Motion *at, const double *time, const double *torque,
                             const double *level, const double *damping, Stage *out)
 {
@@ -193,27 +230,28 @@ static INLINE void evaluate(const Loop *loop, const Motion *at, const double *ti
     spread(at->speed, speed);
     axle_kernel(loop->lane_fixed, speed, at->wheel, out->load, torque, level, loop->locked, loop->contact, damping,
                 out->force, out->wheel, out->slip, out->damping, out->passed, out->given, out->dynamic);
-    train_kernel(loop->stop_fixed, at->speed, out->force, at->transfer, time, out->acceleration, out->resistance,
-                 out->transfer);
+    train_kernel(loop->stop_fixed, at->speed, out->force, at->rest, time, out->acceleration, out->resistance, out->rest);
     if (loop->hold) hold_wheels(loop, at, out);
 }
+#endif
 
 /* Work out the present stage. Wheels whose brake gives less than rail or slip take are let go. */
 static INLINE void observe(Loop *loop)
 {
-    const double *radius = loop->lp + RADIUS * LANES;
+    #if !COUPLED
     WIDE double load[LANES];
-    double released = 0.0;
     load_wheels(loop, &loop->now, load);
     contact_kernel(loop->lane_fixed, load, loop->contact);
-    evaluate(loop, &loop->now, loop->time, loop->torque, loop->level, loop->damping, &loop->present);
-    for (int l = 0; l < LANES; l++) {
+    #endif
+    for (double released = 1.0; released != 0.0;) {
         const Stage *at = &loop->present;
-        double given = at->given[l] * (1.0 - BALANCED);
-        if (loop->locked[l] != 0.0 && given < 2.0 * radius[l] * at->force[l]) loop->locked[l] = 0.0, released = 1.0;
-        if (loop->held[l] != 0.0 && given < at->passed[l]) loop->held[l] = 0.0, released = 1.0;
+        evaluate(loop, &loop->now, loop->time, loop->torque, loop->level, loop->damping, &loop->present);
+        released = 0.0;
+        for (int l = 0; l < LANES; l++) {
+            int caught = loop->locked[l] != 0.0 || loop->held[l] != 0.0, lacks = at->given[l] * (1.0 - BALANCED) < at->passed[l];
+            if (caught && lacks) loop->locked[l] = loop->held[l] = 0.0, released = 1.0;
+        }
     }
-    if (released != 0.0) evaluate(loop, &loop->now, loop->time, loop->torque, loop->level, loop->damping, &loop->present);
 }
 
 /* to = from + share * step * rates, which are those at another moment */
@@ -227,10 +265,10 @@ static INLINE void move(const Motion *from, const Motion *at, const Stage *rates
             int j = k * LANES + l;
             to->wheel[j] = FMA(share * lane_step[l], rates->wheel[j], from->wheel[j]);
         }
-    for (int k = 0; k < TRANSFER_STATES; k++)
+    for (int k = 0; k < REST_STATES; k++)
         EACH_STOP {
             int j = k * STOPS + s;
-            to->transfer[j] = FMA(share * step[s], rates->transfer[j], from->transfer[j]);
+            to->rest[j] = FMA(share * step[s], rates->rest[j], from->rest[j]);
         }
 }
 

@@ -7,6 +7,15 @@ static double wait_for(const Loop *loop, int s, double ahead)
     return square > 0.0 ? 2.0 * ahead / (speed + sqrt(square)) + SHORTEST : 1e300;
 }
 
+/* Work out the constants of the kernels of wheelsets and vehicle for the rails that lie below the wheels. */
+static void work_out_lanes(Loop *loop)
+{
+    lane_constants(loop->lp, loop->lane_fixed);
+    #if COUPLED
+    vehicle_constants(loop->sp, loop->number, loop->lp + FIRST_RAIL * LANES, loop->vehicle_fixed);
+    #endif
+}
+
 /* Put the wheels on the rail of their place. */
 static INLINE void lay_rails(Loop *loop)
 {
@@ -23,7 +32,7 @@ static INLINE void lay_rails(Loop *loop)
         changed = 1;
     }
     if (!changed) return;
-    lane_constants(loop->lp, loop->lane_fixed);
+    work_out_lanes(loop);
     observe(loop);
 }
 
@@ -59,6 +68,7 @@ static double before_change(const Loop *loop, int s, double step)
     return step;
 }
 
+#if !COUPLED
 /* Lengthen the steps where the creep curves are flat, as they are at a sliding wheel: a step is limited by the steeper
    of the slopes now and where the wheel would be after the step. A wheel on its way to rolling is taken as rolling.
    A wheel that adheres and has settled limits nothing: it takes an exponential step. The train may lose a share of its
@@ -103,6 +113,7 @@ static INLINE void lengthen(Loop *loop, const double *limited, double *allowed)
     }
 }
 
+#endif
 /* Step of every stop: what the slope of the creep curve allows, in equal parts up to the next valve edge or goal. */
 static INLINE void choose_steps(Loop *loop, double *next)
 {
@@ -138,8 +149,10 @@ static INLINE void choose_steps(Loop *loop, double *next)
         limited[s] = allowed[s] < most && loop->active[s] != 0.0 ? 1.0 : 0.0;
         bound = limited[s] > bound ? limited[s] : bound;
     }
+    #if !COUPLED
     EACH_LANE loop->settling[l] = 0.0;
     if (bound != 0.0) lengthen(loop, limited, allowed);
+    #endif
     EACH_STOP {
         double wanted = allowed[s] < set->longest_step ? allowed[s] : set->longest_step;
         double count = ceil(span[s] / wanted * (1.0 - 1e-12));

@@ -46,7 +46,7 @@ LOAD_SPREAD = 0.04
 """Assumed standard deviation of the relative wheel load: multibody simulations of this track give 0.03 to 0.05."""
 
 SHOWN = 300.0  # m of the profile
-WELCH_HARMONICS, WELCH_SEGMENT = 2000, 200.0  # repeats after 6.8 km, m
+WELCH_PERIOD, WELCH_SEGMENT = 6800.0, 200.0  # m
 MARGIN = 0.06  # rad/m, two lines of the estimate, which the edges of the band blur
 
 
@@ -81,13 +81,13 @@ def track_channel(track: TrackSpectrum, channel: str, *, seed: int) -> TrackChan
     """Synthesize a channel and estimate its spectrum from a long profile."""
     import numpy as np
 
-    long = synthesize(track, channel, seed=seed, harmonics=WELCH_HARMONICS)
-    values = long.profile(np.arange(long.fade_in, long.fade_in + long.period, SPACING))
+    long = synthesize(track, (channel,), seed=seed, period=WELCH_PERIOD, spacing=SPACING)
+    values = long.values[0, long.lead :]
     wavenumber, found = welch_spectrum(values, SPACING, WELCH_SEGMENT)
     low, high = band(track)
     inside = (wavenumber > low + MARGIN) & (wavenumber < high - MARGIN)
     stated = spectrum(track, channel, wavenumber[inside])
-    short = synthesize(track, channel, seed=seed)
+    short = synthesize(track, (channel,), seed=seed)
     distance = np.arange(0.0, SHOWN, SPACING)
     return TrackChannel(
         channel=channel,
@@ -99,7 +99,7 @@ def track_channel(track: TrackSpectrum, channel: str, *, seed: int) -> TrackChan
         density=stated,
         found=found[inside],
         distance=distance,
-        profile=short.profile(distance),
+        profile=short.at(distance)[0][0],
     )
 
 

@@ -19,7 +19,9 @@ TRACK = load_track_spectrum("erri-b176")
 @pytest.fixture(scope="module")
 def load(er24pc):
     sigma = standard_deviation(TRACK, "vertical-high")
-    return irregular_load(er24pc, synthesize(TRACK, "vertical-high", seed=1), sigma=sigma, spread=LOAD_SPREAD)
+    return irregular_load(
+        er24pc, synthesize(TRACK, ("vertical-high",), seed=1), sigma=sigma, spread=LOAD_SPREAD
+    )
 
 
 def test_loads_have_the_stated_spread_about_the_static_load(load):

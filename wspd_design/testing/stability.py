@@ -1,11 +1,13 @@
-"""Statements about stability in the tests of users: ``assert_certified("mine.toml", "reaching")``."""
+"""Statements about stability: ``assert_certified("mine.toml", "reaching")``."""
 
 from pathlib import Path
 
-from wspd_design.certificates.records import Certificate, Point, Range, Status
-from wspd_design.design.certification import Loop, certify
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.design.certification import Loop, certify, refused_beside, stored_beside
+from wspd_design.design.records import Design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.testing.running import SAMPLED, SEARCHED, located, record
 
 _LEVELS = (Status.EVIDENCE, Status.PROVED)
 """From the weaker support of a claim to the stronger."""
@@ -84,14 +86,57 @@ def _expect(
     __tracebackhide__ = True
     if not names:
         raise UserError(f"no check is named; available: {', '.join(suite.NAMES)}")
+    design, vehicle, rail = located(design), located(vehicle), located(rail)  # type: ignore[assignment]
     try:
         certificates = certify(design, only=names, vehicle=vehicle, rail=rail, effort=effort)
+        for each in certificates:
+            _record(each, design, vehicle, rail)
     except UserError as error:
         raise UserError(str(error)) from None  # the sentence, without the way to where it was found
     failed = [_message(each, allowed) for each in certificates if each.status not in allowed]
     if failed:
         raise AssertionError("\n\n".join(failed))
     return certificates
+
+
+def _record(
+    certificate: Certificate,
+    design: Loop,
+    vehicle: Vehicle | str | Path | None,
+    rail: Rail | str | Path | None,
+) -> None:
+    """Keep status and margin as figures of the running test, and why the check was searched, if it was."""
+    name = f"{_named(design)}/{certificate.name}"
+    record(f"{name}/status", certificate.status.name)
+    margin = certificate.margin
+    if margin is not None:
+        unit = "" if margin.unit == "-" else f" [{margin.unit}]"
+        for end, value in (("low", margin.low), ("high", margin.high)):
+            if value is not None:
+                record(f"{name}/margin {end}{unit}", f"{value:.6g}")
+    if certificate.searched:
+        sampled = certificate.status is Status.EVIDENCE
+        why = SAMPLED if sampled else _why(certificate.name, design, vehicle, rail)
+        record(f"{name}/{SEARCHED}", why)
+
+
+def _why(
+    name: str, design: Loop, vehicle: Vehicle | str | Path | None, rail: Rail | str | Path | None
+) -> str:
+    """Say why a check was searched."""
+    if stored_beside(design) is None:
+        return "no certificates lie beside it"
+    reason = refused_beside(name, design, vehicle=vehicle, rail=rail)
+    return "no certificate of it lies beside the design" if reason is None else f"its certificate: {reason}"
+
+
+def _named(design: Loop) -> str:
+    match design:
+        case Design():
+            return design.name
+        case Problem():
+            return design.controller.name
+    return Path(design).name
 
 
 def _message(certificate: Certificate, allowed: tuple[Status, ...]) -> str:

@@ -1,0 +1,188 @@
+"""The ladder of models: the same stop on ever larger models of a vehicle, and which of them suffices for what."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from wspd_design.controllers.offers import slip_reference_of
+from wspd_design.controllers.protocol import Law
+from wspd_design.parameters.gear import gear_of, wrong_counts
+from wspd_design.parameters.records import Vehicle
+from wspd_design.plants.planar import Planar
+from wspd_design.plants.quarter import Quarter
+from wspd_design.simulation.metrics import metrics
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.self_check import distance_difference
+from wspd_design.simulation.stop import simulate
+from wspd_design.studies.rung import AxleFigures, Rung, axle_figures
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measure:
+    """What is compared over the rungs, and from which deviation on a model does not suffice for it."""
+
+    name: str
+    tolerance: float
+    deviation: Callable[[Rung, Rung], float]  # of a rung from the largest one
+    unit: str = ""  # of both; empty for a plain number
+    share: bool = False  # told in percent of what ``unit`` says
+
+
+def _worst(read: Callable[[AxleFigures], float]) -> Callable[[Rung, Rung], float]:
+    """Largest deviation over the wheelsets."""
+
+    def deviation(rung: Rung, top: Rung) -> float:
+        return max(abs(read(a) - read(b)) for a, b in zip(rung.axles, top.axles, strict=True))
+
+    return deviation
+
+
+MEASURES = (
+    Measure(
+        name="distance",
+        tolerance=0.01,
+        share=True,
+        deviation=lambda rung, top: abs(rung.metrics.distance / top.metrics.distance - 1.0),
+    ),
+    Measure(
+        name="time",
+        tolerance=0.01,
+        share=True,
+        deviation=lambda rung, top: abs(rung.metrics.stopping_time / top.metrics.stopping_time - 1.0),
+    ),
+    Measure(
+        name="mean slip of each wheelset",
+        tolerance=0.01,
+        deviation=_worst(lambda axle: axle.slip_mean),
+    ),
+    Measure(
+        name="largest slip of each wheelset",
+        tolerance=0.05,
+        deviation=_worst(lambda axle: axle.slip_max),
+    ),
+    Measure(
+        name="longest lock of each wheelset",
+        unit="s",
+        tolerance=0.05,
+        deviation=_worst(lambda axle: axle.lock),
+    ),
+    Measure(
+        name="load transfer of each wheelset",
+        unit="of its static load",
+        tolerance=0.02,
+        share=True,
+        deviation=_worst(lambda axle: axle.transfer),
+    ),
+    Measure(
+        name="spread of the wheel loads",
+        unit="of the static load",
+        tolerance=0.01,
+        share=True,
+        deviation=_worst(lambda axle: axle.relative_spread),
+    ),
+    Measure(
+        name="vibration of the rims, 8 to 18 Hz",
+        unit="m/s",
+        tolerance=0.05,
+        deviation=_worst(lambda axle: axle.vibration),
+    ),
+)
+"""In the order of tables."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Agreement:
+    """How far each rung is from the highest one in one measure."""
+
+    measure: Measure
+    deviations: tuple[float, ...]  # of each rung, 0 of the highest; NaN where a stop has no such figure
+
+    @property
+    def suffices(self) -> int:
+        """Number of the lowest rung from which on all are within the tolerance."""
+        near = [each <= self.measure.tolerance for each in self.deviations]
+        return next(rung for rung in range(len(near)) if all(near[rung:]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ladder:
+    """The same stop on ever larger models; what is said holds for this vehicle, law, rail and speed."""
+
+    vehicle: str
+    controller: str
+    rail: str
+    initial_speed: float  # m/s
+    rungs: tuple[Rung, ...]  # the smallest model first
+    remark: str = ""  # what is inferred about the models; empty where nothing is
+
+    @property
+    def agreements(self) -> tuple[Agreement, ...]:
+        """One for each measure."""
+        *lower, top = self.rungs
+        return tuple(
+            Agreement(measure=each, deviations=(*(each.deviation(rung, top) for rung in lower), 0.0))
+            for each in MEASURES
+        )
+
+
+def models_of(vehicle: Vehicle) -> tuple[str, ...]:
+    """Return the names of the models that a vehicle has, the smallest first."""
+    pitches = not wrong_counts(vehicle) and gear_of(vehicle).supports > 1
+    return (Quarter.name, *([Planar.name] if pitches else []))
+
+
+def ladder(
+    vehicle: Vehicle,
+    law: Law,
+    scenario: Scenario,
+    *,
+    slip_reference: float,
+    plants: Sequence[str],
+    progress: Callable[[str], object] = str,
+) -> Ladder:
+    """Simulate the same stop on several models.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle, from whose numbers every model is made.
+    law : Law
+        As it was designed; it is the same on every model.
+    scenario : Scenario
+        The stop.
+    slip_reference : float
+        Reference of the slip for a law that holds none of its own [-].
+    plants : sequence of str
+        Names of the models, the smallest first.
+    progress : callable, optional
+        Told each model before its stops.
+    """
+    held = slip_reference_of(law)
+    reference = slip_reference if held is None else held
+    rungs = []
+    for plant in plants:
+        progress(plant)
+        rungs.append(rung(vehicle, law, scenario, slip_reference=reference, plant=plant))
+    return Ladder(
+        vehicle=vehicle.name,
+        controller=law.name,
+        rail=scenario.rail.name,
+        initial_speed=scenario.initial_speed,
+        rungs=tuple(rungs),
+    )
+
+
+def rung(vehicle: Vehicle, law: Law, scenario: Scenario, *, slip_reference: float, plant: str) -> Rung:
+    """Simulate a stop on one model, and again with half the steps."""
+    run = simulate(vehicle, law, scenario, plant=plant)
+    finer = simulate(vehicle, law, scenario, plant=plant, refinement=2)
+    judged = metrics(run, vehicle, scenario, slip_reference=slip_reference)
+    return Rung(
+        title=plant,
+        plant=plant,
+        run=run,
+        metrics=judged,
+        axles=axle_figures(
+            run, wheelsets=vehicle.wheelsets, wheel_radius=vehicle.wheel_radius, build_up=judged.build_up
+        ),
+        step_change=distance_difference(finer, run.totals.distance),
+    )
