@@ -1,7 +1,7 @@
 """The page of the public API: the names of ``wspd_design.__all__`` by the room that they live in.
 
-Docstrings are rendered by autodoc. What the fields of a record mean, and their units, stands behind them in the source as
-a comment; autodoc does not see it, so the table of fields is made here.
+Docstrings are rendered by autodoc. What the fields of a record mean, and their units, stands behind them in the source
+as a comment; autodoc does not see it, so the table of fields is made here.
 """
 
 import ast
@@ -11,6 +11,7 @@ import io
 import re
 import textwrap
 import tokenize
+from importlib import import_module
 from typing import Any
 
 import wspd_design
@@ -75,15 +76,7 @@ def _entry(name: str) -> str:
 
 def _module(name: str) -> str:
     """Return all public functions of a module that users import by its own name."""
-    from importlib import import_module
-
-    module = import_module(name)
-    functions = [
-        each
-        for each, item in vars(module).items()
-        if inspect.isfunction(item) and item.__module__ == name and not each.startswith("_")
-    ]
-    return "\n\n".join(_rst(f".. autofunction:: {name}.{each}") for each in functions)
+    return "\n\n".join(_rst(f".. autofunction:: {name}.{each}") for each in import_module(name).__all__)
 
 
 def _class(path: str, item: type) -> str:

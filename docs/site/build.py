@@ -25,7 +25,9 @@ def main() -> int:
     arguments = parser.parse_args()
     source = arguments.output.with_name(f"{arguments.output.name}-source")
     stage(source)
-    options = ["-D", "nb_execution_mode=off"] if arguments.without_notebooks else []
+    # A notebook that did not run does not know its own language.
+    unrun = ["-D", "nb_execution_mode=off", "-D", "suppress_warnings=myst-nb.lexer"]
+    options = unrun if arguments.without_notebooks else []
     command = [sys.executable, "-m", "sphinx", "--builder", "html", "--conf-dir", str(SITE)]
     strict = ["--fail-on-warning", "--keep-going", "--quiet", "--fresh-env"]
     done = subprocess.run([*command, *strict, *options, str(source), str(arguments.output)], check=False)

@@ -13,8 +13,6 @@ extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 # Links to headings of other pages are spelled as on GitHub.
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence"]
-# Blocks of these kinds are shown as plain text.
-suppress_warnings = ["misc.highlighting_failure"]
 
 # Every cell runs when the site is built; one that fails fails the build.
 nb_execution_mode = "force"

@@ -1,4 +1,4 @@
-"""What Sphinx reads: the pages of ``docs/``, notebooks and gallery as they are, and pages that are made.
+"""What Sphinx reads: the pages of ``docs/``, notebooks as they are, and pages that are made.
 
 A page that is added to ``docs/`` needs nothing else: where no list of ``index.md`` names it, it stands in the last one.
 """
@@ -14,7 +14,7 @@ SITE = Path(__file__).parent
 DOCS = SITE.parent
 ROOT = DOCS.parent
 
-FOLDERS = ("notebooks", "gallery")
+NOTEBOOKS = "notebooks"
 FROM_ROOT = ("CHANGELOG.md", "CONTRIBUTING.md")
 REST = "<!-- pages that no list names -->"
 NOT_LINKED = "(?!https?:|mailto:|#)"
@@ -31,8 +31,7 @@ def stage(folder: Path) -> None:
     folder.mkdir(parents=True)
     for path in pages():
         (folder / path.name).write_text(staged(path), encoding="utf-8")
-    for name in FOLDERS:
-        shutil.copytree(DOCS / name, folder / name)
+    shutil.copytree(DOCS / NOTEBOOKS, folder / NOTEBOOKS)
     (folder / "api.md").write_text(api_page(), encoding="utf-8")
     (folder / "commands.md").write_text(commands_page(), encoding="utf-8")
     made = {path.relative_to(folder).with_suffix("").as_posix() for path in folder.rglob("*.md")}
@@ -56,7 +55,7 @@ def _link(link: re.Match[str], page: Path) -> str:
     target = (page.parent / link["path"]).resolve()
     if target in {each.resolve() for each in pages()}:
         return f"[{link['text']}]({target.name}{link['anchor'] or ''})"
-    if target.is_relative_to(DOCS / FOLDERS[0]) or target.is_relative_to(DOCS / FOLDERS[1]):
+    if target.is_relative_to(DOCS / NOTEBOOKS) and target.exists():
         return link[0]
     if not target.exists():
         raise FileNotFoundError(f"{page.name} links to {link['path']}, which does not exist")

@@ -45,7 +45,7 @@ def matches(expected, got):
     return doctest.OutputChecker().check_output(expected, got, FLAGS)
 
 
-@pytest.mark.parametrize("page", (*PAGES, WITH_FILES))
+@pytest.mark.parametrize("page", [*PAGES, WITH_FILES])
 def test_console_blocks_show_what_the_program_prints(page, tmp_path):
     folder = str(Path(sys.executable).parent)
     environment = os.environ | {"PATH": f"{folder}:{os.environ['PATH']}", "COLUMNS": "80", "NO_COLOR": "1"}
