@@ -7,8 +7,8 @@ import re
 import shutil
 from pathlib import Path
 
-from api import api_page
-from commands import commands_page
+from docs.site.api import api_page
+from docs.site.commands import commands_page
 
 SITE = Path(__file__).parent
 DOCS = SITE.parent
