@@ -154,8 +154,10 @@ def folder_beside(design: str | Path) -> Path:
 
 
 def stored_beside(design: Loop) -> Path | None:
-    """Return the folder of certificates beside a design file, if there is one."""
-    if not isinstance(design, (str, Path)) or not is_design_file(str(design)):
+    """Return the folder of certificates beside a design file or an own controller, if there is one."""
+    if not isinstance(design, (str, Path)) or not (
+        is_design_file(str(design)) or is_own_controller(str(design))
+    ):
         return None
     folder = folder_beside(design)
     return folder if folder.is_dir() else None

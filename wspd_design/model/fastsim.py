@@ -81,7 +81,7 @@ def fastsim(
         along = along + step * (longitudinal / by_longitudinal - spin * strip / by_spin)
         across = across + step * (lateral / by_lateral + spin * between / by_spin)
         bound = largest * (1.0 - (place / a) ** 2 - (strip / b) ** 2)
-        kept = np.minimum(1.0, bound / np.maximum(np.hypot(along, across), 1e-300))
+        kept = bound / np.maximum(bound, np.hypot(along, across))
         along, across = along * kept, across * kept
         area = length * 2.0 * b / cells
         forces = [forces[0] + float(along @ area), forces[1] + float(across @ area)]

@@ -19,6 +19,9 @@ from wspd_design.parameters.records import Contact, Rail
 
 _LEAST_LOAD = 1.0  # N; the creep force of a lighter wheel is in proportion to its load
 _LEAST_APPROACH = 1e-15  # m; keeps the slope of the normal force finite on a lifted wheel
+_HALF_TURNED = (
+    3.0  # -, squared gradient where the force has turned halfway; as Kalker's simplified theory has it
+)
 _NOTHING = 1e-60  # square of a creepage; keeps the direction of no creepage defined
 
 
@@ -178,11 +181,11 @@ def creep_forces(
 
     friction = friction_coefficient(sliding_speed, rail.mu0, rail.friction_ratio, rail.friction_decay)
     gradient = creep_gradient(creep, carried, friction, stiffness)
-    sliding = gradient * gradient / (1.0 + gradient * gradient)
+    sliding = gradient * gradient / (_HALF_TURNED + gradient * gradient)
     sideways = (1.0 - sliding) * elastic + sliding * lateral
     # What spin makes slide does so in all directions, and that part of the force cancels out: the force of spin alone
     # falls as one over the spin in the end, as it does in Kalker's simplified theory.
-    around = 0.5 * sliding * (1.0 - sliding) * (weight * turning) ** 2
+    around = sliding * (1.0 - sliding) * (weight * turning) ** 2
     whole = sqrt(longitudinal * longitudinal + sideways * sideways + around + _NOTHING)
     return force * longitudinal / whole, force * sideways / whole
 

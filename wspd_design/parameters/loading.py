@@ -41,6 +41,7 @@ from wspd_design.parameters.records import (
     RailProfile,
     Source,
     SpectrumCoefficients,
+    Steel,
     TrackBrake,
     TrackSpectrum,
     TrenitaliaTable,
@@ -61,6 +62,7 @@ __all__ = [
     "load_trenitalia",
     "load_vehicle",
     "sources",
+    "steel",
     "vehicle_of",
 ]
 
@@ -73,6 +75,12 @@ _MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms o
 def constants() -> Constants:
     """Return gravity and the conventions near standstill."""
     return _build(Constants, _values(load_entries("constants", "constants")))
+
+
+@cache
+def steel() -> Steel:
+    """Return the steel of wheels and rails, with the rail head."""
+    return _build(Steel, _values(load_entries("constants", "steel")))
 
 
 @cache

@@ -84,6 +84,15 @@ class Constants:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Steel:
+    """Steel of wheels and rails, and the shape of a rail head."""
+
+    young: float  # Pa, Young's modulus
+    poisson: float  # -, Poisson's ratio
+    rail_crown: float  # m, radius of the rail head where wheels run
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Brake:
     """Electro-pneumatic brake of one wheelset, eqs. (8)-(14)."""
 

@@ -98,6 +98,12 @@ _CONSTANTS: Schema = {
     "time_limit": _positive("time"),
 }
 
+_STEEL: Schema = {
+    "young": _positive("pressure"),
+    "poisson": Quantity(dimension="ratio", low=0.0, high=0.5),
+    "rail_crown": _positive("length"),
+}
+
 _FURTHER_BRAKES: Schema = {
     "pads.kind": Quantity(dimension="ratio", shape="word", words=("disc", "tread")),
     "pads.speeds": _not_negative("speed", "vector"),
@@ -275,8 +281,13 @@ CONTROLLER_SCHEMAS: dict[str, Schema] = {
 }
 
 
+CONSTANTS_SCHEMAS: dict[str, Schema] = {"constants": _CONSTANTS, "steel": _STEEL}
+
+
 def schema_of(kind: Kind, name: str) -> Schema:
-    """Return what a file of this kind must contain; each controller has its own schema."""
+    """Return what a file of this kind must contain; each controller and each file of constants has its own schema."""
     if kind == "controller":
         return CONTROLLER_SCHEMAS[name]
-    return {"constants": _CONSTANTS, "vehicle": _VEHICLE, "rail": _RAIL, "track": _TRACK}[kind]
+    if kind == "constants":
+        return CONSTANTS_SCHEMAS[name]
+    return {"vehicle": _VEHICLE, "rail": _RAIL, "track": _TRACK}[kind]

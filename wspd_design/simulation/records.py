@@ -135,6 +135,11 @@ class Fault:
             raise UserError(f"start = {self.since:g} s of a fault must be finite and not negative")
 
 
+Irregularities: TypeAlias = Literal["none", "low", "high"]
+IRREGULARITIES: tuple[Irregularities, ...] = get_args(Irregularities)
+"""An even track, and the levels of irregularity of ERRI B176."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadIrregularity:
     """Relative wheel load of each axle over distance, from track irregularity or measurement."""
@@ -201,6 +206,7 @@ class Scenario:
     pad_vibration: bool = False  # T_d of Section 7
     sensing: Sensing = Sensing()
     load_irregularity: LoadIrregularity | None = None
+    irregularities: Irregularities = "none"  # of the track, which the wheels roll over; drawn by the seed
     faults: tuple[Fault, ...] = ()
 
     def __post_init__(self) -> None:
@@ -214,6 +220,10 @@ class Scenario:
             raise UserError(f"grade = {self.grade:g} must lie in [-0.1, 0.1]; for 10 per mille write 0.01")
         if not 0 <= self.seed < 2**63:
             raise UserError(f"seed = {self.seed} must lie between 0 and 2^63 - 1")
+        if self.irregularities not in IRREGULARITIES:
+            raise UserError(
+                f'irregularities = "{self.irregularities}" must be one of {", ".join(IRREGULARITIES)}'
+            )
         starts = [patch.start for patch in self.patches]
         if starts != sorted(starts) or any(start < 0.0 for start in starts):
             raise UserError(f"patches start at {starts} m; their starts must rise and not be negative")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from wspd_design.testing.running import Running, running
+from wspd_design.testing.running import SAMPLED, SEARCHED, Running, running
 
 if TYPE_CHECKING:
     from wspd_design.certificates.records import Certificate
@@ -187,13 +187,14 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
         for reports in terminalreporter.stats.values()
         for report in reports
         for name, why in getattr(report, "user_properties", ())
-        if isinstance(name, str) and name.endswith("/searched")
+        if isinstance(name, str) and name.endswith(f"/{SEARCHED}")
     }
     if not searched:
         return
     terminalreporter.section("wspd: checks that were searched, not only checked again")
     for name, why in sorted(searched):
         terminalreporter.write_line(f"{name.replace('/', ': ')}, {why}")
-    terminalreporter.write_line(
-        "Keep what is found with wspd certify DESIGN --force, and commit DESIGN.certificates."
-    )
+    if any(why != SAMPLED for _, why in searched):
+        terminalreporter.write_line(
+            "Keep what is found with wspd certify DESIGN --force, and commit DESIGN.certificates."
+        )

@@ -7,6 +7,11 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 
+SEARCHED = "searched"
+"""Last part of the name of the figure that says why a check was searched."""
+SAMPLED = "it rests on samples, which are drawn again"
+"""Why a check is searched that no file of a certificate can decide."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Running:

@@ -7,10 +7,7 @@ from wspd_design.design.certification import Loop, certify, refused_beside, stor
 from wspd_design.design.records import Design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.testing.running import located, record
-
-SEARCHED = "searched"
-"""Last part of the name of the figure that says why a check was searched."""
+from wspd_design.testing.running import SAMPLED, SEARCHED, located, record
 
 _LEVELS = (Status.EVIDENCE, Status.PROVED)
 """From the weaker support of a claim to the stronger."""
@@ -118,7 +115,9 @@ def _record(
             if value is not None:
                 record(f"{name}/margin {end}{unit}", f"{value:.6g}")
     if certificate.searched:
-        record(f"{name}/{SEARCHED}", _why(certificate.name, design, vehicle, rail))
+        sampled = certificate.status is Status.EVIDENCE
+        why = SAMPLED if sampled else _why(certificate.name, design, vehicle, rail)
+        record(f"{name}/{SEARCHED}", why)
 
 
 def _why(

@@ -22,9 +22,11 @@ from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.judgment import judged_drawn, judged_stop
+from wspd_design.studies.ladder import Ladder
 from wspd_design.studies.loop_growth import Growth
 from wspd_design.studies.provenance import InputFile, Provenance
 from wspd_design.studies.reported_law import ReportedLaw
+from wspd_design.studies.rung import Rung, axle_figures
 from wspd_design.studies.uncertainty import Effect, Spread, Uncertainty, Variant, WorstSet
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
@@ -233,6 +235,25 @@ def faults(**changes) -> Robustness:
     return replace(plain, **changes)
 
 
+def sample_ladder() -> Ladder:
+    """Return a ladder of two models, of which the smaller one has other loads."""
+    made = trial("mine")
+    axles = axle_figures(made.run, wheelsets=4, wheel_radius=0.55, build_up=1.2)
+    alike = tuple(replace(axle, braking_load=axle.static_load) for axle in axles)
+    top = Rung(
+        title="planar", plant="planar", run=made.run, metrics=made.metrics, axles=axles, step_change=2e-9
+    )
+    loaded = tuple(replace(axle, static_load=94e3) for axle in axles)
+    return Ladder(
+        vehicle="er24pc",
+        controller="mine",
+        rail="polach-wet",
+        initial_speed=INITIAL_SPEED,
+        rungs=(replace(top, title="quarter", plant="quarter", axles=alike), replace(top, axles=loaded)),
+        remark="Inferred: 3 of the 4 numbers of a model.",
+    )
+
+
 def uncertainty(**changes) -> Uncertainty:
     """Return an uncertainty of four sets; the distance of the last has no end."""
 
@@ -378,6 +399,7 @@ def sample_dossier(
         next_step=None,
         robustness=None,
         uncertainty=None,
+        ladder=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
         previous=None,
         provenance=SAMPLE_PROVENANCE,

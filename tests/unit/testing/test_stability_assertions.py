@@ -141,3 +141,14 @@ def test_pytest_shows_the_sentence_and_the_line_of_the_user(tmp_path):
     assert "reaching" in told[0]
     assert "certification.py" not in shown
     assert len(shown.splitlines()) < 20
+
+
+def test_what_is_kept_beside_an_own_controller_is_not_searched_again(tmp_path, monkeypatch):
+    page = (Path(__file__).parents[3] / "docs" / "own-controller.md").read_text()
+    (tmp_path / "law.py").write_text(page.partition("`slip_band.py`:\n\n```python\n")[2].partition("```")[0])
+    law = f"{tmp_path / 'law.py'}:SlipBand"
+    certify(law, only=("feedback",), folder=folder_beside(law))
+    monkeypatch.setattr(Check, "run", lambda *_, **__: pytest.fail("searched"))
+    assert_certified(law, "feedback")
+    with pytest.raises(pytest.fail.Exception, match="searched"):
+        assert_certified(law, "gain_positive")

@@ -1,6 +1,6 @@
 """A vehicle of bodies, joints, springs, dampers, gears and brakes: its topology, and its numbers apart from it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
@@ -156,8 +156,12 @@ class Multibody:
 
     @property
     def preload_names(self) -> tuple[str, ...]:
-        """What carries weight at rest: springs by their names, then wheels."""
-        return (*(spring.name for spring in self.springs if spring.carries), *self.wheel_names)
+        """What holds the vehicle at rest: springs by their names, wheels, and rails sideways under each wheelset."""
+        return (
+            *(spring.name for spring in self.springs if spring.carries),
+            *self.wheel_names,
+            *(f"{name}.sideways" for name in self.wheelset_names),
+        )
 
     @property
     def bounds(self) -> Bounds:
@@ -180,13 +184,31 @@ class Multibody:
         """Return the same vehicle with these preloads, by the names of :attr:`preload_names`."""
         return replace(self, preloads={name: preloads[name] for name in self.preload_names})
 
+    @property
+    def parameters(self) -> tuple[Number, ...]:
+        """Run-time parameters: numbers, then preloads, in the order of their names."""
+        return (*self.numbers.values(), *self.preloads.values())
+
+    def with_parameters(self, values: Sequence[Number]) -> "Multibody":
+        """Return the same topology with other run-time parameters, such as symbols."""
+        count = len(self.numbers)
+        numbers = dict(zip(self.number_names, values[:count], strict=True))
+        return self.with_numbers(numbers).with_preloads(
+            dict(zip(self.preload_names, values[count:], strict=True))
+        )
+
     def length(self, terms: Length) -> Number:
         """Return a length [m]."""
-        return sum(term.factor * self.numbers[term.number] for term in terms)
+        return sum((term.factor * self.numbers[term.number] for term in terms), 0.0)
 
     def place(self, place: Place) -> tuple[Number, Number, Number]:
         """Return the coordinates of a point at rest [m]."""
         x, y, z = (self.length(terms) for terms in place)
+        return x, y, z
+
+    def offset(self, to: Place, start: Place) -> tuple[Number, Number, Number]:
+        """Return the vector from one place to another at rest [m]; what cancels out is exactly zero."""
+        x, y, z = (self.length(_difference(a, b)) for a, b in zip(to, start, strict=True))
         return x, y, z
 
     def mass(self, body: Body) -> Number:
@@ -207,6 +229,14 @@ class Multibody:
             return x, y, z
         x, y, z = (numbers[f"{kind}.inertia_{axis}"] for axis in "xyz")
         return x, y, z
+
+
+def _difference(length: Length, other: Length) -> Length:
+    factors = dict[str, float]()
+    for sign, terms in ((1.0, length), (-1.0, other)):
+        for term in terms:
+            factors[term.number] = factors.get(term.number, 0.0) + sign * term.factor
+    return tuple(Term(factor=factor, number=number) for number, factor in factors.items() if factor != 0.0)
 
 
 def gears_of(model: Multibody, wheelset: str) -> Iterator[Gear]:

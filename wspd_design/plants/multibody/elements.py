@@ -1,0 +1,207 @@
+"""Forces of springs, dampers, rods, bump stops and gears: each acts on two bodies, equal and opposite.
+
+All of them follow from an energy and a dissipation function of the coordinates, so that no force creates energy.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from wspd_design.model.number import Number, maximum, sqrt
+from wspd_design.plants.multibody.kinematics import BodyMotion, first_coordinates, marker
+from wspd_design.plants.multibody.records import BumpStop, Gear, Multibody, Rod, Spring
+from wspd_design.plants.multibody.vectors import (
+    ZERO,
+    Vector,
+    add,
+    cross,
+    dot,
+    inward,
+    outward,
+    scaled,
+    subtract,
+)
+
+_AXES = ("x", "y", "z")
+_TURNS = {"roll": 3, "pitch": 4, "yaw": 5}
+
+
+@dataclass(slots=True)
+class Forces:
+    """What acts on the bodies: a force and a moment on each frame, and forces on single coordinates."""
+
+    on_frames: dict[str, tuple[Vector, Vector]] = field(default_factory=dict)  # N and N m, in track axes
+    on_coordinates: dict[int, Number] = field(default_factory=dict)
+    potential: Number = 0.0  # J
+    dissipation: Number = 0.0  # W
+
+    def push(self, body: str, force: Vector, arm: Vector = ZERO) -> None:
+        """Let a force act on the frame of a body, at the end of an arm from its center of gravity."""
+        before, moment = self.on_frames.get(body, (ZERO, ZERO))
+        self.on_frames[body] = add(before, force), add(moment, cross(arm, force))
+
+    def twist(self, coordinate: int, moment: Number) -> None:
+        """Let a generalized force act on one coordinate."""
+        self.on_coordinates[coordinate] = self.on_coordinates.get(coordinate, 0.0) + moment
+
+
+def act(model: Multibody, bodies: Mapping[str, BodyMotion], q: Any, v: Any, gravity: Number) -> Forces:
+    """Return the forces of all elements and of gravity."""
+    forces = Forces()
+    for body in model.bodies:
+        weight = model.mass(body) * gravity
+        forces.push(body.name, (0.0, 0.0, -weight))
+        forces.potential += weight * bodies[body.name].displacement[2]
+    for spring in model.springs:
+        _spring(model, spring, bodies, forces)
+        _turns(model, spring, q, v, forces)
+    for rod in model.rods:
+        _rod(model, rod, bodies, forces)
+    for stop in model.stops:
+        _bump_stop(model, stop, bodies, forces)
+    for gear in model.gears:
+        _torsion(model, gear, q, v, forces)
+    return forces
+
+
+def _relative(
+    model: Multibody, element: Spring | BumpStop, bodies: Mapping[str, BodyMotion]
+) -> tuple[Vector, Vector, Vector, Vector]:
+    """Displacement and velocity of the second body against the first, in its axes, and the arms of the force.
+
+    The force on the first body acts where the second one is, so that the pair has no moment.
+    """
+    first, second = (bodies[name] for name in element.between)
+    on_first, on_second = (marker(model, motion, element.at) for motion in (first, second))
+    apart = subtract(on_second.displacement, on_first.displacement)
+    arm = add(on_first.arm, apart)
+    # A point of the first body that is where the second one is.
+    there = add(first.velocity, outward(first.axes, cross(first.frame_turning, inward(first.axes, arm))))
+    return (
+        inward(first.axes, apart),
+        inward(first.axes, subtract(on_second.velocity, there)),
+        arm,
+        on_second.arm,
+    )
+
+
+def _pair(forces: Forces, between: tuple[str, str], force: Vector, arms: tuple[Vector, Vector]) -> None:
+    """Let a force act on the second body, and its reaction on the first."""
+    forces.push(between[0], scaled(-1.0, force), arms[0])
+    forces.push(between[1], force, arms[1])
+
+
+def _spring(model: Multibody, spring: Spring, bodies: Mapping[str, BodyMotion], forces: Forces) -> None:
+    keys = {key: [f"{spring.kind}.{key}_{axis}" for axis in _AXES] for key in ("stiffness", "damping")}
+    if not any(name in model.numbers for names in keys.values() for name in names):
+        return
+    stiffness, damping = ([model.numbers.get(name, 0.0) for name in names] for names in keys.values())
+    displacement, velocity, *arms = _relative(model, spring, bodies)
+    lift = model.preloads[spring.name] if spring.carries else 0.0
+    elastic = [k * d for k, d in zip(stiffness, displacement, strict=True)]
+    viscous = [c * d for c, d in zip(damping, velocity, strict=True)]
+    x, y, z = (-(a + b) for a, b in zip(elastic, viscous, strict=True))
+    force = outward(bodies[spring.between[0]].axes, (x, y, z + lift))
+    _pair(forces, spring.between, force, (arms[0], arms[1]))
+    forces.potential += 0.5 * sum(a * d for a, d in zip(elastic, displacement, strict=True))
+    forces.potential += -lift * displacement[2]
+    forces.dissipation += sum(b * d for b, d in zip(viscous, velocity, strict=True))
+
+
+def _turns(model: Multibody, spring: Spring, q: Any, v: Any, forces: Forces) -> None:
+    """Let springs and dampers of relative turns act, on the coordinates themselves."""
+    starts = first_coordinates(model)
+    for turn, k in _TURNS.items():
+        stiffness, damping = (
+            model.numbers.get(f"{spring.kind}.{key}_{turn}") for key in ("stiffness", "damping")
+        )
+        if stiffness is None and damping is None:
+            continue
+        first, second = (starts[name] + k for name in spring.between)
+        angle, rate = q[second] - q[first], v[second] - v[first]
+        moment = (stiffness or 0.0) * angle + (damping or 0.0) * rate
+        forces.twist(first, moment)
+        forces.twist(second, -moment)
+        forces.potential += 0.5 * (stiffness or 0.0) * angle**2
+        forces.dissipation += (damping or 0.0) * rate**2
+
+
+def _rod(model: Multibody, rod: Rod, bodies: Mapping[str, BodyMotion], forces: Forces) -> None:
+    first, second = (
+        marker(model, bodies[name], end) for name, end in zip(rod.between, rod.ends, strict=True)
+    )
+    at_rest, apart = model.offset(rod.ends[1], rod.ends[0]), subtract(second.displacement, first.displacement)
+    line = add(at_rest, apart)
+    rest_length, length = sqrt(dot(at_rest, at_rest)), sqrt(dot(line, line))
+    # The difference of both lengths, without the loss of digits.
+    elongation = (2.0 * dot(at_rest, apart) + dot(apart, apart)) / (length + rest_length)
+    direction = scaled(1.0 / length, line)
+    rate = dot(direction, subtract(second.velocity, first.velocity))
+    stiffness = model.numbers[f"{rod.kind}.stiffness"]
+    damping = model.numbers.get(f"{rod.kind}.damping", 0.0)
+    force = scaled(-(stiffness * elongation + damping * rate), direction)
+    _pair(forces, rod.between, force, (first.arm, second.arm))
+    forces.potential += 0.5 * stiffness * elongation**2
+    forces.dissipation += damping * rate**2
+
+
+def _bump_stop(model: Multibody, stop: BumpStop, bodies: Mapping[str, BodyMotion], forces: Forces) -> None:
+    displacement, _, *arms = _relative(model, stop, bodies)
+    k = _AXES.index(stop.axis)
+    force, energy = 0.0, 0.0
+    for start, gain in _slopes(model, stop):
+        for sign in (1.0, -1.0):
+            beyond = maximum(sign * displacement[k] - start, 0.0)
+            force += -sign * gain * beyond
+            energy += 0.5 * gain * beyond**2
+    along = tuple(force if j == k else 0.0 for j in range(3))
+    axes = bodies[stop.between[0]].axes
+    _pair(forces, stop.between, outward(axes, (along[0], along[1], along[2])), (arms[0], arms[1]))
+    forces.potential += energy
+
+
+def _slopes(model: Multibody, stop: BumpStop) -> Iterator[tuple[Number, Number]]:
+    """Yield each travel at which the slope of the force changes, and by how much; the last slope goes on."""
+    travel, force = (
+        [model.numbers[f"{stop.kind}.{column}.{k}"] for k in range(1, stop.points + 1)]
+        for column in ("travel", "force")
+    )
+    before: Number = 0.0
+    for k in range(stop.points - 1):
+        slope = (force[k + 1] - force[k]) / (travel[k + 1] - travel[k])
+        yield travel[k], slope - before
+        before = slope
+
+
+def torsion(model: Multibody, gear: Gear) -> dict[int, Number]:
+    """Return by coordinates what the twist between rotor and pinion is made of."""
+    starts = first_coordinates(model)
+    housing, rotor = model.body(gear.housing), model.body(gear.rotor)
+    ratio = model.numbers[f"{gear.kind}.ratio"]
+    return {
+        starts[rotor.name]: 1.0,
+        starts[rotor.on] + _TURNS["pitch"]: 1.0,
+        starts[housing.name]: -(1.0 + ratio),
+        starts[housing.on] + _TURNS["pitch"]: ratio,
+    }
+
+
+def gear_moment(model: Multibody, gear: Gear, q: Any, v: Any) -> Number:
+    """Return the moment in the torsion spring between rotor and pinion [N m]."""
+    twist, rate = _twist(model, gear, q, v)
+    return model.numbers[f"{gear.kind}.stiffness"] * twist + model.numbers[f"{gear.kind}.damping"] * rate
+
+
+def _twist(model: Multibody, gear: Gear, q: Any, v: Any) -> tuple[Number, Number]:
+    shares = torsion(model, gear)
+    twist, rate = (sum(share * of[k] for k, share in shares.items()) for of in (q, v))
+    return twist, rate
+
+
+def _torsion(model: Multibody, gear: Gear, q: Any, v: Any, forces: Forces) -> None:
+    twist, rate = _twist(model, gear, q, v)
+    moment = gear_moment(model, gear, q, v)
+    for k, share in torsion(model, gear).items():
+        forces.twist(k, -share * moment)
+    forces.potential += 0.5 * model.numbers[f"{gear.kind}.stiffness"] * twist**2
+    forces.dissipation += model.numbers[f"{gear.kind}.damping"] * rate**2
