@@ -184,7 +184,7 @@ def labelled(campaigns: Sequence[Campaign]) -> "Iterator[NDArray[Any]]":
     """
     import numpy as np
 
-    columns = {}
+    columns: dict[str, np.dtype[Any]] = {}
     for campaign in campaigns:
         columns |= {name: campaign.table.dtype[name] for name in campaign.table.dtype.names or ()}
     labels = [("controller", f"U{max(len(each.controller) for each in campaigns)}")]
