@@ -61,8 +61,6 @@ _VEHICLE: Final[Wanted] = {
     "wheel_half_spacing": Quantity(dimension="length", low=0.0, low_is_allowed=False, plausible=(0.3, 1.0)),
     "conicity": Quantity(dimension="ratio", low=0.0, high=1.0),
     "flange_clearance": Quantity(dimension="length", low=0.0, low_is_allowed=False, plausible=(1e-3, 0.05)),
-    "poisson": Quantity(dimension="ratio", low=0.0, high=0.5),
-    "lateral_slope": Quantity(dimension="ratio", low=0.0, low_is_allowed=False, high=2.0),
 }
 _AXES = ("x", "y", "z")
 _TURNS = ("roll", "pitch", "yaw")
