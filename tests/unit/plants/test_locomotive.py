@@ -69,4 +69,4 @@ def test_without_brakes_the_locomotive_rolls_on(er24pc):
     np.testing.assert_allclose(force, 0.0, atol=1e-6)
     # The wheels are cones: their spin on the rail pushes them sideways, and the loads left and right differ.
     np.testing.assert_allclose(turning, 0.0, atol=0.01)
-    assert (np.abs(rates) > 1.0).sum() == 4  # rotors, whose turns run on
+    assert (np.abs(rates) > 1.0).sum() == 8  # turns of wheelsets and rotors, which run on
