@@ -15,7 +15,6 @@ from wspd_design.cli.summary import Summary, summarize
 from wspd_design.cli.tables import write_table
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import Case
-from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.campaign import Campaign, simulate_many
@@ -195,24 +194,27 @@ def _about(series: Sequence[Series]) -> dict[str, str]:
 
 
 def labelled(campaigns: Sequence[Campaign]) -> "Iterator[NDArray[Any]]":
-    """Rows of several campaigns below each other, with law and rail in front, a block at a time."""
+    """Rows of several campaigns below each other, with law and rail in front, a block at a time.
+
+    A number that one of them has not, such as the speed that only some laws estimate, is NaN in its rows.
+    """
     import numpy as np
 
-    dtypes = {campaign.table.dtype for campaign in campaigns}
-    if len(dtypes) > 1:
-        raise UserError(
-            "the series of the campaign draw different numbers and do not fit into one table; give all rails bounds "
-            "for the same numbers, or write a file for each"
-        )
+    columns: dict[str, np.dtype[Any]] = {}
+    for campaign in campaigns:
+        columns |= {name: campaign.table.dtype[name] for name in campaign.table.dtype.names or ()}
     labels = [("controller", f"U{max(len(each.controller) for each in campaigns)}")]
     labels.append(("rail", f"U{max(len(each.rail) for each in campaigns)}"))
     for campaign in campaigns:
+        missing = columns.keys() - set(campaign.table.dtype.names or ())
         for start in range(0, max(len(campaign.table), 1), _BLOCK):
             rows = campaign.table[start : start + _BLOCK]
-            block = np.zeros(len(rows), dtype=[*labels, *rows.dtype.descr])
+            block = np.zeros(len(rows), dtype=[*labels, *columns.items()])
             block["controller"], block["rail"] = campaign.controller, campaign.rail
             for name in rows.dtype.names or ():
                 block[name] = rows[name]
+            for name in missing:
+                block[name] = np.nan
             yield block
 
 

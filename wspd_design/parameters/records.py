@@ -222,6 +222,7 @@ class Vehicle:
     pads: Pads | None = None  # None: pad friction is constant
     dynamic: DynamicBrake | None = None
     track_brake: TrackBrake | None = None
+    multibody: str = ""  # name or path of the file of the plants with all degrees of freedom; empty: none
     bounds: Bounds = EXACT  # of the numbers above; brake, contact and the like have their own
 
     def __repr__(self) -> str:

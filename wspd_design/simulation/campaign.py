@@ -157,8 +157,8 @@ def simulate_many(
     draws : sequence of Draw
         Numbers that each stop draws anew; :func:`~wspd_design.simulation.draws.within_bounds` makes them from
         parameter files.
-    plant : {"planar", "quarter"}
-        With or without load transfer.
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
+        With load transfer, without, or with all degrees of freedom.
     check_every : int
         Runs whose number is a multiple of it are simulated again with half the steps; 0 for none.
     executor : concurrent.futures.Executor, optional

@@ -149,8 +149,8 @@ def compare(
         Rail and initial speed.
     slip_reference : float
         Reference of ``slip_rms`` for the laws that hold none of their own [-].
-    plant : {"planar", "quarter"}
-        With or without load transfer.
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
+        With load transfer, without, or with all degrees of freedom.
     progress : callable, optional
         Told the name of each controller before its stop.
 

@@ -54,8 +54,8 @@ def simulate(
         Law of every wheelset, or of the vehicle.
     scenario : Scenario
         Rails, initial speed and disturbances.
-    plant : {"planar", "quarter"}
-        With or without load transfer.
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
+        With load transfer, without, or with all degrees of freedom.
     refinement : int
         The integration steps are divided by it.
 

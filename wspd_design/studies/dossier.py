@@ -137,7 +137,7 @@ def dossier(
     written : str
         What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
         report.
-    plant : {"planar", "quarter"}
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
         Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
         Folder of certificate files; what the checkers accept of it for this design is not searched again.
