@@ -7,68 +7,26 @@ delays of the wheelsets; the simulation has the contact as it is and runs over t
 import casadi as ca
 import numpy as np
 import pytest
+from rolling_locomotive import locomotive
 
-from wspd_design.model.hertz import contact_from_radii
-from wspd_design.model.wheel_rail import wheel_rail
 from wspd_design.parameters.loading import load_track_spectrum
-from wspd_design.parameters.records import Rail
-from wspd_design.plants.multibody.loading import load_multibody
-from wspd_design.plants.multibody.motion import rest_names, rolling, vehicle_motion
-from wspd_design.plants.multibody.preloads import balanced
-from wspd_design.plants.multibody.wheels import Irregularity
 from wspd_design.simulation.track import band, spectrum, synthesize
 
 SPEED = 120.0 / 3.6
-AXLES = 4
-OFFSETS = np.array([0.0, 2.7, 10.362, 13.062])  # m
+OFFSETS = np.array([0.0, 2.7, 10.362, 13.062])  # m, of the wheelsets behind the first one
 TRACK = load_track_spectrum("erri-b176")
 PERIOD, STEP = 100.0, 1e-3  # m, s
-KALKER = Rail(
-    name="kalker",
-    mu0=0.5,
-    friction_ratio=1.0,
-    friction_decay=0.0,
-    adhesion_reduction=1.0,
-    slip_reduction=1.0,
-)
 
 
 @pytest.fixture(scope="module")
-def vehicle():
-    """Rates and wheel loads, left then right, over state and heights of the track; and the state that rolls."""
-    model = balanced(load_multibody("er24pc-82"))
-    ellipse = contact_from_radii(
-        wheel_load=94.2e3, wheel_radius=0.55, rail_radius=0.3, young=210e9, poisson=0.25
-    )
-    state = ca.SX.sym("state", 1 + AXLES + len(rest_names(model)))
-    height = ca.SX.sym("height", AXLES)
-    motion = vehicle_motion(
-        model,
-        wheel_rail(ellipse, poisson=0.25),
-        speed=state[0],
-        wheel_speeds=ca.vertsplit(state[1 : 1 + AXLES]),
-        rest=state[1 + AXLES :],
-        torques=[0.0] * AXLES,
-        locked=[0.0] * AXLES,
-        rails=[KALKER] * AXLES,
-        irregularities=tuple(map(Irregularity, ca.vertsplit(height))),
-        linear=True,
-    )
-    rates = ca.vertcat(motion.acceleration, *motion.wheel_rates, motion.rest_rates)
-    loads = ca.vertcat(*motion.wheel_loads_left, *motion.wheel_loads_right)
-    wheel_speeds = [SPEED / model.numbers["wheel_radius"]] * AXLES
-    start = np.array([SPEED, *wheel_speeds, *rolling(model, SPEED, wheel_speeds)])
-    return state, height, rates, loads, start
-
-
-@pytest.fixture(scope="module")
-def response(vehicle):
+def response():
     """Loads by the height of the track at the first axle, over the wavenumber."""
-    state, height, rates, loads, start = vehicle
+    vehicle = locomotive()
+    inputs, start = [vehicle.state, vehicle.height], vehicle.rolls(SPEED)
     slopes = ca.Function(
         "slopes",
-        [state, height],
-        [ca.jacobian(each, place) for each in (rates, loads) for place in (state, height)],
+        inputs,
+        [ca.jacobian(each, place) for each in (vehicle.rates, vehicle.loads) for place in inputs],
     )
     by_state, by_height, loads_by_state, loads_by_height = (each.full() for each in slopes(start, 0.0))
 
@@ -84,18 +42,9 @@ def response(vehicle):
 
 
 @pytest.fixture(scope="module")
-def simulated(vehicle):
+def simulated():
     """Loads over one period of the track, after another one in which the vehicle settles."""
-    state, height, rates, loads, start = vehicle
-    move = ca.Function("rates", [state, height], [rates])
-    x, under = ca.MX.sym("x", len(start)), ca.MX.sym("under", 3 * AXLES)
-    first, middle, last = ca.vertsplit(under, AXLES)
-    k1 = move(x, first)
-    k2 = move(x + 0.5 * STEP * k1, middle)
-    k3 = move(x + 0.5 * STEP * k2, middle)
-    k4 = move(x + STEP * k3, last)
-    told = ca.Function("loads", [state, height], [loads])(x, first)
-    step = ca.Function("step", [x, under], [x + STEP / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4), told])
+    vehicle = locomotive()
     track = synthesize(TRACK, ("vertical-high",), seed=1, period=PERIOD)
     steps, kept = round((30.0 + 2.2 * PERIOD) / SPEED / STEP), round(PERIOD / SPEED / STEP)
     times = STEP * np.arange(steps)
@@ -104,8 +53,8 @@ def simulated(vehicle):
         for part in (0.0, 0.5, 1.0)
         for offset in OFFSETS
     ]
-    _, over_time = step.mapaccum(steps)(start, np.array(heights))
-    return over_time.full()[:, -kept:]
+    _, loads = vehicle.steps(STEP, steps)(vehicle.rolls(SPEED), np.array(heights))
+    return loads.full()[:, -kept:]
 
 
 def harmonics():

@@ -123,7 +123,8 @@ def _absent(value: Any) -> set[str]:
     return {
         field.name
         for field in fields(value)
-        if (field.name != "bounds" and field.default == getattr(value, field.name)) or field.name == "multibody"
+        if (field.name != "bounds" and field.default == getattr(value, field.name))
+        or field.name == "multibody"
     }
 
 

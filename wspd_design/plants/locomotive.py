@@ -1,8 +1,12 @@
 """A multibody vehicle as a plant: all degrees of freedom of its data file on eight wheels, or as many as it has.
 
-The file is named by ``multibody`` of the vehicle. What both hold is the vehicle's: mass (the remainder of which is the
-car body), wheel radius, wheelbase and spacing of bogies, and the effective moment of inertia of a wheelset, of which the
-rotors take what the other parts leave. Brakes, contact and running resistance are the vehicle's, all else is the file's.
+The file is named by ``multibody`` of the vehicle. What both hold is the vehicle's: mass, of which the car body is what
+the other bodies leave; wheel radius, wheelbase and spacing of bogies, and the effective moment of inertia of a
+wheelset, of which the rotors are what the other parts leave. Brakes, contact and running resistance are the vehicle's,
+all else is the file's.
+
+A locked wheel is held whatever its driveline asks for against the brake: wheels that would turn backwards are not
+followed.
 """
 
 import math
@@ -16,6 +20,7 @@ from wspd_design.model.number import Number
 from wspd_design.model.wheel_rail import WheelRail, wheel_rail
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import steel
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.axle import BrakedWheelsets
 from wspd_design.plants.multibody.loading import load_multibody
@@ -53,7 +58,7 @@ class Locomotive(BrakedWheelsets):
         vehicle = self.vehicle
         if not vehicle.multibody:
             raise UserError(
-                f"vehicle {vehicle.name} names no multibody file, which plant \"{self.name}\" needs; add "
+                f'vehicle {vehicle.name} names no multibody file, which plant "{self.name}" needs; add '
                 '"multibody" to its file, or take the plant "planar"'
             )
         if self.model.wheelsets != vehicle.wheelsets:
@@ -203,9 +208,7 @@ def _of_file(name: str, changed: tuple[tuple[str, float], ...]) -> Multibody:
 def _numbers(vehicle: Vehicle, changed: tuple[tuple[str, float], ...]) -> tuple[float, ...]:
     """Numbers of the multibody vehicle with the totals of a vehicle, in the order of ``number_names``."""
     model = balanced(_with_totals(_of_file(vehicle.multibody, changed), vehicle), _rest(vehicle.multibody))
-    touching = wheel_rail(
-        vehicle.contact, poisson=model.numbers["poisson"], lateral_slope=model.numbers["lateral_slope"]
-    )
+    touching = wheel_rail(vehicle.contact, poisson=steel().poisson)
     contact = (getattr(touching, name) for name in _CONTACT)
     return tuple(map(float, (*model.numbers.values(), *model.preloads.values(), *contact)))
 
@@ -217,9 +220,7 @@ def _rest(name: str) -> Any:
 
 def _with_totals(model: Multibody, vehicle: Vehicle) -> Multibody:
     """The multibody vehicle with the numbers that are those of the vehicle."""
-    shared: dict[str, Number] = {
-        name: getattr(vehicle, name) for name in _SHARED if name in model.numbers
-    }
+    shared: dict[str, Number] = {name: getattr(vehicle, name) for name in _SHARED if name in model.numbers}
     for name in model.wheelset_names:
         shared |= _inertia_of_rest(model, vehicle, name)
     light = min(model.with_numbers(shared).mass(body) for body in model.bodies)
