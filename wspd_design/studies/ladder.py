@@ -9,11 +9,12 @@ from wspd_design.parameters.gear import gear_of, wrong_counts
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.locomotive import Locomotive
 from wspd_design.plants.multibody.loading import load_multibody
+from wspd_design.plants.names import plant_of
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.quarter import Quarter
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Irregularities, Scenario
-from wspd_design.simulation.self_check import distance_difference
+from wspd_design.simulation.self_check import distance_difference, perturbed_spread
 from wspd_design.simulation.stop import simulate
 from wspd_design.studies.inferred import mark
 from wspd_design.studies.rung import AxleFigures, Rung, axle_figures
@@ -47,6 +48,9 @@ def _worst(read: Callable[[AxleFigures], float]) -> Callable[[Rung, Rung], float
 
     return deviation
 
+
+NEIGHBOURS = 2
+"""Stops from slightly different speeds, where the first is not near: a larger model takes its time."""
 
 MEASURES = (
     Measure(
@@ -127,6 +131,11 @@ class Ladder:
     remark: str = ""  # what is inferred about the models; empty where nothing is
 
     @property
+    def spread(self) -> float:
+        """Largest spread of the distance of a sensitive loop [m]: smaller differences between models say nothing."""
+        return max(each.spread for each in self.rungs)
+
+    @property
     def agreements(self) -> tuple[Agreement, ...]:
         """One for each measure."""
         *lower, top = self.rungs
@@ -193,7 +202,7 @@ def ladder(
 
 
 def rung(vehicle: Vehicle, law: Law, scenario: Scenario, model: Model, *, slip_reference: float) -> Rung:
-    """Simulate a stop on one model, and again with half the steps."""
+    """Simulate a stop on one model, again with half the steps, and from slightly different speeds."""
     stop = replace(scenario, irregularities=model.irregularities) if model.irregularities else scenario
     run = simulate(vehicle, law, stop, plant=model.plant)
     finer = simulate(vehicle, law, stop, plant=model.plant, refinement=2)
@@ -207,4 +216,5 @@ def rung(vehicle: Vehicle, law: Law, scenario: Scenario, model: Model, *, slip_r
             run, wheelsets=vehicle.wheelsets, wheel_radius=vehicle.wheel_radius, build_up=judged.build_up
         ),
         step_change=distance_difference(finer, run.totals.distance),
+        spread=perturbed_spread(plant_of(model.plant, vehicle), law, stop, run, neighbours=NEIGHBOURS),
     )

@@ -7,6 +7,7 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.catalog import controller
 from wspd_design.design.judging import threads
 from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
+from wspd_design.plants.multibody.records import Multibody
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Scenario
@@ -17,9 +18,8 @@ from wspd_design.simulation.self_check import (
     slip_difference,
 )
 from wspd_design.simulation.stop import simulate_on
-from wspd_design.studies.paper.published import PublishedStops
-from wspd_design.plants.multibody.records import Multibody
 from wspd_design.studies.paper.evidence import CONSTANT_RAILS
+from wspd_design.studies.paper.published import PublishedStops
 from wspd_design.studies.paper.section7 import Section7, judged, laws_and_rails, parts
 from wspd_design.studies.rung import AxleFigures, axle_figures
 from wspd_design.studies.tornado import Tornado, tornado
@@ -78,9 +78,7 @@ def on_locomotive(
     """
     vehicle, specification = small.vehicle, small.specification
     plant = Locomotive(vehicle)
-    rough = {
-        rail: replace(scenario, irregularities="high", seed=seed) for rail, scenario in stops.items()
-    }
+    rough = {rail: replace(scenario, irregularities="high", seed=seed) for rail, scenario in stops.items()}
 
     def law(name: str, rail: str) -> Law:
         return controller(name, vehicle, stops[rail].rail, specification)
@@ -141,6 +139,7 @@ def _checked(plant: Locomotive, law: Law, scenario: Scenario, *, slip_reference:
     return Trial(
         run=run,
         metrics=metrics(run, plant.vehicle, scenario, slip_reference=slip_reference),
+        slip_reference=slip_reference,
         check=StepCheck(
             distance=distance_difference(finer, run.totals.distance),
             slip=slip_difference(plant.vehicle, run, finer),
