@@ -9,7 +9,6 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.testing.running import SAMPLED, SEARCHED, located, record
 
-
 _LEVELS = (Status.EVIDENCE, Status.PROVED)
 """From the weaker support of a claim to the stronger."""
 
