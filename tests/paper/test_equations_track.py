@@ -6,6 +6,7 @@ from scipy.integrate import quad
 
 from derivations import track
 from wspd_design.model.generated.track import irregularity_spectrum
+from wspd_design.parameters.loading import load_track_spectrum
 
 
 def spectrum(row, wavenumber):
@@ -47,3 +48,38 @@ def test_table_9():
 def test_wrong_digit_in_table_9_is_caught(monkeypatch):
     monkeypatch.setitem(track.PRINTED["Vertical"], "gamma2", ("0.68138", 0))
     assert ("Vertical", "gamma2") in track.disagreements()
+
+
+# What the rows of Table 9 are, and ERRI B176's roughness of both levels, recalled [m rad].
+ROWS = {"Horizontal": "lateral", "Vertical": "vertical", "Lateral": "cross-level"}
+ROUGHNESS = {
+    ("vertical", "high"): 1.080e-6,
+    ("lateral", "high"): 6.125e-7,
+    ("vertical", "low"): 4.032e-7,
+    ("lateral", "low"): 2.119e-7,
+}
+
+
+@pytest.mark.parametrize("row", ROWS)
+def test_shipped_spectra_are_table_9_as_recovered(row):
+    shipped = load_track_spectrum("erri-b176").rows[f"{ROWS[row]}-high"]
+    for name, derived in track.DERIVED[row].items():
+        assert getattr(shipped, name) == pytest.approx(float(derived), rel=1.5e-5)  # five printed digits
+
+
+@pytest.mark.parametrize(("direction", "level"), ROUGHNESS)
+def test_shipped_roughness_of_both_levels(direction, level):
+    rows = load_track_spectrum("erri-b176").rows
+    beta0 = ROUGHNESS[direction, level] * 0.8246**2
+    assert rows[f"{direction}-{level}"].beta0 == pytest.approx(beta0, rel=1e-5)
+    if direction == "vertical":
+        assert rows[f"cross-level-{level}"].beta2 == pytest.approx(beta0 / 0.75**2, rel=1e-5)
+
+
+def test_the_lost_digit_halves_the_cross_level():
+    # Locomotive.md section 6: 0.72 mrad in place of 1.49.
+    printed = {name: float(c) for name, c in track.DERIVED["Lateral"].items()} | {"beta2": 0.305533e-6}
+    variance, _ = quad(
+        lambda w: irregularity_spectrum(w, *printed.values()), 2 * np.pi / 25.0, 2 * np.pi / 3.0
+    )
+    assert np.sqrt(variance) == pytest.approx(0.72e-3, rel=0.005)

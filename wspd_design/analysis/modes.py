@@ -2,8 +2,8 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from wspd_design.parameters.errors import UserError
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
     Shape = NDArray[np.complex128]
 
-_NEUTRAL = 1e-4
-"""Rate [1/s] below which an eigenvalue counts as zero: rounding lifts a double zero to about the root of its own."""
+_NEUTRAL = 1e-6
+"""Rate [1/s] below which an eigenvalue counts as zero: a vehicle without resistance keeps any speed."""
 _REAL = 1e-6  # share of an eigenvalue by which it may leave the real axis through rounding
 
 _ALONE = 0.75  # share of the energy of bodies of one kind from which a mode is one body's
@@ -24,21 +24,25 @@ _MIXED = 0.15  # share of the energy that a second motion of the same bodies nee
 
 _DIRECTIONS = {
     "x": "surge",
-    "y": "sway",
+    "y": "lateral",
     "z": "bounce",
     "roll": "roll",
     "pitch": "pitch",
     "yaw": "yaw",
     "turn": "turn",
 }
-_SPECIAL = {("rotor", "turn"): "driveline"}
+_OSCILLATING = {("rotor", "turn"): "driveline"}
+_EVEN = {("rotor", "turn"): "slip", ("wheelset", "pitch"): "slip"}
+"""Names of motions of which those of body and direction say too little, of modes that oscillate and of others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SmallMotion:
     """Small motion about a steady state: M a + D v + K q = 0 in the deviations of n coordinates.
 
-    Contact and gyroscopic terms may make D and K unsymmetric.
+    Contact and gyroscopic terms may make D and K unsymmetric. What is neutral is motion that no force opposes: a
+    vehicle may stand anywhere, and wheels may have turned by any angle. Each neutral motion has one coordinate that
+    stands for it and moves by 1, while those of all others stay.
     """
 
     coordinates: tuple[str, ...]  # such as "bogie_1.z": a body and a direction
@@ -46,14 +50,26 @@ class SmallMotion:
     mass: "Matrix"  # (n, n), symmetric and positive definite
     damping: "Matrix"  # (n, n)
     stiffness: "Matrix"  # (n, n)
+    neutral: "Mapping[str, Matrix]" = field(default_factory=dict)  # (n,) by the coordinate that stands for it
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states: coordinates without neutral ones, against which they count, then all rates."""
+        kept = tuple(name for name in self.coordinates if name not in self.neutral)
+        return (*kept, *(f"{name}'" for name in self.coordinates))
 
     def state_matrix(self) -> "Matrix":
-        """Return the matrix (2n, 2n) of the rates of coordinates and velocities."""
+        """Return the matrix of the rates of :attr:`states`."""
         import numpy as np
 
-        n = len(self.coordinates)
-        below = -np.linalg.solve(self.mass, np.hstack([self.stiffness, self.damping]))
-        return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), below])
+        kept = [k for k, name in enumerate(self.coordinates) if name not in self.neutral]
+        against = np.eye(len(self.coordinates))
+        for name, motion in self.neutral.items():
+            against[:, self.coordinates.index(name)] -= motion
+        above = np.hstack([np.zeros((len(kept), len(kept))), against[kept]])
+        return np.vstack(
+            [above, -np.linalg.solve(self.mass, np.hstack([self.stiffness[:, kept], self.damping]))]
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,12 +91,17 @@ class Mode:
     name: str
     pole: complex  # 1/s
     shares: tuple[Share, ...]  # largest first
-    shape: "Shape"  # (n,), of the coordinates, of unit kinetic energy; the strongest has phase 0
+    shape: "Shape"  # (n,), rates of the coordinates, of unit kinetic energy; the strongest has phase 0
 
     @property
     def oscillates(self) -> bool:
         """Tell whether the mode oscillates rather than decaying or growing evenly."""
         return self.pole.imag > 0.0
+
+    @property
+    def natural_frequency(self) -> float:
+        """Size of the eigenvalue, which is the frequency without damping [Hz]."""
+        return abs(self.pole) / (2.0 * math.pi)
 
     @property
     def frequency(self) -> float:
@@ -118,10 +139,19 @@ def undamped_frequencies(mass: "Matrix", stiffness: "Matrix") -> "Matrix":
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * math.pi))
 
 
-def modes(motion: SmallMotion) -> tuple[Mode, ...]:
-    """Return the modes of small motion: those that oscillate by rising frequency, then the real ones, fastest last.
+def poles(motion: SmallMotion) -> "Shape":
+    """Return the eigenvalues of small motion [1/s] without those of neutral motion, fastest growing first."""
+    import numpy as np
 
-    Neutral motion (a vehicle may stand anywhere, and wheels may have turned by any angle) is left out.
+    values = np.linalg.eigvals(motion.state_matrix())
+    values = values[np.abs(values) >= _NEUTRAL]
+    return np.asarray(values[np.argsort(-values.real)], dtype=np.complex128)
+
+
+def modes(motion: SmallMotion) -> tuple[Mode, ...]:
+    """Return the modes of small motion: those that oscillate by rising frequency, then the real ones, slowest first.
+
+    Neutral motion is left out.
 
     Parameters
     ----------
@@ -138,16 +168,16 @@ def modes(motion: SmallMotion) -> tuple[Mode, ...]:
         if abs(value) < _NEUTRAL or (value.imag < 0.0 and not real):
             continue
         pole = complex(value.real, 0.0) if real else complex(value)
-        found.append(_mode(motion, pole, vector[:n]))
-    found.sort(key=lambda mode: (not mode.oscillates, mode.frequency, abs(mode.pole)))
+        found.append(_mode(motion, pole, vector[-n:]))
+    found.sort(key=lambda mode: (not mode.oscillates, mode.natural_frequency))
     return _distinct(found)
 
 
 def _mode(motion: SmallMotion, pole: complex, shape: "Shape") -> Mode:
-    """Name one mode by the kinetic energy of its shape."""
+    """Name one mode by the kinetic energy of its rates."""
     import numpy as np
 
-    energy = np.real(np.conj(shape) * (motion.mass @ shape))  # all velocities are the pole times the shape
+    energy = np.real(np.conj(shape) * (motion.mass @ shape))
     energy = energy / energy.sum()
     lead = int(np.argmax(energy))
     turned = shape * np.exp(-1j * np.angle(shape[lead]))
@@ -159,7 +189,8 @@ def _mode(motion: SmallMotion, pole: complex, shape: "Shape") -> Mode:
         Share(kind=kind, direction=direction, share=share)
         for (kind, direction), share in sorted(parts.items(), key=lambda item: -item[1])
     )
-    return Mode(name=_name(motion, energy, turned, shares), pole=pole, shares=shares, shape=turned)
+    name = _name(motion, energy, turned, shares, oscillates=pole.imag > 0.0)
+    return Mode(name=name, pole=pole, shares=shares, shape=turned)
 
 
 def _motions(motion: SmallMotion) -> list[tuple[str, str]]:
@@ -173,7 +204,9 @@ def _split(coordinate: str) -> tuple[str, str]:
     return body, direction
 
 
-def _name(motion: SmallMotion, energy: "Matrix", shape: "Shape", shares: tuple[Share, ...]) -> str:
+def _name(
+    motion: SmallMotion, energy: "Matrix", shape: "Shape", shares: tuple[Share, ...], *, oscillates: bool
+) -> str:
     """Say which bodies move and how, from the largest share of the energy."""
     import numpy as np
 
@@ -182,7 +215,7 @@ def _name(motion: SmallMotion, energy: "Matrix", shape: "Shape", shares: tuple[S
     parts = energy[places]
     strongest, _ = _split(motion.coordinates[places[int(np.argmax(parts))]])
     alone = parts.max() >= _ALONE * parts.sum()
-    special = _SPECIAL.get((kind, direction))
+    special = (_OSCILLATING if oscillates else _EVEN).get((kind, direction))
     if special is not None:
         return f"{special} {strongest.removeprefix(f'{kind}_')}" if alone and len(places) > 1 else special
     how = _DIRECTIONS.get(direction, direction)

@@ -11,6 +11,7 @@ from wspd_design.design.case import Case
 from wspd_design.exchange.campaign_forms import CAMPAIGN, CAMPAIGNS
 from wspd_design.exchange.check_forms import VERIFICATION
 from wspd_design.exchange.ladder_forms import LADDER
+from wspd_design.exchange.ladder_objects import rungs_object
 from wspd_design.exchange.objects import linearization_point_object, scenario_object, timed_check_object
 from wspd_design.exchange.stop_forms import COMPARISON
 from wspd_design.exchange.study_forms import LINEARIZATION
@@ -20,7 +21,6 @@ from wspd_design.simulation.records import Scenario
 if TYPE_CHECKING:
     from wspd_design.analysis.linearization import Linearization
     from wspd_design.studies.ladder import Ladder
-    from wspd_design.studies.rung import AxleFigures, Rung
 
 
 def witness_object(start: WitnessStart, left_after: float | None = None) -> dict[str, Any]:
@@ -89,45 +89,8 @@ def ladder_object(found: "Ladder", scenario: Scenario) -> dict[str, Any]:
         "rail": found.rail,
         "initial_speed_m_s": found.initial_speed,
         "scenario": scenario_object(scenario, dead_time=first.dead_time, shortest_pulse=first.shortest_pulse),
-        "rungs": [_rung(each) for each in found.rungs],
-        "agreements": [
-            {
-                "measure": each.measure.name,
-                "tolerance": each.measure.tolerance,
-                "deviations": each.deviations,
-                "suffices": found.rungs[each.suffices].title,
-            }
-            for each in found.agreements
-        ],
+        **rungs_object(found),
         "version": program_version(),
-    }
-
-
-def _rung(rung: "Rung") -> dict[str, Any]:
-    return {
-        "title": rung.title,
-        "plant": rung.plant,
-        "distance_m": rung.metrics.distance,
-        "stopping_time_s": rung.metrics.stopping_time,
-        "slip_mean": rung.metrics.slip_mean,
-        "axles": [_rung_axle(each) for each in rung.axles],
-        "step_change": rung.step_change,
-    }
-
-
-def _rung_axle(axle: "AxleFigures") -> dict[str, float]:
-    return {
-        "slip_mean": axle.slip_mean,
-        "slip_max": axle.slip_max,
-        "static_load_N": axle.static_load,
-        "braking_load_N": axle.braking_load,
-        "wheel_load_spread_N": axle.load_spread,
-        "least_load_N": axle.least_load,
-        "longest_lock_s": axle.lock,
-        "vibration_m_s": axle.vibration,
-        "vibration_frequency_Hz": axle.vibration_frequency,
-        "vibration_speed_m_s": axle.vibration_speed,
-        "vibration_slip": axle.vibration_slip,
     }
 
 

@@ -61,6 +61,7 @@ class ReportCall:
     template: str | None = None
     diff: str | None = None  # record of an older report
     requirements: str | None = None  # name of a template of requirements, or a file
+    ladder: bool = False  # the stop on every model of the vehicle
     sensors: SensorOptions = _UNSAID
     disturbances: StopOptions = _CALM
 
@@ -99,7 +100,9 @@ class ReportCall:
     @property
     def simulation(self) -> str:
         """The command line that simulates the stop of the report."""
-        return replace(self, template=None, diff=None, requirements=None)._after("wspd", "simulate")
+        return replace(self, template=None, diff=None, requirements=None, ladder=False)._after(
+            "wspd", "simulate"
+        )
 
     def _after(self, *head: str) -> str:
         plain = ReportCall(vehicle="", rail="")
@@ -323,5 +326,6 @@ def compute(
             plant=call.plant,
             stored=stored,
             requirements=_wanted(call.requirements, case, inputs),
+            ladder=call.ladder,
             progress=progress,
         )

@@ -17,6 +17,7 @@ _CALLS = {
     "OP_ATAN": "wspd_atan2({0}, 1.0)",
     "OP_ATAN2": "wspd_atan2({0}, {1})",
     "OP_SIN": "wspd_sin({0})",
+    "OP_COS": "wspd_cos({0})",
     "OP_TAN": "(wspd_sin({0}) / wspd_sin({0} + 0x1.921fb54442d18p0))",
     "OP_POW": "wspd_exp({1} * wspd_log({0}))",
     "OP_CONSTPOW": "wspd_exp({1} * wspd_log({0}))",

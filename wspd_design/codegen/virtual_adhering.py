@@ -23,6 +23,7 @@ class Stage(NamedTuple):
     passed: Any
     given: Any  # torque of all brakes
     dynamic: Any  # of these that of the electrodynamic brake
+    further: Any  # numbers of the further traces
 
 
 class Adhering:

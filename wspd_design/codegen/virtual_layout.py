@@ -19,6 +19,7 @@ class Layout:
 
     axles: int
     axle_states: int
+    further: int  # numbers of the further traces
     state: dict[str, slice]
     given: dict[str, slice]  # what a step needs beside the state
 
@@ -39,7 +40,7 @@ class Layout:
         After it come whether the step was made, the share of it before its first event, and the angles that the wheels
         have turned.
         """
-        return 3 + (5 + self.axle_states) * self.axles
+        return 3 + (5 + self.axle_states) * self.axles + self.further
 
 
 def layout(kernels: Kernels) -> Layout:
@@ -49,9 +50,12 @@ def layout(kernels: Kernels) -> Layout:
         name: getattr(kernels, name).size1_out(0)
         for name in ("lane_constants", "stop_constants", "window_constants")
     }
+    constants["vehicle_constants"] = kernels.whole.vehicle_constants.size1_out(0) if kernels.coupled else 0
+    further = kernels.whole.further if kernels.coupled else 0
     return Layout(
         axles=axles,
         axle_states=kernels.axle_states,
+        further=further,
         state=_places(
             {
                 "speed": 1,
@@ -75,6 +79,7 @@ def layout(kernels: Kernels) -> Layout:
                 "passed": axles,
                 "given": axles,
                 "dynamic": axles,
+                "further": further,
                 "contact": 2 * axles,
                 "lane": (INTEGRATED + 4) * axles,
                 "stop": 5,  # distance, impulse and work of the resistance, judged time, time
@@ -84,8 +89,10 @@ def layout(kernels: Kernels) -> Layout:
             {
                 "lane_constants": constants["lane_constants"] * axles,
                 "stop_constants": constants["stop_constants"],
+                "vehicle_constants": constants["vehicle_constants"],
                 "window_constants": constants["window_constants"] * axles,
                 "radius": axles,
+                "offset": axles,
                 "inertia": axles,
                 "mass": 1,
                 "until": 1,

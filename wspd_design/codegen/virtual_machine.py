@@ -15,9 +15,11 @@ from wspd_design.codegen.law_library import virtual_law
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive, flat
+from wspd_design.codegen.virtual_coupled import TrackTable
+from wspd_design.codegen.virtual_functions import StepFunctions, step_functions
 from wspd_design.codegen.virtual_judgment import VirtualJudgment
 from wspd_design.codegen.virtual_sensors import VirtualSensors
-from wspd_design.codegen.virtual_step import INERTIA, MASS, RADIUS, StepFunctions, step_functions
+from wspd_design.codegen.virtual_step import INERTIA, MASS, RADIUS
 from wspd_design.codegen.virtual_valves import START, VirtualValves
 from wspd_design.controllers.protocol import Command, Law, State, VehicleMeasurement
 from wspd_design.model.further_brakes import friction_share
@@ -51,7 +53,7 @@ def run_virtual(
     import numpy as np
 
     kernels = plant_kernels(plant, disturbed=disturbed)
-    driven = _VirtualPlant(kernels, _functions(kernels, given.held_slips is not None), given)
+    driven = _VirtualPlant(kernels, _functions(kernels, given.held_slips is not None, _track(given)), given)
     result, samples = drive(driven, _traced(controller, plant.axles), sample_rows)
     valves, judgment = driven.valves, driven.judgment
     valves.end(driven.part("filled"))
@@ -73,8 +75,14 @@ def run_virtual(
 
 
 @lru_cache(maxsize=8)
-def _functions(kernels: Kernels, holding: bool) -> StepFunctions:
-    return step_functions(kernels, holding=holding, batches=() if holding else _BATCHES)
+def _functions(kernels: Kernels, holding: bool, track: TrackTable | None) -> StepFunctions:
+    return step_functions(kernels, holding=holding, batches=() if holding else _BATCHES, track=track)
+
+
+def _track(given: LoopInput) -> TrackTable | None:
+    if given.track is None:
+        return None
+    return TrackTable(points=given.track.shape[1], again=given.track_again, spacing=given.track_spacing)
 
 
 class _VirtualPlant:
@@ -91,6 +99,8 @@ class _VirtualPlant:
         self.state, self.inputs = np.zeros(self.layout.states), np.zeros(self.layout.inputs)
         self.part("speed")[:] = given.speeds[0]
         self.wheels[:] = given.wheel_speeds
+        self.part("rest")[:] = given.rest[:, 0]
+        table = np.zeros(0) if given.track is None else np.ascontiguousarray(given.track[0]).ravel()
         self.edges: tuple[float, ...] = ()
         self.valves = VirtualValves(given)
         self.sensors = VirtualSensors(given, self.parameters[RADIUS])
@@ -106,15 +116,18 @@ class _VirtualPlant:
         self.rows: list[NDArray[np.float64]] = []
         self.bad_command = (0.0, 0.0, 0.0)
         self._steps = {
-            number: Bound(function, self.state, self.inputs)
+            number: Bound(function, self.state, self.inputs, table)
             for number, function in ((1, functions.single), *functions.batches.items())
         }
-        self._observe = Bound(functions.observe, self.state, self.inputs)
+        self._observe = Bound(functions.observe, self.state, self.inputs, table)
         self._window = np.zeros((axles, len(WINDOW)))
         self._kinks = Bound(kernels.kinks.map(axles), self._by_axle, self._window)
         self._window_constants = Bound(kernels.window_constants.map(axles), self._by_axle, self._window)
         self._write_fixed_inputs()
         self._close_valves()
+        if kernels.coupled and given.trace_rows:
+            self.rows.append(self._first_row())
+            self.recorded = 0.0
 
     def part(self, name: str) -> "Array":
         """One part of the state, to read and to write."""
@@ -141,7 +154,29 @@ class _VirtualPlant:
         self._give("mass", self.parameters[MASS, 0])
         self._stop_constants = self.kernels.stop_constants(self.given.stop_parameters[:, 0])
         self._give("stop_constants", _flat(self._stop_constants))
+        self._give("offset", self.parameters[_OFFSET])
+        self._work_out_lanes()
+
+    def _work_out_lanes(self) -> None:
+        """Work out the constants of wheelsets and vehicle for the rails that lie below the wheels."""
         self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
+        if self.kernels.coupled:
+            given = self.given
+            rails = self.parameters[_FIRST_RAIL : _FIRST_RAIL + RAIL_NUMBERS].ravel()
+            constants = self.kernels.whole.vehicle_constants(
+                given.stop_parameters[:, 0], given.numbers[:, 0], rails
+            )
+            self._give("vehicle_constants", _flat(constants))
+
+    def _first_row(self) -> "Array":
+        """The row of the traces at the start."""
+        import numpy as np
+
+        begin = [self.part(name) for name in ("time", "speed", "distance")]
+        present = [self.part(name) for name in ("slip", "passed", "load", "given", "dynamic")]
+        others = self.part("axle")[self.layout.axles :]
+        row: Array = np.concatenate([*begin, self.wheels, *present, others, self.part("further")])
+        return row
 
     def running(self) -> bool:
         return self.moving and self.part("time")[0] <= self.set.time_limit
@@ -314,7 +349,7 @@ class _VirtualPlant:
                     self.patch[axle] = reached
                     changed = True
             if changed:
-                self._give("lane_constants", _flat(self.kernels.lane_constants(self.parameters)))
+                self._work_out_lanes()
                 self._work_out_stage()
             for axle, reached in enumerate(self.patch):
                 if reached < len(given.patch_starts):

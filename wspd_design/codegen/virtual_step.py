@@ -1,16 +1,15 @@
-"""One integration step of the closed loop as a CasADi function, and several of them in one call.
+"""One integration step of the closed loop in CasADi.
 
 The formulas are those of ``motion.c``, ``adhering.c``, ``steps.c`` and ``events.c`` in ``templates/``. Steps beyond
 the goal, and one that would go across an event, leave the state as it is, so that a call may hold more steps than are
 needed.
 """
 
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 from wspd_design.codegen.kernels import PARAMETERS, Kernels
 from wspd_design.codegen.virtual_adhering import STEADY, Adhering, Stage, settling_rates, weighted_sum
-from wspd_design.codegen.virtual_layout import INTEGRATED, Layout, layout
+from wspd_design.codegen.virtual_layout import INTEGRATED, Layout
 from wspd_design.model.number import maximum, minimum, where
 
 RADIUS = PARAMETERS.index(("vehicle", "wheel_radius"))
@@ -21,39 +20,12 @@ SPEED_SHARE = 0.1  # of the speed, that a step may take from it where the slope 
 EVENT_SHARE = 1e-4  # of a step: none is cut shorter at an event of a wheel
 
 
-class StepFunctions(NamedTuple):
-    """What runs a stop without a compiler."""
+class Step:
+    """The expressions of one step of a plant that splits."""
 
-    layout: Layout
-    observe: Any  # (state, inputs) -> state with the present stage
-    single: Any  # (state, inputs) -> state, row with what follows it
-    batches: dict[int, Any]  # number of steps -> (state, inputs) -> state, one column per step
-
-
-def step_functions(kernels: Kernels, *, holding: bool, batches: Iterable[int]) -> StepFunctions:
-    """Build the functions of a plant; ``holding`` for the ideal brake that never exceeds a slip."""
-    import casadi as ca
-
-    places = layout(kernels)
-    state, given = ca.SX.sym("state", places.states), ca.SX.sym("given", places.inputs)
-    step = _Step(kernels, places, state, given, holding)
-    observe = ca.Function("observe", [state, given], ca.cse([step.observed()]))
-    single = ca.Function("step", [state, given], ca.cse(step.outputs()))
-    repeated = {}
-    for number in batches:
-        following, rows = ca.MX.sym("state", places.states), []
-        inputs = [following, ca.MX.sym("given", places.inputs)]
-        for _ in range(number):
-            following, row = single(following, inputs[1])
-            rows.append(row)
-        repeated[number] = ca.Function(f"steps{number}", inputs, [following, ca.horzcat(*rows)])
-    return StepFunctions(layout=places, observe=observe, single=single, batches=repeated)
-
-
-class _Step:
-    """The expressions of one step."""
-
-    def __init__(self, kernels: Kernels, places: Layout, state: Any, given: Any, holding: bool) -> None:
+    def __init__(
+        self, kernels: Kernels, places: Layout, state: Any, given: Any, *, holding: bool = False
+    ) -> None:
         self.kernels, self.holding, self.axles = kernels, holding, places.axles
         self.whole, self.places = state, places
         self.state = {name: state[place] for name, place in places.state.items()}
@@ -78,6 +50,7 @@ class _Step:
         return ca.vertcat(*self._observe(dict(self.state)).values())
 
     def outputs(self) -> list[Any]:
+        """The state after the step, and a row with what follows it."""
         import casadi as ca
 
         now, given, axles = self.state, self.given, self.axles
@@ -92,7 +65,7 @@ class _Step:
             *(now[name] for name in Stage._fields[2:]),
         )
         stages = [present]
-        wheels = Adhering(motion, h, settling, given)
+        wheels = self._wheels(motion, h, settling)
         for share, column, time in ((0.5, 0, middle), (0.5, 0, middle), (1.0, 1, following)):
             at = wheels.placed(motion + share * h * stages[-1].rates, wheels.moved(stages))
             stages.append(self._stage(at, time, torque[column], level[column], damping[column], now))
@@ -150,7 +123,7 @@ class _Step:
                 after["passed"],
                 after["load"],
             ),
-            *(after["given"], after["dynamic"], after["axle"][axles:]),
+            *(after["given"], after["dynamic"], after["axle"][axles:], after["further"]),
             *(made, share, after["lane"][(INTEGRATED - 1) * axles : integrated]),
         )
         return [where(made, ca.vertcat(*after.values()), self.whole), row]
@@ -167,6 +140,10 @@ class _Step:
         last = time + h > given["until"] - 1e-12
         h = where(last, span, h) * given["scale"]
         return h, where(last, where(given["scale"] < 1.0, time + h, given["until"]), time + h), settling
+
+    def _wheels(self, motion: Any, h: Any, settling: Any) -> Any:
+        """What becomes of wheels that adhere within the step."""
+        return Adhering(motion, h, settling, self.given)
 
     def _allowed(self, span: Any) -> tuple[Any, Any]:
         """Step that the slopes of the creep curves allow, now and where the wheels would be after a step.
@@ -308,21 +285,37 @@ class _Step:
             taken = 2.0 * (radius * force - damped) - given["inertia"] * following
             rolling = where(state["held"], following, rolling)
             passed = where(state["held"], taken, passed)
-        integrands = (
+        return Stage(
+            motion=motion,
+            torque=torque,
+            rates=ca.vertcat(acceleration, rolling, others, rest_rates, speed),
+            integrands=self._integrands(speed, wheel, passed, damped, force, slip, resistance),
+            force=force,
+            slip=slip,
+            load=load,
+            passed=passed,
+            given=braking,
+            dynamic=dynamic,
+            further=ca.SX(0, 1),
+        )
+
+    def _integrands(
+        self, speed: Any, wheel: Any, passed: Any, damped: Any, force: Any, slip: Any, resistance: Any
+    ) -> Any:
+        """What the totals of wheelsets and stop are integrals of."""
+        import casadi as ca
+
+        return ca.vertcat(
             passed,
             2.0 * damped,
             passed * wheel,
-            2.0 * force * (speed - radius * wheel),
+            2.0 * force * (speed - self.given["radius"] * wheel),
             2.0 * damped * wheel,
             slip,
             slip * slip,
             wheel,
             resistance,
             resistance * speed,
-        )
-        rates = ca.vertcat(acceleration, rolling, others, rest_rates, speed)
-        return Stage(
-            motion, torque, rates, ca.vertcat(*integrands), force, slip, load, passed, braking, dynamic
         )
 
     def _held_slip(self, speed: Any) -> tuple[Any, Any]:
@@ -363,7 +356,7 @@ class _Step:
             )
             for motion, stage in zip(ends, (stages[0], stages[2], stages[3]), strict=True)
         ]
-        first = ca.SX(1.0)
+        first: Any = 1.0
         for event in range(1 + axles):
             begin, middle, end = (value[event] for value in values)
             crosses = where(begin > 0.0, minimum(middle, end) < 0.0, 0.0)

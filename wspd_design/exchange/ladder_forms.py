@@ -61,6 +61,12 @@ AGREEMENT = Form(
         ),
     ),
 )
+RUNGS_KEYS = (
+    Key(name="remark", kind="text", meaning="what is inferred about the models; empty where nothing is"),
+    Key(name="rungs", kind=RUNG, many=(1, None), meaning="the stop on each model, the smallest first"),
+    Key(name="agreements", kind=AGREEMENT, many=(1, None), meaning="how far each model is from the last one"),
+)
+RUNGS = Form(name="rungs", keys=RUNGS_KEYS)
 LADDER = Form(
     name="ladder",
     schema="wspd-ladder/1",
@@ -71,13 +77,7 @@ LADDER = Form(
         RAIL_KEY,
         SPEED_KEY,
         Key(name="scenario", kind=SCENARIO, meaning="what disturbs the stop"),
-        Key(name="rungs", kind=RUNG, many=(1, None), meaning="the stop on each model, the smallest first"),
-        Key(
-            name="agreements",
-            kind=AGREEMENT,
-            many=(1, None),
-            meaning="how far each model is from the last one",
-        ),
+        *RUNGS_KEYS,
         VERSION_KEY,
     ),
 )

@@ -15,6 +15,7 @@ from wspd_design.exchange.common_keys import (
     nullable,
 )
 from wspd_design.exchange.forms import Form, Key
+from wspd_design.exchange.ladder_forms import RUNGS
 from wspd_design.exchange.stop_forms import FAULT, STOP
 from wspd_design.exchange.uncertainty_forms import UNCERTAINTY
 
@@ -319,6 +320,12 @@ REPORT = Form(
             kind=UNCERTAINTY,
             nullable=True,
             meaning="of the design's own stop; null where no number has bounds",
+        ),
+        Key(
+            name="ladder",
+            kind=RUNGS,
+            nullable=True,
+            meaning="the design's own stop on every model; null where it was not asked for",
         ),
         Key(name="parameters", kind=PARAMETERS, many=ANY, meaning="each set that was used"),
         VERSION_KEY,

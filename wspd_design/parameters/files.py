@@ -18,7 +18,7 @@ from wspd_design.parameters.entry import entry_of, quoted
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.laden import LADEN, laden
 from wspd_design.parameters.records import Entry, ParameterSet
-from wspd_design.parameters.schema import Kind, Schema, schema_of
+from wspd_design.parameters.schema import CONSTANTS_SCHEMAS, Kind, Schema, schema_of
 from wspd_design.parameters.units import units_of
 from wspd_design.parameters.words import did_you_mean, remedy_for
 
@@ -43,7 +43,7 @@ def data_file(*parts: str) -> Traversable:
 def available(kind: Kind) -> list[str]:
     """Return the names of the shipped parameter files of one kind, sorted."""
     if kind == "constants":
-        return ["constants"]
+        return sorted(CONSTANTS_SCHEMAS)
     entries = data_file(_FOLDERS[kind]).iterdir()
     return sorted(entry.name.removesuffix(".toml") for entry in entries if entry.name.endswith(".toml"))
 

@@ -41,7 +41,7 @@ class Quantity:
     high: float = math.inf
     low_is_allowed: bool = True
     plausible: tuple[float, float] | None = None  # what railways have, with room to spare
-    words: tuple[str, ...] = ()  # that a word may be
+    words: tuple[str, ...] = ()  # that a word may be; none: any
     optional: bool = False
 
     def admits(self, value: float) -> bool:
@@ -98,6 +98,12 @@ _CONSTANTS: Schema = {
     "time_limit": _positive("time"),
 }
 
+_STEEL: Schema = {
+    "young": _positive("pressure"),
+    "poisson": Quantity(dimension="ratio", low=0.0, high=0.5),
+    "rail_crown": _positive("length"),
+}
+
 _FURTHER_BRAKES: Schema = {
     "pads.kind": Quantity(dimension="ratio", shape="word", words=("disc", "tread")),
     "pads.speeds": _not_negative("speed", "vector"),
@@ -125,6 +131,7 @@ _VEHICLE: Schema = {
     "wheelsets": Quantity(dimension="ratio", low=1.0, high=32.0),
     "axles_per_bogie": Quantity(dimension="ratio", low=1.0, high=3.0, optional=True),
     "bodies": Quantity(dimension="ratio", low=1.0, high=31.0, optional=True),
+    "multibody": _word(),
     "wheel_radius": _positive("length", plausible=(0.1, 1.5)),
     "wheelset_inertia": _positive("inertia", plausible=(5.0, 1e4)),
     "wheel_damping": _not_negative("rotational damping"),
@@ -275,8 +282,13 @@ CONTROLLER_SCHEMAS: dict[str, Schema] = {
 }
 
 
+CONSTANTS_SCHEMAS: dict[str, Schema] = {"constants": _CONSTANTS, "steel": _STEEL}
+
+
 def schema_of(kind: Kind, name: str) -> Schema:
-    """Return what a file of this kind must contain; each controller has its own schema."""
+    """Return what a file of this kind must contain; each controller and each file of constants has its own schema."""
     if kind == "controller":
         return CONTROLLER_SCHEMAS[name]
-    return {"constants": _CONSTANTS, "vehicle": _VEHICLE, "rail": _RAIL, "track": _TRACK}[kind]
+    if kind == "constants":
+        return CONSTANTS_SCHEMAS[name]
+    return {"vehicle": _VEHICLE, "rail": _RAIL, "track": _TRACK}[kind]

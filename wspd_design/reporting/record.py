@@ -5,6 +5,7 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
+from wspd_design.exchange.ladder_objects import rungs_object
 from wspd_design.exchange.objects import (
     brake_object,
     check_object,
@@ -70,6 +71,7 @@ def report_record(dossier: Dossier, made_at: datetime) -> dict[str, Any]:
             if dossier.robustness is None
             else [_faulted_stop(each, dossier.robustness) for each in dossier.robustness.stops],
             "uncertainty": None if dossier.uncertainty is None else _uncertainty(dossier.uncertainty),
+            "ladder": None if dossier.ladder is None else rungs_object(dossier.ladder),
             "parameters": [parameters_object(each) for each in sets],
             "version": program_version(),
         }

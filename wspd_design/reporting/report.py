@@ -17,6 +17,7 @@ from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.sections.design import design
 from wspd_design.reporting.sections.hazards import hazards
+from wspd_design.reporting.sections.ladder import ladder
 from wspd_design.reporting.sections.limits import limits
 from wspd_design.reporting.sections.linearization import linearization
 from wspd_design.reporting.sections.replay import provenance, replay
@@ -45,6 +46,7 @@ SECTIONS = (
     linearization,
     checks,
     stop,
+    ladder,
     uncertainty,
     robustness,
     comparison,

@@ -5,16 +5,21 @@ from datetime import datetime
 from pathlib import Path
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_entries
 from wspd_design.reporting.blocks import Block, Bullets, Definition, Document, Heading
 from wspd_design.reporting.made_by import made_by
 from wspd_design.reporting.output import write_document
 from wspd_design.reporting.paper.figures import figures
+from wspd_design.reporting.paper.inferred import inferred
+from wspd_design.reporting.paper.locomotive import locomotive
+from wspd_design.reporting.paper.model import model
 from wspd_design.reporting.paper.parts import parts
 from wspd_design.reporting.paper.table10 import table10
 from wspd_design.reporting.paper.track import track
 from wspd_design.reporting.paper.verdicts import conclusions, summary, verdict
 from wspd_design.reporting.report import report_time
 from wspd_design.reporting.text import CodeSpan, rich
+from wspd_design.studies.inferred import mark
 from wspd_design.studies.paper.reproduction import Reproduction, reproduce
 
 NAME = "paper"
@@ -67,7 +72,11 @@ def reproduction_document(made: Reproduction, timestamp: datetime) -> Document:
         f"package {made.provenance.package_sha256[:12]}",
         verdict=verdict(made),
         summary=summary(made),
-        blocks=(*(block for section in SECTIONS for block in section(made)), *_limits(made)),
+        blocks=(
+            *(block for section in SECTIONS for block in section(made)),
+            *_on_locomotive(made),
+            *_limits(made),
+        ),
         provenance=_provenance(made),
         attachments=(),
         timestamp=timestamp,
@@ -76,15 +85,33 @@ def reproduction_document(made: Reproduction, timestamp: datetime) -> Document:
     )
 
 
+def _on_locomotive(made: Reproduction) -> tuple[Block, ...]:
+    """Return the sections about the multibody model; none where its stops were left out."""
+    found = made.locomotive
+    if found is None:
+        return ()
+    return (
+        *model(found.model, load_entries("vehicle", made.small.vehicle.name)),
+        *locomotive(made.small, found),
+        *inferred(found.model, found.tornado),
+    )
+
+
 def _limits(made: Reproduction) -> tuple[Block, ...]:
-    sensitive = {each.controller for each in made.evidence.stops if each.check.sensitive}
+    sensitive = {each.controller for each in made.small.evidence.stops if each.check.sensitive}
     return (
         Heading(text="What this page does not show", anchor="limits"),
         Bullets(
             items=(
-                "The paper's simulation itself: its 82 degrees of freedom, its masses, its friction and its rule "
-                "tables are not printed. Ours has four axles with weight transfer and data fitted to Table 10; see "
-                "the sources of any report for each number.",
+                "The paper's simulation itself: the data of its 82 degrees of freedom, its friction and its rule "
+                "tables are not printed. Ours has four axles with weight transfer and data fitted to Table 10; see the "
+                "sources of any report for each number."
+                + (
+                    f" {made.locomotive.model.name} is a reconstruction: that it has as many degrees of freedom does "
+                    f"not make it the paper's model. {mark(made.locomotive.model)}"
+                    if made.locomotive
+                    else ""
+                ),
                 "The rule tables of Knorr-Bremse and Mitsubishi are lost and were reconstructed: what stands here "
                 "about them is about the reconstruction.",
                 f"Digits that are not there: the closed loops of {', '.join(sorted(sensitive))} can be sensitive, "

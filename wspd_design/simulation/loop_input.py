@@ -16,13 +16,14 @@ from wspd_design.codegen.loop_numbers import (
 )
 from wspd_design.controllers.protocol import Law, acts_on_vehicle
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import constants
+from wspd_design.parameters.loading import constants, load_track_spectrum
 from wspd_design.parameters.records import Brake, Rail, Vehicle
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.records import LoadIrregularity, Scenario, Sensing, Start
 from wspd_design.simulation.runaway import runs_away
 from wspd_design.simulation.start import available_torque
+from wspd_design.simulation.track import irregular_track
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,6 +35,8 @@ LONGEST_STEP = 5e-3  # s
 SLOPE_LIMIT = 2.0  # step over creep time; Runge-Kutta of order four is stable up to 2.8
 LOAD_MARGIN = 1.3  # wheel load under braking against the static one, at most
 RECORD_INTERVAL = 2e-3  # s, of the traces
+TRACK = "erri-b176"
+"""Spectra of the irregular track."""
 _RUNAWAY_TIME = 10.0  # s, that are simulated of a stop of trains that cannot stop
 JUDGING_SPEED = 10.0 / 3.6  # m/s, slip statistics count above it
 
@@ -61,6 +64,7 @@ def loop_input(
     columns = [[rows[axle] for rows in lanes] for axle in range(axles)]
     scenarios = [each for _, each in cases]
     starts, rails = _patches(scenarios)
+    track, lead, spacing = _tracks(scenarios)
     factors, spacings = _load_factors(scenarios, axles)
     return LoopInput(
         stop_parameters=np.array(columns[0]).T,
@@ -83,6 +87,9 @@ def loop_input(
         patch_rails=rails,
         load_factors=factors,
         load_spacings=spacings,
+        track=track,
+        track_again=lead,
+        track_spacing=spacing,
     )
 
 
@@ -117,6 +124,17 @@ def _check(scenario: Scenario, controller: Law, plant: Plant) -> None:
     irregularity = scenario.load_irregularity
     if plant.alike and (scenario.axle_rails is not None or irregularity is not None):
         raise UserError(f'rails and loads of single axles need the plant "{Planar.name}"')
+    if is_coupled(plant):
+        if irregularity is not None:
+            raise UserError(
+                f'plant "{plant.name}" works out its wheel loads itself; in place of a load irregularity give '
+                'the stop irregularities of the track, "low" or "high"'
+            )
+    elif scenario.irregularities != "none":
+        raise UserError(
+            f'irregularities of the track need a plant that rolls over them, and "{plant.name}" does not; take '
+            'the plant "locomotive", or give the stop a load irregularity'
+        )
     if plant.alike and not plant.vehicle.brakes_alike:
         raise UserError(
             f"vehicle {plant.vehicle.name} has axles with other brakes than the rest, which need the plant "
@@ -301,6 +319,28 @@ def _load_factors(scenarios: Sequence[Scenario], axles: int) -> "tuple[Array, Ar
         for axle, row in enumerate(each.factors):
             table[axle, stop] = (*row, *(row[-1],) * (points - len(row)))
     return table.reshape(axles * len(given), points), np.array([each.spacing for each in given])
+
+
+def _tracks(scenarios: Sequence[Scenario]) -> "tuple[Array | None, int, float]":
+    """Table of the irregular tracks of every stop, the point that comes after its last one, and its spacing [m]."""
+    import numpy as np
+
+    if all(each.irregularities == "none" for each in scenarios):
+        return None, 0, 1.0
+    spectra = load_track_spectrum(TRACK)
+    drawn = {
+        key: irregular_track(spectra, key[0], seed=key[1])
+        for key in dict.fromkeys(
+            (each.irregularities, each.seed) for each in scenarios if each.irregularities != "none"
+        )
+    }
+    some = next(iter(drawn.values()))
+    table = np.zeros((len(scenarios), some.values.shape[1], 2 * len(some.channels)))
+    for stop, each in enumerate(scenarios):
+        if each.irregularities != "none":
+            track = drawn[each.irregularities, each.seed]
+            table[stop, :, ::2], table[stop, :, 1::2] = track.values.T, track.slopes.T
+    return table, some.lead, some.spacing
 
 
 def sample_rows(controller: Law) -> int:

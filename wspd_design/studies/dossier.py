@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
-from wspd_design.analysis.linearization import Linearization, linearize
+from wspd_design.analysis.linearization import Linearization, linearized
 from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Certificate
@@ -39,6 +39,8 @@ from wspd_design.simulation.records import Run, Scenario
 from wspd_design.studies.faults import Robustness, robustness
 from wspd_design.studies.inputs import design_input, law_inputs, parameter_inputs, python_input, side_by_side
 from wspd_design.studies.judgment import Judgment, judgment
+from wspd_design.studies.ladder import Ladder, models_of
+from wspd_design.studies.ladder import ladder as climb
 from wspd_design.studies.loop_growth import Growth, growth_of
 from wspd_design.studies.next_step import NextStep, next_step
 from wspd_design.studies.previous import Previous
@@ -82,6 +84,7 @@ class Dossier:
     next_step: NextStep | None  # of a law that is not accepted and had something to do
     robustness: Robustness | None  # where wheelsets differ
     uncertainty: Uncertainty | None  # where numbers have bounds
+    ladder: Ladder | None  # where it was asked for
     scenario: Scenario  # of the stops
     previous: Previous | None  # report to compare with
     provenance: Provenance
@@ -105,6 +108,7 @@ def dossier(
     stored: Path | None = None,
     folder: Path = Path(),
     requirements: StopRequirements | Requirements | None = None,
+    ladder: bool = False,
     progress: Callable[[str], None] = lambda _stage: None,
 ) -> Dossier:
     """Compute everything about a law.
@@ -133,7 +137,7 @@ def dossier(
     written : str
         What the user called a law that is no design: its name, or ``FILE.py:NAME``, and then the file travels with the
         report.
-    plant : {"planar", "quarter"}
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
         Of the stops; the certificates speak about the quarter model.
     stored : Path, optional
         Folder of certificate files; what the checkers accept of it for this design is not searched again.
@@ -141,6 +145,8 @@ def dossier(
         Of the design file, from which the rails of its requirements are seen.
     requirements : StopRequirements or Requirements, optional
         That the law is judged by: those of the design by default, and what the paper asks for of one without.
+    ladder : bool
+        Whether to simulate the stop on every model of the vehicle.
     progress : callable, optional
         Told each stage before it starts.
 
@@ -164,7 +170,7 @@ def dossier(
     asked = _asked(made, specification)
     progress("linearization")
     speeds = np.geomspace(1.0, max(asked.speeds[1], scenario.initial_speed), POLE_SPEEDS)
-    linearizations = tuple(linearize(of_vehicle, of_rail, slip=asked.slip, speed=float(v)) for v in speeds)
+    linearizations = tuple(linearized(of_vehicle, of_rail, slip=asked.slip, speed=float(v)) for v in speeds)
     problem = stability_problem(of_vehicle, of_rail, own, asked, seed=scenario.seed)
     certificates = verify(problem, progress=progress, stored=stored)
     growth = growth_of(problem, certificates)
@@ -254,6 +260,16 @@ def dossier(
             command=stop_command,
             progress=progress,
         ),
+        ladder=climb(
+            of_vehicle,
+            own,
+            scenario,
+            slip_reference=asked.slip,
+            plants=models_of(of_vehicle),
+            progress=lambda model: progress(f"ladder of models: {model}"),
+        )
+        if ladder
+        else None,
         scenario=scenario,
         previous=previous,
         provenance=provenance(command=command, seed=scenario.seed, inputs=inputs, certificates=certificates),

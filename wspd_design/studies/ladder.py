@@ -77,7 +77,7 @@ MEASURES = (
         unit="of the static load",
         tolerance=0.01,
         share=True,
-        deviation=_worst(lambda axle: axle.load_spread / axle.static_load),
+        deviation=_worst(lambda axle: axle.relative_spread),
     ),
     Measure(
         name="vibration of the rims, 8 to 18 Hz",
@@ -112,6 +112,7 @@ class Ladder:
     rail: str
     initial_speed: float  # m/s
     rungs: tuple[Rung, ...]  # the smallest model first
+    remark: str = ""  # what is inferred about the models; empty where nothing is
 
     @property
     def agreements(self) -> tuple[Agreement, ...]:

@@ -11,7 +11,7 @@ from typing import get_args
 from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.model.hertz import contact_from_radii
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import constants, load_entries, load_vehicle, vehicle_of
+from wspd_design.parameters.loading import constants, load_entries, load_vehicle, steel, vehicle_of
 from wspd_design.parameters.records import Entry, ParameterSet, Vehicle
 from wspd_design.parameters.schema import BuildUp
 from wspd_design.parameters.units import KMH
@@ -32,8 +32,6 @@ RATED_SPEEDS = {
 
 _ANSWERS = ("laden.", "brake.build_up", "brake.supply_rate")
 """Beginnings of the numbers that are there only if the answers ask for them."""
-
-_YOUNG, _POISSON, _RAIL_CROWN = 210e9, 0.25, 0.3  # Pa, -, m: as for the contact of the ER24PC
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -222,11 +220,13 @@ def _contact(wanted: Wanted) -> dict[str, Entry]:
     load = wanted.mass * constants().gravity / (2 * wanted.wheelsets)
     radius = wanted.wheel_diameter / 2.0
     contact = contact_from_radii(
-        wheel_load=load, wheel_radius=radius, rail_radius=_RAIL_CROWN, young=_YOUNG, poisson=_POISSON
+        wheel_load=load,
+        wheel_radius=radius,
+        rail_radius=steel().rail_crown,
+        young=steel().young,
+        poisson=steel().poisson,
     )
-    hertz = (
-        f"Hertz: wheel of {radius:.4g} m on a crown of {1e3 * _RAIL_CROWN:g} mm, {load / 1e3:.4g} kN, steel"
-    )
+    hertz = f"Hertz: wheel of {radius:.4g} m on a crown of {1e3 * steel().rail_crown:g} mm, {load / 1e3:.4g} kN, steel"
     found = [
         ruled("contact.shear_modulus", contact.shear_modulus, "GPa", "E / (2 (1 + nu)), 210 GPa and 0.25"),
         ruled("contact.semi_axis_rolling", contact.semi_axis_rolling, "mm", hertz),

@@ -43,6 +43,11 @@ class AxleFigures:
         """Relative change of the wheel load by braking [-]."""
         return self.braking_load / self.static_load - 1.0
 
+    @property
+    def relative_spread(self) -> float:
+        """Spread of the wheel load over its static value [-]."""
+        return self.load_spread / self.static_load
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rung:

@@ -1,4 +1,4 @@
-"""exp, log, atan2 and sin of the compiled code against mpmath with 50 digits."""
+"""exp, log, atan2, sin and cos of the compiled code against mpmath with 50 digits."""
 
 import math
 from importlib.resources import files
@@ -24,6 +24,7 @@ void {name}(const double *restrict x, const double *restrict y, double *restrict
         "exp_": "wspd_exp(x[l])",
         "log_": "wspd_log(x[l])",
         "sin_": "wspd_sin(x[l])",
+        "cos_": "wspd_cos(x[l])",
         "atan_": "wspd_atan2(x[l], 1.0)",
         "atan2_": "wspd_atan2(x[l], y[l])",
     }.items()
@@ -92,6 +93,14 @@ RANGES = {
             *around(*(0.5 * math.pi * k for k in range(9))),
         ],
     ),
+    "cos_": (
+        mpmath.cos,
+        [
+            *np.linspace(-10000.0, 10000.0, 900),
+            *RNG.uniform(-7.0, 7.0, 900),
+            *around(*(0.5 * math.pi * k for k in range(9))),
+        ],
+    ),
     "atan_": (
         mpmath.atan,
         [
@@ -125,6 +134,7 @@ def test_special_arguments(evaluate):
     )
     np.testing.assert_array_equal(evaluate("log_", [1.0, 0.0, inf, -1.0]), [0.0, -inf, inf, math.nan])
     np.testing.assert_array_equal(evaluate("sin_", [0.0, inf]), [0.0, math.nan])
+    np.testing.assert_array_equal(evaluate("cos_", [0.0, inf]), [1.0, math.nan])
     np.testing.assert_allclose(evaluate("atan_", [0.0, inf, -inf]), [0.0, math.pi / 2, -math.pi / 2])
 
 

@@ -22,9 +22,11 @@ from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.judgment import judged_drawn, judged_stop
+from wspd_design.studies.ladder import Ladder
 from wspd_design.studies.loop_growth import Growth
 from wspd_design.studies.provenance import InputFile, Provenance
 from wspd_design.studies.reported_law import ReportedLaw
+from wspd_design.studies.rung import Rung, axle_figures
 from wspd_design.studies.uncertainty import Effect, Spread, Uncertainty, Variant, WorstSet
 
 LYAPUNOV = ("lyapunov_one", "two")  # checks whose curve is a Lyapunov function
@@ -102,6 +104,8 @@ def trial(
         dead_time=0.0,
         shortest_pulse=0.0,
         initial_speed=INITIAL_SPEED,
+        seed=0,
+        wheel_radius=0.55,
         ending=ending,
         time=time,
         speed=speed,
@@ -110,6 +114,7 @@ def trial(
         slip=slip,
         torque=30e3 + 1e4 * np.cos(3.0 * time[:, np.newaxis] + np.arange(4)),
         wheel_load=94e3 + 1e4 * np.array([1.5, 0.5, -0.5, -1.5]) * np.ones((401, 1)),
+        cylinder_pressure=np.full((401, 4), 3e5),
         axle_samples=(samples,) * 4,
         totals=Totals(**totals),
         final_wheel_speeds=(0.0,) * 4,
@@ -152,7 +157,7 @@ def trial(
         energy_residual=-3.4e-8,
     )
     check = StepCheck(distance=2e-9, slip=3e-7, refinement=1, sensitive=spread > 0.0, spread=spread)
-    return Trial(run=run, metrics=replace(figures, **changes), check=check)
+    return Trial(run=run, metrics=replace(figures, **changes), check=check, slip_reference=0.14)
 
 
 def estimating(plain: Trial) -> Trial:
@@ -231,6 +236,25 @@ def faults(**changes) -> Robustness:
         most_adhesion=(24e3, 31e3),
     )
     return replace(plain, **changes)
+
+
+def sample_ladder() -> Ladder:
+    """Return a ladder of two models, of which the smaller one has other loads."""
+    made = trial("mine")
+    axles = axle_figures(made.run, wheelsets=4, wheel_radius=0.55, build_up=1.2)
+    alike = tuple(replace(axle, braking_load=axle.static_load) for axle in axles)
+    top = Rung(
+        title="planar", plant="planar", run=made.run, metrics=made.metrics, axles=axles, step_change=2e-9
+    )
+    loaded = tuple(replace(axle, static_load=94e3) for axle in axles)
+    return Ladder(
+        vehicle="er24pc",
+        controller="mine",
+        rail="polach-wet",
+        initial_speed=INITIAL_SPEED,
+        rungs=(replace(top, title="quarter", plant="quarter", axles=alike), replace(top, axles=loaded)),
+        remark="Inferred: 3 of the 4 numbers of a model.",
+    )
 
 
 def uncertainty(**changes) -> Uncertainty:
@@ -378,6 +402,7 @@ def sample_dossier(
         next_step=None,
         robustness=None,
         uncertainty=None,
+        ladder=None,
         scenario=Scenario(rail=load_rail(rail), initial_speed=INITIAL_SPEED, seed=7),
         previous=None,
         provenance=SAMPLE_PROVENANCE,

@@ -1,5 +1,6 @@
 """Evidence and a reproduction made by hand, with invented numbers: nothing is simulated."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from tests.unit.reporting.sample_dossier import INITIAL_SPEED, SAMPLE_PROVENANCE, trial
 from wspd_design.design.records import Specification
 from wspd_design.parameters.loading import load_track_spectrum, load_vehicle
+from wspd_design.plants.multibody.loading import load_multibody
 from wspd_design.studies.paper.conclusions import conclusions
 from wspd_design.studies.paper.disturbances import CHANNELS, Disturbance, TrackChannel
 from wspd_design.studies.paper.evidence import (
@@ -18,10 +20,13 @@ from wspd_design.studies.paper.evidence import (
     StopFigures,
     Yardstick,
 )
+from wspd_design.studies.paper.locomotive import OnLocomotive
 from wspd_design.studies.paper.published import load_table10
 from wspd_design.studies.paper.reproduction import FrictionCurve, Reproduction
+from wspd_design.studies.paper.section7 import Section7
 from wspd_design.studies.paper.slip_history import SlipHistory
 from wspd_design.studies.paper.table10 import Table10Row
+from wspd_design.studies.tornado import Effects, Swing, Tornado
 
 HISTORY = SlipHistory(
     early_rms=0.1,
@@ -111,9 +116,45 @@ def sample_evidence(**changes) -> Evidence:
         ideal_fill_time=0.01,
         ideal_sample_time=1e-3,
         fill_time=0.6,
-        load_range=(160e3, 220e3),
+        mean_loads=(220e3, 200e3, 180e3, 160e3),
     )
     return replace(evidence, **changes)
+
+
+def on_locomotive(small: Section7) -> OnLocomotive:
+    """Return stops on the multibody model, of which those on irregular track shift no weight."""
+    level = replace(small.evidence, mean_loads=(188.2e3, 188.1e3, 188e3, 188e3))
+    nominal = Effects(distance=200.0, transfer=0.1, relief=-0.1, slip=0.14)
+    return OnLocomotive(
+        model=load_multibody("er24pc-82"),
+        smooth=small,
+        irregular=replace(small, evidence=level, conclusions=conclusions(level)),
+        seed=1,
+        tornado=Tornado(
+            plant="locomotive",
+            controller="afsmc",
+            rail="table10-wet",
+            initial_speed=INITIAL_SPEED,
+            nominal=nominal,
+            swings=(
+                Swing(
+                    name="traction_rod.height",
+                    low=0.0,
+                    high=1.1,
+                    at_low=replace(nominal, transfer=0.05),
+                    at_high=replace(nominal, distance=201.0, transfer=0.16),
+                ),
+                Swing(
+                    name="conicity",
+                    low=0.025,
+                    high=0.4,
+                    at_low=nominal,
+                    at_high=replace(nominal, slip=0.15, distance=math.inf),
+                ),
+            ),
+            stops=5,
+        ),
+    )
 
 
 def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
@@ -122,7 +163,8 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
     slip = np.linspace(0.0, 1.0, 21)
     wavenumber = np.linspace(0.3, 2.0, 20)
     distance = np.arange(0.0, 30.0, 0.5)
-    return Reproduction(
+    small = Section7(
+        plant="planar",
         vehicle=load_vehicle("er24pc"),
         specification=Specification(),
         trials=trials,
@@ -137,6 +179,10 @@ def sample_reproduction(evidence: Evidence | None = None) -> Reproduction:
         ),
         evidence=evidence,
         conclusions=conclusions(evidence),
+    )
+    return Reproduction(
+        small=small,
+        locomotive=on_locomotive(small),
         friction=tuple(
             FrictionCurve(rail=rail, speed=speed, slip=slip, force=3e4 * np.tanh(10.0 * slip))
             for rail in RAILS

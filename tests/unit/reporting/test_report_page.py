@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.unit.reporting.sample_dossier import faults, sample_dossier, uncertainty
+from tests.unit.reporting.sample_dossier import faults, sample_dossier, sample_ladder, uncertainty
 from wspd_design.reporting.blocks import Heading
 from wspd_design.reporting.report import report_document
 
@@ -18,7 +18,9 @@ PAGE = (ROOT / "docs/report.md").read_text()
 
 
 def test_the_page_names_every_section_in_the_order_of_the_report():
-    dossier = replace(sample_dossier(), uncertainty=uncertainty(), robustness=faults())
+    dossier = replace(
+        sample_dossier(), uncertainty=uncertainty(), robustness=faults(), ladder=sample_ladder()
+    )
     document = report_document(dossier, datetime(2026, 1, 2, tzinfo=UTC))
     sections = [each.text for each in document.blocks if isinstance(each, Heading) and each.level == 1]
     table = PAGE.partition("## Its sections")[2].partition("\n## ")[0]

@@ -7,10 +7,15 @@ import pytest
 from coupled_planar import CoupledPlanar
 from test_lock import LOCK_AND_RELEASE
 
-from wspd_design.parameters.loading import load_rail
+from wspd_design.codegen.closed_loop import load_closed_loop
+from wspd_design.codegen.virtual_machine import run_virtual
+from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_rail, load_track_spectrum
 from wspd_design.plants.planar import Planar
-from wspd_design.simulation.records import Fault, Patch, Scenario, Sensing
+from wspd_design.simulation.loop_input import loop_input, sample_rows
+from wspd_design.simulation.records import Fault, LoadIrregularity, Patch, Scenario, Sensing
 from wspd_design.simulation.stop import simulate_on
+from wspd_design.simulation.track import irregular_track
 
 WET = Scenario(rail=load_rail("polach-wet"), initial_speed=60.0 / 3.6)
 FEATURES = {
@@ -64,3 +69,55 @@ def test_further_traces_are_recorded_from_the_start(er24pc, make_controller):
     assert run.time[0] == 0.0
     np.testing.assert_array_equal(run.further["doubled_load"], 2.0 * run.wheel_load)
     np.testing.assert_allclose(run.wheel_load[0], er24pc.mass * 9.81 / 8, rtol=1e-12)
+
+
+def engines(plant, law, scenario):
+    """The same stop compiled and in the virtual machine."""
+    given = replace(loop_input([(plant, scenario)], law), trace_rows=20_000)
+    rows = sample_rows(law)
+    compiled = load_closed_loop(plant, law).run(given, sample_rows=rows)
+    return compiled, run_virtual(plant, law, given, sample_rows=rows, disturbed=False)
+
+
+def test_without_a_compiler_the_numbers_are_the_same(er24pc, make_controller):
+    scenario = replace(
+        WET, initial_speed=6.0, patches=(Patch(start=5.0, rail=load_rail("polach-dry")),), grade=-0.01
+    )
+    compiled, virtual = engines(CoupledPlanar(er24pc), make_controller("trenitalia"), scenario)
+    assert (virtual.steps, virtual.trace.shape) == (compiled.steps, compiled.trace.shape)
+    np.testing.assert_allclose(virtual.trace, compiled.trace, rtol=1e-7, atol=1e-7)
+    for name, values in compiled.lane_totals.items():
+        np.testing.assert_allclose(virtual.lane_totals[name], values, rtol=1e-7, atol=1e-9, err_msg=name)
+
+
+def test_the_track_under_every_wheel_is_that_of_its_table(er24pc, make_controller):
+    # A stop so long that the table repeats: 3 km from 144 km/h with a gentle brake.
+    scenario = replace(WET, initial_speed=40.0, irregularities="high", seed=7)
+    gentle = replace(er24pc, brake=replace(er24pc.brake, max_torque=2.5e3))
+    run = simulate_on(CoupledPlanar(gentle, track_gain=10.0), make_controller("none"), scenario)
+    table = irregular_track(load_track_spectrum("erri-b176"), "high", seed=7)
+    assert run.distance[-1] > 1.2 * table.period
+    offsets = Planar(gentle).offsets
+    heights = np.column_stack([table.at(run.distance - offset)[0][0] for offset in offsets])
+    assert np.abs(heights).max() > 3e-3
+    # Transfers move load and make none: without what the track does the loads add up to the weight.
+    total = (run.wheel_load / (1.0 + 10.0 * heights)).sum(axis=1)
+    np.testing.assert_allclose(total, gentle.mass * 9.81 / 2, rtol=1e-9)
+
+
+def test_without_a_compiler_the_track_is_the_same(er24pc, make_controller):
+    compiled, virtual = engines(
+        CoupledPlanar(er24pc, track_gain=10.0),
+        make_controller("trenitalia"),
+        replace(WET, irregularities="low"),
+    )
+    assert compiled.stop_totals["distance"][0] > 40.0
+    np.testing.assert_allclose(virtual.trace, compiled.trace, rtol=1e-7, atol=1e-7)
+
+
+def test_an_irregular_track_needs_a_plant_that_rolls_over_it(er24pc, make_controller):
+    with pytest.raises(UserError, match='"planar" does not; take the plant "locomotive"'):
+        simulate_on(Planar(er24pc), make_controller("none"), replace(WET, irregularities="low"))
+    even = LoadIrregularity(spacing=1.0, factors=((1.0,),) * 4)
+    with pytest.raises(UserError, match="works out its wheel loads itself"):
+        simulate_on(CoupledPlanar(er24pc), make_controller("none"), replace(WET, load_irregularity=even))

@@ -33,9 +33,7 @@ _AXLES: "tuple[ColumnOf[tuple[Rung, int, AxleFigures]], ...]" = (
     ColumnOf(title="slip\nmax", decimals=3, read=lambda row: row[2].slip_max),
     ColumnOf(title="load", unit="kN", decimals=1, read=lambda row: row[2].braking_load / 1e3),
     ColumnOf(title="transfer", unit="%", decimals=1, read=lambda row: 100.0 * row[2].transfer),
-    ColumnOf(
-        title="spread", unit="%", decimals=1, read=lambda row: 100.0 * row[2].load_spread / row[2].static_load
-    ),
+    ColumnOf(title="spread", unit="%", decimals=1, read=lambda row: 100.0 * row[2].relative_spread),
     ColumnOf(title="vibration", unit="m/s", decimals=3, read=lambda row: row[2].vibration),
     ColumnOf(title="at", unit="Hz", decimals=1, read=lambda row: row[2].vibration_frequency),
 )

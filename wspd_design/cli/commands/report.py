@@ -57,6 +57,10 @@ def report(
             "(wspd docs requirements).",
         ),
     ] = None,
+    ladder: Annotated[
+        bool,
+        typer.Option("--ladder", help="Show the stop on every model of the vehicle, too (docs/models.md)."),
+    ] = False,
     template: Annotated[
         Path | None,
         typer.Option(
@@ -103,7 +107,7 @@ def report(
             SensorOptions(),
             StopOptions(),
         )
-        if any(others) or set_otherwise or pdf or force:
+        if any(others) or set_otherwise or pdf or force or ladder:
             raise UserError(f"--replay takes everything from {replay}; leave the other options out")
         _show_replay(replay, law=name)
         return
@@ -128,6 +132,7 @@ def report(
         seed=seed,
         template=None if letterhead == BLANK else TEMPLATE,
         requirements=requirements,
+        ladder=ladder,
         sensors=sensors,
         disturbances=disturbances,
     )

@@ -1,4 +1,4 @@
-/* exp, log, atan2 and sin without branches or tables, so that they vectorize and give the same bits on every machine:
+/* exp, log, atan2, sin and cos without branches or tables, so that they vectorize and give the same bits on every machine:
    argument reduction and one polynomial, fitted by Chebyshev interpolation in 50 digits. Sums of products are
    fused by name: compilers then have no choice, and machines without the instruction get the same bits, slower. */
 #include <math.h>
@@ -83,11 +83,8 @@ static inline double wspd_atan2(double y, double x) /* not both zero */
     return (base + r) + FMA(r * z, q, rest);
 }
 
-static inline double wspd_sin(double x) /* of a moderate argument */
+static inline double wspd_sin_near(double r, uint64_t shifted) /* sin(r), or its opposite where shifted is odd */
 {
-    double shifted = FMA(x, 0x1.45f306dc9c883p-2, ROUNDER); /* multiples of pi */
-    double k = shifted - ROUNDER;
-    double r = FMA(k, -0x1.898cc51701b84p-63, FMA(k, -0x1.0b4611a000000p-33, FMA(k, -0x1.921fb54400000p1, x)));
     double z = r * r;
     double q = 0x1.89a19d400e252p-49;
     q = FMA(q, z, -0x1.ae512165ca336p-41);
@@ -98,5 +95,22 @@ static inline double wspd_sin(double x) /* of a moderate argument */
     q = FMA(q, z, 0x1.1111111111107p-7);
     q = FMA(q, z, -0x1.5555555555555p-3);
     double result = FMA(r * z, q, r);
-    return from_bits(to_bits(result) ^ (to_bits(shifted) << 63));
+    return from_bits(to_bits(result) ^ (shifted << 63));
+}
+
+static inline double wspd_less_turns(double x, double k) /* x less k pi */
+{
+    return FMA(k, -0x1.898cc51701b84p-63, FMA(k, -0x1.0b4611a000000p-33, FMA(k, -0x1.921fb54400000p1, x)));
+}
+
+static inline double wspd_sin(double x) /* of a moderate argument */
+{
+    double shifted = FMA(x, 0x1.45f306dc9c883p-2, ROUNDER); /* multiples of pi */
+    return wspd_sin_near(wspd_less_turns(x, shifted - ROUNDER), to_bits(shifted));
+}
+
+static inline double wspd_cos(double x) /* likewise */
+{
+    double shifted = FMA(x, 0x1.45f306dc9c883p-2, -0.5) + ROUNDER;
+    return -wspd_sin_near(wspd_less_turns(x, shifted - ROUNDER + 0.5), to_bits(shifted));
 }

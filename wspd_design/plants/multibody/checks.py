@@ -1,4 +1,4 @@
-"""What a multibody vehicle must not contradict: bodies that exist, joints that fit, masses that are left."""
+"""What a multibody vehicle must not contradict: bodies that exist, joints that fit, mass that is left."""
 
 from collections.abc import Iterator
 
@@ -10,8 +10,8 @@ from wspd_design.plants.multibody.schema import spring_keys
 _SAME_PLACE = 1e-9  # m
 
 
-def check(model: Multibody, where: str) -> None:
-    """Refuse a vehicle that contradicts itself.
+def check_topology(model: Multibody, where: str) -> None:
+    """Refuse bodies and elements that do not fit together.
 
     Raises
     ------
@@ -21,13 +21,35 @@ def check(model: Multibody, where: str) -> None:
     _check_bodies(model, where)
     for body in model.bodies:
         _check_joint(model, body, where)
-        _check_inertia(model, body, where)
     for what, name, joints in _references(model):
         body = _body(model, name, f"{what} in {where}")
-        if joints and body.joint not in joints:
+        if body.joint not in joints:
             raise UserError(
                 f'{what} in {where} names {name}, whose joint is "{body.joint}"; it must be {" or ".join(joints)}.'
             )
+    braked = [brake.wheelset for brake in model.brakes]
+    twice = next((name for name in braked if braked.count(name) > 1), "")
+    if twice:
+        raise UserError(f"{twice} in {where} has two brakes; give one brake all of their levers.")
+
+
+def check_numbers(model: Multibody, where: str) -> None:
+    """Refuse numbers with which the vehicle contradicts itself.
+
+    Raises
+    ------
+    UserError
+        With the first contradiction that is found.
+    """
+    rest = model.mass(model.body(model.remainder))
+    if rest <= 0.0:
+        raise UserError(
+            f"mass = {model.numbers['mass']:g} kg in {where} leaves {rest:g} kg for {model.remainder}; it must exceed "
+            "the sum of all other bodies."
+        )
+    for body in model.bodies:
+        _check_inertia(model, body, where)
+        _check_rotor(model, body, where)
     for spring in model.springs:
         stiffness = f"{spring.kind}.stiffness_z"
         if not any(f"{spring.kind}.{key}" in model.numbers for key, _ in spring_keys()):
@@ -45,10 +67,6 @@ def check(model: Multibody, where: str) -> None:
             raise UserError(
                 f"[brakes.{brake.kind}] in {where} has a lever of zero length, and no force on it brakes; correct it."
             )
-    braked = [brake.wheelset for brake in model.brakes]
-    twice = next((name for name in braked if braked.count(name) > 1), "")
-    if twice:
-        raise UserError(f"{twice} in {where} has two brakes; give one brake all of their levers.")
 
 
 def _check_bodies(model: Multibody, where: str) -> None:
@@ -69,12 +87,6 @@ def _check_bodies(model: Multibody, where: str) -> None:
         raise UserError(
             f'remainder = "{model.remainder}" in {where} is no body{did_you_mean(model.remainder, names)}; name the '
             "body whose mass is that of the vehicle less all others."
-        )
-    rest = model.mass(model.body(model.remainder))
-    if rest <= 0.0:
-        raise UserError(
-            f"mass = {model.numbers['mass']:g} kg in {where} leaves {rest:g} kg for {model.remainder}; it must exceed "
-            "the sum of all other bodies."
         )
 
 
@@ -98,17 +110,18 @@ def _check_joint(model: Multibody, body: Body, where: str) -> None:
             f'{body.name} of {what} turns on {parent.name}, whose joint is "{parent.joint}"; a {body.joint} turns on '
             f"a body whose joint is {' or '.join(allowed)}."
         )
-    if body.joint == "rotor":
-        distance = (a - b for a, b in zip(model.place(body.at), _axis(model, body, parent), strict=True))
-        if max(abs(each) for each in distance) > _SAME_PLACE:
-            raise UserError(
-                f"{body.name} of {what} must have its center of gravity on its axis; make at and axis equal, or "
-                f"without axis put both at the center of {parent.name}."
-            )
 
 
-def _axis(model: Multibody, body: Body, parent: Body) -> tuple[float, float, float]:
-    return model.place(parent.at if body.axis is None else body.axis)
+def _check_rotor(model: Multibody, body: Body, where: str) -> None:
+    if body.joint != "rotor":
+        return
+    other = model.body(body.on)
+    axis = other.at if body.axis is None else body.axis
+    if max(abs(each) for each in model.offset(body.at, axis)) > _SAME_PLACE:
+        raise UserError(
+            f"{body.name} of [bodies.{body.kind}] in {where} must have its center of gravity on its axis; make at and "
+            f"axis equal, or without axis put both at the center of {other.name}."
+        )
 
 
 def _check_inertia(model: Multibody, body: Body, where: str) -> None:
@@ -132,7 +145,7 @@ def _check_inertia(model: Multibody, body: Body, where: str) -> None:
 
 
 def _references(model: Multibody) -> Iterator[tuple[str, str, tuple[str, ...]]]:
-    """Yield where a body is named, its name, and the joints that it may have; empty: any but a rotor."""
+    """Yield where a body is named, its name, and the joints that it may have."""
     solid = ("free", "wheelset", "revolute")
     for part, elements in (
         ("springs", model.springs),

@@ -186,13 +186,22 @@ def torsion(model: Multibody, gear: Gear) -> dict[int, Number]:
     }
 
 
-def _torsion(model: Multibody, gear: Gear, q: Any, v: Any, forces: Forces) -> None:
+def gear_moment(model: Multibody, gear: Gear, q: Any, v: Any) -> Number:
+    """Return the moment in the torsion spring between rotor and pinion [N m]."""
+    twist, rate = _twist(model, gear, q, v)
+    return model.numbers[f"{gear.kind}.stiffness"] * twist + model.numbers[f"{gear.kind}.damping"] * rate
+
+
+def _twist(model: Multibody, gear: Gear, q: Any, v: Any) -> tuple[Number, Number]:
     shares = torsion(model, gear)
-    twist = sum(share * q[k] for k, share in shares.items())
-    rate = sum(share * v[k] for k, share in shares.items())
-    stiffness, damping = (model.numbers[f"{gear.kind}.{key}"] for key in ("stiffness", "damping"))
-    moment = stiffness * twist + damping * rate
-    for k, share in shares.items():
+    twist, rate = (sum(share * of[k] for k, share in shares.items()) for of in (q, v))
+    return twist, rate
+
+
+def _torsion(model: Multibody, gear: Gear, q: Any, v: Any, forces: Forces) -> None:
+    twist, rate = _twist(model, gear, q, v)
+    moment = gear_moment(model, gear, q, v)
+    for k, share in torsion(model, gear).items():
         forces.twist(k, -share * moment)
-    forces.potential += 0.5 * stiffness * twist**2
-    forces.dissipation += damping * rate**2
+    forces.potential += 0.5 * model.numbers[f"{gear.kind}.stiffness"] * twist**2
+    forces.dissipation += model.numbers[f"{gear.kind}.damping"] * rate**2

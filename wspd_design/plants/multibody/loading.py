@@ -14,7 +14,7 @@ from wspd_design.parameters.records import Entry
 from wspd_design.parameters.units import units_of
 from wspd_design.parameters.words import did_you_mean
 from wspd_design.plants.multibody import schema
-from wspd_design.plants.multibody.checks import check
+from wspd_design.plants.multibody.checks import check_numbers, check_topology
 from wspd_design.plants.multibody.expansion import (
     Instance,
     chosen,
@@ -43,7 +43,6 @@ def available_multibodies() -> list[str]:
     return sorted(name.removesuffix(".toml") for name in names if name.endswith(".toml"))
 
 
-@cache
 def load_multibody(name_or_path: str | Path) -> Multibody:
     """Load a multibody vehicle by its name, such as ``er24pc-82``, or from a ``.toml`` file.
 
@@ -71,8 +70,13 @@ def load_multibody(name_or_path: str | Path) -> Multibody:
             f'unknown multibody vehicle "{text}"{did_you_mean(text, available_multibodies())}; available: '
             f"{', '.join(available_multibodies())}, or the path of a .toml file."
         )
-    file = f"{text}.toml"
-    return _multibody(text, read_toml(data_file("multibody", file), file), file, {})
+    return _shipped(text)
+
+
+@cache
+def _shipped(name: str) -> Multibody:
+    file = f"{name}.toml"
+    return _multibody(name, read_toml(data_file("multibody", file), file), file, {})
 
 
 def _multibody(name: str, document: dict[str, Any], where: str, defaults: dict[str, str]) -> Multibody:
@@ -82,29 +86,27 @@ def _multibody(name: str, document: dict[str, Any], where: str, defaults: dict[s
         raise UserError(f"title = {title} in {where} must be text; put it in quotes.")
     tables = instances_of(_group(document, "instances", where), where)
     items = {part: list(_items(document, part, tables, where)) for part in schema.ITEM_KEYS}
-    bodies = tuple(_body(*item) for item in items["bodies"])
     parts: dict[str, Any] = {
-        "bodies": bodies,
+        "bodies": tuple(_body(*item) for item in items["bodies"]),
         "springs": tuple(_spring(*item) for item in items["springs"]),
         "rods": tuple(_rod(*item) for item in items["rods"]),
         "gears": tuple(_gear(*item) for item in items["gears"]),
         "brakes": tuple(_brake(*item) for item in items["brakes"]),
     }
     stops = tuple(_bump_stop(*item) for item in items["bump_stops"])
-    wanted = schema.quantities_of(**parts, stops=stops, remainder=remainder)
-    entries = _entries(_group(document, "numbers", where), wanted, where, defaults)
+    topology = Multibody(
+        name=name, title=title, **parts, stops=stops, remainder=remainder, numbers={}, entries={}
+    )
+    check_topology(topology, where)
+    entries = _entries(_group(document, "numbers", where), schema.quantities_of(topology), where, defaults)
     numbers = {key: value for name, entry in entries.items() for key, value in _flat(name, entry.value)}
-    points = {stop.kind: _points(stop.kind, numbers, where) for stop in stops}
-    model = Multibody(
-        name=name,
-        title=title,
-        **parts,
-        stops=tuple(replace(stop, points=points[stop.kind]) for stop in stops),
-        remainder=remainder,
+    model = replace(
+        topology,
+        stops=tuple(replace(stop, points=_points(stop.kind, numbers, where)) for stop in stops),
         numbers=numbers,
         entries=entries,
     )
-    check(model, where)
+    check_numbers(model, where)
     return model
 
 

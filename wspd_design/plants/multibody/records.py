@@ -1,6 +1,6 @@
 """A vehicle of bodies, joints, springs, dampers, gears and brakes: its topology, and its numbers apart from it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
@@ -183,6 +183,19 @@ class Multibody:
     def with_preloads(self, preloads: Mapping[str, Number]) -> "Multibody":
         """Return the same vehicle with these preloads, by the names of :attr:`preload_names`."""
         return replace(self, preloads={name: preloads[name] for name in self.preload_names})
+
+    @property
+    def parameters(self) -> tuple[Number, ...]:
+        """Run-time parameters: numbers, then preloads, in the order of their names."""
+        return (*self.numbers.values(), *self.preloads.values())
+
+    def with_parameters(self, values: Sequence[Number]) -> "Multibody":
+        """Return the same topology with other run-time parameters, such as symbols."""
+        count = len(self.numbers)
+        numbers = dict(zip(self.number_names, values[:count], strict=True))
+        return self.with_numbers(numbers).with_preloads(
+            dict(zip(self.preload_names, values[count:], strict=True))
+        )
 
     def length(self, terms: Length) -> Number:
         """Return a length [m]."""

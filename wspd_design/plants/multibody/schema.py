@@ -1,20 +1,11 @@
 """What a file of a multibody vehicle holds: keys of its tables, and the numbers that its topology asks for."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Final, TypeAlias, get_args
 
 from wspd_design.parameters.schema import Quantity
 from wspd_design.parameters.units import Dimension
-from wspd_design.plants.multibody.records import (
-    Body,
-    BumpStop,
-    CaliperBrake,
-    Gear,
-    Joint,
-    Length,
-    Rod,
-    Spring,
-)
+from wspd_design.plants.multibody.records import Body, Joint, Length, Multibody
 
 Wanted: TypeAlias = dict[str, Quantity]
 
@@ -60,6 +51,7 @@ _VEHICLE: Final[Wanted] = {
     "wheel_radius": Quantity(dimension="length", low=0.0, low_is_allowed=False, plausible=(0.1, 1.5)),
     "wheel_half_spacing": Quantity(dimension="length", low=0.0, low_is_allowed=False, plausible=(0.3, 1.0)),
     "conicity": Quantity(dimension="ratio", low=0.0, high=1.0),
+    "flange_clearance": Quantity(dimension="length", low=0.0, low_is_allowed=False, plausible=(1e-3, 0.05)),
 }
 _AXES = ("x", "y", "z")
 _TURNS = ("roll", "pitch", "yaw")
@@ -75,40 +67,31 @@ def spring_keys() -> Iterator[tuple[str, Dimension]]:
         yield f"damping_{turn}", "rotational damping"
 
 
-def quantities_of(
-    *,
-    bodies: Iterable[Body],
-    springs: Iterable[Spring],
-    rods: Iterable[Rod],
-    stops: Iterable[BumpStop],
-    gears: Iterable[Gear],
-    brakes: Iterable[CaliperBrake],
-    remainder: str,
-) -> Wanted:
+def quantities_of(model: Multibody) -> Wanted:
     """Return what is expected of every number, by its name, in the order of the parts."""
     wanted, lengths = dict(_VEHICLE), list[Length]()
-    for body in bodies:
-        if body.name != remainder:
+    for body in model.bodies:
+        if body.name != model.remainder:
             wanted[f"{body.kind}.mass"] = _above("mass")
         wanted |= {f"{body.kind}.{key}": quantity for key, quantity in _inertia(body)}
         lengths += [*body.at, *(body.axis or ())]
-    for spring in springs:
+    for spring in model.springs:
         wanted |= {f"{spring.kind}.{key}": _optional(dimension) for key, dimension in spring_keys()}
         lengths += spring.at
-    for rod in rods:
+    for rod in model.rods:
         wanted[f"{rod.kind}.stiffness"] = _above("stiffness")
         wanted[f"{rod.kind}.damping"] = _optional("linear resistance")
         lengths += [*rod.ends[0], *rod.ends[1]]
-    for stop in stops:
+    for stop in model.stops:
         wanted[f"{stop.kind}.travel"] = Quantity(dimension="length", shape="vector", low=0.0)
         wanted[f"{stop.kind}.force"] = Quantity(dimension="force", shape="vector", low=0.0)
         lengths += stop.at
-    for gear in gears:
+    for gear in model.gears:
         wanted[f"{gear.kind}.ratio"] = _above("ratio")
         wanted[f"{gear.kind}.pinion_inertia"] = Quantity(dimension="inertia", low=0.0)
         wanted[f"{gear.kind}.stiffness"] = _above("rotational stiffness")
         wanted[f"{gear.kind}.damping"] = Quantity(dimension="rotational damping", low=0.0)
-    for brake in brakes:
+    for brake in model.brakes:
         lengths += brake.levers
     for terms in lengths:
         for term in terms:

@@ -27,7 +27,7 @@ OUTCOMES = (
 
 def parts(made: Reproduction) -> tuple[Block, ...]:
     """Return the section about the parts of the adaptive fuzzy law."""
-    evidence = made.evidence
+    evidence = made.small.evidence
     ablations = evidence.ablations
     return (
         Heading(text="The adaptive fuzzy law, part by part", anchor="parts"),

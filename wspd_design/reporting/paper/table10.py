@@ -12,7 +12,7 @@ from wspd_design.studies.paper.table10 import Table10Row, largest, relative_rang
 
 def table10(made: Reproduction) -> tuple[Block, ...]:
     """Return the section about Table 10."""
-    rows = made.table10
+    rows = made.small.table10
     printed = [each.published.torque_integral_kNms for each in rows]
     ours = [each.metrics.torque_integral for each in rows]
     return (
@@ -114,9 +114,9 @@ def _numbers(rows: tuple[Table10Row, ...]) -> Table:
 
 
 def _parts(made: Reproduction) -> Table:
-    speed = made.evidence.initial_speed
+    speed = made.small.evidence.initial_speed
     return build(
-        made.table10,
+        made.small.table10,
         (
             ColumnOf(title="Controller", read=lambda each: each.published.controller),
             ColumnOf(title="Rail", read=lambda each: each.published.rail.removeprefix("table10-")),
@@ -167,7 +167,7 @@ def _momentum(rows: tuple[Table10Row, ...]) -> Table:
 
 
 def _ranking(made: Reproduction) -> Table:
-    evidence = made.evidence
+    evidence = made.small.evidence
     rows = [(name, [_place(evidence, name, rail) for rail in RAILS]) for name in (*CONTROLLERS, UNPROTECTED)]
     for title, field in (
         ("slip held at the reference", "constant_slip"),

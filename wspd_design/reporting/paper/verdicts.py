@@ -33,22 +33,23 @@ COUNTED = {
 
 def verdict(made: Reproduction) -> Verdict:
     """Return the judgment of the page; the worst finding decides."""
-    counts = Counter(each.verdict for each in made.conclusions)
+    found, rows = made.small.conclusions, made.small.table10
+    counts = Counter(each.verdict for each in found)
     worst = next(each for each in COUNTED if counts[each])
     tally = numbers.listing(
         [f"{counts[each]} {words[counts[each] > 1]}" for each, words in COUNTED.items() if counts[each]]
     )
     return Verdict(
         status=Status[worst.name],
-        sentence=f"Of {len(made.conclusions)} conclusions of Section 7, {tally} in our stops. Table 10 itself "
+        sentence=f"Of {len(found)} conclusions of Section 7, {tally} in our stops. Table 10 itself "
         f"comes out again, on friction and rule tables fitted to it: its 24 numbers deviate by "
-        f"{_percent(root_mean_square(made.table10), 2)} % rms and {_percent(largest(made.table10), 1)} % at most.",
+        f"{_percent(root_mean_square(rows), 2)} % rms and {_percent(largest(rows), 1)} % at most.",
     )
 
 
 def summary(made: Reproduction) -> tuple[Block, ...]:
     """Return the key numbers and the table of conclusions."""
-    evidence = made.evidence
+    evidence = made.small.evidence
     relay = max(abs(each.relay / each.printed - 1.0) for each in evidence.ablations)
     late = [evidence.stop("afsmc", each.rail).history.late_rms for each in evidence.ablations]
     places = []
@@ -59,9 +60,9 @@ def summary(made: Reproduction) -> tuple[Block, ...]:
         numbers=(
             KeyNumber(
                 label="Table 10, rms deviation",
-                value=_percent(root_mean_square(made.table10), 2),
+                value=_percent(root_mean_square(made.small.table10), 2),
                 unit="%",
-                note=f"largest of 24 numbers {_percent(largest(made.table10), 2)} %",
+                note=f"largest of 24 numbers {_percent(largest(made.small.table10), 2)} %",
             ),
             KeyNumber(
                 label="A plain relay in its place",
@@ -83,7 +84,7 @@ def summary(made: Reproduction) -> tuple[Block, ...]:
         )
     )
     table = build(
-        made.conclusions,
+        made.small.conclusions,
         (
             ColumnOf(
                 title="Conclusion of the paper",
@@ -110,9 +111,9 @@ def conclusions(made: Reproduction) -> tuple[Block, ...]:
             )
         ),
     ]
-    for topic in dict.fromkeys(each.topic for each in made.conclusions):
+    for topic in dict.fromkeys(each.topic for each in made.small.conclusions):
         found.append(Heading(text=topic.value, anchor=f"topic-{topic.name.lower()}", level=2))
-        for each in made.conclusions:
+        for each in made.small.conclusions:
             if each.topic is topic:
                 found += _conclusion(each)
     return tuple(found)

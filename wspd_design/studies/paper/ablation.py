@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.parameters.records import Vehicle
+from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.records import Run, Scenario
 from wspd_design.simulation.stop import simulate
 from wspd_design.studies.paper.evidence import Ablation
@@ -14,7 +15,9 @@ IDEAL_SAMPLE_TIME = 1e-3  # s
 SIGN_LAYER = 1e-3  # in s, whose printed gain is 1800 per unit of slip: sat becomes sgn
 
 
-def ablation(vehicle: Vehicle, law: AdaptiveFuzzy, scenario: Scenario) -> Ablation:
+def ablation(
+    vehicle: Vehicle, law: AdaptiveFuzzy, scenario: Scenario, *, plant: str = DEFAULT_PLANT
+) -> Ablation:
     """Simulate the printed law, its simplifications, and the printed law on a near-ideal actuator.
 
     Parameters
@@ -25,6 +28,8 @@ def ablation(vehicle: Vehicle, law: AdaptiveFuzzy, scenario: Scenario) -> Ablati
         The law as printed, with its command in kN m.
     scenario : Scenario
         The stop.
+    plant : str
+        Name of the model.
     """
     share = replace(law.gains, torque_unit=law.max_torque)
     relay = replace(
@@ -35,16 +40,18 @@ def ablation(vehicle: Vehicle, law: AdaptiveFuzzy, scenario: Scenario) -> Ablati
     )
 
     def distance(gains: AdaptiveFuzzyGains) -> float:
-        return simulate(vehicle, replace(law, gains=gains), scenario).totals.distance
+        return simulate(vehicle, replace(law, gains=gains), scenario, plant=plant).totals.distance
 
     def ripple(run: Run) -> float:
         return slip_history(
             run, slip_reference=law.gains.slip_reference, max_torque=law.max_torque
         ).late_ripple
 
-    printed = simulate(vehicle, law, scenario)
+    printed = simulate(vehicle, law, scenario, plant=plant)
     fast = replace(vehicle.brake, fill_time=IDEAL_FILL_TIME, vent_time=IDEAL_FILL_TIME)
-    ideal = simulate(replace(vehicle, brake=fast), replace(law, sample_time=IDEAL_SAMPLE_TIME), scenario)
+    ideal = simulate(
+        replace(vehicle, brake=fast), replace(law, sample_time=IDEAL_SAMPLE_TIME), scenario, plant=plant
+    )
     states = [sample.state for samples in printed.axle_samples for sample in samples]
     unit = law.gains.torque_unit / law.max_torque
     return Ablation(

@@ -73,7 +73,7 @@ class Evidence:
     ideal_fill_time: float  # s, of the near-ideal actuator
     ideal_sample_time: float  # s
     fill_time: float  # s, of the real one
-    load_range: tuple[float, float]  # N, wheel loads of Figure 21: lightest and heaviest wheelset on average
+    mean_loads: tuple[float, ...]  # N, vertical forces of Figure 21: mean of each wheelset, front first
 
     def stop(self, controller: str, rail: str) -> StopFigures:
         """Return one stop."""

@@ -57,7 +57,11 @@ PLANTED = {
         replace(GOOD, yardsticks=tuple(replace(each, ideal_stop=250.0) for each in GOOD.yardsticks)),
         "250.0 m",
     ),
-    "weight": (replace(GOOD, load_range=(188e3, 189e3)), "188 to 189 kN"),
+    "weight": (replace(GOOD, mean_loads=(189e3, 188.5e3, 188.2e3, 188e3)), "188 to 189 kN"),
+    "grouping": (
+        replace(GOOD, mean_loads=(211e3, 178e3, 198e3, 166e3)),
+        "1 with 211 kN, 3 with 198 kN, 2 with 178 kN, 4 with 166 kN",
+    ),
 }
 
 

@@ -18,6 +18,7 @@ JUDGES = (
     setting.air,
     setting.friction,
     setting.weight,
+    setting.grouping,
 )
 """In the order of the page."""
 

@@ -1,0 +1,253 @@
+"""Section 7 on the multibody model, beside the small one and the paper."""
+
+from collections.abc import Callable
+
+from wspd_design.reporting import numbers
+from wspd_design.reporting.blocks import (
+    Block,
+    Cell,
+    Definition,
+    Definitions,
+    Figure,
+    Heading,
+    Paragraph,
+    Status,
+    Table,
+)
+from wspd_design.reporting.figures.drawing import KILO
+from wspd_design.reporting.paper.figures import Setting, figures_of
+from wspd_design.reporting.tables import ColumnOf, Uncertain, build
+from wspd_design.reporting.text import Link, references, rich
+from wspd_design.simulation.comparison import Trial
+from wspd_design.studies.inferred import mark
+from wspd_design.studies.paper.conclusions.records import Conclusion
+from wspd_design.studies.paper.disturbances import LOAD_SPREAD
+from wspd_design.studies.paper.evidence import CONSTANT_RAILS, CONTROLLERS, RAILS, UNPROTECTED
+from wspd_design.studies.paper.locomotive import OnLocomotive
+from wspd_design.studies.paper.section7 import Section7
+
+SMALL, SMOOTH, IRREGULAR = "four axles", "82 DOF", "irregular"
+_TOP = "locomotive-figure"
+
+
+def locomotive(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
+    """Return the section about the stops on the multibody model."""
+    setting = Setting(
+        stops=made.smooth, prefix="locomotive", remark=f" On the multibody model. {mark(made.model)}"
+    )
+    drawn = figures_of(setting)
+    rough = _irregular_forces(made)
+    return (
+        Heading(text="Section 7 on the locomotive", anchor="locomotive"),
+        Paragraph(
+            text=rich(
+                "The same laws, rails and stops on the model with 82 degrees of freedom, on smooth track and on one "
+                f"with the irregularities of Table 9 (seed {made.seed}). The friction was fitted to Table 10 on "
+                "the small model and is not fitted again: [](#locomotive-table10) sets both models beside the paper, "
+                "[](#locomotive-distances) has all rails, [](#locomotive-loads) what becomes of the wheel loads. "
+                "[](#locomotive-conclusions) tells which of the paper's conclusions change."
+            )
+        ),
+        _table10(small, made),
+        _distances(small, made),
+        _loads(made),
+        Heading(text="Which conclusions change", anchor="locomotive-changes", level=2),
+        Paragraph(text=_changes(small, made)),
+        _conclusions(small, made),
+        *_findings(small, made),
+        Heading(text="The figures on the locomotive", anchor="locomotive-figures", level=2),
+        Paragraph(
+            text=(
+                "Figures 9 to 21 of the paper once more: ",
+                *references([each.anchor for each in (*drawn, rough)]),
+                ".",
+            )
+        ),
+        *drawn,
+        rough,
+    )
+
+
+def _table10(small: Section7, made: OnLocomotive) -> Table:
+    def columns(
+        title: str, unit: str, decimals: int, ours: Callable[[Trial], float], paper: Callable[[int], float]
+    ) -> list[ColumnOf[int]]:
+        def of(stops: Section7) -> Callable[[int], float]:
+            def read(row: int) -> float:
+                published = small.table10[row].published
+                return ours(stops.trials[published.controller, published.rail])
+
+            return read
+
+        return [
+            ColumnOf(title=f"{title}, paper", unit=unit, decimals=decimals, read=paper),
+            ColumnOf(title=SMALL, unit=unit, decimals=decimals, read=of(small)),
+            ColumnOf(title=SMOOTH, unit=unit, decimals=decimals, read=of(made.smooth)),
+            ColumnOf(title=IRREGULAR, unit=unit, decimals=decimals, read=of(made.irregular)),
+        ]
+
+    published = [row.published for row in small.table10]
+    return build(
+        range(len(published)),
+        (
+            ColumnOf(title="Controller", read=lambda row: published[row].controller),
+            ColumnOf(title="Rail", read=lambda row: published[row].rail.removeprefix("table10-")),
+            *columns("Distance", "m", 1, lambda t: t.metrics.distance, lambda row: published[row].distance_m),
+            *columns(
+                "Time", "s", 2, lambda t: t.metrics.stopping_time, lambda row: published[row].stopping_time_s
+            ),
+            *columns(
+                "Torque",
+                "kN m s",
+                0,
+                lambda t: t.metrics.torque_integral / KILO,
+                lambda row: published[row].torque_integral_kNms,
+            ),
+        ),
+        caption=f"Table 10 of the paper, on the small model, on the multibody model and on that on irregular track. "
+        f"{mark(made.model)}",
+        anchor="locomotive-table10",
+    )
+
+
+def _distances(small: Section7, made: OnLocomotive) -> Table:
+    rows = [(name, rail) for rail in RAILS for name in (*CONTROLLERS, UNPROTECTED)]
+
+    def distance(title: str, stops: Section7) -> ColumnOf[tuple[str, str]]:
+        return ColumnOf(
+            title=title,
+            unit="m",
+            decimals=1,
+            read=lambda row: Uncertain(
+                value=stops.trials[row].metrics.distance, spread=stops.trials[row].check.spread
+            ),
+        )
+
+    def change(title: str, ours: Section7, base: Section7) -> ColumnOf[tuple[str, str]]:
+        return ColumnOf(
+            title=title,
+            unit="%",
+            decimals=2,
+            read=lambda row: (
+                100.0 * (ours.trials[row].metrics.distance / base.trials[row].metrics.distance - 1.0)
+            ),
+        )
+
+    return build(
+        rows,
+        (
+            ColumnOf(title="Rail", read=lambda row: row[1] if row[0] == CONTROLLERS[0] else ""),
+            ColumnOf(title="Controller", read=lambda row: row[0]),
+            distance(SMALL, small),
+            distance(SMOOTH, made.smooth),
+            change("from four axles", made.smooth, small),
+            distance(IRREGULAR, made.irregular),
+            change("from smooth", made.irregular, made.smooth),
+            ColumnOf(
+                title="Slip, four axles", decimals=3, read=lambda row: small.trials[row].metrics.slip_mean
+            ),
+            ColumnOf(title=SMOOTH, decimals=3, read=lambda row: made.smooth.trials[row].metrics.slip_mean),
+        ),
+        caption="Distances and mean slips on all rails. ±: half the spread of a sensitive closed loop over initial "
+        f"speeds that differ by millionths. {mark(made.model)}",
+        anchor="locomotive-distances",
+    )
+
+
+def _loads(made: OnLocomotive) -> Table:
+    smooth, rough = made.axles(made.smooth), made.axles(made.irregular)
+    rows = list(enumerate(zip(smooth, rough, strict=True), start=1))
+    return build(
+        rows,
+        (
+            ColumnOf(title="Wheelset", read=lambda row: str(row[0])),
+            ColumnOf(
+                title="Load at rest", unit="kN", decimals=1, read=lambda row: row[1][0].static_load / KILO
+            ),
+            ColumnOf(title="braking", unit="kN", decimals=1, read=lambda row: row[1][0].braking_load / KILO),
+            ColumnOf(title="transfer", unit="%", decimals=1, read=lambda row: 100.0 * row[1][0].transfer),
+            ColumnOf(
+                title="spread", unit="%", decimals=1, read=lambda row: 100.0 * row[1][0].relative_spread
+            ),
+            ColumnOf(
+                title="irregular", unit="%", decimals=1, read=lambda row: 100.0 * row[1][1].relative_spread
+            ),
+            ColumnOf(title="least", unit="kN", decimals=1, read=lambda row: row[1][1].least_load / KILO),
+        ),
+        caption="Load of one wheel, mean of both wheels of a wheelset, with the adaptive fuzzy law on "
+        f"{CONSTANT_RAILS[1]}; spread: standard deviation about a moving mean over 1 s, in percent of the load at "
+        f"rest, on smooth and on irregular track; least: there. The small model is given {100.0 * LOAD_SPREAD:.0f} % "
+        f"for irregular track. {mark(made.model)}",
+        anchor="locomotive-loads",
+    )
+
+
+def _changes(small: Section7, made: OnLocomotive) -> str:
+    """Say which conclusions are judged otherwise on the multibody model."""
+    changed = [
+        f"{ours.name} ({theirs.verdict.value} on four axles, {ours.verdict.value} here)"
+        for theirs, ours in zip(small.conclusions, made.smooth.conclusions, strict=True)
+        if theirs.verdict is not ours.verdict
+    ]
+    rough = [
+        f"{ours.name} ({ours.verdict.value})"
+        for theirs, ours in zip(made.smooth.conclusions, made.irregular.conclusions, strict=True)
+        if theirs.verdict is not ours.verdict
+    ]
+    first = (
+        f"On smooth track {numbers.count(len(changed), 'conclusion')} of {len(small.conclusions)} is judged otherwise "
+        f"than on the small model: {numbers.listing(changed)}."
+        if changed
+        else f"On smooth track all {len(small.conclusions)} conclusions are judged as on the small model."
+    )
+    second = (
+        f" On irregular track, of these otherwise again: {numbers.listing(rough)}."
+        if rough
+        else " Irregular track changes no verdict."
+    )
+    return first + second
+
+
+def _conclusions(small: Section7, made: OnLocomotive) -> Table:
+    rows = list(zip(small.conclusions, made.smooth.conclusions, made.irregular.conclusions, strict=True))
+
+    def verdict(title: str, index: int) -> ColumnOf[tuple[Conclusion, ...]]:
+        return ColumnOf(title=title, read=lambda row: Cell(status=Status[row[index].verdict.name]))
+
+    return build(
+        rows,
+        (
+            ColumnOf(
+                title="Conclusion of the paper",
+                read=lambda row: (Link(anchor=f"conclusion-{row[0].name}", text=row[0].claim),),
+            ),
+            verdict(SMALL, 0),
+            verdict(SMOOTH, 1),
+            verdict(IRREGULAR, 2),
+        ),
+        caption="The paper's conclusions on both models, by the same rules. The ideal stops beside them are "
+        f"those of the small model; the parts of the law run on smooth track. {mark(made.model)}",
+        anchor="locomotive-conclusions",
+    )
+
+
+def _findings(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
+    """Tell the numbers behind each verdict that changes."""
+    triples = zip(small.conclusions, made.smooth.conclusions, made.irregular.conclusions, strict=True)
+    rows = tuple(
+        Definition(
+            term=ours.claim, text=f"On smooth track: {ours.finding} On irregular track: {rough.finding}"
+        )
+        for theirs, ours, rough in triples
+        if len({theirs.verdict, ours.verdict, rough.verdict}) > 1
+    )
+    return (Definitions(rows=rows),) if rows else ()
+
+
+def _irregular_forces(made: OnLocomotive) -> Figure:
+    setting = Setting(
+        stops=made.irregular,
+        prefix="irregular",
+        remark=f" On the multibody model, on irregular track. {mark(made.model)}",
+    )
+    return figures_of(setting)[-1]
