@@ -2,6 +2,7 @@
 # make test   sets up .venv with the test tools and runs the tests
 # make check  formatting, types, layers, and that the generated files are current
 # make derive writes the generated model and the equation map from derivations/
+# make docs   builds the documentation site in out/docs, without a network; its notebooks are run
 # make reports rebuilds the committed reports
 # make wheels builds wheels for Linux, with compiled plants
 # make bench  measures our ways against others, side by side
@@ -18,7 +19,7 @@ unexport PYTHONDONTWRITEBYTECODE
 SENSING := --pulses 100 --period-timing --accelerometer-noise "0.05 m/s2"
 PROTECTION := reports/protection-polach-wet
 
-.PHONY: demo demo-paper demo-protection test check style types layers current derive reports wheels bench clean
+.PHONY: demo demo-paper demo-protection test check style types layers current derive docs reports wheels bench clean
 
 demo: $(VENV)/.installed
 	@mkdir -p $(OUT)
@@ -52,6 +53,9 @@ current: $(VENV)/.installed-dev
 
 derive: $(VENV)/.installed-dev
 	$(BIN)/python -m derivations.generate
+
+docs: $(VENV)/.installed-dev
+	$(BIN)/python docs/site/build.py $(OUT)/docs
 
 # A fixed date: a report changes only when its numbers or its text do.
 reports: export SOURCE_DATE_EPOCH := 1790000000

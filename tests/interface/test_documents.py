@@ -19,12 +19,20 @@ PAGES = (
     "docs/campaigns.md",
     "docs/vehicle-files.md",
 )
+WITH_FILES = "docs/how-to.md"  # all its Python blocks are files that its commands use
 BLOCK = re.compile(r"^```(console|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"^`(\S+)`:\n\n```(?:toml|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
 def blocks(page, kind):
     return [text for found, text in BLOCK.findall((ROOT / page).read_text()) if found == kind]
+
+
+def write_files(page, folder):
+    """Write the files that a page shows, each below its name."""
+    for name, text in FILE.findall((ROOT / page).read_text()):
+        (folder / name).write_text(text)
 
 
 def commands(block):
@@ -37,10 +45,11 @@ def matches(expected, got):
     return doctest.OutputChecker().check_output(expected, got, FLAGS)
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", [*PAGES, WITH_FILES])
 def test_console_blocks_show_what_the_program_prints(page, tmp_path):
     folder = str(Path(sys.executable).parent)
     environment = os.environ | {"PATH": f"{folder}:{os.environ['PATH']}", "COLUMNS": "80", "NO_COLOR": "1"}
+    write_files(page, tmp_path)
     run = 0
     for block in blocks(page, "console"):
         for command, expected in commands(block):

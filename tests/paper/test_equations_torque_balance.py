@@ -29,7 +29,8 @@ def test_identity_on_a_simulated_stop():
         )
 
     start = [33.3, 33.3 / R, 0.0, 0.0, 0.0]
-    run = solve_ivp(rates, (0.0, 12.0), start, method="Radau", rtol=1e-9, atol=1e-9)
+    # It ends before the train stands, where the slip has no meaning.
+    run = solve_ivp(rates, (0.0, 11.0), start, method="Radau", rtol=1e-9, atol=1e-9)
     v, omega, torque, resistance, damped = run.y[:, -1]
     assert 0.0 < v < 10.0
     taken = R * M * (start[0] - v) + 8 * INERTIA * (start[1] - omega)

@@ -1,6 +1,7 @@
 """One version everywhere, and a release date in the citation only when the changelog gives the same one."""
 
 import re
+import subprocess
 import tomllib
 from importlib.metadata import version
 from pathlib import Path
@@ -31,3 +32,15 @@ def test_one_version():
     assert changelog is not None
     assert changelog["version"] == project == version("wspd_design")
     assert f"\nversion: {project}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def wrong_tags(tags: list[str], project: str) -> list[str]:
+    """Return the tags of a version that state another one."""
+    return [tag for tag in tags if re.fullmatch(r"v\d.*", tag) and tag != f"v{project}"]
+
+
+def test_a_tag_at_this_commit_states_this_version():
+    git = ["git", "-C", str(ROOT), "tag", "--points-at", "HEAD"]
+    tags = subprocess.run(git, capture_output=True, text=True, check=False).stdout.split()
+    assert wrong_tags(tags, version("wspd_design")) == []
+    assert wrong_tags(["v0.0.9", "v0.1.0", "nightly"], "0.1.0") == ["v0.0.9"]

@@ -135,6 +135,7 @@ OUTSIDE_CLAIMS: dict[tuple[Record, str], str] = {
         ("vehicle", count): "a count, not a measurement"
         for count in ("wheelsets", "axles_per_bogie", "bodies")
     },
+    ("vehicle", "multibody"): "claims speak about the quarter or the planar plant",
     ("brake", "axle_shares"): "claims about brakes speak about vehicles whose brakes are alike",
     **{
         ("brake", field): "claims speak about a brake that is built up, or whose demand builds up as eq. (8)"

@@ -15,7 +15,6 @@ from wspd_design.cli.summary import Summary, summarize
 from wspd_design.cli.tables import write_table
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import Case
-from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.campaign import Campaign, simulate_many
@@ -147,7 +146,7 @@ def simulate_runs(
     table = summary.campaign.table
     written = output if len(table) else None
     if written is not None:
-        write_table(written, [table], force=force)
+        write_table(written, [table], force=force, about=_about(series))
     if as_json:
         print_json(campaign_object(summary, case, scenario, start))
     elif len(table):
@@ -164,7 +163,8 @@ def tell_series(
 ) -> None:
     """Write and show the results of several series, whole ones and one that was interrupted."""
     if output is not None:
-        write_table(output, labelled([each.campaign for each in summaries]), force=force)
+        rows = labelled([each.campaign for each in summaries])
+        write_table(output, rows, force=force, about=_about(series))
     pairs = list(zip(series, summaries, strict=False))
     if as_json:
         print_json(
@@ -178,25 +178,43 @@ def tell_series(
         _say_rows(output)
 
 
+def _about(series: Sequence[Series]) -> dict[str, str]:
+    """Say what was simulated, for the head of a file; laws and rails of several series stand in its columns."""
+    first = series[0]
+    names = {
+        "controller": {each.case.controller.name for each in series},
+        "vehicle": {each.case.vehicle.name for each in series},
+        "rail": {rails_of(each.scenario) for each in series},
+        "sample_time_s": {repr(each.case.controller.sample_time) for each in series},
+        "initial_speed_m_s": {repr(each.scenario.initial_speed) for each in series},
+    }
+    return {key: ", ".join(sorted(found)) for key, found in names.items()} | {
+        "seed": str(first.scenario.seed)
+    }
+
+
 def labelled(campaigns: Sequence[Campaign]) -> "Iterator[NDArray[Any]]":
-    """Rows of several campaigns below each other, with law and rail in front, a block at a time."""
+    """Rows of several campaigns below each other, with law and rail in front, a block at a time.
+
+    A number that one of them has not, such as the speed that only some laws estimate, is NaN in its rows.
+    """
     import numpy as np
 
-    dtypes = {campaign.table.dtype for campaign in campaigns}
-    if len(dtypes) > 1:
-        raise UserError(
-            "the series of the campaign draw different numbers and do not fit into one table; give all rails bounds "
-            "for the same numbers, or write a file for each"
-        )
+    columns: dict[str, np.dtype[Any]] = {}
+    for campaign in campaigns:
+        columns |= {name: campaign.table.dtype[name] for name in campaign.table.dtype.names or ()}
     labels = [("controller", f"U{max(len(each.controller) for each in campaigns)}")]
     labels.append(("rail", f"U{max(len(each.rail) for each in campaigns)}"))
     for campaign in campaigns:
+        missing = columns.keys() - set(campaign.table.dtype.names or ())
         for start in range(0, max(len(campaign.table), 1), _BLOCK):
             rows = campaign.table[start : start + _BLOCK]
-            block = np.zeros(len(rows), dtype=[*labels, *rows.dtype.descr])
+            block = np.zeros(len(rows), dtype=[*labels, *columns.items()])
             block["controller"], block["rail"] = campaign.controller, campaign.rail
             for name in rows.dtype.names or ():
                 block[name] = rows[name]
+            for name in missing:
+                block[name] = np.nan
             yield block
 
 

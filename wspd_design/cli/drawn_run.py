@@ -26,7 +26,7 @@ def drawn_run(
         The nominal stop, with the seed of run 0.
     number : int
         Of the run.
-    plant : {"planar", "quarter"}
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
         Plant of the stop.
 
     Returns

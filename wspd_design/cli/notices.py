@@ -21,7 +21,7 @@ def plain_notices() -> Iterator[None]:
         file: TextIO | None = None,
         line: str | None = None,
     ) -> None:
-        if category is not UserWarning:
+        if category is not UserWarning and category.__module__ != "wspd_design.parameters.versions":
             usual(message, category, filename, lineno, file, line)
             return
         sentence = " ".join(str(message).split()).rstrip(".") + "."

@@ -63,6 +63,7 @@ _NOT_NUMBERS = (
     *PART_NAMES,
     "bounds",
     *KINDS,
+    "multibody",
     "dead_time",  # the numbers of a stop hold these, as its disturbances
     "shortest_pulse",
     "longest_release",
@@ -219,7 +220,9 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     ``disturbed`` adds the vibration of the pads, T_d, to the torque.
     """
     blank: dict[str, Any] = {field.name: None for field in fields(Vehicle)}
-    counts = {name: getattr(plant.vehicle, name) for name in ("wheelsets", "axles_per_bogie", "bodies")}
+    counts = {
+        name: getattr(plant.vehicle, name) for name in ("wheelsets", "axles_per_bogie", "bodies", "multibody")
+    }
     brake: dict[str, Any] = {field.name: None for field in fields(Brake)}
     present = plant.vehicle.brake
     kinds = {name: getattr(present, name) for name in KINDS} | {

@@ -10,11 +10,13 @@ from typing import Any
 from wspd_design.controllers.family import tunable_family, with_numbers
 from wspd_design.controllers.gains import GainForm
 from wspd_design.controllers.observers.sensors import TOLD, Sensors
+from wspd_design.design.older_files import OLDER, as_present
 from wspd_design.design.records import Design, Gain, GainValue, Specification, in_the_law
 from wspd_design.design.requirements import read_requirements, requirements_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
 from wspd_design.parameters.laden import LADEN
+from wspd_design.parameters.versions import check_schema
 from wspd_design.parameters.words import near_or_allowed
 from wspd_design.parameters.writing import write_whole
 
@@ -73,15 +75,15 @@ def read_design(path: str | Path) -> Design:
     Raises
     ------
     UserError
-        If the file is missing, not a design, of another version, or anything in it is misspelled or not a number.
+        If the file is missing, not a design, of a version that is not read, or anything in it is misspelled or no
+        number.
     """
     where = str(path)
     document = read_toml(Path(path), where)
-    if document.get("schema") != SCHEMA:
-        raise UserError(
-            f'{where} is not a design of this version: schema = "{document.get("schema", "")}" '
-            f'must be "{SCHEMA}"; re-run wspd design'
-        )
+    found = document.get("schema")
+    check_schema(found, SCHEMA, where, what="a design", remedy="re-run wspd design", older=(OLDER,))
+    if found == OLDER:
+        document = as_present(document, where)
     optional = (*_OPTIONAL, _REQUIREMENTS)
     _check_keys(document, (*_HEAD, "specification", "gains"), where, "", optional=optional)
     stated = [*_HEAD[1:], *(key for key in _OPTIONAL if key in document)]

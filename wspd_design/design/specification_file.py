@@ -23,6 +23,7 @@ from wspd_design.design.search.methods import METHODS
 from wspd_design.design.search.sets import disjoint
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import beside, data_file, read_toml
+from wspd_design.parameters.versions import check_schema
 from wspd_design.parameters.words import did_you_mean
 
 SCHEMA = "wspd-specification/1"
@@ -99,11 +100,8 @@ def _task(document: dict[str, Any], where: str) -> Task:
 
 
 def _read(document: dict[str, Any], where: str) -> Task:
-    if document.get("schema") != SCHEMA:
-        raise UserError(
-            f'{where} is not a specification of this version: schema = "{document.get("schema", "")}" must be '
-            f'"{SCHEMA}"'
-        )
+    remedy = "wspd docs design-to-requirements"
+    check_schema(document.get("schema"), SCHEMA, where, what="a specification", remedy=remedy)
     check_keys(document, _KEYS, "", where, needed=("name", "law", "vehicle", "requirements", "search"))
     words = {key: _text(document[key], key, where) for key in _WORDS if key in document}
     law = tunable_family(words["law"]).name

@@ -22,6 +22,7 @@ from wspd_design.design.requirements import (
 )
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import data_file, read_toml
+from wspd_design.parameters.versions import check_schema
 
 SCHEMA = "wspd-requirements/1"
 PAPER = "paper"
@@ -104,8 +105,8 @@ def read_stop_requirements(path: Traversable | Path, where: str) -> StopRequirem
     """
     document = read_toml(path, where)
     check_keys(document, ("schema", "name", "requirements"), "", where, needed=("requirements",))
-    if document.get("schema", SCHEMA) != SCHEMA:
-        raise UserError(f'{where}: schema = "{document["schema"]}" must be "{SCHEMA}"')
+    stated, remedy = document.get("schema", SCHEMA), "wspd docs requirements"
+    check_schema(stated, SCHEMA, where, what="a table of requirements", remedy=remedy)
     name = document.get("name", Path(where).stem)
     if not isinstance(name, str):
         raise UserError(f"name = {name!r} in {where} must be a text in quotes")

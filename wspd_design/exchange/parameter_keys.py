@@ -5,6 +5,7 @@ VEHICLE_KEYS = {
     "wheelsets": "number of axles",
     "axles_per_bogie": "1 where single axles carry the body, 2 or 3; default 2",
     "bodies": "of an articulated train on as many bogies and one; default 1",
+    "multibody": "file of all bodies, joints and springs, for the plants locomotive and locomotive-linear",
     "wheel_radius": "rolling radius; as lower bound that of worn wheels",
     "wheelset_inertia": "all that turns with one wheelset, both wheels together",
     "wheel_damping": "of the bearings, per wheel at the start, B_W of eq. (2); 0 where the resistance has it",

@@ -50,7 +50,7 @@ def _entry(quantity: Quantity) -> dict[str, Any]:
     number: dict[str, Any] = {"type": "number"}
     values = {
         "number": number,
-        "word": {"enum": list(quantity.words)},
+        "word": {"enum": list(quantity.words)} if quantity.words else {"type": "string"},
         "words": {"type": "array", "items": {"type": "string"}, "minItems": 1},
         "vector": {"type": "array", "items": number, "minItems": 1},
     }

@@ -142,6 +142,10 @@ def _value(raw: object, quantity: Quantity, unit: str, what: str) -> Any:
         case "number":
             return number_of(raw, quantity, unit, what)
         case "word":
+            if not quantity.words:
+                if not isinstance(raw, str):
+                    raise UserError(f"{what} is {quoted(raw)} but must be a word; put it in quotes.")
+                return raw
             if raw not in quantity.words:
                 raise UserError(
                     f"{what} is {quoted(raw)}{did_you_mean(str(raw), quantity.words)} but must be one of "

@@ -115,14 +115,16 @@ def _absent(value: Any) -> set[str]:
     """Names of what a vehicle or rail does not have.
 
     What a file may leave out has a default that says there is no such thing: a vehicle without it keeps the
-    fingerprint that it had before such things were known.
+    fingerprint that it had before such things were known. The name of a multibody file says nothing of its content,
+    which counts for what uses it.
     """
     if not isinstance(value, Vehicle | Brake | Contact | Rail):
         return set()
     return {
         field.name
         for field in fields(value)
-        if field.name != "bounds" and field.default == getattr(value, field.name)
+        if (field.name != "bounds" and field.default == getattr(value, field.name))
+        or field.name == "multibody"
     }
 
 

@@ -41,7 +41,7 @@ class Quantity:
     high: float = math.inf
     low_is_allowed: bool = True
     plausible: tuple[float, float] | None = None  # what railways have, with room to spare
-    words: tuple[str, ...] = ()  # that a word may be
+    words: tuple[str, ...] = ()  # that a word may be; none: any
     optional: bool = False
 
     def admits(self, value: float) -> bool:
@@ -131,6 +131,7 @@ _VEHICLE: Schema = {
     "wheelsets": Quantity(dimension="ratio", low=1.0, high=32.0),
     "axles_per_bogie": Quantity(dimension="ratio", low=1.0, high=3.0, optional=True),
     "bodies": Quantity(dimension="ratio", low=1.0, high=31.0, optional=True),
+    "multibody": _word(),
     "wheel_radius": _positive("length", plausible=(0.1, 1.5)),
     "wheelset_inertia": _positive("inertia", plausible=(5.0, 1e4)),
     "wheel_damping": _not_negative("rotational damping"),

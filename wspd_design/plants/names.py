@@ -5,14 +5,18 @@ from typing import Final
 
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
+from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import Plant
 from wspd_design.plants.quarter import Quarter
 
-_PLANTS: Final[dict[str, Callable[[Vehicle], Plant]]] = {kind.name: kind for kind in (Planar, Quarter)}
+_PLANTS: Final[dict[str, Callable[[Vehicle], Plant]]] = {
+    kind.name: kind for kind in (Planar, Quarter, Locomotive, LinearLocomotive)
+}
 
 PLANTS: Final = tuple(_PLANTS)
-"""The first transfers load; the quarter model is its case without heights and with equal rails."""
+"""The first transfers load; the quarter model is its case without heights and with equal rails. The others have all
+degrees of freedom of a multibody file."""
 
 DEFAULT_PLANT: Final = Planar.name
 """The plant of a stop that names none."""
@@ -24,7 +28,7 @@ def plant_of(name: str, vehicle: Vehicle) -> Plant:
     Raises
     ------
     UserError
-        If there is no such plant, or it does not know how the vehicle carries its load.
+        If there is no such plant, or the vehicle lacks what it needs.
     """
     if name not in _PLANTS:
         raise UserError(f'unknown plant "{name}"; available: {", ".join(PLANTS)}')

@@ -177,6 +177,10 @@ class CoupledPlant(Plant, Protocol):
     """A plant whose right-hand side is one function."""
 
     @property
+    def model(self) -> object:
+        """What the function is made from beyond the vehicle."""
+
+    @property
     def number_names(self) -> tuple[str, ...]:
         """Names of its numbers beyond those of the vehicle, in the order of ``numbers``."""
 

@@ -19,6 +19,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.records import Brake, Vehicle
 from wspd_design.plants.names import plant_of
+from wspd_design.plants.protocol import is_coupled
 from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE, Batch, Cases, run_batch
 from wspd_design.simulation.draws import Deck, Draw
 from wspd_design.simulation.ideal import FILLING, ideal_input
@@ -100,7 +101,8 @@ def make_plan(
 
 def plan_key(plan: Plan) -> str:
     """Return the content key of a campaign: the same for the same rows."""
-    return fingerprint(_KEY_FORMAT, plan)
+    plant = plant_of(plan.plant, plan.vehicle)
+    return fingerprint(_KEY_FORMAT, plan, *((plant.model,) if is_coupled(plant) else ()))
 
 
 @cache

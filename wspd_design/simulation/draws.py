@@ -40,6 +40,7 @@ _NEVER = (
     "wheelsets",
     "axles_per_bogie",
     "bodies",
+    "multibody",
     "rail",
     "bounds",
     "load_irregularity",

@@ -75,8 +75,8 @@ def ideal_stop(
         Slip that is not exceeded; that of the adhesion peak at each speed by default.
     instantaneous : bool
         Full torque from the start, in place of the build-up of eqs. (8), (9).
-    plant : {"planar", "quarter"}
-        With or without load transfer.
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
+        With load transfer, without, or with all degrees of freedom.
 
     Returns
     -------

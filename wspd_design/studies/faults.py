@@ -96,7 +96,7 @@ def robustness(
         As it was designed; nothing of it is changed.
     scenario : Scenario
         The stop without these faults.
-    plant : {"planar", "quarter"}
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
         Faults belong to single axles: only the planar plant has them.
     progress : callable, optional
         Told each kind of fault before its stops.

@@ -151,8 +151,8 @@ def uncertainty(
         Files of vehicle and rail, whose bounds are drawn from.
     laden : Vehicle or None
         The vehicle with its load, if that is known.
-    plant : {"planar", "quarter"}
-        With or without load transfer.
+    plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
+        With load transfer, without, or with all degrees of freedom.
     command : str
         ``wspd simulate`` with the options of the nominal stop; empty where there was no command.
     sets : int

@@ -6,7 +6,7 @@ import pytest
 
 from wspd_design.design.case import CaseOptions, case_of, load_case
 from wspd_design.design.catalog import controller_of
-from wspd_design.design.file import design_text, read_design, write_design
+from wspd_design.design.file import write_design
 from wspd_design.design.records import Specification, rail_hash, vehicle_hash
 from wspd_design.design.selection import design_controller
 from wspd_design.parameters.bounds import Bounds
@@ -80,12 +80,3 @@ def test_a_design_rail_that_is_nowhere_is_told(made, er24pc, wet):
         case_of(replace(made, rail="mine"), CaseOptions(), where="a.toml")
     with pytest.raises(UserError, match=r"neither the rail polach-wet.*--rail"):
         case_of(replace(made, rail="mine"), CaseOptions(rail="polach-wet"), where="a.toml")
-
-
-def test_an_older_design_file_is_told(made, tmp_path):
-    path = tmp_path / "old.toml"
-    text = design_text(made).replace("wspd-design/2", "wspd-design/1")
-    path.write_text("\n".join(line for line in text.splitlines() if not line.startswith("rail_hash")))
-    with pytest.raises(UserError, match=r"wspd-design/1.*re-run wspd design") as told:
-        read_design(path)
-    assert "\n" not in str(told.value)

@@ -82,7 +82,10 @@ def test_a_table_with_held_out_sets_is_judged_on_them(tmp_path):
             'names "margin"; the checks are derivation',
         ),
         ("[requirements]\nnot_refuted = []", r"requirements\.limits is missing"),
-        ("schema = 'wspd-requirements/9'\n[requirements.limits]", r'must be "wspd-requirements/1"'),
+        (
+            "schema = 'wspd-requirements/9'\n[requirements.limits]",
+            r'newer program, this one reads "wspd-requirements/1"',
+        ),
         ("[requirements.limits]\nlongest_lock = { source = 'x' }", r"longest_lock\.limit is missing"),
         (
             "[requirements.limits]\nlongest_lock = { limit = '1 s', verified = true }",

@@ -141,7 +141,7 @@ def test_what_stands_on_nothing_known_is_refused(er24pc, changes, why):
 
 
 def test_plants_by_name(er24pc):
-    assert PLANTS == ("planar", "quarter")
+    assert PLANTS == ("planar", "quarter", "locomotive", "locomotive-linear")
     for name in PLANTS:
         plant = plant_of(name, er24pc)
         assert (plant.name, plant.vehicle, plant.on(er24pc)) == (name, er24pc, plant)

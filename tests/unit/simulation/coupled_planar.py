@@ -18,6 +18,7 @@ class CoupledPlanar(BrakedWheelsets):
     track_gain: float = 0.0  # relative load of a wheel over the height of the rail [1/m]
     name: ClassVar[str] = "coupled planar"
     alike: ClassVar[bool] = False
+    model: ClassVar[None] = None
     number_names: ClassVar[tuple[str, ...]] = ("track_gain",)
     further_traces: ClassVar[tuple[str, ...]] = ("doubled_load",)
 

@@ -72,7 +72,9 @@ def read_certificate(written: str) -> tuple[str, Mapping[str, Any]]:
     """Return the name of the check that a file is about, and its content; or refuse it."""
     content = read(written)
     if content.get("schema") != SCHEMA:
-        raise Refused(f"the file is not a certificate of this version, {SCHEMA}")
+        raise Refused(
+            f"the file is not a certificate of this version, {SCHEMA}; make it again with wspd certify"
+        )
     check, status = content.get("check"), content.get("status")
     if not (isinstance(check, str) and check.isascii() and check.isidentifier()):
         raise Refused("the file names no check")

@@ -15,8 +15,15 @@ from wspd_design.plants.multibody.wheels import Wheel
 _HELD = 1e-9  # of the weight: what may be left of it in any coordinate
 
 
-def balanced(model: Multibody) -> Multibody:
+def balanced(model: Multibody, rest: Any = None) -> Multibody:
     """Return the vehicle with the preloads that hold it at rest.
+
+    Parameters
+    ----------
+    model : Multibody
+        With numbers.
+    rest : casadi.Function, optional
+        What :func:`rest_function` made for this topology, where many are balanced.
 
     Raises
     ------
@@ -25,7 +32,7 @@ def balanced(model: Multibody) -> Multibody:
     """
     import numpy as np
 
-    pull, load = at_rest(model)
+    pull, load = at_rest(model, rest)
     forces, *_ = np.linalg.lstsq(load, -pull, rcond=None)
     forces -= np.linalg.lstsq(load, pull + load @ forces, rcond=None)[0]  # once more, for the last digits
     left = np.abs(pull + load @ forces)
@@ -39,21 +46,31 @@ def balanced(model: Multibody) -> Multibody:
     return model.with_preloads(dict(zip(model.preload_names, forces.tolist(), strict=True)))
 
 
-def at_rest(model: Multibody) -> tuple[Any, Any]:
+def at_rest(model: Multibody, rest: Any = None) -> tuple[Any, Any]:
     """Return the generalized forces at rest without preloads [n], and those of 1 N of each preload [n x preloads]."""
-    import casadi as ca
     import numpy as np
 
-    names, n = model.preload_names, len(model.coordinates)
+    values = (rest or rest_function(model))(list(model.numbers.values()))
+    pull, load = (np.array(value) for value in values)
+    return pull[:, 0], load
+
+
+def rest_function(model: Multibody) -> Any:
+    """Return :func:`at_rest` as a CasADi function of the numbers of a topology, in their order."""
+    import casadi as ca
+
+    names, n, given = model.preload_names, len(model.coordinates), ca.SX.sym("given", len(model.numbers))
     q, v, p = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("p", len(names))
-    loaded_model = model.with_preloads(dict(zip(names, ca.vertsplit(p), strict=True)))
+    loaded_model = model.with_numbers(
+        dict(zip(model.numbers, ca.vertsplit(given), strict=True))
+    ).with_preloads(dict(zip(names, ca.vertsplit(p), strict=True)))
     loaded = mechanics(loaded_model, q, v)
     force = loaded.force
     for wheel in loaded.wheels:
         force[wheel.first : wheel.first + 6] += force_at_rest(loaded_model, wheel)
-    values = ca.Function("rest", [q, v, p], [force, ca.jacobian(force, p)])(0, 0, 0)
-    pull, load = (np.array(value) for value in values)
-    return pull[:, 0], load
+    state = ca.vertcat(q, v, p)
+    placed = ca.substitute([force, ca.jacobian(force, p)], [state], [ca.SX.zeros(state.size1())])
+    return ca.Function("rest", [given], [ca.densify(each) for each in placed])
 
 
 def force_at_rest(model: Multibody, wheel: Wheel) -> Any:

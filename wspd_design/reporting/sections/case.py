@@ -6,6 +6,7 @@ from functools import partial
 from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.units import format_quantity
+from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.quarter import Quarter
 from wspd_design.reporting import numbers
@@ -164,6 +165,8 @@ def _plant(run: Run) -> str:
     of_axles = {
         Quarter.name: f"one wheelset stands for all {axles}",
         Planar.name: f"{axles} wheelsets with load transfer",
+        Locomotive.name: f"{axles} wheelsets with all degrees of freedom of the multibody file",
+        LinearLocomotive.name: f"{axles} wheelsets with all degrees of freedom of the multibody file, linear springs",
     }
     return f"{run.plant}: {of_axles[run.plant]}"
 

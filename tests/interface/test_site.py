@@ -1,0 +1,100 @@
+"""The documentation site: what is staged, that it is built without a warning, and that faults of it would be seen."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+import wspd_design as wd
+from docs.site import api, check, stage
+
+ROOT = Path(__file__).parents[2]
+SITE = ROOT / "docs" / "site"
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.md"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sample:
+    """A record with a field of each kind."""
+
+    mass: float  # kg, of ``one`` body|bogie
+    name: str
+    gain: float = 1.0  # 1/(N m s), G
+    angle: float = 0.0
+    """Below the field."""
+
+
+def test_every_public_name_is_on_the_api_page():
+    page = api.api_page()
+    shown = set(re.findall(r"auto(?:class|function):: wspd_design\.(\w+)", page))
+    assert {name for name in wd.__all__ if callable(getattr(wd, name))} - shown == set()
+    assert "autofunction:: wspd_design.testing.assert_certified" in page
+
+
+def test_fields_have_the_units_that_stand_behind_them():
+    rows = api.field_table(Sample)
+    assert "* - ``mass``\n     - ``float``\n     - kg\n     - of ``one`` body\\|bogie" in rows
+    assert "* - ``gain``\n     - ``float``\n     - 1/(N m s)\n     - G" in rows
+    assert "- Below the field." in rows
+    assert api.field_table(int) == ""
+    assert api.with_unit("the mean of it") == ("", "the mean of it")
+    assert "``wheel_radius``\n     - ``float``\n     - m\n" in api.field_table(wd.Vehicle)
+
+
+def test_a_staged_page_links_to_what_is_on_the_site(tmp_path):
+    page = ROOT / "docs" / "theory.md"  # where it stands decides what its links mean
+    text = page.read_text(encoding="utf-8")
+    assert '<a id="band"></a>' in text
+    assert "(band)=\n## " in stage.staged(page)
+    readme = stage.staged(ROOT / "CONTRIBUTING.md")
+    assert "(architecture.md)" in readme
+    lost = tmp_path / "lost.md"
+    lost.write_text("[none](nowhere.md)")
+    with pytest.raises(FileNotFoundError, match=r"lost\.md links to nowhere\.md"):
+        stage.staged(lost)
+    lost.write_text("[a file](lost.md) and [a page](https://example.org)")
+    assert stage.staged(lost) == "a file and [a page](https://example.org)"
+
+
+def test_pages_that_no_list_names_stand_in_the_last_one():
+    index = f"```{{toctree}}\n:hidden:\n\ntutorial\n```\n{stage.REST}\n"
+    assert stage.with_rest(index, {"tutorial", "new", "index"}).endswith("```\nnew\n")
+    with pytest.raises(ValueError, match="do not exist: tutorial"):
+        stage.with_rest(index, {"new"})
+
+
+def test_faults_of_a_site_are_seen(tmp_path):
+    pages = {
+        "index.html": '<a href="a.html#here">a</a> <a href="gone.html">b</a> <a href="https://example.org">c</a>',
+        "a.html": '<p id="there"></p><script src="https://cdn.example.org/x.js"></script><img src="no.png">',
+        "alone.html": '<a href="index.html">home</a>',
+    }
+    for name, text in pages.items():
+        (tmp_path / name).write_text(text)
+    (tmp_path / "s.css").write_text('@import "https://fonts.example.org/x"; a { background: url(local.png) }')
+    assert check.faults(tmp_path) == [
+        "a.html: asks https://cdn.example.org/x.js",
+        "a.html: no.png is missing",
+        "index.html: a.html#here names no place of that page",
+        "index.html: gone.html leads nowhere",
+        "alone.html: no page leads here",
+        "s.css: asks https://fonts.example.org/x",
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(importlib.util.find_spec("sphinx") is None, reason="the extra docs is not installed")
+def test_the_site_is_built_and_its_notebooks_run(tmp_path):
+    command = [sys.executable, str(SITE / "build.py"), str(tmp_path / "site")]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    built = {path.stem for path in (tmp_path / "site").glob("*.html")}
+    assert {path.stem for path in (ROOT / "docs").glob("*.md")} <= built
+    for path in NOTEBOOKS:
+        page = (tmp_path / "site" / "notebooks" / f"{path.stem}.html").read_text(encoding="utf-8")
+        assert "cell_output" in page
+        assert "<img" in page
