@@ -17,6 +17,7 @@ from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.later import later
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.taken import notice_of_fast_train
 from wspd_design.parameters.units import KMH, dimension_of, factor, units_of
 
 if TYPE_CHECKING:
@@ -46,6 +47,9 @@ class Specification:
             raise UserError(
                 f"speed range = {low * 3.6:g} to {high * 3.6:g} km/h must rise and lie above 0 and below 540 km/h"
             )
+        notice_of_fast_train(
+            high, "highest speed of the range", f"for km/h write speeds=({low:g} / 3.6, {high:g} / 3.6)"
+        )
         if not 0.0 < self.slips[0] < self.slip < self.slips[1] <= 1.0:
             raise UserError(
                 f"slip range = {self.slips[0]:g} to {self.slips[1]:g} must lie in (0, 1] "

@@ -10,7 +10,7 @@ from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Brake, Rail
-from wspd_design.parameters.taken import check_rail
+from wspd_design.parameters.taken import check_rail, notice_of_fast_train
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -224,6 +224,11 @@ class Scenario:
                 f"initial speed = {self.initial_speed:g} m/s must be above 0 and below 150 m/s (540 km/h); "
                 'give it with its unit, for example "120 km/h"'
             )
+        notice_of_fast_train(
+            self.initial_speed,
+            "initial speed",
+            f"for {self.initial_speed:g} km/h write Scenario.stop(from_kmh={self.initial_speed:g}, ...)",
+        )
         if not -0.1 <= self.grade <= 0.1:
             raise UserError(f"grade = {self.grade:g} must lie in [-0.1, 0.1]; for 10 per mille write 0.01")
         if not 0 <= self.seed < 2**63:
