@@ -24,12 +24,24 @@ DECIDED = (Status.PROVED, Status.LIMITATION, Status.REFUTED, Status.VACUOUS)
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Replayed:
-    """What the checkers say about a file."""
+    """What the checkers say about a file.
 
-    check: str  # name, empty if the file tells none
-    accepted: bool  # every word of the file is what its proofs show about this design
-    reason: str  # why not
-    certificate: Certificate | None  # as it was made again; none if it is refused
+    Attributes
+    ----------
+    check : str
+        Name, empty if the file tells none.
+    accepted : bool
+        Every word of the file is what its proofs show about this design.
+    reason : str
+        Why not.
+    certificate : Certificate or None
+        As it was made again; none if it is refused.
+    """
+
+    check: str
+    accepted: bool
+    reason: str
+    certificate: Certificate | None
 
     def __repr__(self) -> str:
         """Say in one line whether the file is accepted, and what it shows."""

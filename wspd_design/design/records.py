@@ -28,14 +28,30 @@ GainValue: TypeAlias = float | bool | tuple[float, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Specification:
-    """What the closed loop shall do; the defaults are the paper's case."""
+    """What the closed loop shall do; the defaults are the paper's case.
 
-    slip: float = 0.14  # -, reference
-    speeds: tuple[float, float] = (10.0 / 3.6, 120.0 / 3.6)  # m/s, range of operation
-    slips: tuple[float, float] = (0.02, 0.6)  # -, range of slip in which the surface shall be reached
-    slip_tolerance: float = 0.05  # -, width of the band around the reference
-    sample_time: float = 0.1  # s
-    reference: ReferenceKind | None = None  # of a law of a vehicle; None: the one that its family prefers
+    Attributes
+    ----------
+    slip : float [-]
+        Reference.
+    speeds : tuple[float, float] [m/s]
+        Range of operation.
+    slips : tuple[float, float] [-]
+        Range of slip in which the surface shall be reached.
+    slip_tolerance : float [-]
+        Width of the band around the reference.
+    sample_time : float [s]
+    reference : ReferenceKind or None
+        Of a law of a vehicle; None: the one that its family prefers.
+    sensors : Sensors
+    """
+
+    slip: float = 0.14
+    speeds: tuple[float, float] = (10.0 / 3.6, 120.0 / 3.6)
+    slips: tuple[float, float] = (0.02, 0.6)
+    slip_tolerance: float = 0.05
+    sample_time: float = 0.1
+    reference: ReferenceKind | None = None
     sensors: Sensors = TOLD
 
     def __post_init__(self) -> None:
@@ -86,29 +102,56 @@ class Specification:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gain:
-    """One number of a design with the rule that chose it."""
+    """One number of a design with the rule that chose it.
+
+    Attributes
+    ----------
+    name : str
+    value : GainValue [its unit]
+    unit : str
+    why : str
+    """
 
     name: str
-    value: GainValue  # in the unit
+    value: GainValue
     unit: str
     why: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Design:
-    """A controller design: everything that is needed to rebuild the controller, and why it is so."""
+    """A controller design: everything that is needed to rebuild the controller, and why it is so.
+
+    Attributes
+    ----------
+    name : str
+    law : str
+        Family of laws.
+    vehicle : str
+    vehicle_hash : str
+    rail : str
+        Design rail.
+    rail_hash : str
+    specification : Specification
+    gains : tuple[Gain, ...]
+    vehicle_file : str
+        Of a vehicle of one's own, as seen from the folder of the design file.
+    rail_file : str
+    requirements : Requirements or None
+        That it was searched for; rails of one's own as seen from here.
+    """
 
     name: str
-    law: str  # family of laws
+    law: str
     vehicle: str
     vehicle_hash: str
-    rail: str  # design rail
+    rail: str
     rail_hash: str
     specification: Specification
     gains: tuple[Gain, ...]
-    vehicle_file: str = ""  # of a vehicle of one's own, as seen from the folder of the design file
+    vehicle_file: str = ""
     rail_file: str = ""
-    requirements: Requirements | None = None  # that it was searched for; rails of one's own as seen from here
+    requirements: Requirements | None = None
 
     def __repr__(self) -> str:
         """Say in one line what this is."""
