@@ -162,8 +162,8 @@ def _transmitted(
 ) -> list[Number]:
     """Braking torques that act: those of the brakes, and of a lock what keeps its pads from sliding.
 
-    Pads hang in a frame that moves: what a lock holds is the disc against its pads, not the spin. A wheelset that is held
-    against the track drives the frame with torques that its motion does work on, and the bogie swings ever more.
+    Pads hang in a frame that moves: what a lock holds is the disc against its pads, not the spin. A wheelset that is
+    held against the track drives the frame with torques that its motion does work on: the bogie swings ever more.
     """
     import casadi as ca
 
