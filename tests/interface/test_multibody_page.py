@@ -1,4 +1,4 @@
-"""The wagon of docs/multibody.md is a vehicle that stands and is what the page says; its table of vehicles is complete."""
+"""The wagon of docs/multibody.md stands and is what the page says; the table of vehicles is complete."""
 
 import re
 from pathlib import Path
