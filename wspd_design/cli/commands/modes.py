@@ -7,7 +7,7 @@ import typer
 
 from wspd_design.cli import options
 from wspd_design.cli.arguments import parse_speed
-from wspd_design.cli.console import console, print_json, print_written, progress, spaced
+from wspd_design.cli.console import WIDE, console, print_json, print_written, progress, spaced
 from wspd_design.cli.output import check_output, write_file
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import VEHICLE
@@ -151,7 +151,8 @@ def _show(found: "VehicleModes", highest: float) -> None:
     out.print(found.title, markup=False)
     rows = _shown(found, highest)
     styles = ["yellow" if mode.unstable else "" for mode in rows]
-    out.print(spaced(terminal_table(build(rows, _COLUMNS, caption=""), styles=styles)))
+    columns = _COLUMNS if out.width >= WIDE else _COLUMNS[:-1]
+    out.print(spaced(terminal_table(build(rows, columns, caption=""), styles=styles)))
     oscillating = [mode for mode in found.modes if mode.oscillates]
     left = len(found.modes) - len(rows)
     growing = found.growing
