@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from wspd_design.analysis.linearization import Linearization, linearize
-    from wspd_design.certificates.records import Certificate, Problem, Status
+    from wspd_design.certificates.records import Certificate, Certificates, Problem, Status
     from wspd_design.certificates.suite import verify
     from wspd_design.controllers.protocol import Command, Controller, Measurement
     from wspd_design.design.catalog import controller
@@ -16,36 +16,56 @@ if TYPE_CHECKING:
     from wspd_design.design.file import read_design, write_design
     from wspd_design.design.own_controller import load_controller
     from wspd_design.design.problem import stability_problem
-    from wspd_design.design.records import Design, Specification
+    from wspd_design.design.records import Design, Gain, Specification
     from wspd_design.design.selection import design_controller
     from wspd_design.parameters.errors import UserError, WspdError
     from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
-    from wspd_design.parameters.records import Rail, Vehicle
+    from wspd_design.parameters.records import Brake, Rail, Vehicle
+    from wspd_design.parameters.table import Table
+    from wspd_design.plotting.poles import plot_poles
     from wspd_design.reporting.report import write_report
-    from wspd_design.simulation.campaign import simulate_many
-    from wspd_design.simulation.comparison import compare, trial
+    from wspd_design.simulation.campaign import Campaign, simulate_many
+    from wspd_design.simulation.comparison import Comparison, Trial, compare, trial
     from wspd_design.simulation.draws import Choice, Draw, Normal, Uniform, within_bounds
     from wspd_design.simulation.ideal import ideal_stop
-    from wspd_design.simulation.records import Scenario, Start
+    from wspd_design.simulation.metrics import Metrics
+    from wspd_design.simulation.records import Ending, Fault, Patch, Run, Scenario, Sensing, Start
     from wspd_design.simulation.stop import simulate
+    from wspd_design.simulation.trace_table import Traces
     from wspd_design.studies.dossier import dossier
 
+    __version__: str
+
 _HOME = {
+    "Brake": "parameters.records",
+    "Campaign": "simulation.campaign",
     "Certificate": "certificates.records",
+    "Certificates": "certificates.records",
     "Choice": "simulation.draws",
     "Command": "controllers.protocol",
+    "Comparison": "simulation.comparison",
     "Controller": "controllers.protocol",
     "Design": "design.records",
     "Draw": "simulation.draws",
+    "Ending": "simulation.records",
+    "Fault": "simulation.records",
+    "Gain": "design.records",
     "Linearization": "analysis.linearization",
     "Measurement": "controllers.protocol",
+    "Metrics": "simulation.metrics",
     "Normal": "simulation.draws",
+    "Patch": "simulation.records",
     "Problem": "certificates.records",
     "Rail": "parameters.records",
+    "Run": "simulation.records",
     "Scenario": "simulation.records",
+    "Sensing": "simulation.records",
     "Specification": "design.records",
     "Start": "simulation.records",
     "Status": "certificates.records",
+    "Table": "parameters.table",
+    "Traces": "simulation.trace_table",
+    "Trial": "simulation.comparison",
     "Uniform": "simulation.draws",
     "UserError": "parameters.errors",
     "Vehicle": "parameters.records",
@@ -62,6 +82,7 @@ _HOME = {
     "load_entries": "parameters.loading",
     "load_rail": "parameters.loading",
     "load_vehicle": "parameters.loading",
+    "plot_poles": "plotting.poles",
     "read_design": "design.file",
     "simulate": "simulation.stop",
     "simulate_many": "simulation.campaign",
@@ -74,25 +95,40 @@ _HOME = {
 }
 
 __all__ = [
+    "Brake",
+    "Campaign",
     "Certificate",
+    "Certificates",
     "Choice",
     "Command",
+    "Comparison",
     "Controller",
     "Design",
     "Draw",
+    "Ending",
+    "Fault",
+    "Gain",
     "Linearization",
     "Measurement",
+    "Metrics",
     "Normal",
+    "Patch",
     "Problem",
     "Rail",
+    "Run",
     "Scenario",
+    "Sensing",
     "Specification",
     "Start",
     "Status",
+    "Table",
+    "Traces",
+    "Trial",
     "Uniform",
     "UserError",
     "Vehicle",
     "WspdError",
+    "__version__",
     "certify",
     "check",
     "compare",
@@ -105,6 +141,7 @@ __all__ = [
     "load_entries",
     "load_rail",
     "load_vehicle",
+    "plot_poles",
     "read_design",
     "simulate",
     "simulate_many",
@@ -119,6 +156,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Load a public name from its module."""
+    if name == "__version__":
+        return import_module(f"{__name__}.exchange.version").program_version()
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

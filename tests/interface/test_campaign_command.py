@@ -11,6 +11,7 @@ import pytest
 from wspd_design.cli import campaign as command
 from wspd_design.design.catalog import controller
 from wspd_design.design.records import Specification
+from wspd_design.exchange.columns import with_unit
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.campaign import simulate_many
@@ -37,9 +38,10 @@ def test_rows_are_those_of_the_package(wspd, tmp_path):
         draws=within_bounds(load_entries("vehicle", "er24pc"), load_entries("rail", "polach-wet")),
     ).table
     found = rows(tmp_path / "rows.csv")
-    assert list(found[0]) == list(table.dtype.names)
+    assert list(found[0]) == [with_unit(name) for name in table.dtype.names]
     for name in ("vehicle.mass", "rail.mu0", "distance_m", "lock_time_s"):
-        assert [float(row[name]) for row in found] == table[name].tolist()
+        assert [float(row[with_unit(name)]) for row in found] == table[name].tolist()
+    assert "vehicle.mass_kg" in found[0]
     assert f"{np.median(table['distance_m']):.2f}" in outcome.out
     assert f"{table['distance_m'].max():.2f}" in outcome.out
     assert "Not stopped within the time limit: 0 %" in outcome.out

@@ -184,7 +184,7 @@ def test_several_laws_and_rails_in_one_table_and_one_object(wspd, tmp_path):
     ]
     assert found["campaigns"][0]["step_checks"]["rows"] == 1
     lines = (tmp_path / "rows.csv").read_text().splitlines()
-    assert lines[0].startswith("controller,rail,run,seed,vehicle.mass,distance_m,")
+    assert lines[0].startswith("controller,rail,run,seed,vehicle.mass_kg,distance_m,")
     rows = [line.split(",") for line in lines[1:]]
     assert [row[:3] for row in rows[2:5]] == [
         ["none", "polach-wet", "2"],
@@ -257,7 +257,7 @@ def test_a_wrong_file_is_one_sentence_and_makes_nothing(wspd, file, text, senten
             ("--executor", "dask", "--scheduler", "tcp://x:1", "--workers", "2"),
             "--workers is about this machine",
         ),
-        (("-o", "rows.txt"), "rows.txt must end in .csv or .parquet"),
+        (("-o", "rows.txt"), "rows.txt must end in .csv, .parquet or .mat"),
         (("--store", "no/store"), "the store no/store cannot be made"),
     ],
 )

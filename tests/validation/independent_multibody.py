@@ -103,7 +103,7 @@ class SmallVibrations:
         rows = {}
         for spring in self.model.springs:
             if spring.carries:
-                rows[spring.name] = self.relative(spring.between, self._place(spring))[2]
+                rows[spring.name] = self.relative(spring.between, self.place(spring))[2]
         for wheelset in self.model.wheelset_names:
             chain, points = self.axle_points(wheelset)
             for side, point in zip(("left", "right"), points, strict=True):
@@ -120,7 +120,7 @@ class SmallVibrations:
             self.mass_of(other) for other in self.bodies if other != name
         )
 
-    def _place(self, element):
+    def place(self, element):
         return np.array(self.model.place(element.at), dtype=float)
 
     def relative(self, between, point):
@@ -166,7 +166,7 @@ class SmallVibrations:
         numbers, found = self.model.numbers, np.zeros((self.size, self.size))
         for spring in self.model.springs:
             first, second = spring.between
-            moved = self.relative(spring.between, self._place(spring))
+            moved = self.relative(spring.between, self.place(spring))
             turned = self.turns(self.chain(second)) - self.turns(self.chain(first))
             for key, row in zip(("x", "y", "z", "roll", "pitch", "yaw"), (*moved, *turned), strict=True):
                 found += numbers.get(f"{spring.kind}.{property_}_{key}", 0.0) * np.outer(row, row)
@@ -197,7 +197,7 @@ class SmallVibrations:
 
     def _stretch(self, spring):
         """Second order of the vertical component in the axes of the first body, as a matrix (n, n)."""
-        point, (first, second) = self._place(spring), spring.between
+        point, (first, second) = self.place(spring), spring.between
         moved, turned = self.relative(spring.between, point), self.turns(self.chain(first))
         cross = np.outer(turned[0], moved[1]) - np.outer(
             turned[1], moved[0]

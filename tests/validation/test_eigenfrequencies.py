@@ -1,5 +1,6 @@
 """All eigenfrequencies of the locomotive at rest on springs, by independent methods (V2)."""
 
+import casadi as ca
 import numpy as np
 import pytest
 from exudyn_multibody import eigenfrequencies
@@ -7,6 +8,8 @@ from independent_multibody import GroundSprings, SmallVibrations
 
 from wspd_design.analysis.modes import undamped_frequencies
 from wspd_design.plants.multibody.loading import load_multibody
+from wspd_design.plants.multibody.mechanics import mechanics
+from wspd_design.plants.multibody.preloads import balanced
 
 GROUND = GroundSprings(along=(1e7, 1e7, 1e7), turn=1e6)
 TOLERANCE = 1e-6
@@ -32,6 +35,45 @@ def test_the_weight_is_carried(vibrations):
     wheels = [load for name, load in vibrations.preloads.items() if name.startswith("wheelset")]
     assert sum(wheels) == pytest.approx(76841.0 * 9.81, rel=1e-12)
     assert wheels[:2] == pytest.approx([95.20e3, 93.26e3], rel=1e-4)
+
+
+def on_springs(model):
+    """Mass and stiffness of the equations of motion of the package, with the springs in the place of the contact."""
+    n, held = len(model.coordinates), balanced(model)
+    q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
+    equations = mechanics(held, q, v)
+    force = equations.force
+    for name in held.wheelset_names:
+        first = held.coordinates.index(f"{name}.x")
+        x, y, z, roll, pitch, yaw = ca.vertsplit(q[first : first + 6])
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            half = sign * held.numbers["wheel_half_spacing"]
+            moved = ca.vertcat(
+                x - half * ca.cos(roll) * ca.sin(yaw),
+                y + half * (ca.cos(roll) * ca.cos(yaw) - 1.0),
+                z + half * ca.sin(roll),
+            )
+            pushed = ca.vertcat(0.0, 0.0, held.preloads[f"{name}.{side}"]) - ca.diag(GROUND.along) @ moved
+            force += ca.jacobian(moved, q).T @ pushed
+        force[first + 4] -= GROUND.turn * pitch
+    matrices = ca.Function("m", [q, v], [equations.mass_matrix, -ca.jacobian(force, q)])(0, 0)
+    return [np.array(each) for each in matrices]
+
+
+def test_82_eigenfrequencies_of_the_equations_of_motion(model, vibrations, frequencies):
+    """Energies of exact rotations, differentiated, against screws and direct stiffness."""
+    mass, stiffness = on_springs(model)
+    assert mass == pytest.approx(vibrations.mass(), abs=1e-9)
+    assert stiffness == pytest.approx(vibrations.stiffness(), abs=1e-9 * np.abs(stiffness).max())
+    ours = undamped_frequencies(mass, stiffness)
+    assert len(ours) == 82
+    assert np.abs(ours / frequencies - 1.0).max() < TOLERANCE
+
+
+@pytest.mark.parametrize("number", ["drive.ratio", "motor_mount.half_width"])
+def test_a_number_that_is_wrong_by_a_thousandth_is_seen(model, frequencies, number):
+    wrong = model.with_numbers({number: 1.001 * model.numbers[number]})
+    assert np.abs(undamped_frequencies(*on_springs(wrong)) / frequencies - 1.0).max() > TOLERANCE
 
 
 def test_82_eigenfrequencies_by_exudyn(model, vibrations, frequencies):

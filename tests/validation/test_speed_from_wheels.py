@@ -25,7 +25,8 @@ def law(vehicle, period=0.02, **sensors):
 def other(vehicle, *, pads, mass):
     """Return a vehicle with other pads and mass than its law knows."""
     brake = replace(vehicle.brake, max_torque=pads * vehicle.brake.max_torque)
-    return replace(vehicle, brake=brake, mass=mass * vehicle.mass)
+    added = (mass - 1.0) * vehicle.mass
+    return replace(vehicle, brake=brake, mass=vehicle.mass + added, body_mass=vehicle.body_mass + added)
 
 
 def scenario(rail, grade=0.0):

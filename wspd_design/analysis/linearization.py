@@ -6,16 +6,22 @@ from typing import TYPE_CHECKING, Any
 from wspd_design.codegen.functions import slip_plant
 from wspd_design.model.brake import flow_rates
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Brake, Rail, Vehicle
+from wspd_design.parameters.taken import check_rail, check_vehicle, notice_of_speed
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
+
+    from wspd_design.parameters.table import Table
 
 STATES = ("slip", "torque")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Linearization:
     """Slip and torque near an equilibrium at frozen train speed: x' = A x + B duty.
 
@@ -34,6 +40,37 @@ class Linearization:
     time_constant: float  # s, of the averaged valve at this duty and torque; of lags between T_F and T_V
     state_matrix: "NDArray[np.float64]"
     input_matrix: "NDArray[np.float64]"
+
+    def __repr__(self) -> str:
+        """Say in one line what this is."""
+        return (
+            f"<Linearization of {self.vehicle} on {self.rail} at slip {self.slip:g} and {KMH * self.speed:g} km/h: "
+            f"slip pole {self.slip_pole:.4g} 1/s>"
+        )
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.linearizations", "linearization_card")(self))
+
+    def table(self) -> "Table":
+        """Return equilibrium, poles and gain with their units."""
+        table: Table = later("notebook.linearizations", "linearization_table")(self)
+        return table
+
+    def plot(self, *, ax: "Axes | None" = None) -> "Axes":
+        """Plot the open-loop poles in the complex plane.
+
+        Parameters
+        ----------
+        ax : Axes, optional
+            Where to draw; new axes by default.
+
+        Returns
+        -------
+        Axes
+            Real over imaginary part [1/s].
+        """
+        axes: Axes = later("plotting.poles", "plot_linearization")(self, ax=ax)
+        return axes
 
     def poles(self, *, with_lag: bool = True) -> tuple[float, ...]:
         """Open-loop poles [1/s], fastest growing first; ``with_lag`` includes the valve."""
@@ -79,7 +116,9 @@ def _holding_duty(brake: Brake, share: float) -> float:
     return float(venting / (filling + venting))
 
 
-def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Linearization:
+def linearize(
+    vehicle: Vehicle, rail: Rail, *, slip: float, speed: float | None = None, speed_kmh: float | None = None
+) -> Linearization:
     """Linearize eqs. (19) and (14) at a slip ratio and a train speed.
 
     Parameters
@@ -88,8 +127,10 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
         Quarter model and friction.
     slip : float
         Slip ratio in (0, 1).
-    speed : float
+    speed : float, optional
         Train speed, positive [m/s].
+    speed_kmh : float, optional
+        The same in km/h, in place of ``speed``.
 
     Returns
     -------
@@ -99,8 +140,22 @@ def linearize(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Lin
     Raises
     ------
     UserError
-        If slip or speed are outside their range.
+        If an argument is of another kind, or slip or speed are outside their range.
     """
+    check_vehicle(vehicle, by="linearize", whole=False)
+    check_rail(rail, by="linearize")
+    if (speed is None) == (speed_kmh is None):
+        raise UserError("linearize takes one speed: speed=22.2 in m/s, or speed_kmh=80")
+    if speed_kmh is not None:
+        return linearized(vehicle, rail, slip=slip, speed=speed_kmh / KMH)
+    assert speed is not None
+    found = linearized(vehicle, rail, slip=slip, speed=speed)
+    notice_of_speed(speed, "speed", f"for {speed:g} km/h write speed_kmh={speed:g}")
+    return found
+
+
+def linearized(vehicle: Vehicle, rail: Rail, *, slip: float, speed: float) -> Linearization:
+    """Linearize at a train speed that is surely in m/s; otherwise as :func:`linearize`."""
     import numpy as np
 
     if not 0.0 < slip < 1.0:

@@ -24,14 +24,16 @@ _MIXED = 0.15  # share of the energy that a second motion of the same bodies nee
 
 _DIRECTIONS = {
     "x": "surge",
-    "y": "sway",
+    "y": "lateral",
     "z": "bounce",
     "roll": "roll",
     "pitch": "pitch",
     "yaw": "yaw",
     "turn": "turn",
 }
-_SPECIAL = {("rotor", "turn"): "driveline"}
+_OSCILLATING = {("rotor", "turn"): "driveline"}
+_EVEN = {("rotor", "turn"): "slip", ("wheelset", "pitch"): "slip"}
+"""Names of motions of which those of body and direction say too little, of modes that oscillate and of others."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +99,11 @@ class Mode:
         return self.pole.imag > 0.0
 
     @property
+    def natural_frequency(self) -> float:
+        """Size of the eigenvalue, which is the frequency without damping [Hz]."""
+        return abs(self.pole) / (2.0 * math.pi)
+
+    @property
     def frequency(self) -> float:
         """Frequency of the oscillation [Hz]; 0 for a mode that does not oscillate."""
         return self.pole.imag / (2.0 * math.pi)
@@ -132,8 +139,17 @@ def undamped_frequencies(mass: "Matrix", stiffness: "Matrix") -> "Matrix":
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * math.pi))
 
 
+def poles(motion: SmallMotion) -> "Shape":
+    """Return the eigenvalues of small motion [1/s] without those of neutral motion, fastest growing first."""
+    import numpy as np
+
+    values = np.linalg.eigvals(motion.state_matrix())
+    values = values[np.abs(values) >= _NEUTRAL]
+    return np.asarray(values[np.argsort(-values.real)], dtype=np.complex128)
+
+
 def modes(motion: SmallMotion) -> tuple[Mode, ...]:
-    """Return the modes of small motion: those that oscillate by rising frequency, then the real ones, fastest last.
+    """Return the modes of small motion: those that oscillate by rising frequency, then the real ones, slowest first.
 
     Neutral motion is left out.
 
@@ -153,7 +169,7 @@ def modes(motion: SmallMotion) -> tuple[Mode, ...]:
             continue
         pole = complex(value.real, 0.0) if real else complex(value)
         found.append(_mode(motion, pole, vector[-n:]))
-    found.sort(key=lambda mode: (not mode.oscillates, mode.frequency, abs(mode.pole)))
+    found.sort(key=lambda mode: (not mode.oscillates, mode.natural_frequency))
     return _distinct(found)
 
 
@@ -173,7 +189,8 @@ def _mode(motion: SmallMotion, pole: complex, shape: "Shape") -> Mode:
         Share(kind=kind, direction=direction, share=share)
         for (kind, direction), share in sorted(parts.items(), key=lambda item: -item[1])
     )
-    return Mode(name=_name(motion, energy, turned, shares), pole=pole, shares=shares, shape=turned)
+    name = _name(motion, energy, turned, shares, oscillates=pole.imag > 0.0)
+    return Mode(name=name, pole=pole, shares=shares, shape=turned)
 
 
 def _motions(motion: SmallMotion) -> list[tuple[str, str]]:
@@ -187,7 +204,9 @@ def _split(coordinate: str) -> tuple[str, str]:
     return body, direction
 
 
-def _name(motion: SmallMotion, energy: "Matrix", shape: "Shape", shares: tuple[Share, ...]) -> str:
+def _name(
+    motion: SmallMotion, energy: "Matrix", shape: "Shape", shares: tuple[Share, ...], *, oscillates: bool
+) -> str:
     """Say which bodies move and how, from the largest share of the energy."""
     import numpy as np
 
@@ -196,7 +215,7 @@ def _name(motion: SmallMotion, energy: "Matrix", shape: "Shape", shares: tuple[S
     parts = energy[places]
     strongest, _ = _split(motion.coordinates[places[int(np.argmax(parts))]])
     alone = parts.max() >= _ALONE * parts.sum()
-    special = _SPECIAL.get((kind, direction))
+    special = (_OSCILLATING if oscillates else _EVEN).get((kind, direction))
     if special is not None:
         return f"{special} {strongest.removeprefix(f'{kind}_')}" if alone and len(places) > 1 else special
     how = _DIRECTIONS.get(direction, direction)

@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.analysis.modes import SmallMotion
+from wspd_design.model.hertz import contact_from_radii
 from wspd_design.model.number import maximum
-from wspd_design.model.wheel_rail import WheelRail
+from wspd_design.model.wheel_rail import WheelRail, wheel_rail
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.loading import constants
+from wspd_design.parameters.loading import constants, steel
 from wspd_design.parameters.records import Rail
 from wspd_design.plants.multibody.mechanics import mechanics
 from wspd_design.plants.multibody.motion import wheel_on_rail
@@ -81,6 +82,26 @@ class SteadyRunning:
     to_outputs: (
         "Matrix"  # (4 axles, 2 n + 2 axles), slip and load of each wheel by coordinates, rates, inputs
     )
+
+
+def contact_of(model: Multibody, *, lateral_slope: float = 1.0) -> WheelRail:
+    """Return the contact of the wheels of a vehicle by Hertz and Kalker at their mean load, steel on steel.
+
+    ``lateral_slope`` is that of :func:`wspd_design.model.wheel_rail.wheel_rail`.
+    """
+    ellipse = contact_from_radii(
+        wheel_load=model.numbers["mass"] * constants().gravity / len(model.wheel_names),
+        wheel_radius=model.numbers["wheel_radius"],
+        rail_radius=steel().rail_crown,
+        young=steel().young,
+        poisson=steel().poisson,
+    )
+    return wheel_rail(ellipse, poisson=steel().poisson, lateral_slope=lateral_slope)
+
+
+def full_slope(rail: Rail) -> Rail:
+    """Return a rail on which small longitudinal creep meets the whole slope of Kalker's theory."""
+    return replace(rail, name=f"{rail.name}, full slope", adhesion_reduction=1.0, slip_reduction=1.0)
 
 
 def running_vehicle(model: Multibody, contact: WheelRail, rail: Rail) -> RunningVehicle:

@@ -1,20 +1,23 @@
 """The form of a statement about stability: what is claimed, what supports it, and what it assumes."""
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from wspd_design.certificates.quantities import QUANTITIES, STATE, is_working_name
 from wspd_design.controllers.protocol import Controller, Law
 from wspd_design.parameters.bounds import Bounds, Ends
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     from wspd_design.certificates.kernel.finding import Finding
+    from wspd_design.parameters.table import Table
 
 
 class Status(Enum):
@@ -149,7 +152,7 @@ class Map:
     worst: tuple[float, float] | None = None  # x and y of the tightest point
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Certificate:
     """A claim about a closed loop and its verdict.
 
@@ -180,6 +183,13 @@ class Certificate:
     findings: Mapping[str, "Finding"] = field(default_factory=dict, repr=False)
     series: tuple[Series, ...] = field(default=(), repr=False)
     maps: tuple[Map, ...] = field(default=(), repr=False)
+
+    def __repr__(self) -> str:
+        """Say in one line what was claimed about what, and the verdict."""
+        return f"<Certificate {self.name}: {self.status.name}, {self.title}>"
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.proofs", "certificate_card")(self))
 
     @property
     def searched(self) -> bool:
@@ -226,6 +236,44 @@ class Certificate:
     def cut(self) -> bool:
         """Whether a search was ended by its budget."""
         return any(each.effort.cut for each in self.findings.values())
+
+
+class Certificates(tuple[Certificate, ...]):
+    """What was found out about one closed loop: a tuple of certificates that shows itself as a table."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        """Count the verdicts."""
+        counts = Counter(each.status.name.lower().replace("_", " ") for each in self)
+        said = ", ".join(f"{number} {word}" for word, number in counts.items())
+        return f"<Certificates of {len(self)} checks: {said}>"
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.proofs", "proofs_card")(self))
+
+    def table(self) -> "Table":
+        """Return a row for each check: claim, verdict in words, margin."""
+        table: Table = later("notebook.proofs", "proofs_table")(self)
+        return table
+
+    def to_pandas(self) -> Any:
+        """Return a row for each check as a ``pandas.DataFrame``; needs the extra ``frames``."""
+        return later("notebook.frames", "frame_of_proofs")(self)
+
+    def named(self, name: str) -> Certificate:
+        """Return the certificate of a check by its name.
+
+        Raises
+        ------
+        UserError
+            If no such check was made.
+        """
+        for each in self:
+            if each.name == name:
+                return each
+        made = ", ".join(each.name for each in self)
+        raise UserError(f'there is no certificate of the check "{name}" here; there are {made}')
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -30,7 +30,7 @@ from wspd_design.certificates.checks.sliding import (
 from wspd_design.certificates.checks.stop import overshoot, stop_bound, tracking
 from wspd_design.certificates.checks.valve import hard_limits, no_go, open_loop_pole, sampling
 from wspd_design.certificates.memory import remembering
-from wspd_design.certificates.records import Certificate, Problem
+from wspd_design.certificates.records import Certificate, Certificates, Problem
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.budget import DEFAULT_BUDGET, Budget, within
 from wspd_design.certificates.search.progress import Listener, listening
@@ -84,7 +84,7 @@ def verify(
     stored: Path | None = None,
     figures: bool = True,
     found: Callable[[Certificate], object] = lambda _: None,
-) -> tuple[Certificate, ...]:
+) -> Certificates:
     """Run the checks.
 
     Parameters
@@ -107,8 +107,8 @@ def verify(
 
     Returns
     -------
-    tuple of Certificate
-        In the order of :data:`NAMES`.
+    Certificates
+        A tuple in the order of :data:`NAMES`.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def verify(
         for check in wanted:
             certificates.append(_run(check, problem, progress, budget, stored, figures))
             found(certificates[-1])
-    return tuple(certificates)
+    return Certificates(certificates)
 
 
 def _run(

@@ -146,7 +146,7 @@ def simulate_runs(
     table = summary.campaign.table
     written = output if len(table) else None
     if written is not None:
-        write_table(written, [table], force=force)
+        write_table(written, [table], force=force, about=_about(series))
     if as_json:
         print_json(campaign_object(summary, case, scenario, start))
     elif len(table):
@@ -163,7 +163,8 @@ def tell_series(
 ) -> None:
     """Write and show the results of several series, whole ones and one that was interrupted."""
     if output is not None:
-        write_table(output, labelled([each.campaign for each in summaries]), force=force)
+        rows = labelled([each.campaign for each in summaries])
+        write_table(output, rows, force=force, about=_about(series))
     pairs = list(zip(series, summaries, strict=False))
     if as_json:
         print_json(
@@ -175,6 +176,21 @@ def tell_series(
             show(summary, each)
     if output is not None:
         _say_rows(output)
+
+
+def _about(series: Sequence[Series]) -> dict[str, str]:
+    """Say what was simulated, for the head of a file; laws and rails of several series stand in its columns."""
+    first = series[0]
+    names = {
+        "controller": {each.case.controller.name for each in series},
+        "vehicle": {each.case.vehicle.name for each in series},
+        "rail": {rails_of(each.scenario) for each in series},
+        "sample_time_s": {repr(each.case.controller.sample_time) for each in series},
+        "initial_speed_m_s": {repr(each.scenario.initial_speed) for each in series},
+    }
+    return {key: ", ".join(sorted(found)) for key, found in names.items()} | {
+        "seed": str(first.scenario.seed)
+    }
 
 
 def labelled(campaigns: Sequence[Campaign]) -> "Iterator[NDArray[Any]]":

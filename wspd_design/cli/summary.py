@@ -63,18 +63,9 @@ def summarize(campaign: Campaign, *, wanted: int) -> Summary:
         campaign=campaign,
         wanted=wanted,
         not_stopped_share=1.0 - float(stopped.sum()) / len(table) if len(table) else math.nan,
-        spreads={name: _spread(figure(table, name)[stopped]) for name in SUMMARIZED},
+        spreads={name: _spread(campaign.figure(name)[stopped]) for name in SUMMARIZED},
         checks=_checks(table),
     )
-
-
-def figure(table: "NDArray[Any]", name: str) -> "NDArray[Any]":
-    """Return a column, or the largest of those of the axles."""
-    import numpy as np
-
-    names = [each for each in table.dtype.names or () if each == name or each.startswith(f"{name}_")]
-    found: NDArray[Any] = np.max([table[each] for each in names], axis=0)
-    return found
 
 
 def _spread(values: "NDArray[Any]") -> Spread:

@@ -1,19 +1,15 @@
-"""Tables of results in files: CSV, or Parquet by the optional pyarrow."""
+"""Tables of results in files: CSV, Parquet by the optional pyarrow, or MATLAB."""
 
-import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.cli.output import check_output, write_file
-from wspd_design.parameters.errors import UserError
-from wspd_design.simulation.parquet import check_parquet, write_rows
+from wspd_design.exchange.table_files import check_format, write_blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-FORMATS = (".csv", ".parquet")
-_BLOCK = 1000  # rows that are Python objects at a time
 
 
 def check_table(path: Path, *, force: bool) -> None:
@@ -27,32 +23,20 @@ def check_table(path: Path, *, force: bool) -> None:
         Whether an existing file may be replaced.
     """
     check_output(path, force=force)
-    ending = path.suffix.lower()
-    if ending not in FORMATS:
-        raise UserError(f"{path} must end in {' or '.join(FORMATS)}, which chooses the format")
-    if ending == ".parquet":
-        check_parquet(f"{path}: Parquet")
+    check_format(path)
 
 
-def write_table(path: Path, blocks: "Iterable[NDArray[Any]]", *, force: bool) -> None:
+def write_table(
+    path: Path,
+    blocks: "Iterable[NDArray[Any]]",
+    *,
+    force: bool,
+    about: Mapping[str, str] = MappingProxyType({}),
+) -> None:
     """Write structured arrays of the same columns below each other, whole or not at all.
 
     Numbers keep all their digits. Blocks may be made while they are written, so that no table of all has to be there.
+    ``about`` says what was simulated, where the format has a place for it.
     """
-    write = _write_parquet if path.suffix.lower() == ".parquet" else _write_csv
-    write_file(path, lambda target: write(target, blocks), force=force)
-
-
-def _write_csv(path: Path, blocks: "Iterable[NDArray[Any]]") -> None:
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        for number, block in enumerate(blocks):
-            if number == 0:
-                writer.writerow(block.dtype.names or ())
-            for start in range(0, len(block), _BLOCK):
-                writer.writerows(block[start : start + _BLOCK].tolist())
-
-
-def _write_parquet(path: Path, blocks: "Iterable[NDArray[Any]]") -> None:
-    with path.open("wb") as stream:
-        write_rows(blocks, stream, {})
+    ending = path.suffix.lower()
+    write_file(path, lambda target: write_blocks(target, blocks, about, ending), force=force)

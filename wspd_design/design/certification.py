@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from wspd_design.certificates.kernel.file import FOLDER, certificate_text, file_name
-from wspd_design.certificates.records import Certificate, Problem, Status
+from wspd_design.certificates.records import Certificate, Certificates, Problem, Status
 from wspd_design.design.case import Case, CaseOptions, case_of, load_case
 from wspd_design.design.catalog import is_design_file
 from wspd_design.design.own_controller import is_own_controller
@@ -33,7 +33,7 @@ def certify(
     stored: Path | None = None,
     progress: Callable[[str], None] = lambda _: None,
     found: Callable[[Certificate], object] = lambda _: None,
-) -> tuple[Certificate, ...]:
+) -> Certificates:
     """Prove or refute what can be said about a design.
 
     What lies in the folder ``NAME.certificates`` beside a design file and is accepted is not searched again.
@@ -60,8 +60,8 @@ def certify(
 
     Returns
     -------
-    tuple of Certificate
-        One for each check.
+    Certificates
+        A tuple, one for each check.
 
     Raises
     ------

@@ -217,7 +217,7 @@ def _check(made: Any, name: str, vehicle: Vehicle) -> None:
             f"wheelsets = {made.wheelsets!r} of {name} must be {vehicle.wheelsets}, as vehicle {vehicle.name} has; "
             "let it take wheelsets"
         )
-    before = repr(getattr(made, "__dict__", None))
+    before = _content(made)
     seen = tuple(_of_vehicle(each, vehicle.wheelsets) for each in _PROBES) if whole else _PROBES
     results = _guarded(lambda: [_probe(made, each) for each in seen * 2], name)
     for states, following, commanded in results:
@@ -244,11 +244,17 @@ def _check(made: Any, name: str, vehicle: Vehicle) -> None:
         if not all(math.isfinite(number) for number in (*states, *following, *sum(commands, ()))):
             raise UserError(f"{name} returns a number that is not finite: {commanded}")
     half = len(_PROBES)
-    if results[:half] != results[half:] or repr(getattr(made, "__dict__", None)) != before:
+    if results[:half] != results[half:] or _content(made) != before:
         raise UserError(
             f"{name} changes from call to call; what it remembers must be in the state that step takes and "
             f"returns, and nothing may be random; {_HOW}"
         )
+
+
+def _content(made: Any) -> tuple[str, list[Any]]:
+    """What an object holds: all of it as text, and vehicles and rails, whose text is short, as they are."""
+    held = getattr(made, "__dict__", {})
+    return repr(held), [each for each in held.values() if isinstance(each, Vehicle | Rail)]
 
 
 def _of_vehicle(seen: Measurement, wheelsets: int) -> VehicleMeasurement:

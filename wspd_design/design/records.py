@@ -1,7 +1,7 @@
 """What a design starts from and what it is: a specification, a law and its gains with their reasons."""
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from wspd_design.controllers.family import Family, tunable_family
 from wspd_design.controllers.gains import SLIP_REFERENCE, GainForm
@@ -14,9 +14,13 @@ from wspd_design.design.industry import usual_table
 from wspd_design.design.requirements import Requirements
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
+from wspd_design.parameters.later import later
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.parameters.units import dimension_of, factor, units_of
+from wspd_design.parameters.units import KMH, dimension_of, factor, units_of
+
+if TYPE_CHECKING:
+    from wspd_design.parameters.table import Table
 
 GainValue: TypeAlias = float | bool | tuple[float, ...]
 
@@ -86,7 +90,7 @@ class Gain:
     why: str
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Design:
     """A controller design: everything that is needed to rebuild the controller, and why it is so."""
 
@@ -101,6 +105,23 @@ class Design:
     vehicle_file: str = ""  # of a vehicle of one's own, as seen from the folder of the design file
     rail_file: str = ""
     requirements: Requirements | None = None  # that it was searched for; rails of one's own as seen from here
+
+    def __repr__(self) -> str:
+        """Say in one line what this is."""
+        asked = self.specification
+        low, high = (KMH * speed for speed in asked.speeds)
+        return (
+            f"<Design {self.name}: {self.law} for slip {asked.slip:g} at {low:g} to {high:g} km/h, sampled every "
+            f"{1e3 * asked.sample_time:g} ms, {len(self.gains)} gains>"
+        )
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.designs", "design_card")(self))
+
+    def table(self) -> "Table":
+        """Return the gains with unit and the reason for each; print it or let a notebook show it."""
+        table: Table = later("notebook.designs", "design_table")(self)
+        return table
 
     def gain(self, name: str) -> GainValue:
         """Return the value of a gain by its name, in the unit of the gain."""

@@ -13,6 +13,8 @@ from wspd_design.parameters.records import Vehicle
 
 AXLES_OF_A_BOGIE = (1, 2, 3)
 
+_MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms or to 0.1 t
+
 
 @dataclass(frozen=True, slots=True)
 class Gear:
@@ -62,6 +64,19 @@ def static_shares(vehicle: Vehicle) -> tuple[float, ...]:
 def contradiction(vehicle: Vehicle) -> str:
     """Say what contradicts itself in the running gear of a vehicle and what to change, or nothing."""
     return wrong_counts(vehicle) or _wrong_numbers(vehicle)
+
+
+def masses_contradict(vehicle: Vehicle) -> str:
+    """Say that bodies and bogies do not weigh what the vehicle does, or nothing."""
+    gear = gear_of(vehicle)
+    parts = gear.bodies * vehicle.body_mass + gear.supports * vehicle.bogie_mass
+    if abs(parts - vehicle.mass) <= _MASS_TOLERANCE * vehicle.mass:
+        return ""
+    bodies = "body_mass" if gear.bodies == 1 else f"{gear.bodies} body_mass"
+    return (
+        f"mass = {vehicle.mass:g} kg in vehicle {vehicle.name} must equal {bodies} + {gear.supports} bogie_mass "
+        f"= {parts:g} kg"
+    )
 
 
 def wrong_counts(vehicle: Vehicle) -> str:

@@ -25,7 +25,7 @@ from wspd_design.parameters.files import (
     load_entries,
     read_toml,
 )
-from wspd_design.parameters.gear import contradiction, gear_of
+from wspd_design.parameters.gear import contradiction, masses_contradict
 from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.records import (
     Brake,
@@ -67,8 +67,6 @@ __all__ = [
 ]
 
 _Record = TypeVar("_Record")
-
-_MASS_TOLERANCE = 1e-3  # body and bogies are often rounded to whole kilograms or to 0.1 t
 
 
 @cache
@@ -158,14 +156,9 @@ def _check_gear(vehicle: Vehicle) -> None:
     wrong = contradiction(vehicle)
     if wrong:
         raise UserError(f"vehicle {vehicle.name}: {wrong}.")
-    gear = gear_of(vehicle)
-    parts = gear.bodies * vehicle.body_mass + gear.supports * vehicle.bogie_mass
-    if abs(parts - vehicle.mass) > _MASS_TOLERANCE * vehicle.mass:
-        bodies = "body_mass" if gear.bodies == 1 else f"{gear.bodies} body_mass"
-        raise UserError(
-            f"mass = {vehicle.mass:g} kg in vehicle {vehicle.name} must equal {bodies} + {gear.supports} bogie_mass "
-            f"= {parts:g} kg; change the three together."
-        )
+    masses = masses_contradict(vehicle)
+    if masses:
+        raise UserError(f"{masses}; change the three together.")
 
 
 def _part(record: type[_Record], parameters: ParameterSet, prefix: str) -> _Record | None:

@@ -6,9 +6,16 @@ stay with the record.
 
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from wspd_design.parameters.bounds import EXACT, Bounds
+from wspd_design.parameters.later import later
 from wspd_design.parameters.schema import BuildUp, ValveKind
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from wspd_design.parameters.table import Table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -182,7 +189,7 @@ class TrackBrake:
     bounds: Bounds = EXACT
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Vehicle:
     """A vehicle on bogies or single axles, eqs. (1)-(4); what it stands on is told by ``parameters.gear``."""
 
@@ -217,6 +224,21 @@ class Vehicle:
     track_brake: TrackBrake | None = None
     multibody: str = ""  # name or path of the file of the plants with all degrees of freedom; empty: none
     bounds: Bounds = EXACT  # of the numbers above; brake, contact and the like have their own
+
+    def __repr__(self) -> str:
+        """Say in one line what this is."""
+        return (
+            f"<Vehicle {self.name}: {self.mass / 1e3:g} t, {self.wheelsets} wheelsets, brakes of "
+            f"{self.brake.max_torque / 1e3:g} kN m per wheelset>"
+        )
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.vehicles", "vehicle_card")(self))
+
+    def table(self) -> "Table":
+        """Return all numbers with unit, bounds and meaning; print it or let a notebook show it."""
+        table: Table = later("notebook.vehicles", "vehicle_table")(self)
+        return table
 
     @property
     def wheel_inertia(self) -> float:
@@ -259,7 +281,7 @@ class Vehicle:
         return replace(self.brake, max_torque=self.brake_shares[axle] * self.brake.max_torque)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Rail:
     """Adhesion of one rail condition by Polach's law, eqs. (5)-(7)."""
 
@@ -270,6 +292,47 @@ class Rail:
     adhesion_reduction: float  # -, kA
     slip_reduction: float  # -, kS
     bounds: Bounds = EXACT
+
+    def __repr__(self) -> str:
+        """Say in one line what this is."""
+        return (
+            f"<Rail {self.name}: mu0 {self.mu0:g}, A {self.friction_ratio:g}, B {self.friction_decay:g} s/m, "
+            f"kA {self.adhesion_reduction:g}, kS {self.slip_reduction:g}>"
+        )
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.vehicles", "rail_card")(self))
+
+    def table(self) -> "Table":
+        """Return the coefficients with unit, bounds and meaning."""
+        table: Table = later("notebook.vehicles", "rail_table")(self)
+        return table
+
+    def plot(
+        self,
+        vehicle: Vehicle,
+        *,
+        speeds_kmh: tuple[float, ...] = (20.0, 60.0, 120.0),
+        ax: "Axes | None" = None,
+    ) -> "Axes":
+        """Plot the adhesion over slip under the wheels of a vehicle, a curve for each train speed.
+
+        Parameters
+        ----------
+        vehicle : Vehicle
+            Whose contact and static wheel load count.
+        speeds_kmh : tuple of float
+            Train speeds [km/h].
+        ax : Axes, optional
+            Where to draw; new axes by default.
+
+        Returns
+        -------
+        Axes
+            Slip [-] over adhesion [-].
+        """
+        axes: Axes = later("plotting.rails", "plot_adhesion")(self, vehicle, speeds_kmh=speeds_kmh, ax=ax)
+        return axes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,12 +17,13 @@ from wspd_design.reporting.text import CodeSpan, Emphasis, Link, Math, Text, pla
 if TYPE_CHECKING:
     from markupsafe import Markup
 
-_COLORS = {color: f"var(--series-{index})" for index, color in enumerate(SERIES, start=1)} | {
+COLORS = {color: f"var(--series-{index})" for index, color in enumerate(SERIES, start=1)} | {
     INK: "currentColor",
     MUTED: "var(--muted)",
     GRID: "var(--grid)",
     "#000000": "currentColor",
 }
+"""Of the style sheet, in place of those of a figure."""
 
 
 def render_html(document: Document) -> str:
@@ -140,4 +141,4 @@ class _Writer:
     def figure(self, figure: Figure) -> "Markup":
         """Return the picture of a figure, its ids made unique in the page."""
         self._figures += 1
-        return _trusted(inline(figure.svg, f"F{self._figures}-", _COLORS, printable(figure.alt)))
+        return _trusted(inline(figure.svg, f"F{self._figures}-", COLORS, printable(figure.alt)))

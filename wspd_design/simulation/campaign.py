@@ -1,6 +1,7 @@
 """Many stops: chunks of rows, computed by any executor and kept in a store as they come."""
 
 import os
+import re
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
@@ -13,11 +14,13 @@ from concurrent.futures import (
 )
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.campaign_rows import Plan, columns, compute_rows, make_plan, plan_key
@@ -26,18 +29,25 @@ from wspd_design.simulation.description import rails_of
 from wspd_design.simulation.draws import Draw
 from wspd_design.simulation.parquet import check_parquet
 from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.taken import check_stop
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
+
+    from wspd_design.parameters.table import Table
 
 CHUNK = 128  # stops that one worker computes at a time, and that one file of a store holds
 CHECK_EVERY = 100  # rows between two that are checked with half the steps
 _IN_FLIGHT = 256  # chunks that wait at an executor, so that memory does not grow with the stops
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Campaign:
-    """Results of many stops: one row a stop, with its seed, its drawn numbers and its figures."""
+    """Results of many stops: one row a stop, with its seed, its drawn numbers and its figures.
+
+    ``table`` is the record array of them; :meth:`spread` tells how the figures spread.
+    """
 
     controller: str
     rail: str
@@ -47,6 +57,70 @@ class Campaign:
     table: "NDArray[Any]"  # record array
     complete: bool  # False after an interrupt
     remade: tuple[str, ...] = ()  # a sentence for each file of the store that was not what it should be
+
+    def __repr__(self) -> str:
+        """Say in one line what was simulated."""
+        return (
+            f"<Campaign of {len(self.table)} stops of {self.controller} on {self.rail} ({self.plant}), "
+            f"{len(self.sampled)} drawn numbers{'' if self.complete else ', interrupted'}>"
+        )
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.campaigns", "campaign_card")(self))
+
+    def figure(self, name: str) -> "NDArray[Any]":
+        """Return a column of the table, or the largest of those of the axles.
+
+        Raises
+        ------
+        UserError
+            If there is no such column.
+        """
+        import numpy as np
+
+        names = self.table.dtype.names or ()
+        found = [each for each in names if each == name or re.fullmatch(rf"{re.escape(name)}_\d+", each)]
+        if not found:
+            near = get_close_matches(name, names, n=1)
+            offer = f'did you mean "{near[0]}"? ' if near else ""
+            raise UserError(
+                f'there is no figure "{name}" in this campaign; {offer}there are {", ".join(names)}'
+            )
+        column: NDArray[Any] = np.max([self.table[each] for each in found], axis=0)
+        return column
+
+    def spread(self) -> "Table":
+        """Return how each figure spreads over the trains that came to a standstill: quantiles with their unit."""
+        table: Table = later("notebook.campaigns", "campaign_table")(self)
+        return table
+
+    def to_pandas(self) -> Any:
+        """Return a row for each stop as a ``pandas.DataFrame``, columns named with unit; needs the extra ``frames``."""
+        return later("notebook.frames", "frame_of_campaign")(self)
+
+    def plot(self, figure: str = "distance_m", *, ax: "Axes | None" = None) -> "Axes":
+        """Plot how often each value of a figure comes, over the trains that came to a standstill.
+
+        Parameters
+        ----------
+        figure : str
+            Column of the table, such as ``distance_m`` or ``slip_rms``; of axles, such as ``longest_lock_s``, the
+            largest.
+        ax : Axes, optional
+            Where to draw; new axes by default.
+
+        Returns
+        -------
+        Axes
+            Figure with its unit over number of stops; nothing is shown or saved.
+
+        Raises
+        ------
+        UserError
+            If there is no such column.
+        """
+        axes: Axes = later("plotting.campaigns", "plot_campaign")(self, figure, ax=ax)
+        return axes
 
 
 def simulate_many(
@@ -108,6 +182,7 @@ def simulate_many(
     """
     import numpy as np
 
+    check_stop(vehicle, controller, scenario, plant, by="simulate_many")
     if count < 1:
         raise UserError(f"count = {count} must be at least 1")
     if first < 0:

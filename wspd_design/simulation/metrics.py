@@ -3,10 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from wspd_design.model.number import Number
 from wspd_design.model.valve_flow import ATMOSPHERE
 from wspd_design.parameters.gear import static_shares
+from wspd_design.parameters.later import later
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Vehicle
 from wspd_design.simulation.held_slip import build_up, held_slip_of, perfect_hold
@@ -16,8 +18,11 @@ from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import Ending, Run, Scenario, Start
 from wspd_design.simulation.released import released_below
 
+if TYPE_CHECKING:
+    from wspd_design.parameters.table import Table
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Metrics:
     """Figures of one stop. Slip figures count above 10 km/h, means are those of the wheelsets with a brake.
 
@@ -63,6 +68,26 @@ class Metrics:
     released_below: float  # m/s, speed from which on the brake was let go until the end; NaN where it was not
     momentum_residual: float  # -, relative to the initial momentum
     energy_residual: float  # -, relative to the initial energy
+
+    def __repr__(self) -> str:
+        """Say the main figures in one line."""
+        return f"<Metrics: {self.brief}>"
+
+    @property
+    def brief(self) -> str:
+        """The main figures in words."""
+        return (
+            f"{self.distance:.1f} m in {self.stopping_time:.2f} s, efficiency {100.0 * self.efficiency:.0f} %, "
+            f"slip rms {self.slip_rms:.3f}, wheels locked {self.lock_time:.2f} s"
+        )
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.stops", "metrics_card")(self))
+
+    def table(self) -> "Table":
+        """Return all figures with their units."""
+        table: Table = later("notebook.stops", "metrics_table")(self)
+        return table
 
 
 def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: float) -> Metrics:

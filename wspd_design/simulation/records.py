@@ -8,11 +8,17 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, TypeAlias, get_args
 
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Brake, Rail
+from wspd_design.parameters.taken import check_rail
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
+
+    from wspd_design.simulation.trace_table import Traces
 
     Trace = NDArray[np.float64]
 
@@ -211,6 +217,8 @@ class Scenario:
 
     def __post_init__(self) -> None:
         """Refuse what is not a stop."""
+        for rail in (self.rail, *(self.axle_rails or ()), *(patch.rail for patch in self.patches)):
+            check_rail(rail, by="Scenario")
         if not 0.0 < self.initial_speed < 150.0:
             raise UserError(
                 f"initial speed = {self.initial_speed:g} m/s must be above 0 and below 150 m/s (540 km/h); "
@@ -286,7 +294,7 @@ class Totals:
     distance_error: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Run:
     """A simulated stop. Traces are arrays over time; those of a wheelset have a second axis, front axle first.
 
@@ -301,6 +309,8 @@ class Run:
     dead_time: float  # s, that the valves had
     shortest_pulse: float  # s, likewise
     initial_speed: float  # m/s
+    seed: int  # of what was random
+    wheel_radius: float  # m
     ending: Ending
     time: "Trace"  # s
     speed: "Trace"  # m/s
@@ -309,11 +319,13 @@ class Run:
     slip: "Trace"  # -, per wheelset
     torque: "Trace"  # N m, per wheelset, transmitted; 0 without a brake
     wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
+    cylinder_pressure: "Trace"  # Pa above the atmosphere, per wheelset; 0 without a friction brake
     axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset; none of one without a brake
     totals: Totals
     final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
     slip_max: float  # -, above the judging speed
     engine: str  # what computed it
+    shared_state: bool = False  # whether the state in the samples of a wheelset is that of all of them
     memory: tuple[str, ...] = ()  # names of the states in the samples, as far as the law tells them
     dynamic_torque: "Trace | None" = None  # N m, per wheelset, of an electrodynamic brake, within ``torque``
     pad_temperature: "Trace | None" = (
@@ -321,6 +333,66 @@ class Run:
     )
     track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
     further: "Mapping[str, Trace]" = field(default_factory=dict)  # per wheelset, what a coupled plant adds
+
+    def __repr__(self) -> str:
+        """Say in one line what became of the stop."""
+        return (
+            f"<Run {self.controller} on {self.rail}, {self.train}, from {KMH * self.initial_speed:g} km/h: "
+            f"{self.totals.distance:.1f} m in {float(self.time[-1]):.2f} s, {self.ending.name.lower()}; "
+            f"traces of {len(self.time)} rows>"
+        )
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.stops", "run_card")(self))
+
+    def plot(self, what: str = "slip", *, ax: "Axes | None" = None) -> "Axes":
+        """Plot a trace of every wheelset over time.
+
+        Parameters
+        ----------
+        what : {"slip", "speed", "torque", "pressure", "load", "valve"}
+            Which trace.
+        ax : Axes, optional
+            Where to draw; new axes by default.
+
+        Returns
+        -------
+        Axes
+            With units at both axes; nothing is shown or saved.
+
+        Raises
+        ------
+        UserError
+            If there is no such trace.
+        """
+        axes: Axes = later("plotting.stops", "plot_run")(self, what, ax=ax)
+        return axes
+
+    def resampled(self, *, every: float) -> "Traces":
+        """Return all traces on a uniform grid of times: also commands, pressures and what the law remembers.
+
+        Parameters
+        ----------
+        every : float
+            Interval [s].
+
+        Returns
+        -------
+        Traces
+            Columns with units; what a law commands and remembers is held from one sample to the next.
+
+        Raises
+        ------
+        UserError
+            If the interval is not above zero, or so short that there would be more than ten million rows.
+        """
+        traces: Traces = later("simulation.traces", "traces_of")(self, every=every)
+        return traces
+
+    def traces(self) -> "Traces":
+        """Return all traces at the times at which they were recorded; otherwise as :meth:`resampled`."""
+        traces: Traces = later("simulation.traces", "traces_of")(self)
+        return traces
 
     @property
     def train(self) -> str:

@@ -17,7 +17,8 @@ from wspd_design.codegen.loop_numbers import LANE_SEEN, STOP_SEEN, LoopInput, Lo
 from wspd_design.codegen.notices import tell_once
 from wspd_design.codegen.sampled import BAD_COMMAND, places_told
 from wspd_design.controllers.protocol import Law, Measurement, acts_on_vehicle
-from wspd_design.model.further_brakes import track_brake_force
+from wspd_design.model.brake import torque_disturbance
+from wspd_design.model.further_brakes import pad_factor, track_brake_force
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Vehicle
@@ -26,10 +27,13 @@ from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.loop_input import RECORD_INTERVAL, first_slip, loop_input, sample_rows
 from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
 from wspd_design.simulation.runaway import runs_away
+from wspd_design.simulation.taken import check_stop
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from wspd_design.simulation.records import Trace
 
 
 def simulate(
@@ -63,9 +67,11 @@ def simulate(
     Raises
     ------
     UserError
-        If the controller returns a command outside [0, 1] or one that is not a number, if there is no such
-        plant, or if the scenario asks for what the plant does not have.
+        If an argument is of another kind, numbers of the vehicle contradict each other, the controller returns a
+        command outside [0, 1] or one that is not a number, there is no such plant, or the scenario asks for what the
+        plant does not have.
     """
+    check_stop(vehicle, controller, scenario, plant, by="simulate")
     return simulate_on(plant_of(plant, vehicle), controller, scenario, refinement=refinement)
 
 
@@ -126,7 +132,7 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
     trace = output.trace
     if not is_coupled(plant):
         trace = np.vstack([_first_row(plant, scenario, output), trace])
-    wheel, slip, passed, load, _, dynamic, *others = (
+    wheel, slip, passed, load, given, dynamic, *others = (
         trace[:, begin : begin + columns] for begin in range(3, trace.shape[1], axles)
     )
     warmth, further = others[: plant.axle_states - 1], others[plant.axle_states - 1 :]
@@ -141,6 +147,8 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
         dead_time=scenario.sensing.dead_time_of(plant.vehicle.brake),
         shortest_pulse=scenario.sensing.shortest_pulse_of(plant.vehicle.brake),
         initial_speed=scenario.initial_speed,
+        seed=scenario.seed,
+        wheel_radius=plant.vehicle.wheel_radius,
         ending=_ending(plant, scenario, output),
         time=trace[:, 0],
         speed=trace[:, 1],
@@ -149,6 +157,7 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
         slip=slip,
         torque=passed,
         wheel_load=load,
+        cylinder_pressure=_pressures(plant, scenario, trace[:, 0], given - dynamic, wheel, warmth),
         axle_samples=tuple(
             _samples(output.samples, axle, axles=axles, vehicle=acts_on_vehicle(controller))
             if valved[axle]
@@ -180,6 +189,7 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
         final_wheel_speeds=tuple(output.wheel_speeds.tolist()),
         slip_max=max(float(lane["slip_max"].max()), first_slip(scenario)),
         engine=engine,
+        shared_state=acts_on_vehicle(controller),
         memory=tuple(getattr(controller, "memory", ())),
         dynamic_torque=None if plant.vehicle.dynamic is None else dynamic,
         pad_temperature=warmth[0] if warmth else None,
@@ -193,6 +203,28 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
             ]
         ),
     )
+
+
+def _pressures(
+    plant: Plant, scenario: Scenario, time: "Trace", friction: "Trace", wheel: "Trace", warmth: "list[Trace]"
+) -> "Trace":
+    """Cylinder pressures that make the torques of the friction brakes, eq. (12) with pads and vibration [Pa]."""
+    import numpy as np
+
+    vehicle, columns = plant.vehicle, friction.shape[1]
+    brake, pads = vehicle.brake, vehicle.pads
+    full = brake.max_torque * np.array(vehicle.brake_shares[:columns])
+    made = np.ones_like(friction)
+    if scenario.pad_vibration:
+        made *= (1.0 + torque_disturbance(brake, time + scenario.start.braking_time))[:, None]
+    if pads is not None:
+        made *= pad_factor(pads, vehicle.wheel_radius * wheel, warmth[0] if warmth else 0.0)
+    if not is_coupled(plant):
+        made[0] = 1.0  # the first row is told by the pressures alone
+    valved = full > 0.0
+    pressures = np.zeros_like(friction)
+    pressures[:, valved] = friction[:, valved] / made[:, valved] / full[valved] * brake.max_pressure
+    return pressures
 
 
 def _ending(plant: Plant, scenario: Scenario, output: LoopOutput) -> Ending:

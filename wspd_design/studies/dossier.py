@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from wspd_design.analysis.brake_sheet import BrakeSheet, brake_sheet
-from wspd_design.analysis.linearization import Linearization, linearize
+from wspd_design.analysis.linearization import Linearization, linearized
 from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.certificates.memory import remembering
 from wspd_design.certificates.records import Certificate
@@ -170,7 +170,7 @@ def dossier(
     asked = _asked(made, specification)
     progress("linearization")
     speeds = np.geomspace(1.0, max(asked.speeds[1], scenario.initial_speed), POLE_SPEEDS)
-    linearizations = tuple(linearize(of_vehicle, of_rail, slip=asked.slip, speed=float(v)) for v in speeds)
+    linearizations = tuple(linearized(of_vehicle, of_rail, slip=asked.slip, speed=float(v)) for v in speeds)
     problem = stability_problem(of_vehicle, of_rail, own, asked, seed=scenario.seed)
     certificates = verify(problem, progress=progress, stored=stored)
     growth = growth_of(problem, certificates)

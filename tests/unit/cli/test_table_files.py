@@ -21,8 +21,8 @@ def test_csv_keeps_all_digits(tmp_path):
     write_table(tmp_path / "a.csv", [TABLE[:1], TABLE[1:]], force=False)
     with (tmp_path / "a.csv").open() as stream:
         rows = list(csv.DictReader(stream))
-    assert list(rows[0]) == ["run", "vehicle.mass", "stopped"]
-    assert float(rows[0]["vehicle.mass"]) == 0.1 + 0.2
+    assert list(rows[0]) == ["run", "vehicle.mass_kg", "stopped"]
+    assert float(rows[0]["vehicle.mass_kg"]) == 0.1 + 0.2
     assert [row["stopped"] for row in rows] == ["True", "False"]
 
 
@@ -32,8 +32,8 @@ def test_parquet_keeps_all_digits(tmp_path):
     write_table(path, [TABLE[:1], TABLE[1:]], force=False)
     with duckdb.connect() as database:
         found = database.from_parquet(str(path)).fetchnumpy()
-    assert list(found) == ["run", "vehicle.mass", "stopped"]
-    assert found["vehicle.mass"][0] == 0.1 + 0.2
+    assert list(found) == ["run", "vehicle.mass_kg", "stopped"]
+    assert found["vehicle.mass_kg"][0] == 0.1 + 0.2
     assert found["stopped"].tolist() == [True, False]
     assert list(tmp_path.iterdir()) == [path]
 

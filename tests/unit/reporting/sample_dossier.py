@@ -104,6 +104,8 @@ def trial(
         dead_time=0.0,
         shortest_pulse=0.0,
         initial_speed=INITIAL_SPEED,
+        seed=0,
+        wheel_radius=0.55,
         ending=ending,
         time=time,
         speed=speed,
@@ -112,6 +114,7 @@ def trial(
         slip=slip,
         torque=30e3 + 1e4 * np.cos(3.0 * time[:, np.newaxis] + np.arange(4)),
         wheel_load=94e3 + 1e4 * np.array([1.5, 0.5, -0.5, -1.5]) * np.ones((401, 1)),
+        cylinder_pressure=np.full((401, 4), 3e5),
         axle_samples=(samples,) * 4,
         totals=Totals(**totals),
         final_wheel_speeds=(0.0,) * 4,
@@ -154,7 +157,7 @@ def trial(
         energy_residual=-3.4e-8,
     )
     check = StepCheck(distance=2e-9, slip=3e-7, refinement=1, sensitive=spread > 0.0, spread=spread)
-    return Trial(run=run, metrics=replace(figures, **changes), check=check)
+    return Trial(run=run, metrics=replace(figures, **changes), check=check, slip_reference=0.14)
 
 
 def estimating(plain: Trial) -> Trial:

@@ -159,6 +159,7 @@ def test_no_step_goes_across_a_kink_of_the_pressure(er24pc, make_controller, kin
     assert change() > 10.0 * with_kinks
 
 
+@pytest.mark.filterwarnings("ignore:brake.reservoir_volume of vehicle er24pc = 10")
 def test_a_reservoir_that_runs_low_lengthens_the_stop(braked):
     stop = dry(25.0)
     distances, pressures = [], []

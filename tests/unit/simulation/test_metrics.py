@@ -47,6 +47,8 @@ def made_up(
         dead_time=0.0,
         shortest_pulse=0.0,
         initial_speed=initial_speed,
+        seed=0,
+        wheel_radius=0.5,
         ending=ending,
         time=np.array([0.0, end_time]),
         speed=np.array([initial_speed, 0.0]),
@@ -55,6 +57,7 @@ def made_up(
         slip=one[:, None],
         torque=one[:, None],
         wheel_load=one[:, None],
+        cylinder_pressure=one[:, None],
         axle_samples=(
             tuple(
                 Sample(time=0.1 * k, fill=f, vent=v, state=(), seen=Measurement(0.0, 0.0, 0.0))

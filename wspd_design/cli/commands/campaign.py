@@ -35,7 +35,7 @@ def campaign(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", metavar="FILE", help="All rows, to .csv or .parquet.", show_default=False
+            "--output", "-o", metavar="FILE", help="All rows, to .csv, .parquet or .mat.", show_default=False
         ),
     ] = None,
     force: options.ForceOption = False,

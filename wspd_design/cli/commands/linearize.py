@@ -48,7 +48,7 @@ def linearize(
     reference = specification(CaseOptions(slip=slip)).slip
     braked, friction = load_vehicle(vehicle or VEHICLE), load_rail(rail or RAIL)
     speeds = [parse_speed(text) for text in speed] if speed else [kmh / 3.6 for kmh in SPEEDS_KMH]
-    points = [linearization.linearize(braked, friction, slip=reference, speed=v) for v in speeds]
+    points = [linearization.linearized(braked, friction, slip=reference, speed=v) for v in speeds]
     beyond = [point.slip_pole > 1.0 / point.time_constant for point in points]
     if as_json:
         print_json(linearization_object(points, plant=plant))

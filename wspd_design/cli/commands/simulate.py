@@ -19,13 +19,15 @@ from wspd_design.cli.sensor_options import SensorOptions
 from wspd_design.cli.stop_figures import show_stop
 from wspd_design.cli.stop_options import along_the_track, scenario
 from wspd_design.cli.tables import check_table, write_table
-from wspd_design.design.case import CaseOptions, load_case
+from wspd_design.design.case import Case, CaseOptions, load_case
 from wspd_design.exchange.objects import stop_object
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.fingerprint import fingerprint
+from wspd_design.parameters.units import parse_quantity
 from wspd_design.simulation.campaign import CHECK_EVERY
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.start import leaving_time
-from wspd_design.simulation.traces import traces
+from wspd_design.simulation.traces import check_interval, traces_of
 
 _MANY = "Many stops"
 
@@ -82,7 +84,16 @@ def simulate(
             "--output",
             "-o",
             metavar="FILE",
-            help="Write the traces, or one row a stop, to .csv or .parquet.",
+            help="Write the traces, or one row a stop, to .csv, .parquet or .mat.",
+            show_default=False,
+        ),
+    ] = None,
+    every: Annotated[
+        str | None,
+        typer.Option(
+            "--every",
+            metavar="TIME",
+            help='With --output: a row of the traces at each multiple of this time, such as "10 ms"; default all rows.',
             show_default=False,
         ),
     ] = None,
@@ -103,6 +114,7 @@ def simulate(
     if only_run is not None and (runs is not None or from_witness is not None):
         other = "--runs" if runs is not None else "--from-witness"
         raise UserError(f"--only-run is one stop with drawn numbers; leave {other} out")
+    interval = _interval(every, traces_wanted=output is not None and runs is None)
     witness = None
     if from_witness is not None:
         draws = runs is not None and not nominal
@@ -150,7 +162,8 @@ def simulate(
         tell(f"stop with {case.controller.name}")
         made = trial(case.vehicle, case.controller, stop, slip_reference=reference, plant=plant)
     if output is not None:
-        write_table(output, [traces(made.run)], force=force)
+        taken = traces_of(made.run, every=interval)
+        write_table(output, [taken.table], force=force, about=_about(taken.about, case))
     if as_json:
         named = None if start is None else witness_object(start, leaving_time(made.run, LEFT))
         print_json(stop_object(made, stop, slip_reference=reference, witness=named, drawn=drawn))
@@ -160,3 +173,24 @@ def simulate(
         show_leaving(made.run)
     if output is not None:
         console().print(f"Traces: {output}", markup=False, soft_wrap=True)
+
+
+def _interval(every: str | None, *, traces_wanted: bool) -> float | None:
+    """Read the interval of the traces [s]; None for the recorded times."""
+    if every is None:
+        return None
+    if not traces_wanted:
+        raise UserError(
+            "--every is about the traces of one stop in a file; add -o FILE.csv and leave out --runs"
+        )
+    interval = parse_quantity(every, "time", what="--every")
+    check_interval(interval)
+    return interval
+
+
+def _about(traces: dict[str, str], case: Case) -> dict[str, str]:
+    """Say what was simulated, with the design if there is one."""
+    design = case.design
+    if design is None:
+        return traces
+    return {**traces, "design": design.name, "design_hash": fingerprint(design)}

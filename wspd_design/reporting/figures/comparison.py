@@ -23,6 +23,7 @@ TITLE_WIDTH = {2: 44, 3: 28}
 """Characters that fit above a panel, by the number of columns."""
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -42,7 +43,12 @@ def distance_bars(
     published : mapping of str to PublishedStop
         The paper's stops by controller, marked by a line.
     """
-    axes = figure.subplots()
+    distance_panel(figure.subplots(), trials, published)
+    return figure
+
+
+def distance_panel(axes: "Axes", trials: Sequence[Trial], published: Mapping[str, PublishedStop]) -> None:
+    """Draw the stopping distances on axes; parameters as of :func:`distance_bars`."""
     for row, trial in enumerate(trials):
         distance, build_up = trial.metrics.distance, trial.metrics.build_up_distance
         theirs = published.get(trial.run.controller)
@@ -79,7 +85,6 @@ def distance_bars(
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.0)
     axes.grid(visible=False, axis="y")
     axes.set(xlabel="distance [m]", xlim=(0.0, 1.15 * max(trial.metrics.distance for trial in trials)))
-    return figure
 
 
 def slip_of_all(figure: "Figure", trials: Sequence[Trial], specification: Specification) -> "Figure":

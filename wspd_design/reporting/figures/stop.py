@@ -72,7 +72,12 @@ def stop_traces(
 
 def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: float, most: int = MOST) -> None:
     """Draw the slip of all wheelsets with its reference, tolerance band and lock intervals."""
-    _reference(axes, run, specification)
+    reference_line(axes, run, specification.slip, specification.slip_tolerance)
+    slip_curves(axes, run, top=top, most=most)
+
+
+def slip_curves(axes: "Axes", run: Run, *, top: float, most: int = MOST) -> None:
+    """Draw the slip of all wheelsets; bars at the top edge where they are locked, shade where no slip is judged."""
     wheelsets = run.slip.shape[1]
     bar = min(LOCK_BAR, LOCK_BARS / wheelsets)
     for wheelset in range(wheelsets):
@@ -101,15 +106,15 @@ def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: flo
     axes.set_xlim(0.0, float(run.time[-1]))
 
 
-def _reference(axes: "Axes", run: Run, specification: Specification) -> None:
+def reference_line(axes: "Axes", run: Run, slip: float | None, tolerance: float = 0.0) -> None:
     """Draw the slip that the law holds with the tolerance about it: its own course, or one slip for the whole stop."""
     import numpy as np
 
-    held, tolerance = slip_references(run), specification.slip_tolerance
+    held = slip_references(run)
     if held is None:
-        band = (specification.slip - tolerance, specification.slip + tolerance)
-        axes.axhspan(*band, color=SERIES[2], alpha=0.15, linewidth=0)
-        axes.axhline(specification.slip, color=INK, linestyle="--", linewidth=0.8)
+        if slip is not None:
+            axes.axhspan(slip - tolerance, slip + tolerance, color=SERIES[2], alpha=0.15, linewidth=0)
+            axes.axhline(slip, color=INK, linestyle="--", linewidth=0.8)
         return
     times = np.array([sample.time for sample in run.samples])
     low, high = held.min(axis=1) - tolerance, held.max(axis=1) + tolerance

@@ -1,0 +1,260 @@
+"""Modes, critical speeds and slip poles of the locomotive against the prototype, formulas and simulation.
+
+The prototype of `locomotive.md` (sections 4.1, 4.3 and 6) was another program for the same topology. Where a motor
+hangs on its mounts is not written there, so modes in which motors take part agree less. Its preloaded springs acted on
+two bodies at two points and so had a moment that no body answered; what that moved is told below.
+"""
+
+import math
+from dataclasses import replace
+
+import casadi as ca
+import numpy as np
+import pytest
+from independent_multibody import GroundSprings, SmallVibrations
+
+from wspd_design.analysis.critical_speed import critical_speed
+from wspd_design.analysis.modes import modes, poles
+from wspd_design.analysis.running import contact_of, full_slope, running_vehicle, steady
+from wspd_design.analysis.state_space import linearization
+from wspd_design.model.adhesion import contact_stiffness, creep_force_slip_derivative
+from wspd_design.parameters.loading import load_rail
+from wspd_design.plants.multibody.loading import load_multibody
+from wspd_design.plants.multibody.motion import rest_names, vehicle_motion
+from wspd_design.plants.multibody.records import effective_inertia
+
+DRY, WET = load_rail("polach-dry"), load_rail("polach-wet")
+KALKER = full_slope(DRY)
+
+
+@pytest.fixture(scope="module")
+def model():
+    return load_multibody("er24pc-82")
+
+
+@pytest.fixture(scope="module")
+def vehicle(model):
+    return running_vehicle(model, contact_of(model), KALKER)
+
+
+@pytest.fixture(scope="module")
+def dry(model):
+    return running_vehicle(model, contact_of(model), DRY)
+
+
+@pytest.fixture(scope="module")
+def rolling(vehicle):
+    return modes(steady(vehicle, 20.0).motion)
+
+
+def named(found, name):
+    """Natural frequencies [Hz] of the modes whose names begin like this."""
+    return [mode.natural_frequency for mode in found if mode.name.startswith(name)]
+
+
+def test_71_modes_oscillate_and_none_grows(rolling):
+    assert sum(mode.oscillates for mode in rolling) == 71
+    assert not any(mode.unstable for mode in rolling)
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most", "tolerance"),
+    [
+        ("car body bounce", 1.100, 1.100, 2e-3),
+        ("car body pitch", 1.163, 1.163, 3e-3),
+        ("bogie frames bounce", 3.78, 3.78, 2e-3),
+        ("bogie frames roll", 8.1, 8.1, 2e-2),
+        ("driveline", 10.8, 11.1, 5e-3),
+        ("bogie frames yaw", 25.5, 25.5, 1e-2),
+        ("axle boxes turn", 26.0, 27.0, 6e-2),
+        ("bogie frames surge", 31.0, 32.0, 2e-2),
+        ("gearboxes turn", 64.0, 64.0, 3e-3),
+        ("wheelsets roll", 144.0, 144.0, 5e-3),
+        ("wheelsets bounce", 167.0, 167.0, 2e-3),
+        ("bogie frames pitch", 5.6, 5.7, 6e-2),  # with the motors
+    ],
+)
+def test_natural_frequencies_are_those_of_the_prototype(rolling, name, least, most, tolerance):
+    found = named(rolling, name)
+    assert found
+    assert min(found) >= least * (1.0 - tolerance)
+    assert max(found) <= most * (1.0 + tolerance)
+
+
+def test_damping_of_bounce_and_pitch_is_that_of_the_prototype(rolling):
+    damping = {mode.name: mode.damping for mode in rolling}
+    assert damping["car body bounce"] == pytest.approx(0.146, abs=1e-3)
+    assert damping["car body pitch"] == pytest.approx(0.16, abs=5e-3)
+
+
+def test_bounce_is_that_of_springs_in_series(model, rolling):
+    numbers = model.numbers
+    secondary, primary = 4.0 * numbers["secondary.stiffness_z"], 8.0 * numbers["primary.stiffness_z"]
+    series = 1.0 / (1.0 / secondary + 1.0 / primary)
+    by_hand = math.sqrt(series / model.mass(model.body("car_body"))) / (2.0 * math.pi)
+    assert by_hand == pytest.approx(1.108, abs=5e-4)
+    assert named(rolling, "car body bounce")[0] == pytest.approx(by_hand, rel=1e-2)
+
+
+def test_sway_and_yaw_differ_by_the_moment_of_preloads_that_the_prototype_left_out(model, vehicle):
+    """Without the moment of a preload over the displacement of its spring the prototype's numbers come back."""
+    steady_motion = steady(vehicle, 20.0).motion
+    vibrations = SmallVibrations(model, GroundSprings((0.0,) * 3, 0.0))
+    moment = np.zeros_like(steady_motion.stiffness)
+    for spring in model.springs:
+        if spring.carries:
+            moved = vibrations.relative(spring.between, vibrations.place(spring))
+            turned = vibrations.turns(vibrations.chain(spring.between[0]))
+            cross = np.outer(turned[0], moved[1]) - np.outer(turned[1], moved[0])
+            moment += vibrations.preloads[spring.name] * (cross + cross.T)
+    without = modes(replace(steady_motion, stiffness=steady_motion.stiffness - moment))
+    names = ("car body lower sway", "car body lateral", "car body yaw", "car body upper sway")
+    theirs, ours = ([named(each, name)[-1:] for name in names] for each in (without, modes(steady_motion)))
+    assert max(theirs[0] + theirs[1]) == pytest.approx(0.49, abs=5e-3)
+    assert theirs[2:] == [pytest.approx([0.70], abs=5e-3), pytest.approx([1.04], abs=5e-3)]
+    assert ours[2:] == [pytest.approx([0.683], abs=5e-3), pytest.approx([1.076], abs=5e-3)]
+
+
+@pytest.mark.parametrize(
+    ("conicity", "speed", "tolerance"),
+    [(0.025, 63.8, 0.03), (0.05, 81.2, 0.03), (0.2, 73.8, 0.05), (0.4, 65.9, 0.10)],
+)
+def test_critical_speeds_are_near_those_of_the_prototype(vehicle, conicity, speed, tolerance):
+    on_cone = vehicle if conicity == 0.025 else vehicle.with_conicity(conicity)
+    found = critical_speed(on_cone, speeds=(50.0, 90.0))
+    assert found.speed == pytest.approx(speed, rel=tolerance)
+    assert 1.0 < found.mode.frequency < 5.0
+
+
+def test_traction_factors_on_lateral_creep_make_the_car_body_grow_at_low_speed(model):
+    """Polach's wet factors, fitted to traction, on lateral creep too: +0.34 1/s at 33 m/s (0.338 to 0.366)."""
+    reduced = running_vehicle(model, contact_of(model, lateral_slope=0.2), WET)
+    fastest = max(poles(steady(reduced, 33.0).motion), key=lambda pole: pole.real)
+    assert fastest.real == pytest.approx(0.34, abs=0.01)
+    assert 0.4 < abs(fastest.imag) / (2.0 * math.pi) < 0.52
+    assert critical_speed(reduced, speeds=(15.0, 30.0)).speed == pytest.approx(20.0, abs=1.5)
+
+
+def at_rest_loads(vehicle, speed, slip):
+    """Small motion about a slip with the loads of rest, as the prototype had it: no force has moved anything."""
+    forward, *turning = vehicle.neutral.values()
+    axles = len(turning)
+    rates = forward * speed + sum(turning) * (1.0 - slip) * speed / vehicle.model.numbers["wheel_radius"]
+    still = np.zeros(len(forward))
+    preloads = [vehicle.model.preloads[name] for name in vehicle.model.preload_names]
+    found = vehicle.balance(still, rates, still, np.zeros(axles), np.zeros(axles), 0.025, preloads)
+    _, mass, _, stiffness, damping, *_ = (np.array(each) for each in found)
+    return replace(steady(vehicle, speed).motion, mass=mass, stiffness=stiffness, damping=damping)
+
+
+@pytest.mark.parametrize(
+    ("rail", "fastest"),
+    [(DRY, {33.3: 1.07, 15.0: 5.1, 5.0: 11.7}), (WET, {33.3: 1.07, 15.0: 1.43, 5.0: 0.27})],
+)
+def test_slip_poles_at_the_loads_of_rest_are_those_of_the_prototype(model, dry, rail, fastest):
+    vehicle = dry if rail is DRY else running_vehicle(model, contact_of(model), rail)
+    for speed, pole in fastest.items():
+        found = [each for each in modes(at_rest_loads(vehicle, speed, 0.14)) if not each.oscillates]
+        assert max(each.pole.real for each in found) == pytest.approx(pole, abs=0.05)
+
+
+@pytest.mark.parametrize("speed", [100.0 / 3.0, 15.0])
+def test_a_braked_axle_grows_as_the_slope_of_adhesion_says(model, dry, speed):
+    """The pole of a wheelset alone, -2 (R^2/J) dF/ds / V at the loads that it has; what it hangs on adds to it."""
+    running = steady(dry, speed, slip=0.14)
+    assert running.slips == pytest.approx(0.14, abs=1e-6)
+    assert (
+        running.torques.sum() > -running.acceleration * model.numbers["mass"] * 0.55
+    )  # the wheels slow down too
+    growing = [mode for mode in modes(running.motion) if mode.name.startswith("slip") and mode.unstable]
+    contact, factor = contact_of(model).contact, 0.55**2 / (effective_inertia(model, "wheelset_1") * speed)
+
+    def slope(load):
+        return creep_force_slip_derivative(0.14, speed, load, DRY, contact_stiffness(contact, load))
+
+    alone = [-factor * sum(map(slope, loads)) for loads in running.loads]
+    assert sorted(mode.pole.real for mode in growing) == pytest.approx(sorted(alone), rel=0.2)
+
+
+@pytest.fixture(scope="module")
+def rates(vehicle):
+    """Rates of the plant of the closed loop over speed, wheel speeds, rest and torques, and their names."""
+    model, axles = vehicle.model, vehicle.model.wheelsets
+    names = rest_names(model)
+    state, torques = ca.SX.sym("x", 1 + axles + len(names)), ca.SX.sym("t", axles)
+    motion = vehicle_motion(
+        model,
+        contact_of(model),
+        speed=state[0],
+        wheel_speeds=ca.vertsplit(state[1 : 1 + axles]),
+        rest=state[1 + axles :],
+        torques=ca.vertsplit(torques),
+        locked=[0.0] * axles,
+        rails=[KALKER] * axles,
+    )
+    pitches = (f"{name}.pitch'" for name in model.wheelset_names)
+    return (
+        ca.Function(
+            "f", [state, torques], [ca.vertcat(motion.acceleration, *motion.wheel_rates, motion.rest_rates)]
+        ),
+        ("car_body.x'", *pitches, *names),
+    )
+
+
+def in_the_loop(names, running):
+    """Steady running as a state of the closed loop, and the matrices to its deviations and back."""
+    motion = running.motion
+    forward, *turning = motion.neutral.values()
+    spins = running.speed * (1.0 - running.slips) / 0.55
+    speeds = forward * running.speed + sum(a * b for a, b in zip(turning, spins, strict=True))
+    values = dict(zip(motion.coordinates, running.coordinates, strict=True))
+    values |= {f"{name}'": each for name, each in zip(motion.coordinates, speeds, strict=True)}
+    back = np.zeros((len(motion.states), len(names)))
+    for row, name in enumerate(motion.states):
+        back[row, names.index(name)] = 1.0
+        for neutral, moves in motion.neutral.items():
+            if neutral in names and name in motion.coordinates:
+                back[row, names.index(neutral)] -= moves[motion.coordinates.index(name)]
+    into = np.zeros((len(names), len(motion.states)))
+    into[[names.index(name) for name in motion.states], range(len(motion.states))] = 1.0
+    assert back @ into == pytest.approx(np.eye(len(motion.states)))
+    return np.array([values[name] for name in names]), into, back
+
+
+def test_the_linearization_is_that_of_the_plant_of_the_closed_loop(vehicle, rates):
+    """Central differences of the right-hand side, which solves for the accelerations, in random directions."""
+    function, names = rates
+    running = steady(vehicle, 20.0)
+    start, into, back = in_the_loop(names, running)
+    a, random = linearization(running).a, np.random.default_rng(14)
+    for _ in range(5):
+        small = 1e-7 * random.standard_normal(a.shape[0])
+        ahead, behind = (np.array(function(start + sign * into @ small, 0.0))[:, 0] for sign in (1.0, -1.0))
+        expected = a @ small
+        assert back @ (0.5 * (ahead - behind)) == pytest.approx(expected, abs=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("speed", [55.0, 75.0])
+def test_hunting_grows_in_time_as_its_eigenvalue_says(vehicle, rates, speed):
+    """V8: one second of the whole nonlinear vehicle from 1e-5 of the shape of the mode that hunts."""
+    function, names = rates
+    running = steady(vehicle, speed)
+    start, into, back = in_the_loop(names, running)
+    values, vectors = np.linalg.eig(running.motion.state_matrix())
+    place = int(np.argmax(np.where(values.imag > 1.0, values.real, -np.inf)))
+    watch = np.linalg.inv(vectors)[place] @ back
+    step, steps = 1e-3, 1000
+    state = ca.MX.sym("s", len(names))
+    run = ca.Function("step", [state], [_runge_kutta(function, state, step)]).fold(steps)
+    begun = start + into @ np.real(1e-5 * vectors[:, place])
+    ended, still = (np.array(run(each))[:, 0] for each in (begun, start))
+    growth = math.log(abs(watch @ (ended - still)) / abs(watch @ (begun - start))) / (steps * step)
+    assert growth == pytest.approx(values[place].real, rel=1e-3)
+
+
+def _runge_kutta(rates, state, step):
+    k1 = rates(state, 0.0)
+    k2 = rates(state + 0.5 * step * k1, 0.0)
+    k3 = rates(state + 0.5 * step * k2, 0.0)
+    k4 = rates(state + step * k3, 0.0)
+    return state + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
