@@ -121,7 +121,9 @@ def _default(field: "dataclasses.Field[Any]") -> str:
 def with_unit(comment: str) -> tuple[str, str]:
     """Split what stands behind a field into unit and meaning, ``kg, of one body`` for example."""
     found = _UNIT.match(comment)
-    return (found["unit"], found["rest"]) if found else ("", comment)
+    if not found:
+        return "", comment
+    return found["unit"].replace("-", "\\-"), found["rest"]  # a hyphen alone would begin a list
 
 
 def field_comments(item: Any) -> dict[str, str]:
