@@ -13,7 +13,7 @@ from wspd_design.design.records import Specification
 
 ENTER, DOWN, UP, BACK, ESCAPE, LEAVE = "\r", "\x1b[B", "\x1b[A", "\x02", "\x1b", "\x03"
 ERASE = "\x15"  # Ctrl-U, the whole line
-STEPS = 8  # vehicle, rail, law, slip, speeds, sample time, tolerance, review
+STEPS = 9  # vehicle, rail, law, slip, speeds, sample time, tolerance, requirements, review
 
 
 @pytest.fixture
@@ -48,7 +48,9 @@ def test_defaults_give_what_wspd_design_gives(answer, wspd, tmp_path):
 
 def test_answers_reach_the_design(answer, tmp_path):
     keys = ENTER + UP + ENTER + DOWN + ENTER
-    keys += f"{ERASE}12 %{ENTER}{ERASE}20 to 100 km/h{ENTER}{ERASE}50 ms{ENTER}{ERASE}0,04{ENTER}{ENTER}"
+    keys += (
+        f"{ERASE}12 %{ENTER}{ERASE}20 to 100 km/h{ENTER}{ERASE}50 ms{ENTER}{ERASE}0,04{ENTER}{ENTER}{ENTER}"
+    )
     outcome = answer(keys, "new", "-o", "mine.toml")
     assert outcome.code == 0
     made = read_design(tmp_path / "mine.toml")
@@ -60,7 +62,7 @@ def test_answers_reach_the_design(answer, tmp_path):
 
 
 def test_the_law_with_torque_feedback(answer, wspd, tmp_path):
-    outcome = answer(ENTER * 2 + DOWN * 2 + ENTER * 3 + f"{ERASE}20 ms{ENTER * 3}")
+    outcome = answer(ENTER * 2 + DOWN * 2 + ENTER * 3 + f"{ERASE}20 ms{ENTER * 4}")
     assert outcome.code == 0
     assert "K = (tau/h - 1) T_nominal/T_max, at least 0" in " ".join(outcome.out.split())
     made = read_design(tmp_path / "design.toml")
@@ -69,7 +71,7 @@ def test_the_law_with_torque_feedback(answer, wspd, tmp_path):
 
 
 def test_a_wrong_number_is_not_accepted(answer, tmp_path):
-    keys = f"{ENTER * 3}{ERASE}1.4{ENTER}{ENTER}{ERASE}0.2{ENTER}{ENTER * 4}"
+    keys = f"{ENTER * 3}{ERASE}1.4{ENTER}{ENTER}{ERASE}0.2{ENTER}{ENTER * 5}"
     assert answer(keys).code == 0
     assert read_design(tmp_path / "design.toml").specification.slip == 0.2
 
@@ -81,7 +83,7 @@ def test_back(back, answer, tmp_path):
     if back == ESCAPE:
         keys += BACK  # two steps back, so that Esc is followed by another key and not by a sequence
         keys += ENTER
-    keys += f"{ERASE}0.2{ENTER}{ENTER * 4}"
+    keys += f"{ERASE}0.2{ENTER}{ENTER * 5}"
     outcome = answer(keys)
     assert outcome.code == 0
     assert "back from Speed range" in outcome.out
@@ -92,10 +94,10 @@ def test_branches_are_evaluated_again(answer, tmp_path):
     """An own rail file is asked for, and no longer asked for after going back and choosing a shipped rail."""
     (tmp_path / "mine.toml").write_text('base = "polach-wet"\n[mu0]\nvalue = 0.33\nunit = "-"\n')
     to_own = DOWN * 4
-    own = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{ENTER * 6}", "new", "-o", "own.toml")
+    own = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{ENTER * 7}", "new", "-o", "own.toml")
     assert own.code == 0
     assert read_design(tmp_path / "own.toml").rail == "mine"
-    back = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{BACK}{BACK}{UP * 4}{ENTER}{ENTER * 6}")
+    back = answer(f"{ENTER}{to_own}{ENTER}mine.toml{ENTER}{BACK}{BACK}{UP * 4}{ENTER}{ENTER * 7}")
     assert back.code == 0
     assert read_design(tmp_path / "design.toml").rail == "polach-wet"
 
@@ -106,10 +108,12 @@ def test_missing_own_file_is_not_accepted(answer, tmp_path):
     assert "nowhere" not in (tmp_path / "design.toml.part").read_text()
 
 
-def test_again_goes_through_the_questions_with_the_answers(answer, tmp_path):
-    keys = f"{ENTER * 3}{ERASE}0.2{ENTER}{ENTER * 3}{DOWN}{ENTER}{ENTER * STEPS}"
-    assert answer(keys).code == 0
+def test_a_line_of_the_review_is_changed(answer, tmp_path):
+    """Down four lines from saving stands the slip; after it comes the review again."""
+    outcome = answer(f"{ENTER * 8}{DOWN * 4}{ENTER}{ERASE}0.2{ENTER}{ENTER}")
+    assert outcome.code == 0
     assert read_design(tmp_path / "design.toml").specification.slip == 0.2
+    assert "Again:    wspd new --yes --set slip=0.2" in outcome.out
 
 
 def test_leaving_keeps_the_answers_and_resume_goes_on(answer, tmp_path):
@@ -118,7 +122,7 @@ def test_leaving_keeps_the_answers_and_resume_goes_on(answer, tmp_path):
     assert left.err == ""
     assert "wspd new --resume design.toml.part" in left.out
     assert [path.name for path in tmp_path.iterdir()] == ["design.toml.part"]
-    resumed = answer(ENTER * 4, "new", "--resume", "design.toml.part")
+    resumed = answer(ENTER * 5, "new", "--resume", "design.toml.part")
     assert resumed.code == 0
     assert [path.name for path in tmp_path.iterdir()] == ["design.toml"]
     made = read_design(tmp_path / "design.toml")
@@ -126,10 +130,10 @@ def test_leaving_keeps_the_answers_and_resume_goes_on(answer, tmp_path):
 
 
 def test_resume_asks_again_for_an_answer_that_no_longer_holds(answer, tmp_path):
-    answer(f"{ENTER * 7}{LEAVE}")
+    answer(f"{ENTER * 8}{LEAVE}")
     draft = tmp_path / "design.toml.part"
     draft.write_text(draft.read_text().replace('slip = "0.14"', 'slip = "14"'))
-    outcome = answer(f"{ERASE}0.15{ENTER}{ENTER * 4}", "new", "--resume", "design.toml.part")
+    outcome = answer(f"{ERASE}0.15{ENTER}{ENTER * 5}", "new", "--resume", "design.toml.part")
     assert outcome.code == 0
     assert read_design(tmp_path / "design.toml").specification.slip == 0.15
 
@@ -144,7 +148,7 @@ def test_existing_output_is_refused_before_the_first_question(answer, tmp_path):
 
 def test_a_terminal_that_cannot_move_the_cursor(wspd, monkeypatch, tmp_path):
     """With ``TERM=dumb`` the questions come line by line, without an escape sequence."""
-    lines = iter(["", "3", "smc", "1.4", "20 %", "<", "0.16", "", "", "", ""])
+    lines = iter(["", "3", "?", "smc", "1.4", "20 %", "<", "0.16", "", "", "", "", "5", "0.17", "1"])
     monkeypatch.setattr(session, "is_interactive", lambda: True)
     monkeypatch.setattr("builtins.input", lambda _prompt: next(lines))
     monkeypatch.setenv("TERM", "dumb")
@@ -153,7 +157,10 @@ def test_a_terminal_that_cannot_move_the_cursor(wspd, monkeypatch, tmp_path):
     assert "\x1b" not in outcome.out
     assert "must lie in (0, 1)" in " ".join(outcome.out.split())
     made = read_design(tmp_path / "design.toml")
-    assert (made.rail, made.law, made.specification.slip) == ("polach-dry", "smc", 0.16)
+    assert (made.rail, made.law, made.specification.slip) == ("polach-dry", "smc", 0.17)
+    assert "Control law (3 of 9)" in outcome.out
+    assert "Key of the answer: law." in outcome.out
+    assert "! The brake asks for an adhesion" in outcome.out
 
 
 def test_input_that_ends_is_like_leaving(wspd, monkeypatch, tmp_path):
@@ -165,3 +172,53 @@ def test_input_that_ends_is_like_leaving(wspd, monkeypatch, tmp_path):
     monkeypatch.setenv("TERM", "dumb")
     assert wspd("new").code == 130
     assert (tmp_path / "design.toml.part").exists()
+
+
+def test_answers_of_a_file_and_of_set_need_no_terminal(wspd, tmp_path):
+    shown = wspd("new", "--print-answers", "--set", "rail=polach-dry", "--set", "law=smc")
+    assert shown.code == 0
+    (tmp_path / "answers.toml").write_text(shown.out)
+    made = wspd("new", "--answers", "answers.toml", "--set", "slip=12 %", "-o", "mine.toml")
+    assert (made.code, made.err) == (0, "")
+    design = read_design(tmp_path / "mine.toml")
+    assert (design.rail, design.law, design.specification.slip) == ("polach-dry", "smc", 0.12)
+    assert (tmp_path / "answers.toml").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--set", "ral=polach-dry"), "unknown answer ral; did you mean rail"),
+        (("--set", "slip=1.4"), "slip = 1.4 must lie in (0, 1)"),
+        (("--set", "rail=own file", "--set", "rail_file=none.toml", "--yes"), "none.toml does not exist"),
+        (("--answers", "nowhere.toml"), "nowhere.toml"),
+        (("--set", "slip=12 %"), "needs a terminal to ask for vehicle, rail, law, speeds"),
+        (("--set", "requirements=own file", "--set", "requirements_file=x", "--yes"), "path of a .toml file"),
+    ],
+)
+def test_wrong_answers_are_refused_without_a_terminal(arguments, words, wspd, tmp_path):
+    outcome = wspd("new", *arguments)
+    assert outcome.code == 2
+    assert words in outcome.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_next_step_takes_the_requirements(wspd):
+    made = wspd("new", "--yes", "--set", "requirements=en-15595-like")
+    assert "wspd report design.toml --requirements en-15595-like -o design.html" in made.out
+
+
+def test_vehicles_and_rails_take_files_of_answers(wspd, tmp_path):
+    for kind, given in (("vehicle", ("--mass", "48 t")), ("rail", ("--peak", "0.05"))):
+        shown = wspd("new", kind, "--print-answers", *given)
+        assert given[1] in shown.out
+        (tmp_path / "answers.toml").write_text(shown.out)
+        assert wspd("new", kind, f"{kind}.toml", "--answers", "answers.toml").code == 0
+        again = wspd("new", kind, "other.toml", *given, "--yes", "--force")
+        assert again.code == 0
+        first, second = ((tmp_path / name).read_text() for name in (f"{kind}.toml", "other.toml"))
+        numbers = [
+            [line for line in text.splitlines() if line.startswith(("value", "["))]
+            for text in (first, second)
+        ]
+        assert numbers[0] == numbers[1]

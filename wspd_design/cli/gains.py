@@ -9,9 +9,33 @@ from wspd_design.design.adhesion_use import adhesion_sentence
 from wspd_design.design.records import Design, Gain, GainValue
 from wspd_design.parameters.records import Rail, Vehicle
 
+_OTHER_LINES = 14  # of a screen, for what stands around the gains
 
-def show_design(made: Design, path: Path, vehicle: Vehicle, rail: Rail) -> None:
-    """Print the gains of a design, what its brake asks of the rail, where it was written and what to do with it."""
+
+def show_design(
+    made: Design,
+    path: Path,
+    vehicle: Vehicle,
+    rail: Rail,
+    *,
+    judged_by: str | None = None,
+    on_one_screen: bool = False,
+) -> None:
+    """Print the gains of a design, what its brake asks of the rail, where it was written and what to do with it.
+
+    Parameters
+    ----------
+    made : Design
+        The design.
+    path : Path
+        Its file.
+    vehicle, rail : Vehicle, Rail
+        Of the design.
+    judged_by : str, optional
+        Requirements that its report shall take, a template or a file.
+    on_one_screen : bool
+        Whether the reasons of the gains, which the file holds, give way where the terminal is too low for them.
+    """
     out = console()
     specification = made.specification
     low, high = specification.speeds
@@ -29,12 +53,17 @@ def show_design(made: Design, path: Path, vehicle: Vehicle, rail: Rail) -> None:
             shown.add_row(name, value, why)
         else:
             shown.add_row(name.append("\n= ", style="dim").append(value), why)
-    out.print(spaced(shown))
+    if on_one_screen and out.is_terminal and len(out.render_lines(shown)) > out.height - _OTHER_LINES:
+        values = ", ".join(f"{gain.name} {_quantity(gain)}" for gain in made.gains)
+        out.print(f"\nGains, each with its reason in {path}: {values}.\n", markup=False)
+    else:
+        out.print(spaced(shown))
+    judged = () if judged_by is None else ("--requirements", judged_by)
     print_written(
         path,
         ("Prove it", ("verify", path)),
         ("Try it", ("simulate", path)),
-        ("Show it", ("report", path, "-o", path.with_suffix(".html"))),
+        ("Show it", ("report", path, *judged, "-o", path.with_suffix(".html"))),
     )
 
 

@@ -142,3 +142,21 @@ JsonOption: TypeAlias = Annotated[
     bool, typer.Option("--json", help="Print one JSON object and nothing else (wspd docs json).")
 ]
 ForceOption: TypeAlias = Annotated[bool, typer.Option("--force", help="Replace an existing file.")]
+AnswersOption: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--answers",
+        metavar="FILE",
+        help="Take answers from a file, as --print-answers shows it and the wizard keeps it.",
+        show_default=False,
+        rich_help_panel="Answers, in place of questions",
+    ),
+]
+PrintAnswersOption: TypeAlias = Annotated[
+    bool,
+    typer.Option(
+        "--print-answers",
+        help="Print a file of answers with what each means, and ask nothing.",
+        rich_help_panel="Answers, in place of questions",
+    ),
+]

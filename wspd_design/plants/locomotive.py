@@ -23,7 +23,7 @@ from wspd_design.parameters.loading import steel
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.axle import BrakedWheelsets
 from wspd_design.plants.multibody.loading import load_multibody
-from wspd_design.plants.multibody.motion import rest_names, vehicle_motion
+from wspd_design.plants.multibody.motion import rest_names, rolling, vehicle_motion
 from wspd_design.plants.multibody.preloads import balanced, rest_function
 from wspd_design.plants.multibody.records import Multibody, effective_inertia, gears_of
 from wspd_design.plants.multibody.wheels import Irregularity
@@ -104,12 +104,7 @@ class Locomotive(BrakedWheelsets):
 
     def rest_at(self, speed: float, wheel_speeds: tuple[float, ...]) -> tuple[float, ...]:
         """Return the vehicle at rest in its springs, with rotors that turn with their wheels."""
-        model = self.model
-        rates = dict.fromkeys((f"{body.name}.x'" for body in model.bodies if not body.on), speed)
-        for name, turning in zip(model.wheelset_names, wheel_speeds, strict=True):
-            for gear in gears_of(model, name):
-                rates[f"{gear.rotor}.turn'"] = -model.numbers[f"{gear.kind}.ratio"] * turning
-        return tuple(rates.get(name, 0.0) for name in rest_names(model))
+        return rolling(self.model, speed, wheel_speeds)
 
     def loads_at_rest(self) -> tuple[Number, ...]:
         """Vertical load of one wheel of each axle at rest, mean of both [N]."""

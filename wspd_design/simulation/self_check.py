@@ -28,13 +28,27 @@ SLIP_AMPLIFICATION = 1e4  # the same in the slip, which moves quickly wherever a
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepCheck:
-    """Difference between a run and the same run with half the steps."""
+    """Difference between a run and the same run with half the steps.
 
-    distance: float  # -, relative
-    slip: float  # -, largest at any sample above 0.3 m/s
-    refinement: int  # by which the steps were divided
-    sensitive: bool  # the closed loop amplifies: runs from slightly different initial speeds diverge
-    spread: float  # m, of the distance over such runs; 0 unless sensitive
+    Attributes
+    ----------
+    distance : float [-]
+        Relative.
+    slip : float [-]
+        Largest at any sample above 0.3 m/s.
+    refinement : int
+        By which the steps were divided.
+    sensitive : bool
+        The closed loop amplifies: runs from slightly different initial speeds diverge.
+    spread : float [m]
+        Of the distance over such runs; 0 unless sensitive.
+    """
+
+    distance: float
+    slip: float
+    refinement: int
+    sensitive: bool
+    spread: float
 
     @property
     def unresolved(self) -> bool:

@@ -2,15 +2,17 @@
 
 import pytest
 
-from wspd_design.cli.wizard.draft import read_draft, write_draft
-from wspd_design.cli.wizard.flow import Back, complete, walk
-from wspd_design.cli.wizard.steps import AGAIN, OWN, SAVE, accept, split_speeds, steps, wanted
+from wspd_design.cli.wizard.asked_design import OWN, split_speeds, wanted
+from wspd_design.cli.wizard.design_steps import design_steps
+from wspd_design.cli.wizard.draft import answers_text, read_draft, read_pairs, write_draft
+from wspd_design.cli.wizard.flow import Back, Place, complete, walk
+from wspd_design.cli.wizard.steps import SAVE, accept
 from wspd_design.controllers.observers.sensors import TOLD, Sensors
 from wspd_design.design.records import Specification
 from wspd_design.parameters.errors import UserError
 
-ALL = steps()
-TITLES = ["vehicle", "rail", "law", "slip", "speeds", "sample_time", "tolerance", "review"]
+ALL = design_steps()
+TITLES = ["vehicle", "rail", "law", "slip", "speeds", "sample_time", "tolerance", "requirements", "review"]
 
 
 def step(key):
@@ -21,7 +23,7 @@ def script(*replies):
     """Ask with prepared replies; None takes the suggestion. Records which question was asked."""
     asked, left = [], list(replies)
 
-    def ask(question, _answers, suggestion):
+    def ask(question, _answers, suggestion, _place):
         asked.append(question.key)
         reply = left.pop(0) if left else None
         return suggestion if reply is None else reply
@@ -84,16 +86,49 @@ def test_back_at_the_first_question_stays_there():
     assert asked == ["vehicle", "vehicle", *TITLES]
 
 
-def test_back_from_the_review_and_again():
-    replies = [None] * 7 + [Back.BACK, "0.03", AGAIN] + [None] * 7 + [SAVE]
-    ask, asked = script(*replies)
+def test_any_line_of_the_review_is_changed_and_nothing_else_asked():
+    ask, asked = script(*[None] * 8, "slip", "0.2", SAVE)
     answers = walk(ALL, {}, ask)
-    assert asked == [*TITLES, "tolerance", "review", *TITLES]
-    assert answers["tolerance"] == "0.03"
+    assert asked == [*TITLES, "slip", "review"]
+    assert answers["slip"] == "0.2"
+
+
+def test_back_from_a_line_of_the_review_leads_to_the_review():
+    ask, asked = script(*[None] * 8, "slip", Back.BACK, SAVE)
+    assert walk(ALL, {}, ask) == complete(ALL, {})
+    assert asked == [*TITLES, "slip", "review"]
+    ask, asked = script(*[None] * 8, Back.BACK, "paper", SAVE)
+    walk(ALL, {}, ask)
+    assert asked == [*TITLES, "requirements", "review"]
+
+
+def test_a_changed_line_opens_what_follows_from_it_and_what_no_longer_fits(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text('base = "er24pc"\n')
+    ask, asked = script(*[None] * 8, "vehicle", OWN, str(path), "slip", "0.97", "0.02", SAVE)
+    answers = walk(ALL, {}, ask)
+    assert asked[9:] == ["vehicle", "vehicle_file", "review", "slip", "tolerance", "review"]
+    assert (answers["vehicle_file"], answers["tolerance"]) == (str(path), "0.02")
+    ask, asked = script("vehicle", "er24pc", SAVE)
+    assert "vehicle_file" not in walk(ALL, answers, ask)
+    assert asked == ["review", "vehicle", "review"]
+
+
+def test_each_question_knows_its_place():
+    places = []
+
+    def ask(question, _answers, suggestion, place):
+        places.append((question.key, place))
+        return {"law": "observer-smc"}.get(question.key, suggestion)
+
+    walk(ALL, {}, ask)
+    assert places[:3] == [("vehicle", Place(1, 9)), ("rail", Place(2, 9)), ("law", Place(3, 9))]
+    assert places[3] == ("sensors", Place(4, 10))
+    assert places[-1] == ("review", Place(10, 10))
 
 
 def test_interruption_leaves_the_answers_with_the_caller():
-    def ask(question, _answers, suggestion):
+    def ask(question, _answers, suggestion, _place):
         if question.key == "law":
             raise KeyboardInterrupt
         return suggestion
@@ -113,13 +148,40 @@ def test_resume_begins_at_the_first_open_or_wrong_answer():
     assert asked[0] == "slip"
     ask, asked = script(Back.BACK)
     walk(ALL, complete(ALL, {}), ask)
-    assert asked == ["review", "tolerance", "review"]
+    assert asked == ["review", "requirements", "review"]
 
 
 def test_draft_round_trip(tmp_path):
     answers = {"vehicle": OWN, "vehicle_file": 'C:\\a "b".toml', "slip": "14 %"}
     write_draft(answers, tmp_path / "a.part")
     assert read_draft(tmp_path / "a.part", ALL) == answers
+
+
+def test_a_file_of_answers_is_read_back_and_says_what_each_means(tmp_path):
+    answers = complete(ALL, {"rail": "polach-dry"})
+    path = tmp_path / "answers.toml"
+    path.write_text(answers_text(ALL, answers, "wspd new"))
+    assert read_draft(path, ALL) == answers
+    assert "# Slip reference. The slip that the controller holds." in path.read_text()
+
+
+@pytest.mark.parametrize(
+    ("pairs", "words"),
+    [
+        (["slipp=0.1"], "unknown answer slipp; did you mean slip"),
+        (["slip"], "must be an answer with its key"),
+        (["slip="], "must be an answer with its key"),
+        (["slip=0.1", "slip=0.2"], "twice"),
+        (["review=save"], "unknown answer review"),
+    ],
+)
+def test_wrong_pairs_are_refused(pairs, words):
+    with pytest.raises(UserError, match=words):
+        read_pairs(pairs, ALL)
+
+
+def test_pairs_may_hold_an_equals_sign():
+    assert read_pairs(["vehicle_file=a=b.toml"], ALL) == {"vehicle_file": "a=b.toml"}
 
 
 def test_complete_refuses_a_wrong_answer():
@@ -134,6 +196,9 @@ def test_complete_refuses_a_wrong_answer():
     [
         ("10 km/h to 120 km/h", ("10 km/h", "120 km/h")),
         ("10 to 120 km/h", ("10 km/h", "120 km/h")),
+        ("10-160 km/h", ("10 km/h", "160 km/h")),
+        ("10 km/h \u2013 160 km/h", ("10 km/h", "160 km/h")),
+        ("5 to 75 mph", ("5 mph", "75 mph")),
         ("2,5 to 33,3 m/s", ("2,5 m/s", "33,3 m/s")),
         ("3 m/s to 120 km/h", ("3 m/s", "120 km/h")),
     ],
@@ -148,6 +213,8 @@ def test_split_speeds(text, parts):
         ("slip", "1.4", r"\(0, 1\)"),
         ("slip", "", "plain number or %"),
         ("speeds", "10 km/h", "two speeds"),
+        ("speeds", "10-50-120 km/h", "two speeds"),
+        ("speeds", "-10 km/h", "two speeds"),
         ("speeds", "120 to 10 km/h", "rise"),
         ("speeds", "10 to 120", "no unit"),
         ("sample_time", "100", "no unit"),

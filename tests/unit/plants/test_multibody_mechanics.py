@@ -16,19 +16,24 @@ def vehicle(request):
     return balanced(load_multibody(request.param))
 
 
-def symbols(model):
-    n = len(model.coordinates)
+@pytest.fixture(scope="module")
+def symbols(vehicle):
+    n = len(vehicle.coordinates)
     return ca.SX.sym("q", n), ca.SX.sym("v", n)
 
 
-def test_rest_is_an_exact_equilibrium(vehicle):
-    q, v = symbols(vehicle)
-    for linear in (False, True):
-        exact = mechanics(vehicle, q, v, linear=linear)
-        force = exact.force
-        for wheel in exact.wheels:
+@pytest.fixture(scope="module")
+def both(vehicle, symbols):
+    """Exact and linear version."""
+    return tuple(mechanics(vehicle, *symbols, linear=linear) for linear in (False, True))
+
+
+def test_rest_is_an_exact_equilibrium(vehicle, symbols, both):
+    for version in both:
+        force = ca.SX(version.force)
+        for wheel in version.wheels:
             force[wheel.first : wheel.first + 6] += force_at_rest(vehicle, wheel)
-        left = np.array(ca.Function("f", [q, v], [force])(0, 0))
+        left = np.array(ca.Function("f", [*symbols], [force])(0, 0))
         assert np.abs(left).max() < 1e-9
 
 
@@ -47,20 +52,18 @@ def test_preloads_have_the_least_sum_of_squares(vehicle):
     assert np.abs(rows[rank:] @ forces).max() < 1e-6
 
 
-def test_mass_matrix_is_symmetric_and_positive(vehicle):
-    q, v = symbols(vehicle)
-    function = ca.Function("m", [q, v], [mechanics(vehicle, q, v).mass_matrix])
-    state = 0.02 * np.random.default_rng(1).standard_normal(q.numel())
+def test_mass_matrix_is_symmetric_and_positive(symbols, both):
+    function = ca.Function("m", [*symbols], [both[0].mass_matrix])
+    state = 0.02 * np.random.default_rng(1).standard_normal(symbols[0].numel())
     matrix = np.array(ca.DM(function(state, 0)))
     assert np.abs(matrix - matrix.T).max() < 1e-9
     assert np.linalg.eigvalsh(matrix).min() > 0.0
 
 
-def test_linear_version_is_the_first_order_of_the_exact_one(vehicle):
+def test_linear_version_is_the_first_order_of_the_exact_one(vehicle, symbols, both):
     """With wheelsets and rotors at speed the difference falls with the square of the other motion."""
-    q, v = symbols(vehicle)
-    n = q.numel()
-    both = [ca.Function("f", [q, v], [mechanics(vehicle, q, v, linear=each).force]) for each in (False, True)]
+    n = symbols[0].numel()
+    functions = [ca.Function("f", [*symbols], [each.force]) for each in both]
     draw = np.random.default_rng(2)
     place, rate = 1e-2 * draw.standard_normal(n), 1e-1 * draw.standard_normal(n)
     spins = np.zeros(n)
@@ -70,14 +73,13 @@ def test_linear_version_is_the_first_order_of_the_exact_one(vehicle):
             spins[k], rate[k], place[k] = 50.0 * draw.standard_normal(), 0.0, 0.0
     differences = []
     for size in (1.0, 0.1):
-        exact, linear = (np.array(each(size * place, spins + size * rate)) for each in both)
+        exact, linear = (np.array(each(size * place, spins + size * rate)) for each in functions)
         differences.append(np.abs(exact - linear).max())
     assert differences[1] < 0.02 * differences[0]
 
 
-def test_linear_version_is_constant_but_for_what_spins(vehicle):
-    q, v = symbols(vehicle)
-    linear = mechanics(vehicle, q, v, linear=True)
+def test_linear_version_is_constant_but_for_what_spins(symbols, both):
+    _, linear = both
     assert not ca.symvar(linear.mass_matrix)
     assert not ca.symvar(linear.brake_directions)
-    assert ca.jacobian(linear.force, q).is_constant()
+    assert ca.jacobian(linear.force, symbols[0]).is_constant()

@@ -9,13 +9,16 @@ import typer
 from wspd_design.cli import options
 from wspd_design.cli.commands.new_rail import rail
 from wspd_design.cli.commands.new_vehicle import vehicle
-from wspd_design.cli.console import progress
+from wspd_design.cli.console import console, progress
 from wspd_design.cli.gains import show_design
 from wspd_design.cli.output import check_output
+from wspd_design.cli.wizard.asked_design import requirements_of, vehicle_and_rail, wanted
+from wspd_design.cli.wizard.design_steps import design_steps
 from wspd_design.cli.wizard.draft import ENDING
-from wspd_design.cli.wizard.session import answered, target_of
-from wspd_design.cli.wizard.steps import Answers, steps, vehicle_and_rail, wanted
+from wspd_design.cli.wizard.session import again, answered, given_answers, print_answers, target_of
+from wspd_design.cli.wizard.steps import Answers
 from wspd_design.design.file import seen_from, write_design
+from wspd_design.design.stop_requirements import PAPER
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 
@@ -32,7 +35,21 @@ def new(
             show_default=False,
         ),
     ] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Ask nothing and take all defaults.")] = False,
+    answers_file: options.AnswersOption = None,
+    pairs: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="One answer by its key, such as slip=10%; repeat it for several.",
+            show_default=False,
+            rich_help_panel="Answers, in place of questions",
+        ),
+    ] = None,
+    show_answers: options.PrintAnswersOption = False,
+    yes: Annotated[
+        bool, typer.Option("--yes", help="Ask nothing, and take what is suggested for the rest.")
+    ] = False,
     resume: Annotated[
         Path | None,
         typer.Option("--resume", metavar="FILE", help=f"Go on with the answers of a {ENDING} file."),
@@ -41,31 +58,57 @@ def new(
 ) -> None:
     """Answer some questions and get a design file, or that of a vehicle or a rail; every default is explained."""
     if context.invoked_subcommand is None:
-        design(output=output, yes=yes, resume=resume, force=force)
-    elif output or yes or resume or force:
+        design(
+            output=output,
+            answers_file=answers_file,
+            pairs=pairs,
+            show_answers=show_answers,
+            yes=yes,
+            resume=resume,
+            force=force,
+        )
+    elif output or answers_file or pairs or show_answers or yes or resume or force:
         raise UserError(
             f"options of a command stand behind it; write wspd new {context.invoked_subcommand} --help"
         )
 
 
 def design(
-    *, output: Path | None = None, yes: bool = False, resume: Path | None = None, force: bool = False
+    *,
+    output: Path | None = None,
+    answers_file: Path | None = None,
+    pairs: list[str] | None = None,
+    show_answers: bool = False,
+    yes: bool = False,
+    resume: Path | None = None,
+    force: bool = False,
 ) -> None:
     """Ask for a design and write it."""
+    questions = design_steps()
+    given = given_answers(questions, answers_file, pairs)
+    if show_answers:
+        print_answers(questions, given, "wspd new")
+        return
     target = target_of(output, resume, options.DESIGN_FILE, remedy="give the name of the design file with -o")
     check_output(target, force=force)
     answers, _ = answered(
-        steps(),
-        {},
+        questions,
+        given,
         target=target,
         resume=resume,
         yes=yes,
         command="wspd new",
-        remedy='take all defaults with "wspd new --yes", or see "wspd --help" for the commands that ask nothing',
+        remedy='answer with --set KEY=VALUE or --answers FILE ("wspd new --print-answers" shows one), or add --yes and '
+        "take what is suggested",
     )
     _design(answers, target)
     if resume is not None:
         resume.unlink()
+    if not yes:
+        words = ["wspd", "new", *(() if output is None else ("-o", str(output)))]
+        console().print(
+            f"Again:    {again(questions, answers, words)}", style="dim", markup=False, soft_wrap=True
+        )
 
 
 def _design(answers: Answers, target: Path) -> None:
@@ -78,7 +121,15 @@ def _design(answers: Answers, target: Path) -> None:
         made = selection.design_controller(vehicle, rail, wanted(answers), law=answers["law"])
     made = replace(made, vehicle_file=seen_from(target, vehicle_name), rail_file=seen_from(target, rail_name))
     write_design(made, target)
-    show_design(made, target, vehicle, rail)
+    judged_by = requirements_of(answers)
+    show_design(
+        made,
+        target,
+        vehicle,
+        rail,
+        judged_by=None if judged_by == PAPER else judged_by,
+        on_one_screen=True,
+    )
 
 
 COMMANDS = {"vehicle": vehicle, "rail": rail}

@@ -10,7 +10,7 @@ from wspd_design.cli.console import console, print_written, spaced, table
 from wspd_design.cli.output import write_text
 from wspd_design.cli.wizard.draft import ENDING
 from wspd_design.cli.wizard.rail_steps import NONE, rail_steps, wanted_rail
-from wspd_design.cli.wizard.session import answer_option, answered_for_file
+from wspd_design.cli.wizard.session import answer_option, answered_for_file, given_answers, print_answers
 from wspd_design.exchange.parameter_file import parameter_file
 from wspd_design.parameters.contradictions import notice_of_rail
 from wspd_design.parameters.units import format_quantity
@@ -46,6 +46,8 @@ def rail(
         str | None, answer_option("--slip-reduction", "SHARE", "kS of eq. (5).")
     ] = None,
     peak: Annotated[str | None, answer_option("--peak", "SHARE", "Adhesion at the peak.")] = None,
+    answers_file: options.AnswersOption = None,
+    show_answers: options.PrintAnswersOption = False,
     yes: Annotated[bool, typer.Option("--yes", help="Ask nothing and take all suggestions.")] = False,
     resume: Annotated[
         Path | None,
@@ -65,6 +67,12 @@ def rail(
         "slip_reduction": slip_reduction,
         "peak": peak,
     }
+    if show_answers:
+        said_before = {key: answer for key, answer in given.items() if answer is not None}
+        print_answers(
+            rail_steps(), {**given_answers(rail_steps(), answers_file, None), **said_before}, "wspd new rail"
+        )
+        return
     target, answers, _ = answered_for_file(
         "rail",
         rail_steps(),
@@ -72,6 +80,7 @@ def rail(
         output=output,
         default=RAIL_FILE,
         resume=resume,
+        file=answers_file,
         yes=yes,
         force=force,
         by_default="the suggestions answer",

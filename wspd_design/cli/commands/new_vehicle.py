@@ -11,7 +11,7 @@ from wspd_design.cli import options
 from wspd_design.cli.console import WIDE, console, print_written, spaced, table
 from wspd_design.cli.output import write_text
 from wspd_design.cli.wizard.draft import ENDING
-from wspd_design.cli.wizard.session import answer_option, answered_for_file
+from wspd_design.cli.wizard.session import answer_option, answered_for_file, given_answers, print_answers
 from wspd_design.cli.wizard.vehicle_answers import NONE, wanted_vehicle
 from wspd_design.cli.wizard.vehicle_steps import vehicle_steps
 from wspd_design.exchange.parameter_file import parameter_file
@@ -77,6 +77,8 @@ def vehicle(
     ] = None,
     fill_time: Annotated[str | None, answer_option("--fill-time", "TIME", "T_F of the valve.")] = None,
     vent_time: Annotated[str | None, answer_option("--vent-time", "TIME", "T_V of the valve.")] = None,
+    answers_file: options.AnswersOption = None,
+    show_answers: options.PrintAnswersOption = False,
     yes: Annotated[bool, typer.Option("--yes", help="Ask nothing; the kind answers what is left.")] = False,
     resume: Annotated[
         Path | None,
@@ -103,6 +105,14 @@ def vehicle(
         "fill_time": fill_time,
         "vent_time": vent_time,
     }
+    if show_answers:
+        said_before = {key: answer for key, answer in given.items() if answer is not None}
+        print_answers(
+            vehicle_steps(),
+            {**given_answers(vehicle_steps(), answers_file, None), **said_before},
+            "wspd new vehicle",
+        )
+        return
     target, answers, said = answered_for_file(
         "vehicle",
         vehicle_steps(),
@@ -110,6 +120,7 @@ def vehicle(
         output=output,
         default=VEHICLE_FILE,
         resume=resume,
+        file=answers_file,
         yes=yes,
         force=force,
         by_default="the kind answers",

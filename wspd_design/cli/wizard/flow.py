@@ -1,10 +1,10 @@
-"""The way through the questions: forward, back, and again."""
+"""The way through the questions: forward, back, and from the review to any of them."""
 
 from collections.abc import Callable, Sequence
 from enum import Enum, auto
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
-from wspd_design.cli.wizard.steps import AGAIN, Answers, Step, accept
+from wspd_design.cli.wizard.steps import SAVE, Answers, Step, accept
 from wspd_design.parameters.errors import UserError
 
 
@@ -14,8 +14,15 @@ class Back(Enum):
     BACK = auto()
 
 
-Ask: TypeAlias = Callable[[Step, Answers, str], str | Back]
-"""Ask one question, given the answers so far and the suggestion; returns an answer that the step accepts."""
+class Place(NamedTuple):
+    """Where a question stands among those that apply so far."""
+
+    number: int  # from 1 on
+    of: int
+
+
+Ask: TypeAlias = Callable[[Step, Answers, str, Place], str | Back]
+"""Ask one question, given the answers so far, the suggestion and its place; returns an answer that the step accepts."""
 
 
 def walk(steps: Sequence[Step], answers: dict[str, str], ask: Ask) -> dict[str, str]:
@@ -24,7 +31,8 @@ def walk(steps: Sequence[Step], answers: dict[str, str], ask: Ask) -> dict[str, 
     Parameters
     ----------
     steps : sequence of Step
-        All questions; which of them apply is decided again after each answer. The last one is the review.
+        All questions; which of them apply is decided again after each answer. The last one is the review, whose answer
+        may be the key of another one: that is asked once more, and after it what no longer fits.
     answers : dict
         Answers known before. It is filled on the way, so that a caller who is interrupted still has them.
     ask : callable
@@ -35,26 +43,27 @@ def walk(steps: Sequence[Step], answers: dict[str, str], ask: Ask) -> dict[str, 
     dict
         The same answers, of all questions that apply but the review.
     """
-    index = _first_open(steps, answers)
+    keys, last = [step.key for step in steps], len(steps) - 1
+    index = first_open(steps, answers)
     visited = [i for i in range(index) if steps[i].applies(answers)]
-    while index < len(steps):
+    reviewed = False
+    while True:
         step = steps[index]
-        if not step.applies(answers):
-            answers.pop(step.key, None)
-            index += 1
-            continue
-        answer = ask(step, answers, step.suggestion(answers))
+        answer = ask(step, answers, step.suggestion(answers), place(steps, answers, index))
         if isinstance(answer, Back):
             index = visited.pop() if visited else index
-        elif step is steps[-1]:
-            if answer != AGAIN:
-                break
-            index, visited = 0, []
-        else:
-            answers[step.key] = answer
+            continue
+        if index == last:
+            if answer == SAVE:
+                return answers
             visited.append(index)
-            index += 1
-    return answers
+            index, reviewed = keys.index(answer), True
+            continue
+        answers[step.key] = answer
+        visited.append(index)
+        _forget(steps, answers)
+        after = 0 if reviewed else index + 1
+        index = next((i for i in range(after, last) if _is_open(steps[i], answers, again=not reviewed)), last)
 
 
 def complete(steps: Sequence[Step], answers: Answers) -> dict[str, str]:
@@ -73,11 +82,39 @@ def complete(steps: Sequence[Step], answers: Answers) -> dict[str, str]:
     return made
 
 
-def _first_open(steps: Sequence[Step], answers: Answers) -> int:
-    for index, step in enumerate(steps[:-1]):
-        if step.applies(answers) and not _is_valid(step, answers):
-            return index
-    return len(steps) - 1
+def place(steps: Sequence[Step], answers: Answers, index: int) -> Place:
+    """Return the place of a question among those that apply, if the suggestions answer what is open."""
+    made: dict[str, str] = {}
+    numbers = []
+    for number, step in enumerate(steps):
+        if step.applies(made):
+            numbers.append(number)
+            made[step.key] = answers.get(step.key, step.default)
+    return Place(number=sum(number <= index for number in numbers), of=len(numbers))
+
+
+def first_open(steps: Sequence[Step], answers: Answers) -> int:
+    """Return the index of the first question without a valid answer, or that of the review."""
+    return next(
+        (index for index, step in enumerate(steps[:-1]) if _is_open(step, answers, again=False)),
+        len(steps) - 1,
+    )
+
+
+def _is_open(step: Step, answers: Answers, *, again: bool) -> bool:
+    """Whether a question is to be asked; ``again`` also with a valid answer."""
+    return step.applies(answers) and (again or not _is_valid(step, answers))
+
+
+def _forget(steps: Sequence[Step], answers: dict[str, str]) -> None:
+    """Leave out answers to questions that no longer apply."""
+    made: dict[str, str] = {}
+    for step in steps[:-1]:
+        if step.key in answers:
+            if step.applies(made):
+                made[step.key] = answers[step.key]
+            else:
+                del answers[step.key]
 
 
 def _is_valid(step: Step, answers: Answers) -> bool:

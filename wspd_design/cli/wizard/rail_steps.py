@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from wspd_design.cli.wizard.steps import AGAIN, SAVE, Answers, Option, Step
+from wspd_design.cli.wizard.steps import Answers, Option, Step, review_step
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.entry import number_of
@@ -48,6 +48,7 @@ def rail_steps() -> tuple[Step, ...]:
             f'of the rail are fitted to it. "{NONE}" where there is none.',
             default=NONE,
             check=_curve,
+            files=".csv",
         ),
         Step(
             key="like",
@@ -62,6 +63,7 @@ def rail_steps() -> tuple[Step, ...]:
             title="Vehicle",
             explanation="Whose wheels and load belong to the curve or the peak: a shipped vehicle or a .toml file.",
             default=VEHICLE,
+            files=".toml",
             check=lambda text, _answers: f"wheel load {_load(load_vehicle(text)) / 1e3:.4g} kN",
         ),
         Step(
@@ -82,16 +84,7 @@ def rail_steps() -> tuple[Step, ...]:
             check=_peak,
             applies=_without_curve,
         ),
-        Step(
-            key="review",
-            title="Review",
-            explanation="Saving works out the numbers and writes the rail file.",
-            default=SAVE,
-            options=(
-                Option(value=SAVE, text="work out the rest and save"),
-                Option(value=AGAIN, text="go through the questions again"),
-            ),
-        ),
+        review_step("Saving works out the numbers and writes the rail file.", "work out the rest and save"),
     )
 
 

@@ -3,18 +3,26 @@
 import os
 import shlex
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import typer
 from rich.text import Text
 
-from wspd_design.cli.console import console, is_interactive, spaced, table
+from wspd_design.cli.console import console, is_interactive
 from wspd_design.cli.exit_codes import INTERRUPTED
 from wspd_design.cli.output import check_output
-from wspd_design.cli.wizard.draft import ENDING, draft_path, read_draft, write_draft
-from wspd_design.cli.wizard.flow import Ask, Back, complete, walk
-from wspd_design.cli.wizard.steps import SAVE, Answers, Step, accept
+from wspd_design.cli.wizard.draft import (
+    ENDING,
+    answers_text,
+    draft_path,
+    read_draft,
+    read_pairs,
+    write_draft,
+)
+from wspd_design.cli.wizard.flow import Ask, Back, Place, complete, walk
+from wspd_design.cli.wizard.steps import Answers, Option, Step, accept, noted
 from wspd_design.parameters.errors import UserError
 
 
@@ -29,8 +37,32 @@ def answer_option(flag: str, metavar: str, meaning: str) -> Any:
     )
 
 
+def given_answers(
+    questions: tuple[Step, ...], file: Path | None, pairs: Sequence[str] | None
+) -> dict[str, str]:
+    """Return the answers of a file and those of ``--set``, which count more."""
+    return {**({} if file is None else read_draft(file, questions)), **read_pairs(pairs or (), questions)}
+
+
+def print_answers(questions: tuple[Step, ...], given: Answers, command: str) -> None:
+    """Print a file of answers, with suggestions for all that are not given."""
+    print(answers_text(questions, complete(questions, given), command), end="")
+
+
+def again(questions: Sequence[Step], answers: Answers, command: Sequence[str]) -> str:
+    """Return the command that gives the same answers without questions: what differs from the suggestions."""
+    made: dict[str, str] = {}
+    words = [*command, "--yes"]
+    for step in questions[:-1]:
+        if step.key in answers:
+            if answers[step.key] != step.suggestion(made):
+                words += ["--set", f"{step.key}={answers[step.key]}"]
+            made[step.key] = answers[step.key]
+    return shlex.join(words)
+
+
 def answered(
-    questions: Sequence[Step],
+    questions: tuple[Step, ...],
     given: Answers,
     *,
     target: Path,
@@ -58,13 +90,16 @@ def answered(
     remedy : str
         What to do without a terminal.
     """
-    kept = {} if resume is None else read_draft(resume, tuple(questions))
+    kept = {} if resume is None else read_draft(resume, questions)
     _check_given(questions, given)
     answers = {**kept, **given}
-    if yes or (given and not _open_questions(questions, answers)):
+    left = _open_questions(questions, answers)
+    if yes or (given and not left):
         return complete(questions, answers), frozenset(answers)
     if not is_interactive():
-        raise UserError(f"the wizard needs a terminal; start it in one, {remedy}")
+        raise UserError(
+            f"the wizard needs a terminal to ask for {', '.join(left) or 'its review'}; start it in one, {remedy}"
+        )
     try:
         walk(questions, answers, _asking(questions))
     except KeyboardInterrupt:
@@ -81,20 +116,22 @@ def answered(
 
 def answered_for_file(
     kind: str,
-    questions: Sequence[Step],
+    questions: tuple[Step, ...],
     given: Mapping[str, str | None],
     *,
     output: Path | None,
     default: str,
     resume: Path | None,
+    file: Path | None,
     yes: bool,
     force: bool,
     by_default: str,
 ) -> tuple[Path, dict[str, str], frozenset[str]]:
     """Return a parameter file to write, the answers for it, and the questions that the user answered.
 
-    The file is that of a vehicle or a rail, and may be written. Of what the command line may give, None is no answer;
-    ``by_default`` says what ``--yes`` does with the rest, such as "the kind answers".
+    The file is that of a vehicle or a rail, and may be written. Of what the command line may give, None is no answer,
+    and the rest counts more than a ``file`` of answers; ``by_default`` says what ``--yes`` does with what is left, such
+    as "the kind answers".
     """
     target = target_of(output, resume, default, remedy=f"give the name of the {kind} file, too")
     if target.suffix != ".toml":
@@ -102,7 +139,10 @@ def answered_for_file(
     check_output(target, force=force)
     answers, said = answered(
         questions,
-        {key: answer for key, answer in given.items() if answer is not None},
+        {
+            **given_answers(questions, file, None),
+            **{key: answer for key, answer in given.items() if answer is not None},
+        },
         target=target,
         resume=resume,
         yes=yes,
@@ -145,23 +185,27 @@ def _asking(questions: Sequence[Step]) -> Ask:
 
         asker = widgets.ask
 
-    def ask(step: Step, answers: Answers, suggestion: str) -> str | Back:
+    def ask(step: Step, answers: Answers, suggestion: str, place: Place) -> str | Back:
         out = console()
-        if any(option.value == SAVE for option in step.options):
-            _review(questions, answers)
-        answer = asker(step, answers, suggestion)
+        review = step is questions[-1]
+        if review:
+            step = reviewing(questions, answers)
+        answer = asker(step, answers, suggestion, place)
         if isinstance(answer, Back):
             out.print(f"< back from {step.title}", style="dim", markup=False)
-        else:
+        elif not review:
             out.print(Text(f"{step.title}: ").append(answer, style="bold"))
         return answer
 
     return ask
 
 
-def _review(questions: Sequence[Step], answers: Answers) -> None:
-    shown = table("Question", "Answer")
-    for step in questions:
-        if step.key in answers:
-            shown.add_row(step.title, Text(answers[step.key]))
-    console().print(spaced(shown))
+def reviewing(questions: Sequence[Step], answers: Answers) -> Step:
+    """Return the review with a line for each answer, which leads back to its question."""
+    asked = {step.key: step for step in questions[:-1] if step.key in answers}
+    lines = (Option(value=key, text=answers[key], label=step.title) for key, step in asked.items())
+    return replace(
+        questions[-1],
+        options=(*questions[-1].options, *lines),
+        note=lambda key, answers: noted(asked[key], answers[key], answers) if key in asked else "",
+    )

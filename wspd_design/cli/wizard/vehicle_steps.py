@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from wspd_design.analysis.stopping import demanded_adhesion
-from wspd_design.cli.wizard.steps import AGAIN, SAVE, Answers, Option, Step
+from wspd_design.cli.wizard.steps import Answers, Option, Step, review_step
 from wspd_design.cli.wizard.vehicle_answers import KIND, NO, NONE, READERS, YES, wanted_vehicle
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import gear_of
@@ -157,15 +157,8 @@ def vehicle_steps() -> tuple[Step, ...]:
             "Time constant T_V with which it vents; dump valves vent faster than they fill.",
             lambda like: format_quantity(like.vent_time, "s"),
         ),
-        Step(
-            key="review",
-            title="Review",
-            explanation="Saving works out all other numbers and writes the vehicle file.",
-            default=SAVE,
-            options=(
-                Option(value=SAVE, text="work out the rest and save"),
-                Option(value=AGAIN, text="go through the questions again"),
-            ),
+        review_step(
+            "Saving works out all other numbers and writes the vehicle file.", "work out the rest and save"
         ),
     )
 

@@ -5,7 +5,7 @@ All of them follow from an energy and a dissipation function of the coordinates,
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from wspd_design.model.number import Number, maximum, sqrt
 from wspd_design.plants.multibody.kinematics import BodyMotion, first_coordinates, marker
@@ -64,24 +64,28 @@ def act(model: Multibody, bodies: Mapping[str, BodyMotion], q: Any, v: Any, grav
     return forces
 
 
-def _relative(
-    model: Multibody, element: Spring | BumpStop, bodies: Mapping[str, BodyMotion]
-) -> tuple[Vector, Vector, Vector, Vector]:
-    """Displacement and velocity of the second body against the first, in its axes, and the arms of the force.
+class _Relative(NamedTuple):
+    """The second body against the first at one point."""
 
-    The force on the first body acts where the second one is, so that the pair has no moment.
-    """
+    displacement: Vector  # m, in axes of the first body
+    velocity: Vector  # m/s, in axes of the first body, as seen from there
+    apart: Vector  # m, in track axes
+    arms: tuple[Vector, Vector]  # m, in track axes, from each center of gravity to where the second body is
+
+
+def _relative(model: Multibody, element: Spring | BumpStop, bodies: Mapping[str, BodyMotion]) -> _Relative:
+    """Return how one body moves against the other; a force on the first acts where the second is, without a moment."""
     first, second = (bodies[name] for name in element.between)
     on_first, on_second = (marker(model, motion, element.at) for motion in (first, second))
     apart = subtract(on_second.displacement, on_first.displacement)
-    arm = add(on_first.arm, apart)
-    # A point of the first body that is where the second one is.
-    there = add(first.velocity, outward(first.axes, cross(first.frame_turning, inward(first.axes, arm))))
-    return (
-        inward(first.axes, apart),
-        inward(first.axes, subtract(on_second.velocity, there)),
-        arm,
-        on_second.arm,
+    displacement = inward(first.axes, apart)
+    arm = add(model.offset(element.at, first.body.at), displacement)
+    drift = inward(first.axes, subtract(on_second.velocity, first.velocity))
+    return _Relative(
+        displacement=displacement,
+        velocity=subtract(drift, cross(first.frame_turning, arm)),
+        apart=apart,
+        arms=(add(on_first.arm, apart), on_second.arm),
     )
 
 
@@ -96,34 +100,52 @@ def _spring(model: Multibody, spring: Spring, bodies: Mapping[str, BodyMotion], 
     if not any(name in model.numbers for names in keys.values() for name in names):
         return
     stiffness, damping = ([model.numbers.get(name, 0.0) for name in names] for names in keys.values())
-    displacement, velocity, *arms = _relative(model, spring, bodies)
-    lift = model.preloads[spring.name] if spring.carries else 0.0
-    elastic = [k * d for k, d in zip(stiffness, displacement, strict=True)]
-    viscous = [c * d for c, d in zip(damping, velocity, strict=True)]
+    relative = _relative(model, spring, bodies)
+    elastic = [k * d for k, d in zip(stiffness, relative.displacement, strict=True)]
+    viscous = [c * d for c, d in zip(damping, relative.velocity, strict=True)]
     x, y, z = (-(a + b) for a, b in zip(elastic, viscous, strict=True))
-    force = outward(bodies[spring.between[0]].axes, (x, y, z + lift))
-    _pair(forces, spring.between, force, (arms[0], arms[1]))
-    forces.potential += 0.5 * sum(a * d for a, d in zip(elastic, displacement, strict=True))
-    forces.potential += -lift * displacement[2]
-    forces.dissipation += sum(b * d for b, d in zip(viscous, velocity, strict=True))
+    _pair(forces, spring.between, outward(bodies[spring.between[0]].axes, (x, y, z)), relative.arms)
+    forces.potential += 0.5 * sum(a * d for a, d in zip(elastic, relative.displacement, strict=True))
+    forces.dissipation += sum(b * d for b, d in zip(viscous, relative.velocity, strict=True))
+    if spring.carries:
+        _carry(model.preloads[spring.name], spring.between, relative, bodies, forces)
+
+
+def _carry(
+    preload: Number,
+    between: tuple[str, str],
+    relative: _Relative,
+    bodies: Mapping[str, BodyMotion],
+    forces: Forces,
+) -> None:
+    """Let a preload act, half along the vertical of each body.
+
+    A loaded spring is symmetric: tilting one of its ends tilts its force by half as much. Where it acts is half at the
+    point of one body and half at that of the other.
+    """
+    first, second = (bodies[name].axes[2] for name in between)
+    on_first, on_second = relative.arms
+    _pair(forces, between, scaled(0.5 * preload, first), relative.arms)
+    back = subtract(on_first, relative.apart), subtract(on_second, relative.apart)
+    _pair(forces, between, scaled(0.5 * preload, second), back)
+    forces.potential -= 0.5 * preload * dot(add(first, second), relative.apart)
 
 
 def _turns(model: Multibody, spring: Spring, q: Any, v: Any, forces: Forces) -> None:
     """Let springs and dampers of relative turns act, on the coordinates themselves."""
     starts = first_coordinates(model)
     for turn, k in _TURNS.items():
-        stiffness, damping = (
-            model.numbers.get(f"{spring.kind}.{key}_{turn}") for key in ("stiffness", "damping")
-        )
-        if stiffness is None and damping is None:
+        keys = [f"{spring.kind}.{key}_{turn}" for key in ("stiffness", "damping")]
+        if not any(key in model.numbers for key in keys):
             continue
+        stiffness, damping = (model.numbers.get(key, 0.0) for key in keys)
         first, second = (starts[name] + k for name in spring.between)
         angle, rate = q[second] - q[first], v[second] - v[first]
-        moment = (stiffness or 0.0) * angle + (damping or 0.0) * rate
+        moment = stiffness * angle + damping * rate
         forces.twist(first, moment)
         forces.twist(second, -moment)
-        forces.potential += 0.5 * (stiffness or 0.0) * angle**2
-        forces.dissipation += (damping or 0.0) * rate**2
+        forces.potential += 0.5 * stiffness * angle**2
+        forces.dissipation += damping * rate**2
 
 
 def _rod(model: Multibody, rod: Rod, bodies: Mapping[str, BodyMotion], forces: Forces) -> None:
@@ -146,17 +168,17 @@ def _rod(model: Multibody, rod: Rod, bodies: Mapping[str, BodyMotion], forces: F
 
 
 def _bump_stop(model: Multibody, stop: BumpStop, bodies: Mapping[str, BodyMotion], forces: Forces) -> None:
-    displacement, _, *arms = _relative(model, stop, bodies)
+    relative = _relative(model, stop, bodies)
     k = _AXES.index(stop.axis)
     force, energy = 0.0, 0.0
     for start, gain in _slopes(model, stop):
         for sign in (1.0, -1.0):
-            beyond = maximum(sign * displacement[k] - start, 0.0)
+            beyond = maximum(sign * relative.displacement[k] - start, 0.0)
             force += -sign * gain * beyond
             energy += 0.5 * gain * beyond**2
     along = tuple(force if j == k else 0.0 for j in range(3))
     axes = bodies[stop.between[0]].axes
-    _pair(forces, stop.between, outward(axes, (along[0], along[1], along[2])), (arms[0], arms[1]))
+    _pair(forces, stop.between, outward(axes, (along[0], along[1], along[2])), relative.arms)
     forces.potential += energy
 
 
