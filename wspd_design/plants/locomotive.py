@@ -33,7 +33,6 @@ from wspd_design.plants.protocol import CoupledMotion
 _SHARED: Final = ("mass", "wheel_radius", "wheelbase", "bogie_spacing")
 """Numbers of the file that are those of the vehicle."""
 _CONTACT: Final = ("normal_stiffness", "kalker_c22", "kalker_c23", "lateral_slope")
-_LONGEST_STEP: Final = 5e-4  # s
 _WHEELS: Final = 2  # of one axle
 
 
@@ -46,6 +45,7 @@ class Locomotive(BrakedWheelsets):
     name: ClassVar[str] = "locomotive"
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False
+    longest: ClassVar[float] = 5e-4  # s
     further_traces: ClassVar[tuple[str, ...]] = (
         "wheel_load_left",
         "wheel_load_right",
@@ -100,7 +100,7 @@ class Locomotive(BrakedWheelsets):
     @property
     def longest_step(self) -> float:
         """Longest step that bounce of wheels on rails and driveline allow [s]."""
-        return _LONGEST_STEP
+        return self.longest
 
     @property
     def number_names(self) -> tuple[str, ...]:
@@ -185,13 +185,24 @@ class Locomotive(BrakedWheelsets):
         A wheelset spins against the torsion of its driveline, without the rotor.
         """
         vehicle, numbers = self.vehicle, dict(zip(self.number_names, self.numbers, strict=True))
-        stiffness = adhesion.contact_stiffness(vehicle.contact, slip_model.static_wheel_load(vehicle))
         body = self.model.body(self.model.wheelset_names[0])
         mass, spin = numbers[f"{body.kind}.mass"], numbers[f"{body.kind}.inertia_axial"]
         along = 0.5 * (rail.adhesion_reduction + rail.slip_reduction)
         across = numbers["lateral_slope"] * numbers["kalker_c22"] / vehicle.contact.kalker_c11
         per_slip = max(along * (vehicle.wheel_radius**2 / spin + 1.0 / mass), across / mass)
-        return 4.0 / math.pi * stiffness * _WHEELS * per_slip / speed
+        return self._kalker_slope * per_slip / speed
+
+    def creep_growth(self, rail: Rail) -> float:
+        """Return this rate over that of a rigid wheelset with all that turns with it, in its place."""
+        along = 0.5 * (rail.adhesion_reduction + rail.slip_reduction)
+        rigid = self._kalker_slope * along * self.vehicle.wheel_radius**2 / self.vehicle.wheelset_inertia
+        return float(self.creep_rate(rail, 1.0) / rigid)
+
+    @property
+    def _kalker_slope(self) -> Number:
+        """Initial slope of the force of an axle over its creepage by Kalker's theory, under the static load [N]."""
+        load = slip_model.static_wheel_load(self.vehicle)
+        return _WHEELS * 4.0 / math.pi * adhesion.contact_stiffness(self.vehicle.contact, load)
 
 
 def _of_file(name: str, changed: tuple[tuple[str, float], ...]) -> Multibody:
@@ -250,6 +261,7 @@ class LinearLocomotive(Locomotive):
 
     name: ClassVar[str] = "locomotive-linear"
     linear: ClassVar[bool] = True
+    longest: ClassVar[float] = 1e-3  # s
 
     def on(self, vehicle: Vehicle) -> "LinearLocomotive":
         """Return the same plant with the numbers of another vehicle."""
