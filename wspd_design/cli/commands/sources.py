@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
+from wspd_design.cli.completion import names_or_files
 from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
@@ -24,7 +25,11 @@ _KINDS: tuple[Kind, ...] = ("vehicle", "rail", "controller", "track", "constants
 def sources(
     name: Annotated[
         str | None,
-        typer.Argument(metavar="NAME", help="Vehicle, rail, controller or track, or a .toml file."),
+        typer.Argument(
+            metavar="NAME",
+            help="Vehicle, rail, controller or track, or a .toml file.",
+            autocompletion=names_or_files((name for kind in _KINDS for name in available(kind)), ".toml"),
+        ),
     ] = None,
 ) -> None:
     """Show every number of a parameter set with unit, bounds, status, source and place."""
