@@ -1,7 +1,7 @@
 """The page of the public API: the names of ``wspd_design.__all__`` by the room that they live in.
 
-Docstrings are rendered by autodoc. What the fields of a record mean, and their units, stands behind them in the source
-as a comment; autodoc does not see it, so the table of fields is made here.
+Docstrings are rendered by autodoc. What the fields of a record mean, and their units, stands in the section Attributes
+of its docstring, or behind them in the source as a comment; the table of fields is made of either here.
 """
 
 import ast
@@ -35,6 +35,8 @@ _BASE = r"(?:kg|m|s|N|Pa|rad|Hz|W|J|K)\d?"
 _UNIT = re.compile(
     rf"(?P<unit>-|(?:1/\(?)?{_BASE}(?:[ /]{_BASE})*\)?(?: per (?:wheelset|wheel|axle))?)(?:[,;]? +|$)(?P<rest>.*)"
 )
+ATTRIBUTES = "\nAttributes\n----------\n"
+_STATED = re.compile(r"^(\w+) : (.*)$((?:\n {4}.*$)*)", re.MULTILINE)
 _CODE = re.compile(r"``([^`]+)``")
 
 
@@ -84,7 +86,7 @@ def _class(path: str, item: type) -> str:
     table = field_table(item)
     # The table says what the signature of a record would, and more.
     lines = [f".. autoclass:: {path}{'(**fields)' if table else ''}", "   :members:", ""]
-    if table and "Attributes\n" not in (item.__doc__ or ""):
+    if table:
         lines += textwrap.indent(table, "   ").splitlines()
     return "\n".join(lines)
 
@@ -94,12 +96,13 @@ def field_table(item: type) -> str:
     if not dataclasses.is_dataclass(item):
         return ""
     meanings = {each: text for base in reversed(item.__mro__) for each, text in field_comments(base).items()}
+    stated = stated_fields(item)
     rows = [
         (
             f"``{field.name}``",
             f"``{_type(field.type)}``",
             _default(field),
-            *with_unit(meanings.get(field.name, "")),
+            *(stated.get(field.name) or with_unit(meanings.get(field.name, ""))),
         )
         for field in dataclasses.fields(item)
         if not field.name.startswith("_")
@@ -124,6 +127,24 @@ def with_unit(comment: str) -> tuple[str, str]:
     if not found:
         return "", comment
     return found["unit"].replace("-", "\\-"), found["rest"]  # a hyphen alone would begin a list
+
+
+def stated_fields(item: type) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of each field that the section Attributes of a docstring states."""
+    section = inspect.cleandoc(item.__doc__ or "").partition(ATTRIBUTES)[2].partition("\n\n")[0]
+    found = {}
+    for name, kind, meaning in _STATED.findall(section):
+        unit = kind.rpartition(" [")[2].removesuffix("]") if kind.endswith("]") and " [" in kind else ""
+        found[name] = unit.replace("-", "\\-"), " ".join(meaning.split())
+    return found
+
+
+def without_attributes(_app: Any, what: str, _name: str, item: Any, _options: Any, lines: list[str]) -> None:
+    """Leave out the section Attributes of a record where Sphinx shows its docstring: the table says it, and more."""
+    text = "\n".join(lines)
+    if what == "class" and dataclasses.is_dataclass(item) and ATTRIBUTES in text:
+        before, _, after = text.partition(ATTRIBUTES)
+        lines[:] = (before + after.partition("\n\n")[2]).split("\n")
 
 
 def field_comments(item: Any) -> dict[str, str]:
