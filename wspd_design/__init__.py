@@ -18,6 +18,13 @@ if TYPE_CHECKING:
     from wspd_design.design.problem import stability_problem
     from wspd_design.design.records import Design, Gain, Specification
     from wspd_design.design.selection import design_controller
+    from wspd_design.exchange.python_control import (
+        law_start,
+        law_system,
+        linear_law,
+        quarter_system,
+        slip_system,
+    )
     from wspd_design.parameters.errors import UserError, WspdError
     from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
     from wspd_design.parameters.records import Brake, Rail, Vehicle
@@ -77,15 +84,20 @@ _HOME = {
     "design_controller": "design.selection",
     "dossier": "studies.dossier",
     "ideal_stop": "simulation.ideal",
+    "law_start": "exchange.python_control",
+    "law_system": "exchange.python_control",
+    "linear_law": "exchange.python_control",
     "linearize": "analysis.linearization",
     "load_controller": "design.own_controller",
     "load_entries": "parameters.loading",
     "load_rail": "parameters.loading",
     "load_vehicle": "parameters.loading",
     "plot_poles": "plotting.poles",
+    "quarter_system": "exchange.python_control",
     "read_design": "design.file",
     "simulate": "simulation.stop",
     "simulate_many": "simulation.campaign",
+    "slip_system": "exchange.python_control",
     "stability_problem": "design.problem",
     "trial": "simulation.comparison",
     "verify": "certificates.suite",
@@ -136,15 +148,20 @@ __all__ = [
     "design_controller",
     "dossier",
     "ideal_stop",
+    "law_start",
+    "law_system",
+    "linear_law",
     "linearize",
     "load_controller",
     "load_entries",
     "load_rail",
     "load_vehicle",
     "plot_poles",
+    "quarter_system",
     "read_design",
     "simulate",
     "simulate_many",
+    "slip_system",
     "stability_problem",
     "trial",
     "verify",

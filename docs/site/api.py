@@ -1,7 +1,7 @@
 """The page of the public API: the names of ``wspd_design.__all__`` by the room that they live in.
 
-Docstrings are rendered by autodoc. What the fields of a record mean, and their units, stands behind them in the source
-as a comment; autodoc does not see it, so the table of fields is made here.
+Docstrings are rendered by autodoc. What the fields of a record mean, and their units, stands in the section Attributes
+of its docstring, or behind them in the source as a comment; the table of fields is made of either here.
 """
 
 import ast
@@ -30,10 +30,13 @@ ROOMS = {
 }
 """Headings of the rooms, in the order of the page; a room without one stands under its own name at the end."""
 
+_SHORT = 16  # letters of a default
 _BASE = r"(?:kg|m|s|N|Pa|rad|Hz|W|J|K)\d?"
 _UNIT = re.compile(
     rf"(?P<unit>-|(?:1/\(?)?{_BASE}(?:[ /]{_BASE})*\)?(?: per (?:wheelset|wheel|axle))?)(?:[,;]? +|$)(?P<rest>.*)"
 )
+ATTRIBUTES = "\nAttributes\n----------\n"
+_STATED = re.compile(r"^(\w+) : (.*)$((?:\n {4}.*$)*)", re.MULTILINE)
 _CODE = re.compile(r"``([^`]+)``")
 
 
@@ -80,23 +83,12 @@ def _module(name: str) -> str:
 
 
 def _class(path: str, item: type) -> str:
-    lines = [f".. autoclass:: {path}{_signature(item)}", "   :members:", ""]
     table = field_table(item)
-    if table and "Attributes\n" not in (item.__doc__ or ""):
+    # The table says what the signature of a record would, and more.
+    lines = [f".. autoclass:: {path}{'(**fields)' if table else ''}", "   :members:", ""]
+    if table:
         lines += textwrap.indent(table, "   ").splitlines()
     return "\n".join(lines)
-
-
-def _signature(item: type) -> str:
-    """Name the fields of a record; their types stand in the table."""
-    if not dataclasses.is_dataclass(item):
-        return ""
-    shown = [
-        field.name if field.default is field.default_factory is dataclasses.MISSING else f"{field.name}=..."
-        for field in dataclasses.fields(item)
-        if field.init
-    ]
-    return f"(*, {', '.join(shown)})"
 
 
 def field_table(item: type) -> str:
@@ -104,21 +96,55 @@ def field_table(item: type) -> str:
     if not dataclasses.is_dataclass(item):
         return ""
     meanings = {each: text for base in reversed(item.__mro__) for each, text in field_comments(base).items()}
+    stated = stated_fields(item)
     rows = [
-        (f"``{field.name}``", f"``{_type(field.type)}``", *with_unit(meanings.get(field.name, "")))
+        (
+            f"``{field.name}``",
+            f"``{_type(field.type)}``",
+            _default(field),
+            *(stated.get(field.name) or with_unit(meanings.get(field.name, ""))),
+        )
         for field in dataclasses.fields(item)
         if not field.name.startswith("_")
     ]
     lines = [".. list-table::", "   :header-rows: 1", "   :widths: auto", "   :class: fields", ""]
-    for row in (("field", "type", "unit", "meaning"), *rows):
+    for row in (("field", "type", "default", "unit", "meaning"), *rows):
         lines += [f"   {'* -' if number == 0 else '  -'} {cell}" for number, cell in enumerate(row)]
     return "\n".join(lines)
+
+
+def _default(field: "dataclasses.Field[Any]") -> str:
+    """Return the default of a field where it is a plain value; ``...`` where it is something longer."""
+    if field.default is field.default_factory is dataclasses.MISSING:
+        return ""
+    text = repr(field.default)
+    return f"``{text}``" if len(text) <= _SHORT and "<" not in text else "``...``"
 
 
 def with_unit(comment: str) -> tuple[str, str]:
     """Split what stands behind a field into unit and meaning, ``kg, of one body`` for example."""
     found = _UNIT.match(comment)
-    return (found["unit"], found["rest"]) if found else ("", comment)
+    if not found:
+        return "", comment
+    return found["unit"].replace("-", "\\-"), found["rest"]  # a hyphen alone would begin a list
+
+
+def stated_fields(item: type) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of each field that the section Attributes of a docstring states."""
+    section = inspect.cleandoc(item.__doc__ or "").partition(ATTRIBUTES)[2].partition("\n\n")[0]
+    found = {}
+    for name, kind, meaning in _STATED.findall(section):
+        unit = kind.rpartition(" [")[2].removesuffix("]") if kind.endswith("]") and " [" in kind else ""
+        found[name] = unit.replace("-", "\\-"), " ".join(meaning.split())
+    return found
+
+
+def without_attributes(_app: Any, what: str, _name: str, item: Any, _options: Any, lines: list[str]) -> None:
+    """Leave out the section Attributes of a record where Sphinx shows its docstring: the table says it, and more."""
+    text = "\n".join(lines)
+    if what == "class" and dataclasses.is_dataclass(item) and ATTRIBUTES in text:
+        before, _, after = text.partition(ATTRIBUTES)
+        lines[:] = (before + after.partition("\n\n")[2]).split("\n")
 
 
 def field_comments(item: Any) -> dict[str, str]:

@@ -30,8 +30,11 @@ def main() -> int:
     options = unrun if arguments.without_notebooks else []
     command = [sys.executable, "-m", "sphinx", "--builder", "html", "--conf-dir", str(SITE)]
     strict = ["--fail-on-warning", "--keep-going", "--quiet", "--fresh-env"]
-    done = subprocess.run([*command, *strict, *options, str(source), str(arguments.output)], check=False)
-    if done.returncode != 0:
+    print("Sphinx reads the pages and runs the notebooks ...", flush=True)
+    words = [*command, *strict, *options, str(source), str(arguments.output)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode != 0:  # else it holds nothing but what kernels of notebooks say about themselves
+        print(done.stdout + done.stderr)
         return done.returncode
     found = faults(arguments.output)
     print(*found, sep="\n", end="\n" if found else "")

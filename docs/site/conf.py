@@ -1,6 +1,13 @@
 """Settings of Sphinx; ``build.py`` stages what it reads."""
 
+import sys
 from importlib.metadata import version as _version
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from api import without_attributes
 
 project = "wspd_design"
 author = "The wspd_design authors"
@@ -44,3 +51,8 @@ html_show_search_summary = False
 html_theme_options = {"navigation_with_keys": True, "top_of_page_buttons": []}
 # No page has formulas that a script would set; nothing is ever asked of another host.
 mathjax_path = "no-script-is-loaded.js"
+
+
+def setup(app: Any) -> None:
+    """Let the tables of fields stand in place of the sections of docstrings that they are made of."""
+    app.connect("autodoc-process-docstring", without_attributes, priority=400)  # before napoleon

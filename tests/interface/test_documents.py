@@ -1,13 +1,19 @@
-"""The console and Python blocks of README and docs are run, and what they show must be what comes out."""
+"""The console and Python blocks of README and docs are run, and what they show must be what comes out.
+
+Searches and reports, which would take minutes, are not run here; like all others they must be commands that there are.
+"""
 
 import doctest
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from wspd_design.cli.lazy import COMMANDS
 
 pytestmark = pytest.mark.slow
 
@@ -17,7 +23,9 @@ PAGES = (
     "docs/tutorial.md",
     "docs/certificates.md",
     "docs/campaigns.md",
+    "docs/modes.md",
     "docs/vehicle-files.md",
+    "docs/wizard.md",
 )
 WITH_FILES = "docs/how-to.md"  # all its Python blocks are files that its commands use
 BLOCK = re.compile(r"^```(console|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -79,6 +87,41 @@ def test_python_blocks_run(page, tmp_path, monkeypatch, capsys):
             item()
     capsys.readouterr()
     assert space
+
+
+FENCE = re.compile(r"^```(?:|sh|console|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+CALL = re.compile(r"^(?:\$ )?wspd (?P<words>[^|\n]+)", re.MULTILINE)
+SHELL = re.compile(r"\$[A-Z_]+")  # a variable of a job array, which stands for a number here
+
+
+def calls():
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    found = {}
+    for page in pages:
+        for block in FENCE.findall(page.read_text()):
+            found |= {call["words"]: page.name for call in CALL.finditer(block)}
+    return [(page, words) for words, page in found.items()]
+
+
+def parsed(words):
+    """Read a command line as the program does, and call nothing."""
+    name, *rest = shlex.split(SHELL.sub("1", words), comments=True)
+    COMMANDS[name].load(name).make_context(name, rest)
+
+
+def test_every_command_line_of_a_page_is_one():
+    found = calls()
+    assert len(found) > 40
+    for page, words in found:
+        try:
+            parsed(words)
+        except Exception as error:
+            pytest.fail(f"{page}: wspd {words}: {error}")
+
+
+def test_an_option_that_there_is_not_is_seen():
+    with pytest.raises(Exception, match="No such option"):
+        parsed("simulate afsmc --rial polach-dry")
 
 
 def test_a_wrong_figure_in_a_block_is_seen():

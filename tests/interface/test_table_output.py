@@ -8,8 +8,10 @@ import sys
 import pytest
 
 from wspd_design.parameters.equations import load_equations
+from wspd_design.parameters.files import data_file
 from wspd_design.parameters.loading import available, load_entries
 from wspd_design.parameters.schema import CONTROLLER_SCHEMAS
+from wspd_design.plants.multibody.loading import load_multibody
 
 SLOW = ("--speed", "20 km/h")
 SETS = [*available("vehicle"), *available("rail"), *CONTROLLER_SCHEMAS, *available("track"), "constants"]
@@ -123,6 +125,21 @@ def test_sources_list_every_number(columns, wspd, monkeypatch):
         assert entry.source in out
     assert "76841 kg" in out
     assert "61473 to 92209" in out
+
+
+def test_sources_of_a_multibody_vehicle(wspd, tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "160")
+    model = load_multibody("er24pc-82")
+    out = wspd("sources", "er24pc-82").out
+    assert all(name in out for name in model.entries)
+    assert out.count(" assumed ") == sum(entry.status == "assumed" for entry in model.entries.values())
+    both = wspd("sources", "two-axle-wagon").out  # of the vehicle, then of its bodies
+    assert both.index("body_pitch_frequency") < both.index("suspension.half_spacing")
+    (tmp_path / "mine.toml").write_text(
+        data_file("multibody", "manchester-1.toml").read_text(encoding="utf-8")
+    )
+    assert "bump_stop.force" in wspd("sources", "mine.toml").out
+    assert 'did you mean "er24pc-82"?' in wspd("sources", "er24pc-8").err
 
 
 def test_sources_of_an_own_file(wspd, tmp_path):

@@ -137,9 +137,10 @@ class _Build:
         )
 
     def _spring(self, spring):
-        """Springs in the axes of the first body, and the preload as a tension along a line from a point below.
+        """Springs in the axes of the first body, and the preload as a tension, half along the vertical of each body.
 
-        The tension T over a line of length l adds T/l across it, which the springs give back.
+        The one line comes from a point below on the first body, the other from one above on the second. A tension T
+        over lines of a length l adds T/l across them, which the springs give back.
         """
         point = np.array(self.model.place(spring.at), dtype=float)
         first, second = (self.links[name] for name in spring.between)
@@ -154,15 +155,17 @@ class _Build:
             )
         )
         if tension:
-            below = point - np.array([0.0, 0.0, _LINE])
-            self.system.AddObject(
-                self.items.SpringDamper(
-                    markerNumbers=[self._marker(first, below), self._marker(second, point)],
-                    stiffness=0.0,
-                    referenceLength=_LINE,
-                    force=float(tension),
+            away = np.array([0.0, 0.0, _LINE])
+            for ends in ((first, point - away, second), (second, point + away, first)):
+                link, anchor, other = ends
+                self.system.AddObject(
+                    self.items.SpringDamper(
+                        markerNumbers=[self._marker(link, anchor), self._marker(other, point)],
+                        stiffness=0.0,
+                        referenceLength=_LINE,
+                        force=0.5 * float(tension),
+                    )
                 )
-            )
 
     def _rod(self, rod):
         ends = [np.array(self.model.place(place), dtype=float) for place in rod.ends]

@@ -188,22 +188,29 @@ class SmallVibrations:
             found += self.mass_of(name) * GRAVITY * self.second_order_height(self.chain(name), center)
         for spring in self.model.springs:
             if spring.carries:
-                found -= self.preloads[spring.name] * self._stretch(spring)
+                point, (first, second) = self.place(spring), spring.between
+                heights = [self.second_order_height(self.chain(name), point) for name in (first, second)]
+                found -= self.preloads[spring.name] * (heights[1] - heights[0])
         for wheelset in self.model.wheelset_names:
             chain, points = self.axle_points(wheelset)
             for side, point in zip(("left", "right"), points, strict=True):
                 found -= self.preloads[f"{wheelset}.{side}"] * self.second_order_height(chain, point)
-        return found
+        return found + self.tilting()
 
-    def _stretch(self, spring):
-        """Second order of the vertical component in the axes of the first body, as a matrix (n, n)."""
-        point, (first, second) = self.place(spring), spring.between
-        moved, turned = self.relative(spring.between, point), self.turns(self.chain(first))
-        cross = np.outer(turned[0], moved[1]) - np.outer(
-            turned[1], moved[0]
-        )  # z of the turn times the displacement
-        heights = [self.second_order_height(self.chain(name), point) for name in (first, second)]
-        return heights[1] - heights[0] - (cross + cross.T)
+    def tilting(self):
+        """Stiffness from preloads that tilt with the bodies that they stand on, half with each.
+
+        A force P that leans by a turn over a displacement does the work P (turn x displacement) on the two bodies: its
+        points of attack part, and its pair must not turn both.
+        """
+        found = np.zeros((self.size, self.size))
+        for spring in self.model.springs:
+            if spring.carries:
+                moved = self.relative(spring.between, self.place(spring))
+                turned = 0.5 * sum(self.turns(self.chain(name)) for name in spring.between)
+                cross = np.outer(turned[0], moved[1]) - np.outer(turned[1], moved[0])
+                found += self.preloads[spring.name] * (cross + cross.T)
+        return found
 
     def ground_stiffness(self):
         found = np.zeros((self.size, self.size))

@@ -27,17 +27,38 @@ class Linearization:
 
     The states are the deviations of slip [-] and of the torque per wheelset [N m]. The train speed changes
     slowly against the slip and is held; ``equilibrium_torque`` keeps the slip there.
+
+    Attributes
+    ----------
+    vehicle : str
+    rail : str
+    slip : float [-]
+    speed : float [m/s]
+    equilibrium_torque : float [N m]
+        Per wheelset.
+    equilibrium_duty : float [-]
+        Where the brake cannot hold this slip its torque over T_max, above 1.
+    slip_pole : float [1/s]
+        Without the valve lag.
+    gain : float [1/(N m s)]
+        G.
+    time_constant : float [s]
+        Of the averaged valve at this duty and torque; of lags between T_F and T_V.
+    state_matrix : ndarray [1/s, 1/(N m s), N m/s, 1/s]
+        A, 2 by 2, row by row.
+    input_matrix : ndarray [1/s, N m/s]
+        B, 2 by 1.
     """
 
     vehicle: str
     rail: str
-    slip: float  # -
-    speed: float  # m/s
-    equilibrium_torque: float  # N m per wheelset
-    equilibrium_duty: float  # -; where the brake cannot hold this slip its torque over T_max, above 1
-    slip_pole: float  # 1/s, without the valve lag
-    gain: float  # 1/(N m s), G
-    time_constant: float  # s, of the averaged valve at this duty and torque; of lags between T_F and T_V
+    slip: float
+    speed: float
+    equilibrium_torque: float
+    equilibrium_duty: float
+    slip_pole: float
+    gain: float
+    time_constant: float
     state_matrix: "NDArray[np.float64]"
     input_matrix: "NDArray[np.float64]"
 

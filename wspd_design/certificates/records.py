@@ -34,7 +34,14 @@ class Status(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """A two-sided enclosure of a number; a sampled bound has one open end."""
+    """A two-sided enclosure of a number; a sampled bound has one open end.
+
+    Attributes
+    ----------
+    low : float or None
+    high : float or None
+    unit : str
+    """
 
     low: float | None
     high: float | None
@@ -43,7 +50,14 @@ class Range:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Point:
-    """A coordinate of a witness or of a worst case, in the unit that people read."""
+    """A coordinate of a witness or of a worst case, in the unit that people read.
+
+    Attributes
+    ----------
+    name : str
+    value : float
+    unit : str
+    """
 
     name: str
     value: float
@@ -56,7 +70,15 @@ SHOWN = {"m/s": (KMH, "km/h")}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Interval:
-    """A quantity with its range [SI units]; both ends of a number that is held are the same."""
+    """A quantity with its range [SI units]; both ends of a number that is held are the same.
+
+    Attributes
+    ----------
+    name : str
+    low : float
+    high : float
+    unit : str
+    """
 
     name: str
     low: float
@@ -109,7 +131,13 @@ class Proof:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hypothesis:
-    """A condition that a theorem needs, with its own verdict."""
+    """A condition that a theorem needs, with its own verdict.
+
+    Attributes
+    ----------
+    text : str
+    status : Status
+    """
 
     text: str
     status: Status
@@ -158,28 +186,56 @@ class Certificate:
 
     ``margin`` is positive when the claim holds: how far the tightest point is from the limit. ``remark`` is what
     samples say beside the verdict; no file keeps it.
+
+    Attributes
+    ----------
+    claim : str
+    status : Status
+    explanation : str
+    method : str
+    name : str
+        Of the theorem, as the title and the hash of the model; put in where its verdict is completed.
+    title : str
+    margin : Range or None
+    worst_point : tuple[Point, ...]
+    witness : tuple[Point, ...]
+    hypotheses : tuple[Hypothesis, ...]
+    assumptions : tuple[str, ...]
+    domain : Domain or None
+        Whose words stand in the claim; none where the claim varies no number.
+    varied : tuple[str, ...]
+        Numbers with bounds that the claim speaks about on all of their range.
+    held : tuple[str, ...]
+        Numbers with bounds that it depends on, but takes as known.
+    reference : str
+    model_hash : str
+    remark : str
+    seconds : float [s]
+        That the search took.
+        Of the search; none where a file was accepted again.
+    findings : Mapping[str, Finding]
+    series : tuple[Series, ...]
+    maps : tuple[Map, ...]
     """
 
     claim: str
     status: Status
     explanation: str
     method: str
-    name: str = (
-        ""  # of the theorem, as the title and the hash of the model; put in where its verdict is completed
-    )
+    name: str = ""
     title: str = ""
     margin: Range | None = None
     worst_point: tuple[Point, ...] = ()
     witness: tuple[Point, ...] = ()
     hypotheses: tuple[Hypothesis, ...] = ()
     assumptions: tuple[str, ...] = ()
-    domain: Domain | None = None  # whose words stand in the claim; none where the claim varies no number
-    varied: tuple[str, ...] = ()  # numbers with bounds that the claim speaks about on all of their range
-    held: tuple[str, ...] = ()  # numbers with bounds that it depends on, but takes as known
+    domain: Domain | None = None
+    varied: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
     reference: str = ""
     model_hash: str = ""
     remark: str = ""
-    seconds: float = 0.0  # of the search; none where a file was accepted again
+    seconds: float = 0.0
     findings: Mapping[str, "Finding"] = field(default_factory=dict, repr=False)
     series: tuple[Series, ...] = field(default=(), repr=False)
     maps: tuple[Map, ...] = field(default=(), repr=False)
@@ -283,17 +339,36 @@ class Problem:
     ``bounds`` are the ranges of the numbers of vehicle and rail by their names in the table of
     :mod:`wspd_design.certificates.quantities`; a number without bounds is known. ``contact_grows_with_load`` says
     whether Hertz's ellipse follows the wheel load when the mass varies.
+
+    Attributes
+    ----------
+    vehicle : Vehicle
+    rail : Rail
+    controller : Law
+    slip : float [-]
+        Reference.
+    speeds : tuple[float, float] [m/s]
+        Lowest and highest.
+    slips : tuple[float, float] [-]
+        Range of slip.
+    bounds : Bounds
+        SI units.
+    sample_time : float [s]
+    slip_tolerance : float [-]
+        Within which an equilibrium shall lie beside the reference.
+    seed : int
+    contact_grows_with_load : bool
     """
 
     vehicle: Vehicle
     rail: Rail
     controller: Law
-    slip: float  # -, reference
-    speeds: tuple[float, float]  # m/s, lowest and highest
-    slips: tuple[float, float]  # -, range of slip
-    bounds: Bounds  # SI units
-    sample_time: float  # s
-    slip_tolerance: float = 0.05  # -, within which an equilibrium shall lie beside the reference
+    slip: float
+    speeds: tuple[float, float]
+    slips: tuple[float, float]
+    bounds: Bounds
+    sample_time: float
+    slip_tolerance: float = 0.05
     seed: int = 0
     contact_grows_with_load: bool = True
 

@@ -16,19 +16,40 @@ from wspd_design.certificates.memory import is_remembering, recall
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.certificates.theorems.theorem import Theorem, asked, told
+from wspd_design.parameters.later import later
 
 DECIDED = (Status.PROVED, Status.LIMITATION, Status.REFUTED, Status.VACUOUS)
 """Statuses that rest on what the checkers decide."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Replayed:
-    """What the checkers say about a file."""
+    """What the checkers say about a file.
 
-    check: str  # name, empty if the file tells none
-    accepted: bool  # every word of the file is what its proofs show about this design
-    reason: str  # why not
-    certificate: Certificate | None  # as it was made again; none if it is refused
+    Attributes
+    ----------
+    check : str
+        Name, empty if the file tells none.
+    accepted : bool
+        Every word of the file is what its proofs show about this design.
+    reason : str
+        Why not.
+    certificate : Certificate or None
+        As it was made again; none if it is refused.
+    """
+
+    check: str
+    accepted: bool
+    reason: str
+    certificate: Certificate | None
+
+    def __repr__(self) -> str:
+        """Say in one line whether the file is accepted, and what it shows."""
+        said = f"refused: {self.reason}" if self.certificate is None else self.certificate.status.name
+        return f"<Replayed {self.check}: {'accepted, ' if self.accepted else ''}{said}>"
+
+    def _repr_html_(self) -> str:
+        return str(later("notebook.proofs", "replayed_card")(self))
 
     @property
     def unchecked(self) -> bool:

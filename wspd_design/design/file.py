@@ -52,6 +52,13 @@ def design_text(design: Design) -> str:
 def write_design(design: Design, path: str | Path) -> None:
     """Write a design file; nothing is left behind when that fails.
 
+    Parameters
+    ----------
+    design : Design
+        The design.
+    path : str or Path
+        The file to be; one of the same name is replaced.
+
     Raises
     ------
     UserError
@@ -71,6 +78,11 @@ def seen_from(design_file: Path, name_or_path: str | Path | None) -> str:
 
 def read_design(path: str | Path) -> Design:
     """Read a design file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, as :func:`write_design` or ``wspd design`` wrote it.
 
     Raises
     ------

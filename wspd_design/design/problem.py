@@ -28,7 +28,19 @@ def stated_bounds(vehicle: Vehicle, rail: Rail) -> Bounds:
 def stability_problem(
     vehicle: Vehicle, rail: Rail, controller: Law, specification: Specification, *, seed: int = 0
 ) -> Problem:
-    """Closed loop and domain of a specification, with the uncertainty from the bounds of the parameters."""
+    """Return closed loop and domain of a specification, with the uncertainty from the bounds of the parameters.
+
+    Parameters
+    ----------
+    vehicle, rail : Vehicle, Rail
+        Nominal numbers with their bounds.
+    controller : Law
+        The law.
+    specification : Specification
+        Reference and ranges; the sample time is that of the law.
+    seed : int
+        Of samples.
+    """
     return Problem(
         vehicle=vehicle,
         rail=rail,

@@ -17,6 +17,7 @@ from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.later import later
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.taken import notice_of_fast_train
 from wspd_design.parameters.units import KMH, dimension_of, factor, units_of
 
 if TYPE_CHECKING:
@@ -27,14 +28,30 @@ GainValue: TypeAlias = float | bool | tuple[float, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Specification:
-    """What the closed loop shall do; the defaults are the paper's case."""
+    """What the closed loop shall do; the defaults are the paper's case.
 
-    slip: float = 0.14  # -, reference
-    speeds: tuple[float, float] = (10.0 / 3.6, 120.0 / 3.6)  # m/s, range of operation
-    slips: tuple[float, float] = (0.02, 0.6)  # -, range of slip in which the surface shall be reached
-    slip_tolerance: float = 0.05  # -, width of the band around the reference
-    sample_time: float = 0.1  # s
-    reference: ReferenceKind | None = None  # of a law of a vehicle; None: the one that its family prefers
+    Attributes
+    ----------
+    slip : float [-]
+        Reference.
+    speeds : tuple[float, float] [m/s]
+        Range of operation.
+    slips : tuple[float, float] [-]
+        Range of slip in which the surface shall be reached.
+    slip_tolerance : float [-]
+        Width of the band around the reference.
+    sample_time : float [s]
+    reference : ReferenceKind or None
+        Of a law of a vehicle; None: the one that its family prefers.
+    sensors : Sensors
+    """
+
+    slip: float = 0.14
+    speeds: tuple[float, float] = (10.0 / 3.6, 120.0 / 3.6)
+    slips: tuple[float, float] = (0.02, 0.6)
+    slip_tolerance: float = 0.05
+    sample_time: float = 0.1
+    reference: ReferenceKind | None = None
     sensors: Sensors = TOLD
 
     def __post_init__(self) -> None:
@@ -46,6 +63,9 @@ class Specification:
             raise UserError(
                 f"speed range = {low * 3.6:g} to {high * 3.6:g} km/h must rise and lie above 0 and below 540 km/h"
             )
+        notice_of_fast_train(
+            high, "highest speed of the range", f"for km/h write speeds=({low:g} / 3.6, {high:g} / 3.6)"
+        )
         if not 0.0 < self.slips[0] < self.slip < self.slips[1] <= 1.0:
             raise UserError(
                 f"slip range = {self.slips[0]:g} to {self.slips[1]:g} must lie in (0, 1] "
@@ -82,29 +102,56 @@ class Specification:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gain:
-    """One number of a design with the rule that chose it."""
+    """One number of a design with the rule that chose it.
+
+    Attributes
+    ----------
+    name : str
+    value : GainValue [its unit]
+    unit : str
+    why : str
+    """
 
     name: str
-    value: GainValue  # in the unit
+    value: GainValue
     unit: str
     why: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Design:
-    """A controller design: everything that is needed to rebuild the controller, and why it is so."""
+    """A controller design: everything that is needed to rebuild the controller, and why it is so.
+
+    Attributes
+    ----------
+    name : str
+    law : str
+        Family of laws.
+    vehicle : str
+    vehicle_hash : str
+    rail : str
+        Design rail.
+    rail_hash : str
+    specification : Specification
+    gains : tuple[Gain, ...]
+    vehicle_file : str
+        Of a vehicle of one's own, as seen from the folder of the design file.
+    rail_file : str
+    requirements : Requirements or None
+        That it was searched for; rails of one's own as seen from here.
+    """
 
     name: str
-    law: str  # family of laws
+    law: str
     vehicle: str
     vehicle_hash: str
-    rail: str  # design rail
+    rail: str
     rail_hash: str
     specification: Specification
     gains: tuple[Gain, ...]
-    vehicle_file: str = ""  # of a vehicle of one's own, as seen from the folder of the design file
+    vehicle_file: str = ""
     rail_file: str = ""
-    requirements: Requirements | None = None  # that it was searched for; rails of one's own as seen from here
+    requirements: Requirements | None = None
 
     def __repr__(self) -> str:
         """Say in one line what this is."""

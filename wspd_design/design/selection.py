@@ -25,6 +25,7 @@ from wspd_design.design.torque_feedback_gains import torque_feedback_gains
 from wspd_design.design.tracking_gains import integral_smc_gains, observer_smc_gains, super_twisting_gains
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.taken import check_rail, check_record, check_vehicle
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,6 +80,11 @@ def design_controller(
     UserError
         If there is no such law, or no rule that chooses its gains.
     """
+    check_vehicle(vehicle, by="design_controller", whole=False)
+    check_rail(rail, by="design_controller")
+    check_record(
+        specification, Specification, by="design_controller", remedy="make one, Specification(slip=0.14)"
+    )
     family = designed_family(law)
     asked = ["gains", family.name, vehicle_hash(vehicle), rail_hash(rail), asdict(specification)]
     gains = recall(asked, lambda: _rules(family).choose(vehicle, rail, specification))

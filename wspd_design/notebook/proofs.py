@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from wspd_design.certificates.records import Certificate, Status
+from wspd_design.certificates.replay import Replayed
 from wspd_design.notebook.html import card
 from wspd_design.parameters.table import Column, Table, table_of
 from wspd_design.reporting import numbers
@@ -66,6 +67,19 @@ def certificate_card(certificate: Certificate) -> str:
             held,
             assumed,
         ),
+    )
+
+
+def replayed_card(replayed: Replayed) -> str:
+    """Return what a notebook shows of a file that was checked."""
+    made = replayed.certificate
+    if not replayed.accepted or made is None:
+        return card(f"Certificate file of {replayed.check}", verdict=("bad", f"Refused: {replayed.reason}."))
+    said = f"Accepted: every word of the file is what its proofs show; {replayed.leaves} boxes were decided."
+    return card(
+        f"Certificate file of {replayed.check}",
+        verdict=(Sign[made.status.name].tone, f"{_sign(made.status)}: {made.status.value}."),
+        lines=(said, made.claim),
     )
 
 

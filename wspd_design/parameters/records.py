@@ -24,6 +24,19 @@ class Entry:
 
     ``value`` and ``bounds`` are in SI units; ``unit`` is the unit that the file states. Words are kept as
     they are. A number without bounds is taken as exactly known.
+
+    Attributes
+    ----------
+    name : str
+    value : number, tuple of numbers, text or tuple of texts
+    unit : str
+    bounds : tuple[float, float] or None
+    source : str
+    at : str
+    status : str
+    note : str
+    inherited : str
+        Name of the file that it was taken from, where its own file does not state it.
     """
 
     name: str
@@ -41,12 +54,20 @@ class Entry:
     at: str
     status: str
     note: str
-    inherited: str = ""  # name of the file that it was taken from, where its own file does not state it
+    inherited: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterSet:
-    """All entries of one parameter file."""
+    """All entries of one parameter file.
+
+    Attributes
+    ----------
+    kind : str
+    name : str
+    title : str
+    entries : dict[str, Entry]
+    """
 
     kind: str
     name: str
@@ -69,25 +90,49 @@ class ParameterSet:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
-    """Where numbers come from, and how its content is known."""
+    """Where numbers come from, and how its content is known.
+
+    Attributes
+    ----------
+    key : str
+    title : str
+    authors : str
+    year : int
+    kind : str
+        Paper, book, standard, software, calibration, reference, team.
+    access : str
+        Seen, recalled, inferred.
+    note : str
+    """
 
     key: str
     title: str
     authors: str
     year: int
-    kind: str  # paper, book, standard, software, calibration, reference, team
-    access: str  # seen, recalled, inferred
+    kind: str
+    access: str
     note: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Constants:
-    """Numbers that belong to no vehicle and no rail: gravity and the conventions near standstill."""
+    """Numbers that belong to no vehicle and no rail: gravity and the conventions near standstill.
 
-    gravity: float  # m/s2
-    slip_regularization_speed: float  # m/s, slip is referred to at least this speed
-    stop_speed: float  # m/s, a stop ends here
-    time_limit: float  # s, a stop that takes longer ends without standstill
+    Attributes
+    ----------
+    gravity : float [m/s2]
+    slip_regularization_speed : float [m/s]
+        Slip is referred to at least this speed.
+    stop_speed : float [m/s]
+        A stop ends here.
+    time_limit : float [s]
+        A stop that takes longer ends without standstill.
+    """
+
+    gravity: float
+    slip_regularization_speed: float
+    stop_speed: float
+    time_limit: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,29 +146,73 @@ class Steel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Brake:
-    """Electro-pneumatic brake of one wheelset, eqs. (8)-(14)."""
+    """Electro-pneumatic brake of one wheelset, eqs. (8)-(14).
 
-    max_torque: float  # N m per wheelset, of an axle with share 1
-    max_pressure: float  # Pa
-    supply_rate: float = 0.0  # 1/s, build-up of the supply pressure, eq. (8); of the main pipe
-    fill_time: float  # s, T_F, or the time of the orifice
-    vent_time: float  # s, T_V, likewise
-    disturbance_gain: float  # -, of T_d, the vibration of the pads at the onset of braking
-    disturbance_decay: float  # 1/s
-    disturbance_frequency: float  # Hz
-    build_up: BuildUp = "main-pipe"  # or "electro-pneumatic"
-    build_up_delay: float = 0.0  # s, until an electro-pneumatic demand rises
-    build_up_ramp: float = 0.0  # s, in which it rises evenly to the full pressure
-    valve: ValveKind = "lag"  # or "orifice"
-    critical_pressure_ratio: float = 0.528  # -, of the orifices, ISO 6358; that of an ideal nozzle
-    hold_leak: float = 0.0  # 1/s, rate at which a held cylinder loses its pressure
-    dead_time: float = 0.0  # s, from a command to the valve
-    shortest_pulse: float = 0.0  # s, that opens a valve
-    longest_release: float = 0.0  # s without filling, after which the watchdog fills; 0: there is none
-    cylinder_volume: float = 0.0  # m3, of all brake cylinders of one wheelset, with their pipes
-    reservoir_volume: float = 0.0  # m3, of the one reservoir of the vehicle; 0: it does not run low
-    reservoir_pressure: float = 0.0  # Pa above the atmosphere at the start; 0: max_pressure
-    axle_shares: tuple[float, ...] = ()  # of max_torque, from the front, 0 without a brake; empty: all 1
+    Attributes
+    ----------
+    max_torque : float [N m]
+        Per wheelset, of an axle with share 1.
+    max_pressure : float [Pa]
+    supply_rate : float [1/s]
+        Build-up of the supply pressure, eq. (8); of the main pipe.
+    fill_time : float [s]
+        T_F, or the time of the orifice.
+    vent_time : float [s]
+        T_V, likewise.
+    disturbance_gain : float [-]
+        Of T_d, the vibration of the pads at the onset of braking.
+    disturbance_decay : float [1/s]
+    disturbance_frequency : float [Hz]
+    build_up : BuildUp
+        "main-pipe" or "electro-pneumatic".
+    build_up_delay : float [s]
+        Until an electro-pneumatic demand rises.
+    build_up_ramp : float [s]
+        In which it rises evenly to the full pressure.
+    valve : ValveKind
+        "lag" or "orifice".
+    critical_pressure_ratio : float [-]
+        Of the orifices, ISO 6358; that of an ideal nozzle.
+    hold_leak : float [1/s]
+        Rate at which a held cylinder loses its pressure.
+    dead_time : float [s]
+        From a command to the valve.
+    shortest_pulse : float [s]
+        That opens a valve.
+    longest_release : float [s]
+        Without filling, after which the watchdog fills; 0: there is none.
+    cylinder_volume : float [m3]
+        Of all brake cylinders of one wheelset, with their pipes.
+    reservoir_volume : float [m3]
+        Of the one reservoir of the vehicle; 0: it does not run low.
+    reservoir_pressure : float [Pa]
+        Above the atmosphere at the start; 0: max_pressure.
+    axle_shares : tuple[float, ...] [-]
+        Of max_torque, from the front, 0 without a brake; empty: all 1.
+    bounds : Bounds
+    """
+
+    max_torque: float
+    max_pressure: float
+    supply_rate: float = 0.0
+    fill_time: float
+    vent_time: float
+    disturbance_gain: float
+    disturbance_decay: float
+    disturbance_frequency: float
+    build_up: BuildUp = "main-pipe"
+    build_up_delay: float = 0.0
+    build_up_ramp: float = 0.0
+    valve: ValveKind = "lag"
+    critical_pressure_ratio: float = 0.528
+    hold_leak: float = 0.0
+    dead_time: float = 0.0
+    shortest_pulse: float = 0.0
+    longest_release: float = 0.0
+    cylinder_volume: float = 0.0
+    reservoir_volume: float = 0.0
+    reservoir_pressure: float = 0.0
+    axle_shares: tuple[float, ...] = ()
     bounds: Bounds = EXACT
 
     @property
@@ -134,13 +223,26 @@ class Brake:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contact:
-    """Wheel-rail contact ellipse and elasticity, eq. (6)."""
+    """Wheel-rail contact ellipse and elasticity, eq. (6).
 
-    shear_modulus: float  # Pa
-    semi_axis_rolling: float  # m, a
-    semi_axis_lateral: float  # m, b
-    kalker_c11: float  # -
-    reference_load: float  # N, wheel load at which a and b are given
+    Attributes
+    ----------
+    shear_modulus : float [Pa]
+    semi_axis_rolling : float [m]
+        Of the ellipse along the rail, a.
+    semi_axis_lateral : float [m]
+        Across the rail, b.
+    kalker_c11 : float [-]
+    reference_load : float [N]
+        Wheel load at which a and b are given.
+    bounds : Bounds
+    """
+
+    shear_modulus: float
+    semi_axis_rolling: float
+    semi_axis_lateral: float
+    kalker_c11: float
+    reference_load: float
     bounds: Bounds = EXACT
 
 
@@ -149,81 +251,175 @@ class Pads:
     """Friction of the pads or blocks of one wheelset, relative to that behind the torque at full pressure.
 
     Empty tables stand for friction that does not depend on speed or temperature.
+
+    Attributes
+    ----------
+    kind : str
+        "disc" or "tread".
+    speeds : tuple[float, ...] [m/s]
+        Of the wheel rim, rising.
+    speed_factors : tuple[float, ...] [-]
+    temperatures : tuple[float, ...] [K]
+        Above that before the stop, rising.
+    temperature_factors : tuple[float, ...] [-]
+    heat_capacity : float [J/K]
+        Per wheelset, of what the friction heats.
+    cooling : float [W/K]
+        Per wheelset.
+    bounds : Bounds
     """
 
-    kind: str = "disc"  # or "tread"
-    speeds: tuple[float, ...] = ()  # m/s, of the wheel rim, rising
-    speed_factors: tuple[float, ...] = ()  # -
-    temperatures: tuple[float, ...] = ()  # K, above that before the stop, rising
-    temperature_factors: tuple[float, ...] = ()  # -
-    heat_capacity: float = math.inf  # J/K per wheelset, of what the friction heats
-    cooling: float = 0.0  # W/K per wheelset
+    kind: str = "disc"
+    speeds: tuple[float, ...] = ()
+    speed_factors: tuple[float, ...] = ()
+    temperatures: tuple[float, ...] = ()
+    temperature_factors: tuple[float, ...] = ()
+    heat_capacity: float = math.inf
+    cooling: float = 0.0
     bounds: Bounds = EXACT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DynamicBrake:
-    """Electrodynamic brake of one wheelset, for which its friction brake stands back."""
+    """Electrodynamic brake of one wheelset, for which its friction brake stands back.
 
-    torque: float  # N m per wheelset, at most
-    power: float = math.inf  # W per wheelset, at most
-    build_up_time: float  # s, time constant with which the torque comes and goes
-    fade_speed: float  # m/s of the wheel rim, below it the torque falls in proportion
-    cut_out_speed: float  # m/s of the wheel rim, where nothing is left of it
-    drop_slip: float = 1.0  # -, beyond it the brake of the wheelset drops out for the rest of the stop
-    axle_shares: tuple[
-        float, ...
-    ] = ()  # of torque and power, from the front, 0 without a motor; empty: all 1
+    Attributes
+    ----------
+    torque : float [N m]
+        Per wheelset, at most.
+    power : float [W]
+        Per wheelset, at most.
+    build_up_time : float [s]
+        Time constant with which the torque comes and goes.
+    fade_speed : float [m/s]
+        Of the wheel rim, below it the torque falls in proportion.
+    cut_out_speed : float [m/s]
+        Of the wheel rim, where nothing is left of it.
+    drop_slip : float [-]
+        Beyond it the brake of the wheelset drops out for the rest of the stop.
+    axle_shares : tuple[ float, ... ]
+        Of torque and power, from the front, 0 without a motor; empty: all 1.
+    bounds : Bounds
+    """
+
+    torque: float
+    power: float = math.inf
+    build_up_time: float
+    fade_speed: float
+    cut_out_speed: float
+    drop_slip: float = 1.0
+    axle_shares: tuple[float, ...] = ()
     bounds: Bounds = EXACT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackBrake:
-    """Magnetic track brake of the vehicle: magnets that rub on the rails, outside the adhesion of the wheels."""
+    """Magnetic track brake of the vehicle: magnets that rub on the rails, outside the adhesion of the wheels.
 
-    force: float  # N, of all magnets
-    build_up_time: float = 0.0  # s, time constant; 0 for a force that is there at once
-    cut_out_speed: float = 0.0  # m/s, below it the magnets are lifted; 0 where they stay down
-    speeds: tuple[float, ...] = ()  # m/s, rising
-    speed_factors: tuple[float, ...] = ()  # -, of the force
+    Attributes
+    ----------
+    force : float [N]
+        Of all magnets.
+    build_up_time : float [s]
+        Time constant; 0 for a force that is there at once.
+    cut_out_speed : float [m/s]
+        Below it the magnets are lifted; 0 where they stay down.
+    speeds : tuple[float, ...] [m/s]
+        Rising.
+    speed_factors : tuple[float, ...] [-]
+        Of the force.
+    bounds : Bounds
+    """
+
+    force: float
+    build_up_time: float = 0.0
+    cut_out_speed: float = 0.0
+    speeds: tuple[float, ...] = ()
+    speed_factors: tuple[float, ...] = ()
     bounds: Bounds = EXACT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Vehicle:
-    """A vehicle on bogies or single axles, eqs. (1)-(4); what it stands on is told by ``parameters.gear``."""
+    """A vehicle on bogies or single axles, eqs. (1)-(4); what it stands on is told by ``parameters.gear``.
+
+    Attributes
+    ----------
+    name : str
+    mass : float [kg]
+    wheelsets : int
+    wheel_radius : float [m]
+    wheelset_inertia : float [kg m2]
+        All that rotates with one wheelset.
+    wheel_damping : float [N m s]
+        Per wheel at t = 0, B_W.
+    wheel_damping_decay : float [1/s]
+    resistance_constant : float [N]
+        Of the running resistance of the whole vehicle, a0 of eq. (4).
+    resistance_linear : float [N s/m]
+        The same, a1.
+    resistance_quadratic : float [N s2/m2]
+        The same, a2.
+    body_mass : float [kg]
+        Of one body.
+    bogie_mass : float [kg]
+        Each, complete with its wheelsets; of a single axle, the wheelset with what it carries.
+    body_height : float [m]
+        Centre of gravity above the rail.
+    bogie_height : float [m]
+    traction_rod_height : float [m]
+    bogie_spacing : float [m]
+        Distance of the bogie centres, or of single axles.
+    wheelbase : float [m]
+        Of one bogie, first to last axle.
+    body_pitch_frequency : float [Hz]
+    bogie_pitch_frequency : float [Hz]
+    pitch_damping_ratio : float [-]
+    brake : Brake
+    contact : Contact
+    axles_per_bogie : int
+        1 where single axles carry the body.
+    bodies : int
+        More than one: an articulated train on as many bogies and one.
+    pads : Pads or None
+        None: pad friction is constant.
+    dynamic : DynamicBrake or None
+    track_brake : TrackBrake or None
+    multibody : str
+        Name or path of the file of the plants with all degrees of freedom; empty: none.
+    bounds : Bounds
+        Of the numbers above; brake, contact and the like have their own.
+    """
 
     name: str
-    mass: float  # kg
+    mass: float
     wheelsets: int
-    wheel_radius: float  # m
-    wheelset_inertia: float  # kg m2, all that rotates with one wheelset
-    wheel_damping: float  # N m s per wheel at t = 0, B_W
-    wheel_damping_decay: float  # 1/s
-    resistance_constant: float  # N, a0
-    resistance_linear: float  # N s/m, a1
-    resistance_quadratic: float  # N s2/m2, a2
-    body_mass: float  # kg, of one body
-    bogie_mass: (
-        float  # kg, each, complete with its wheelsets; of a single axle, the wheelset with what it carries
-    )
-    body_height: float  # m, centre of gravity above the rail
-    bogie_height: float  # m
-    traction_rod_height: float  # m
-    bogie_spacing: float  # m, distance of the bogie centres, or of single axles
-    wheelbase: float = 0.0  # m, of one bogie, first to last axle
-    body_pitch_frequency: float  # Hz
-    bogie_pitch_frequency: float = 0.0  # Hz
-    pitch_damping_ratio: float  # -
+    wheel_radius: float
+    wheelset_inertia: float
+    wheel_damping: float
+    wheel_damping_decay: float
+    resistance_constant: float
+    resistance_linear: float
+    resistance_quadratic: float
+    body_mass: float
+    bogie_mass: float
+    body_height: float
+    bogie_height: float
+    traction_rod_height: float
+    bogie_spacing: float
+    wheelbase: float = 0.0
+    body_pitch_frequency: float
+    bogie_pitch_frequency: float = 0.0
+    pitch_damping_ratio: float
     brake: Brake
     contact: Contact
-    axles_per_bogie: int = 2  # 1 where single axles carry the body
-    bodies: int = 1  # more than one: an articulated train on as many bogies and one
-    pads: Pads | None = None  # None: pad friction is constant
+    axles_per_bogie: int = 2
+    bodies: int = 1
+    pads: Pads | None = None
     dynamic: DynamicBrake | None = None
     track_brake: TrackBrake | None = None
-    multibody: str = ""  # name or path of the file of the plants with all degrees of freedom; empty: none
-    bounds: Bounds = EXACT  # of the numbers above; brake, contact and the like have their own
+    multibody: str = ""
+    bounds: Bounds = EXACT
 
     def __repr__(self) -> str:
         """Say in one line what this is."""
@@ -283,14 +479,30 @@ class Vehicle:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Rail:
-    """Adhesion of one rail condition by Polach's law, eqs. (5)-(7)."""
+    """Adhesion of one rail condition by Polach's law, eqs. (5)-(7).
+
+    Attributes
+    ----------
+    name : str
+    mu0 : float [-]
+        Friction coefficient without sliding.
+    friction_ratio : float [-]
+        A = mu_infinity / mu0.
+    friction_decay : float [s/m]
+        B.
+    adhesion_reduction : float [-]
+        Of the stiffness while adhering, kA.
+    slip_reduction : float [-]
+        Of the stiffness while sliding, kS.
+    bounds : Bounds
+    """
 
     name: str
-    mu0: float  # -, friction coefficient without sliding
-    friction_ratio: float  # -, A = mu_infinity / mu0
-    friction_decay: float  # s/m, B
-    adhesion_reduction: float  # -, kA
-    slip_reduction: float  # -, kS
+    mu0: float
+    friction_ratio: float
+    friction_decay: float
+    adhesion_reduction: float
+    slip_reduction: float
     bounds: Bounds = EXACT
 
     def __repr__(self) -> str:
@@ -337,11 +549,20 @@ class Rail:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RailProfile:
-    """Rails one after the other along the track, each from its start on."""
+    """Rails one after the other along the track, each from its start on.
+
+    Attributes
+    ----------
+    name : str
+    starts : tuple[float, ...] [m]
+        Rising from 0.
+    rails : tuple[str, ...]
+        Names or paths.
+    """
 
     name: str
-    starts: tuple[float, ...]  # m, rising from 0
-    rails: tuple[str, ...]  # names or paths
+    starts: tuple[float, ...]
+    rails: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

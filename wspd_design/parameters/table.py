@@ -16,14 +16,27 @@ _BETWEEN = "  "
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Column(Generic[Item]):
-    """What stands above a column, and how it reads its value from an item."""
+    """What stands above a column, and how it reads its value from an item.
+
+    Attributes
+    ----------
+    title : str
+    read : Callable[[Item], Any]
+    unit : str
+    decimals : int or None
+        Of numbers.
+    digits : int
+        Significant ones, where no decimals are stated.
+    flush_right : bool
+        Words that are numbers.
+    """
 
     title: str
     read: Callable[[Item], Any]
     unit: str = ""
-    decimals: int | None = None  # of numbers
-    digits: int = 6  # significant ones, where no decimals are stated
-    flush_right: bool = False  # words that are numbers
+    decimals: int | None = None
+    digits: int = 6
+    flush_right: bool = False
 
     @property
     def header(self) -> str:
@@ -44,13 +57,24 @@ class Table:
     """Rows of values below titles with units.
 
     ``str`` and ``print`` show it as text, a notebook as HTML; :meth:`to_pandas` returns its numbers.
+
+    Attributes
+    ----------
+    caption : str
+    columns : tuple[Column[Any], ...]
+    rows : tuple[tuple[Any, ...], ...]
+        Values: numbers, words, None for nothing.
+    tones : tuple[str, ...]
+        Of the rows: good, bad, open or neutral; empty for none.
+    notes : tuple[str, ...]
+        Sentences below it.
     """
 
     caption: str
     columns: tuple[Column[Any], ...]
-    rows: tuple[tuple[Any, ...], ...]  # values: numbers, words, None for nothing
-    tones: tuple[str, ...] = ()  # of the rows: good, bad, open or neutral; empty for none
-    notes: tuple[str, ...] = ()  # sentences below it
+    rows: tuple[tuple[Any, ...], ...]
+    tones: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Set the table in characters of equal width."""

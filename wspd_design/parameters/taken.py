@@ -16,6 +16,7 @@ from wspd_design.parameters.units import KMH, format_quantity, units_of
 
 _LOADED = {Vehicle: "load_vehicle", Rail: "load_rail"}
 _NUMERALS_OF_KMH = 56.0  # m/s, 200 km/h: above it a number is more often one of km/h
+_FASTEST = 100.0  # m/s, 360 km/h: no train on wheels runs faster in service
 _MAY_VANISH = "_height"  # a vehicle without heights transfers no load
 _SHOWN = 40  # characters of a text that a sentence repeats
 
@@ -75,6 +76,12 @@ def notice_of_speed(speed: float, what: str, remedy: str) -> None:
     """Warn about a speed that is more likely one in km/h [m/s]."""
     if speed > _NUMERALS_OF_KMH:
         tell(f"{what} = {speed:g} m/s is {KMH * speed:.4g} km/h; {remedy}")
+
+
+def notice_of_fast_train(speed: float, what: str, remedy: str) -> None:
+    """Warn about a speed at which no train runs, which is more likely one in km/h [m/s]."""
+    if speed > _FASTEST:
+        tell(f"{what} = {speed:g} m/s is {KMH * speed:.4g} km/h, faster than trains run; {remedy}")
 
 
 def described(value: object) -> str:

@@ -41,6 +41,9 @@ def on_axes(ax: "Axes | None", draw: "Callable[[Axes], object]", *, height: floa
     import matplotlib
     from matplotlib import pyplot
 
+    # A notebook's backend switches interaction on when it is first used; within the context that would be undone at its
+    # end, and no later plot would show.
+    pyplot.draw_if_interactive()
     with matplotlib.rc_context({**parameters(), **_ON_WHITE}):
         made: Axes
         _, made = pyplot.subplots(figsize=(TEXT_WIDTH, height), layout="constrained")

@@ -47,16 +47,32 @@ class Campaign:
     """Results of many stops: one row a stop, with its seed, its drawn numbers and its figures.
 
     ``table`` is the record array of them; :meth:`spread` tells how the figures spread.
+
+    Attributes
+    ----------
+    controller : str
+    rail : str
+    plant : str
+    sampled : tuple[str, ...]
+        Numbers that were drawn, by their dotted names.
+    check_every : int
+        Runs whose number is a multiple of it were checked with half the steps; 0 for none.
+    table : ndarray [columns tell theirs]
+        Record array.
+    complete : bool
+        False after an interrupt.
+    remade : tuple[str, ...]
+        A sentence for each file of the store that was not what it should be.
     """
 
     controller: str
     rail: str
     plant: str
-    sampled: tuple[str, ...]  # numbers that were drawn, by their dotted names
-    check_every: int  # runs whose number is a multiple of it were checked with half the steps; 0 for none
-    table: "NDArray[Any]"  # record array
-    complete: bool  # False after an interrupt
-    remade: tuple[str, ...] = ()  # a sentence for each file of the store that was not what it should be
+    sampled: tuple[str, ...]
+    check_every: int
+    table: "NDArray[Any]"
+    complete: bool
+    remade: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Say in one line what was simulated."""

@@ -22,12 +22,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Trial:
-    """A stop, its figures and how far the integration can be trusted."""
+    """A stop, its figures and how far the integration can be trusted.
+
+    Attributes
+    ----------
+    run : Run
+    metrics : Metrics
+    check : StepCheck
+    slip_reference : float [-]
+        That the slip figures are about, unless the law holds slips of its own.
+    """
 
     run: Run
     metrics: Metrics
     check: StepCheck
-    slip_reference: float  # -, that the slip figures are about, unless the law holds slips of its own
+    slip_reference: float
 
     def __repr__(self) -> str:
         """Say in one line what became of the stop."""

@@ -60,7 +60,13 @@ class Distribution(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Uniform:
-    """Evenly between two numbers [SI units]."""
+    """Evenly between two numbers [SI units].
+
+    Attributes
+    ----------
+    low : float [SI unit]
+    high : float [SI unit]
+    """
 
     low: float
     high: float
@@ -81,7 +87,15 @@ class Uniform:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Normal:
-    """Normal distribution, cut at two numbers [SI units]."""
+    """Normal distribution, cut at two numbers [SI units].
+
+    Attributes
+    ----------
+    mean : float [SI unit]
+    deviation : float [SI unit]
+    low : float [SI unit]
+    high : float [SI unit]
+    """
 
     mean: float
     deviation: float
@@ -120,7 +134,12 @@ class Normal:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Choice:
-    """One of several numbers, each as often as the others [SI units]."""
+    """One of several numbers, each as often as the others [SI units].
+
+    Attributes
+    ----------
+    values : tuple[float, ...] [SI unit]
+    """
 
     values: tuple[float, ...]
 
@@ -171,6 +190,11 @@ class Draw:
     Its name is the path of its record: ``vehicle.mass``, ``vehicle.brake.fill_time``, ``rail.mu0``,
     ``stop.initial_speed``, ``stop.sensing.speed_noise``. Every number of :class:`Vehicle`, :class:`Rail` and
     :class:`Scenario` can be drawn, and what is on or off as 0 and 1.
+
+    Attributes
+    ----------
+    name : str
+    distribution : Distribution or About
     """
 
     name: str
@@ -178,7 +202,13 @@ class Draw:
 
 
 def within_bounds(*parameters: ParameterSet) -> tuple[Draw, ...]:
-    """Draw every number of parameter files that has bounds evenly within them; those of a laden state stay."""
+    """Draw every number of parameter files that has bounds evenly within them; those of a laden state stay.
+
+    Parameters
+    ----------
+    *parameters : ParameterSet
+        Files, as :func:`wspd_design.load_entries` returns them.
+    """
     return tuple(
         Draw(name=f"{each.kind}.{name}", distribution=Uniform(low=limits[0], high=limits[1]))
         for each in parameters

@@ -46,12 +46,20 @@ NO_IDEAL_STOP = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IdealStop:
-    """Time and distance of an idealized stop; NaN where even the ideal brake does not stop the train."""
+    """Time and distance of an idealized stop; NaN where even the ideal brake does not stop the train.
+
+    Attributes
+    ----------
+    name : str
+    ending : Ending
+    distance : float [m]
+    stopping_time : float [s]
+    """
 
     name: str
     ending: Ending
-    distance: float  # m
-    stopping_time: float  # s
+    distance: float
+    stopping_time: float
 
 
 @lru_cache(maxsize=64)

@@ -27,47 +27,105 @@ class Metrics:
     """Figures of one stop. Slip figures count above 10 km/h, means are those of the wheelsets with a brake.
 
     What a law does not tell, the speed that it goes by and the slip that it holds, is NaN.
+
+    Attributes
+    ----------
+    distance : float [m]
+    stopping_time : float [s]
+    torque_integral : float [N m s]
+        Sum over wheelsets of the transmitted torque.
+    build_up : float [s]
+        Until the torque first reaches 90 % of what it then holds.
+    build_up_distance : float [m]
+        Until then.
+    lag : float [s]
+        2 d / v0 - t: with the plateau the two numbers of Table 10 in another form, no time of the brake.
+    plateau : float [m/s2]
+        V0 / (2 (t - d / v0)).
+    slip_mean : float [-]
+    slip_max : float [-]
+    slip_rms : float [-]
+        About the reference, or the slips that the law holds, with the build-up before it is reached.
+    slip_reached : float [s]
+        Until the first wheelset has 90 % of its reference; NaN if none has.
+    held_slip_rms : float [-]
+        Each wheelset from then on.
+    slip_overshoot : float [-]
+        Likewise, largest excess over the reference.
+    slip_undershoot : float [-]
+        Likewise, largest shortfall.
+    perfect_slip_rms : float [-]
+        Held_slip_rms of a brake that fills and then holds the reference; NaN if not known.
+    lock_time : float [s]
+    judged_lock : float [s]
+        Longest lock of a wheelset without a break, above 10 km/h.
+    slip_band : float [-]
+        Largest distance of the slip from the law's own reference at samples, once it was reached.
+    speed_error : float [-]
+        Largest relative error above 20 km/h of the train speed that the law goes by.
+    distance_error : float [-]
+        Largest error of that speed's integral over 5 m + 5 %.
+    saturated_share : float [-]
+        Samples that fill or vent for the whole sample time.
+    valve_switches : int
+        Changes of the valve state.
+    vented_air : float [-]
+        Full brake cylinders let out, mean of the wheelsets.
+    air_used : float [normal litres]
+        That all cylinders took from the reservoir; NaN where their volume is not known.
+    lowest_reservoir : float [Pa]
+        Above the atmosphere, in a stop without refilling; NaN without a reservoir.
+    watchdog_fills : int or None
+        Times that a watchdog filled, all wheelsets; None without watchdogs.
+    adhesion_utilization : float [-]
+        Creep force over the force at the adhesion peak, mean over time.
+    ideal_stop : float [m]
+        Distance of the brake that holds the best slip; NaN where there is none.
+    ideal_ending : Ending or None
+        Of the ideal stop; None where it is not known.
+    efficiency : float [-]
+        Ideal stop over distance.
+    released_below : float [m/s]
+        Speed from which on the brake was let go until the end; NaN where it was not.
+    momentum_residual : float [-]
+        Relative to the initial momentum.
+    energy_residual : float [-]
+        Relative to the initial energy.
     """
 
-    distance: float  # m
-    stopping_time: float  # s
-    torque_integral: float  # N m s, sum over wheelsets of the transmitted torque
-    build_up: float  # s, until the torque first reaches 90 % of what it then holds
-    build_up_distance: float  # m, until then
-    lag: float  # s, 2 d / v0 - t: with the plateau the two numbers of Table 10 in another form, no time of the brake
-    plateau: float  # m/s2, v0 / (2 (t - d / v0))
-    slip_mean: float  # -
-    slip_max: float  # -
-    slip_rms: float  # -, about the reference, or the slips that the law holds, with the build-up before it is reached
-    slip_reached: float  # s, until the first wheelset has 90 % of its reference; NaN if none has
-    held_slip_rms: float  # -, each wheelset from then on
-    slip_overshoot: float  # -, likewise, largest excess over the reference
-    slip_undershoot: float  # -, likewise, largest shortfall
-    perfect_slip_rms: (
-        float  # -, held_slip_rms of a brake that fills and then holds the reference; NaN if not known
-    )
-    lock_time: float  # s
-    judged_lock: float  # s, longest lock of a wheelset without a break, above 10 km/h
-    slip_band: (
-        float  # -, largest distance of the slip from the law's own reference at samples, once it was reached
-    )
-    speed_error: float  # -, largest relative error above 20 km/h of the train speed that the law goes by
-    distance_error: float  # -, largest error of that speed's integral over 5 m + 5 %
-    saturated_share: float  # -, samples that fill or vent for the whole sample time
-    valve_switches: int  # changes of the valve state
-    vented_air: float  # -, full brake cylinders let out, mean of the wheelsets
-    air_used: (
-        float  # normal litres that all cylinders took from the reservoir; NaN where their volume is not known
-    )
-    lowest_reservoir: float  # Pa above the atmosphere, in a stop without refilling; NaN without a reservoir
-    watchdog_fills: int | None  # times that a watchdog filled, all wheelsets; None without watchdogs
-    adhesion_utilization: float  # -, creep force over the force at the adhesion peak, mean over time
-    ideal_stop: float  # m, distance of the brake that holds the best slip; NaN where there is none
-    ideal_ending: Ending | None  # of the ideal stop; None where it is not known
-    efficiency: float  # -, ideal stop over distance
-    released_below: float  # m/s, speed from which on the brake was let go until the end; NaN where it was not
-    momentum_residual: float  # -, relative to the initial momentum
-    energy_residual: float  # -, relative to the initial energy
+    distance: float
+    stopping_time: float
+    torque_integral: float
+    build_up: float
+    build_up_distance: float
+    lag: float
+    plateau: float
+    slip_mean: float
+    slip_max: float
+    slip_rms: float
+    slip_reached: float
+    held_slip_rms: float
+    slip_overshoot: float
+    slip_undershoot: float
+    perfect_slip_rms: float
+    lock_time: float
+    judged_lock: float
+    slip_band: float
+    speed_error: float
+    distance_error: float
+    saturated_share: float
+    valve_switches: int
+    vented_air: float
+    air_used: float
+    lowest_reservoir: float
+    watchdog_fills: int | None
+    adhesion_utilization: float
+    ideal_stop: float
+    ideal_ending: Ending | None
+    efficiency: float
+    released_below: float
+    momentum_residual: float
+    energy_residual: float
 
     def __repr__(self) -> str:
         """Say the main figures in one line."""

@@ -10,7 +10,7 @@ from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Brake, Rail
-from wspd_design.parameters.taken import check_rail
+from wspd_design.parameters.taken import check_rail, notice_of_fast_train
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -25,9 +25,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Patch:
-    """A change of rail: from ``start`` on, every wheel that passes runs on ``rail``."""
+    """A change of rail: from ``start`` on, every wheel that passes runs on ``rail``.
 
-    start: float  # m
+    Attributes
+    ----------
+    start : float [m]
+    rail : Rail
+    """
+
+    start: float
     rail: Rail
 
 
@@ -49,24 +55,46 @@ class Sensing:
     pulse of filling or venting that is shorter than the shortest one is left out of its command, unless the valve is
     open already: what moves in a valve has not left its seat before. The size of all these is the user's; no measured
     one is known here.
+
+    Attributes
+    ----------
+    speed_noise : float [m/s]
+        Rms of the measured rim speed, independent at each sample and axle.
+    pulses_per_turn : int
+        Of the pulse wheel; 0 for a wheel speed that is known at each instant.
+    period_timing : bool
+        The time between pulses gives the speed, in place of their count over a sample.
+    reference_error : float [-]
+        Relative error of the train speed that the controller knows.
+    reference_drift : float [m/s2]
+        By which that speed moves away from the true one.
+    reference_noise : float [m/s]
+        Rms of that speed, independent at each sample.
+    torque_error : float [-]
+        Relative error of cylinder pressures, and of the torques computed from them.
+    accelerometer_bias : float [m/s2]
+    accelerometer_noise : float [m/s2]
+        Rms, independent at each sample.
+    radius_errors : tuple[float, ...] [-]
+        Of the speed read from each wheel, front first; empty: none.
+    dead_time : float or None [s]
+        From the command to the valve; None: that of the vehicle.
+    shortest_pulse : float or None [s]
+        That opens a valve; at most one sample time; None: the vehicle's.
     """
 
-    speed_noise: float = 0.0  # m/s rms of the measured rim speed, independent at each sample and axle
-    pulses_per_turn: int = 0  # of the pulse wheel; 0 for a wheel speed that is known at each instant
-    period_timing: bool = (
-        False  # the time between pulses gives the speed, in place of their count over a sample
-    )
-    reference_error: float = 0.0  # -, relative error of the train speed that the controller knows
-    reference_drift: float = 0.0  # m/s2, by which that speed moves away from the true one
-    reference_noise: float = 0.0  # m/s rms of that speed, independent at each sample
-    torque_error: float = (
-        0.0  # -, relative error of cylinder pressures, and of the torques computed from them
-    )
-    accelerometer_bias: float = 0.0  # m/s2
-    accelerometer_noise: float = 0.0  # m/s2 rms, independent at each sample
-    radius_errors: tuple[float, ...] = ()  # -, of the speed read from each wheel, front first; empty: none
-    dead_time: float | None = None  # s, from the command to the valve; None: that of the vehicle
-    shortest_pulse: float | None = None  # s, that opens a valve; at most one sample time; None: the vehicle's
+    speed_noise: float = 0.0
+    pulses_per_turn: int = 0
+    period_timing: bool = False
+    reference_error: float = 0.0
+    reference_drift: float = 0.0
+    reference_noise: float = 0.0
+    torque_error: float = 0.0
+    accelerometer_bias: float = 0.0
+    accelerometer_noise: float = 0.0
+    radius_errors: tuple[float, ...] = ()
+    dead_time: float | None = None
+    shortest_pulse: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse what is no disturbance."""
@@ -125,11 +153,19 @@ class Fault:
 
     A lost speed sensor reads 0 and its monitoring says so. A stuck valve holds, vents or fills from the first command
     after it fails, whatever law and watchdog ask for.
+
+    Attributes
+    ----------
+    axle : int
+        From 1 at the front.
+    kind : FaultKind
+    since : float [s]
+        From the start of the stop.
     """
 
-    axle: int  # from 1 at the front
+    axle: int
     kind: FaultKind
-    since: float = 0.0  # s, from the start of the stop
+    since: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse what is no fault."""
@@ -148,10 +184,17 @@ IRREGULARITIES: tuple[Irregularities, ...] = get_args(Irregularities)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadIrregularity:
-    """Relative wheel load of each axle over distance, from track irregularity or measurement."""
+    """Relative wheel load of each axle over distance, from track irregularity or measurement.
 
-    spacing: float  # m
-    factors: tuple[tuple[float, ...], ...]  # per axle, at multiples of the spacing; the last value stays
+    Attributes
+    ----------
+    spacing : float [m]
+    factors : tuple[tuple[float, ...], ...]
+        Per axle, at multiples of the spacing; the last value stays.
+    """
+
+    spacing: float
+    factors: tuple[tuple[float, ...], ...]
 
     @property
     def spread(self) -> float:
@@ -177,11 +220,20 @@ class Start:
 
     The supply (8), the vibration of the pads and the damping of the wheels are as far on as ``braking_time`` says.
     Load transfer begins with the stop.
+
+    Attributes
+    ----------
+    slip : float [-]
+        Share by which the rims are slower than the train.
+    torque : float [N m]
+        Per wheelset, of the cylinder pressure (12).
+    braking_time : float [s]
+        Since the brake was applied.
     """
 
-    slip: float = 0.0  # -, share by which the rims are slower than the train
-    torque: float = 0.0  # N m per wheelset, of the cylinder pressure (12)
-    braking_time: float = 0.0  # s, since the brake was applied
+    slip: float = 0.0
+    torque: float = 0.0
+    braking_time: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse what is not a state of a turning wheel."""
@@ -200,19 +252,39 @@ class Start:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario:
-    """A stop on straight track."""
+    """A stop on straight track.
+
+    Attributes
+    ----------
+    rail : Rail
+    initial_speed : float [m/s]
+    start : Start
+    seed : int
+    axle_rails : tuple[Rail, ...] or None
+        Front axle first, in place of ``rail``.
+    patches : tuple[Patch, ...]
+    grade : float [-]
+        Rise over run, positive uphill.
+    pad_vibration : bool
+        T_d of Section 7.
+    sensing : Sensing
+    load_irregularity : LoadIrregularity or None
+    irregularities : Irregularities
+        Of the track, which the wheels roll over; drawn by the seed.
+    faults : tuple[Fault, ...]
+    """
 
     rail: Rail
-    initial_speed: float  # m/s
+    initial_speed: float
     start: Start = Start()
     seed: int = 0
-    axle_rails: tuple[Rail, ...] | None = None  # front axle first, in place of ``rail``
+    axle_rails: tuple[Rail, ...] | None = None
     patches: tuple[Patch, ...] = ()
-    grade: float = 0.0  # -, rise over run, positive uphill
-    pad_vibration: bool = False  # T_d of Section 7
+    grade: float = 0.0
+    pad_vibration: bool = False
     sensing: Sensing = Sensing()
     load_irregularity: LoadIrregularity | None = None
-    irregularities: Irregularities = "none"  # of the track, which the wheels roll over; drawn by the seed
+    irregularities: Irregularities = "none"
     faults: tuple[Fault, ...] = ()
 
     def __post_init__(self) -> None:
@@ -224,6 +296,11 @@ class Scenario:
                 f"initial speed = {self.initial_speed:g} m/s must be above 0 and below 150 m/s (540 km/h); "
                 'give it with its unit, for example "120 km/h"'
             )
+        notice_of_fast_train(
+            self.initial_speed,
+            "initial speed",
+            f"for {self.initial_speed:g} km/h write Scenario.stop(from_kmh={self.initial_speed:g}, ...)",
+        )
         if not -0.1 <= self.grade <= 0.1:
             raise UserError(f"grade = {self.grade:g} must lie in [-0.1, 0.1]; for 10 per mille write 0.01")
         if not 0 <= self.seed < 2**63:
@@ -268,28 +345,61 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Totals:
-    """Integrals over a run; torques and their work are sums over all wheelsets."""
+    """Integrals over a run; torques and their work are sums over all wheelsets.
 
-    distance: float  # m
-    torque: float  # N m s, transmitted braking torque
-    resistance_impulse: float  # N s
-    damping_impulse: float  # N m s, sum over wheels
-    brake_work: float  # J
-    sliding_work: float  # J
-    resistance_work: float  # J
-    damping_work: float  # J
-    lock_time: float  # s, longest of the wheelsets
-    judged_time: float  # s, above the judging speed
-    slip: float  # s, integral of the slip over the judged time, mean of the wheelsets with a brake
-    slip_squared: float  # s
-    vented_pressure: float  # Pa, sum over all vents of all wheelsets with a brake of the pressure let out
-    valve_switches: (
-        float  # changes of the valve state that the commands ask for, mean of the wheelsets with a brake
-    )
-    filled_pressure: float  # Pa, sum over all fillings of all wheelsets with a brake of the pressure let in
-    watchdog_fills: int  # times that the watchdog of a wheelset with a brake filled
-    judged_lock: float  # s, longest lock of a wheelset without a break, above the judging speed
-    slip_band: float  # -, as of Metrics; NaN as well
+    Attributes
+    ----------
+    distance : float [m]
+    torque : float [N m s]
+        Transmitted braking torque.
+    resistance_impulse : float [N s]
+    damping_impulse : float [N m s]
+        Sum over wheels.
+    brake_work : float [J]
+    sliding_work : float [J]
+    resistance_work : float [J]
+    damping_work : float [J]
+    lock_time : float [s]
+        Longest of the wheelsets.
+    judged_time : float [s]
+        Above the judging speed.
+    slip : float [s]
+        Integral of the slip over the judged time, mean of the wheelsets with a brake.
+    slip_squared : float [s]
+    vented_pressure : float [Pa]
+        Sum over all vents of all wheelsets with a brake of the pressure let out.
+    valve_switches : float
+        Changes of the valve state that the commands ask for, mean of the wheelsets with a brake.
+    filled_pressure : float [Pa]
+        Sum over all fillings of all wheelsets with a brake of the pressure let in.
+    watchdog_fills : int
+        Times that the watchdog of a wheelset with a brake filled.
+    judged_lock : float [s]
+        Longest lock of a wheelset without a break, above the judging speed.
+    slip_band : float [-]
+        As of Metrics; NaN as well.
+    speed_error : float
+    distance_error : float
+    """
+
+    distance: float
+    torque: float
+    resistance_impulse: float
+    damping_impulse: float
+    brake_work: float
+    sliding_work: float
+    resistance_work: float
+    damping_work: float
+    lock_time: float
+    judged_time: float
+    slip: float
+    slip_squared: float
+    vented_pressure: float
+    valve_switches: float
+    filled_pressure: float
+    watchdog_fills: int
+    judged_lock: float
+    slip_band: float
     speed_error: float
     distance_error: float
 
@@ -299,40 +409,89 @@ class Run:
     """A simulated stop. Traces are arrays over time; those of a wheelset have a second axis, front axle first.
 
     The quarter plant has one wheelset that stands for all.
+
+    Attributes
+    ----------
+    controller : str
+    vehicle : str
+    rail : str
+    plant : str
+    sample_time : float [s]
+    dead_time : float [s]
+        That the valves had.
+    shortest_pulse : float [s]
+        Likewise.
+    initial_speed : float [m/s]
+    seed : int
+        Of what was random.
+    wheel_radius : float [m]
+    ending : Ending
+    time : ndarray [s]
+    speed : ndarray [m/s]
+    distance : ndarray [m]
+    wheel_speed : ndarray [rad/s]
+        Per wheelset.
+    slip : ndarray [-]
+        Per wheelset.
+    torque : ndarray [N m]
+        Per wheelset, transmitted; 0 without a brake.
+    wheel_load : ndarray [N]
+        Per wheelset: load of one of its wheels.
+    cylinder_pressure : ndarray [Pa]
+        Above the atmosphere, per wheelset; 0 without a friction brake.
+    axle_samples : tuple[tuple[Sample, ...], ...]
+        Per wheelset; none of one without a brake.
+    totals : Totals
+    final_wheel_speeds : tuple[float, ...] [rad/s]
+        Of all wheelsets.
+    slip_max : float [-]
+        Above the judging speed.
+    engine : str
+        What computed it.
+    shared_state : bool
+        Whether the state in the samples of a wheelset is that of all of them.
+    memory : tuple[str, ...]
+        Names of the states in the samples, as far as the law tells them.
+    dynamic_torque : ndarray or None [N m]
+        Per wheelset, of an electrodynamic brake, within ``torque``.
+    pad_temperature : ndarray or None [K]
+        Above that before the stop, per wheelset, where friction depends on it.
+    track_brake_force : ndarray or None [N]
+        Of the magnets of the vehicle.
+    further : Mapping[str, ndarray] [names tell theirs]
+        Per wheelset, what a coupled plant adds.
     """
 
     controller: str
     vehicle: str
     rail: str
     plant: str
-    sample_time: float  # s
-    dead_time: float  # s, that the valves had
-    shortest_pulse: float  # s, likewise
-    initial_speed: float  # m/s
-    seed: int  # of what was random
-    wheel_radius: float  # m
+    sample_time: float
+    dead_time: float
+    shortest_pulse: float
+    initial_speed: float
+    seed: int
+    wheel_radius: float
     ending: Ending
-    time: "Trace"  # s
-    speed: "Trace"  # m/s
-    distance: "Trace"  # m
-    wheel_speed: "Trace"  # rad/s, per wheelset
-    slip: "Trace"  # -, per wheelset
-    torque: "Trace"  # N m, per wheelset, transmitted; 0 without a brake
-    wheel_load: "Trace"  # N, per wheelset: load of one of its wheels
-    cylinder_pressure: "Trace"  # Pa above the atmosphere, per wheelset; 0 without a friction brake
-    axle_samples: tuple[tuple[Sample, ...], ...]  # per wheelset; none of one without a brake
+    time: "Trace"
+    speed: "Trace"
+    distance: "Trace"
+    wheel_speed: "Trace"
+    slip: "Trace"
+    torque: "Trace"
+    wheel_load: "Trace"
+    cylinder_pressure: "Trace"
+    axle_samples: tuple[tuple[Sample, ...], ...]
     totals: Totals
-    final_wheel_speeds: tuple[float, ...]  # rad/s, of all wheelsets
-    slip_max: float  # -, above the judging speed
-    engine: str  # what computed it
-    shared_state: bool = False  # whether the state in the samples of a wheelset is that of all of them
-    memory: tuple[str, ...] = ()  # names of the states in the samples, as far as the law tells them
-    dynamic_torque: "Trace | None" = None  # N m, per wheelset, of an electrodynamic brake, within ``torque``
-    pad_temperature: "Trace | None" = (
-        None  # K above that before the stop, per wheelset, where friction depends on it
-    )
-    track_brake_force: "Trace | None" = None  # N, of the magnets of the vehicle
-    further: "Mapping[str, Trace]" = field(default_factory=dict)  # per wheelset, what a coupled plant adds
+    final_wheel_speeds: tuple[float, ...]
+    slip_max: float
+    engine: str
+    shared_state: bool = False
+    memory: tuple[str, ...] = ()
+    dynamic_torque: "Trace | None" = None
+    pad_temperature: "Trace | None" = None
+    track_brake_force: "Trace | None" = None
+    further: "Mapping[str, Trace]" = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Say in one line what became of the stop."""

@@ -28,13 +28,27 @@ SLIP_AMPLIFICATION = 1e4  # the same in the slip, which moves quickly wherever a
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StepCheck:
-    """Difference between a run and the same run with half the steps."""
+    """Difference between a run and the same run with half the steps.
 
-    distance: float  # -, relative
-    slip: float  # -, largest at any sample above 0.3 m/s
-    refinement: int  # by which the steps were divided
-    sensitive: bool  # the closed loop amplifies: runs from slightly different initial speeds diverge
-    spread: float  # m, of the distance over such runs; 0 unless sensitive
+    Attributes
+    ----------
+    distance : float [-]
+        Relative.
+    slip : float [-]
+        Largest at any sample above 0.3 m/s.
+    refinement : int
+        By which the steps were divided.
+    sensitive : bool
+        The closed loop amplifies: runs from slightly different initial speeds diverge.
+    spread : float [m]
+        Of the distance over such runs; 0 unless sensitive.
+    """
+
+    distance: float
+    slip: float
+    refinement: int
+    sensitive: bool
+    spread: float
 
     @property
     def unresolved(self) -> bool:
@@ -77,7 +91,9 @@ def simulate_checked(
     return run, check
 
 
-def perturbed_spread(plant: Plant, controller: Law, scenario: Scenario, run: Run) -> float:
+def perturbed_spread(
+    plant: Plant, controller: Law, scenario: Scenario, run: Run, *, neighbours: int = PERTURBED_RUNS
+) -> float:
     """Range of the distance over slightly different initial speeds [m]; 0 where a neighbour stays near the run."""
 
     def neighbour(number: int) -> Run:
@@ -90,7 +106,7 @@ def perturbed_spread(plant: Plant, controller: Law, scenario: Scenario, run: Run
     slipped = slip_difference(plant.vehicle, run, nearest) > SLIP_AMPLIFICATION * PERTURBATION
     if not moved and not slipped:
         return 0.0
-    further = (neighbour(number).totals.distance for number in range(2, PERTURBED_RUNS + 1))
+    further = (neighbour(number).totals.distance for number in range(2, neighbours + 1))
     distances = (distance, nearest.totals.distance, *further)
     return max(distances) - min(distances)
 

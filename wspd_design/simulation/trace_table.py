@@ -17,13 +17,20 @@ class Traces:
 
     Names end in the unit, as the keys of JSON do, and in the wheelset, counted from 1 at the front. What a law sees,
     commands and remembers is held from one sample to the next; all else is interpolated where times are asked for.
+
+    Attributes
+    ----------
+    table : ndarray [see ``units``]
+        Record array, one row for each time.
+    units : dict[ str, str ]
+        Of the columns; empty for a ratio, and for what a law remembers without telling a unit.
+    about : dict[str, str]
+        What was simulated, with which seed.
     """
 
-    table: "NDArray[Any]"  # record array, one row for each time
-    units: dict[
-        str, str
-    ]  # of the columns; empty for a ratio, and for what a law remembers without telling a unit
-    about: dict[str, str]  # what was simulated, with which seed
+    table: "NDArray[Any]"
+    units: dict[str, str]
+    about: dict[str, str]
 
     def __repr__(self) -> str:
         """Say in one line what this is."""

@@ -52,6 +52,7 @@ specifications = st.builds(
 )
 
 
+@pytest.mark.filterwarnings("ignore:highest speed of the range")  # drawn up to what a wheel bears
 @settings(max_examples=60, deadline=None)
 @example(specification=Specification(), name='\x7f " \\ \n \u2028', which="smc", number=5e-324)
 @given(

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import cast
 
 from wspd_design.certificates.kernel.claim import Claim, Relation
@@ -17,8 +18,10 @@ from wspd_design.certificates.quantities import CONTACT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
 from wspd_design.certificates.setting.assumptions import BUILT_UP
+from wspd_design.certificates.setting.plant import place
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.slip_band.checker import checker
+from wspd_design.certificates.theorems.slip_band.departure import LIMIT, denies, place_ranges
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 from wspd_design.certificates.theorems.slip_band.statement import (
     JERK_FACTORS,
@@ -34,6 +37,7 @@ from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH
 
 CELLS = "ellipsoids"
+DEPARTURE = "start at the reference"
 VARIED = (*NAMES, "resistance constant", "resistance linear", "resistance quadratic")
 DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
 BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
@@ -118,6 +122,12 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
             text="for every cell of the box and every window of speed no sample leads out of an ellipsoid of the state",
             check=checker(_held(problem), law),
         ),
+        Special(
+            key=DEPARTURE,
+            text="the brake can hold the reference, and no wheel locks in a simulated stop that starts there, settled",
+            evaluate=partial(denies, problem),
+            within=place_ranges(problem),
+        ),
     )
 
 
@@ -163,12 +173,19 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             largest = max(cells.numbers[f"band {k} above"] for k in range(len(windows)))
             margin = Range(low=1.0 - problem.slip - largest, high=None, unit="-")
             worst = (Point(name="slip", value=problem.slip + largest, unit="-"),)
+    away = findings[DEPARTURE]
+    if away.status is Status.REFUTED and away.stated is not None:
+        status, margin = Status.REFUTED, None
+        values = {**away.stated.place, "slip": problem.slip}
+        worst = place(values, ("slip", "speed", *NAMES))
+        explanation = f"{_departure(problem, away)} {explanation}"
     return Certificate(
         claim=claim,
         status=status,
         explanation=explanation,
         margin=margin,
         worst_point=worst,
+        witness=worst if status is Status.REFUTED else (),
         hypotheses=(
             hypothesis(
                 "slope, level and fading of the friction stay in their proved ranges",
@@ -178,6 +195,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
                 ),
             ),
             hypothesis(cells.asked, cells),
+            *((hypothesis(away.asked, away),) if away.status is Status.REFUTED else ()),
         ),
         assumptions=(
             "the parameters do not change during the stop; the full pressure is demanded and there",
@@ -195,6 +213,24 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         method="ellipsoids by linear matrix inequalities in doubles; LDL' in balls at the corners of the sampled loop, "
         "with the friction bounded by interval branch and bound, replayed by the independent checker",
         reference="docs/theory.md#band",
+    )
+
+
+def _departure(problem: Problem, away: Finding) -> str:
+    """Say what happens at the place that denies every band."""
+    numbers = away.numbers
+    if LIMIT[0] in numbers:
+        holding, full = (numbers[name] / 1e3 for name in LIMIT)
+        return (
+            f"The brake is the limit in a corner of the box: there holding slip {problem.slip:g} takes {holding:.3g} "
+            f"kN m, and full pressure gives {full:.3g}."
+        )
+    speed = away.stated.place["speed"] if away.stated is not None else math.nan
+    return (
+        f"In a corner of the box a simulated stop of the quarter model that starts at {speed * KMH:.3g} km/h on the "
+        "reference, with observers and filters settled, has locked wheels "
+        f"{numbers['lock time']:.2g} s later, at {numbers['lock speed'] * KMH:.3g} km/h: no set around the reference "
+        "keeps a band."
     )
 
 

@@ -18,6 +18,7 @@ from wspd_design.parameters.records import Entry, ParameterSet
 from wspd_design.parameters.schema import Kind, schema_of
 from wspd_design.parameters.units import format_quantity
 from wspd_design.parameters.words import did_you_mean
+from wspd_design.plants.multibody.loading import available_multibodies, load_multibody
 
 _KINDS: tuple[Kind, ...] = ("vehicle", "rail", "controller", "track", "constants")
 
@@ -27,7 +28,7 @@ def sources(
         str | None,
         typer.Argument(
             metavar="NAME",
-            help="Vehicle, rail, controller or track, or a .toml file.",
+            help="Vehicle, rail, controller, track or multibody vehicle, or a .toml file.",
             autocompletion=names_or_files((name for kind in _KINDS for name in available(kind)), ".toml"),
         ),
     ] = None,
@@ -36,23 +37,34 @@ def sources(
     if name is None:
         _show_names()
         return
-    _show(load_entries("vehicle" if name.endswith(LADEN) else _kind_of(name), name))
+    for parameters in _of_name(name):
+        _show(parameters)
 
 
-def _kind_of(name: str) -> Kind:
-    """Find what a name stands for; the first kind that has it wins."""
+def _of_name(name: str) -> list[ParameterSet]:
+    """Return what a name stands for: of one kind, and a multibody vehicle may have the name of a vehicle."""
+    if name.endswith(LADEN):
+        return [load_entries("vehicle", name)]
     if name.endswith(".toml"):
         document = read_toml(Path(name), name)
+        if "bodies" in document:
+            return [_of_multibody(name)]
         keys = {key.partition(".")[0] for key in schema_of("rail", "")}
         own_rail = document.get("base") in available("rail") or bool(document.keys() & keys)
-        return "rail" if own_rail else "vehicle"
-    for kind in _KINDS:
-        if name in available(kind):
-            return kind
-    everything = [known for kind in _KINDS for known in available(kind)]
+        return [load_entries("rail" if own_rail else "vehicle", name)]
+    found = [load_entries(kind, name) for kind in _KINDS if name in available(kind)][:1]
+    found += [_of_multibody(name)] if name in available_multibodies() else []
+    if found:
+        return found
+    everything = [known for kind in _KINDS for known in available(kind)] + available_multibodies()
     raise UserError(
         f'no parameter set is called "{name}"{did_you_mean(name, everything)}; "wspd sources" lists all of them'
     )
+
+
+def _of_multibody(name: str) -> ParameterSet:
+    model = load_multibody(name)
+    return ParameterSet(kind="multibody", name=model.name, title=model.title, entries=dict(model.entries))
 
 
 def _show_names() -> None:
@@ -61,6 +73,8 @@ def _show_names() -> None:
     for kind in _KINDS:
         for name in available(kind):
             shown.add_row(kind, name, load_entries(kind, name).title)
+    for name in available_multibodies():
+        shown.add_row("multibody", name, load_multibody(name).title)
     out.print(spaced(shown))
 
 

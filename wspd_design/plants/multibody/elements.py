@@ -135,18 +135,17 @@ def _turns(model: Multibody, spring: Spring, q: Any, v: Any, forces: Forces) -> 
     """Let springs and dampers of relative turns act, on the coordinates themselves."""
     starts = first_coordinates(model)
     for turn, k in _TURNS.items():
-        stiffness, damping = (
-            model.numbers.get(f"{spring.kind}.{key}_{turn}") for key in ("stiffness", "damping")
-        )
-        if stiffness is None and damping is None:
+        keys = [f"{spring.kind}.{key}_{turn}" for key in ("stiffness", "damping")]
+        if not any(key in model.numbers for key in keys):
             continue
+        stiffness, damping = (model.numbers.get(key, 0.0) for key in keys)
         first, second = (starts[name] + k for name in spring.between)
         angle, rate = q[second] - q[first], v[second] - v[first]
-        moment = (stiffness or 0.0) * angle + (damping or 0.0) * rate
+        moment = stiffness * angle + damping * rate
         forces.twist(first, moment)
         forces.twist(second, -moment)
-        forces.potential += 0.5 * (stiffness or 0.0) * angle**2
-        forces.dissipation += (damping or 0.0) * rate**2
+        forces.potential += 0.5 * stiffness * angle**2
+        forces.dissipation += damping * rate**2
 
 
 def _rod(model: Multibody, rod: Rod, bodies: Mapping[str, BodyMotion], forces: Forces) -> None:

@@ -1,16 +1,26 @@
 """A sampled law with observer keeps its slip in a band: ellipsoids that no sample leads out of."""
 
+import math
 from collections.abc import Mapping
 from typing import cast
 
 from wspd_design.certificates.checks.frame import Check, Figures, level, series
-from wspd_design.certificates.kernel.finding import Effort, Stated
+from wspd_design.certificates.kernel.finding import Effort, Place, Stated
 from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
 from wspd_design.certificates.search.slip_band.search import Failed, largest_share
-from wspd_design.certificates.theorems.band import BOUNDED, CELLS, DIRECTIONS, SLIP_BAND, key, proved_friction
+from wspd_design.certificates.theorems.band import (
+    BOUNDED,
+    CELLS,
+    DEPARTURE,
+    DIRECTIONS,
+    SLIP_BAND,
+    key,
+    proved_friction,
+)
+from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
 from wspd_design.certificates.theorems.slip_band.proof import write
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.controllers.protection import Protection
@@ -32,12 +42,30 @@ def search(problem: Problem) -> Mapping[str, Stated]:
                 stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name])
     friction = proved_friction(problem, {name: finding(wanted[name], each) for name, each in stated.items()})
     if friction is None:
-        return stated | {CELLS: Stated()}
+        return stated | {CELLS: Stated(), DEPARTURE: _departure(problem)}
     law = law_of(cast(Protection, problem.controller))
     found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
     if isinstance(found, Failed):
-        return stated | {CELLS: Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))}
-    return stated | {CELLS: Stated(proof=write(found))}
+        failed = Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))
+        return stated | {CELLS: failed, DEPARTURE: _departure(problem)}
+    # What is shown on the whole box needs no look for what would deny it.
+    away = Stated() if found.share == 1 else _departure(problem)
+    return stated | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
+
+
+def _departure(problem: Problem) -> Stated:
+    """Look for a corner of the box where the brake is the limit, then for one from which wheels lock."""
+    places: list[Place] = list(corners(problem))
+    for each in places:
+        for speed in problem.speeds:
+            if missing_torque(problem, {**each, "speed": speed}):
+                return Stated(place={**each, "speed": speed})
+    low, high = problem.speeds
+    for each in places[: max(1, round(len(places) * min(budget().effort, 1.0)))]:
+        middle = {**each, "speed": math.sqrt(low * high)}
+        if lock(problem, middle):
+            return Stated(place=middle)
+    return Stated(effort=Effort(boxes=len(places), undecided=1.0, cut=False))
 
 
 def figures(problem: Problem, certificate: Certificate) -> Figures:

@@ -1,0 +1,137 @@
+"""Stops that begin at the reference, with everything settled, and that no band survives.
+
+Whatever set of states a band is proved for holds the reference itself, with the observers and the filter of the
+acceleration of the train settled. Where holding it takes more torque than there is, the brake is the limit; and if a
+wheel locks from there, no band is narrower than the way to lock.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import product
+from typing import cast
+
+from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.kernel.finding import Place
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.plant import plant_with
+from wspd_design.certificates.theorems.slip_band.statement import NAMES
+from wspd_design.controllers.observers.protocol import TRAIN_ACCELERATION
+from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.protocol import TRAIN_SPEED, Command, State, VehicleMeasurement
+from wspd_design.model.slip import slip_dynamics
+from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.records import Vehicle
+from wspd_design.simulation.records import Scenario, Start
+from wspd_design.simulation.start import full_supply_time, holding_torque
+from wspd_design.simulation.stop import simulate
+
+STOP_WORK = 2_000_000  # of a budget of operations: what a stop takes
+BEYOND = 1e-6  # relative: torques that differ by less are equal
+LIMIT = ("holding torque", "full torque")  # N m, numbers of a place where the brake is the limit
+LOCK = ("lock time", "lock speed")  # s from the start, m/s; numbers of a place from which wheels lock
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Settled:
+    """A protection that begins as if it had held its reference for long."""
+
+    law: Protection
+    slip: float  # -, that the wheels have
+    acceleration: float  # m/s2, of the train
+    wheel_radius: float  # m, true
+
+    @property
+    def name(self) -> str:
+        return self.law.name
+
+    @property
+    def sample_time(self) -> float:
+        return self.law.sample_time
+
+    @property
+    def wheelsets(self) -> int:
+        return self.law.wheelsets
+
+    def start(self, measurement: VehicleMeasurement) -> State:
+        """Begin one sample back, with the scale of the speed that rolling wheels have shown."""
+        law, back = self.law, self.law.sample_time
+        scale = law.wheel_radius / self.wheel_radius
+        turning = self.acceleration * (1.0 - self.slip) / self.wheel_radius
+        known = dict(zip(law.memory, law.start(measurement), strict=True))
+        settled = {
+            TRAIN_SPEED: scale * (measurement.speed - self.acceleration * back),
+            TRAIN_ACCELERATION: scale * self.acceleration,
+            "speed_scale": scale,
+        }
+        for axle in range(1, law.wheelsets + 1):
+            speed, torque = measurement.wheel_speeds[axle - 1], known[f"torque_{axle}"]
+            settled[f"observed_speed_{axle}"] = speed - turning * back
+            settled[f"friction_torque_{axle}"] = torque + law.wheelset_inertia * turning
+        return tuple((known | settled).values())
+
+    def step(self, state: State, measurement: VehicleMeasurement) -> tuple[State, tuple[Command, ...]]:
+        return self.law.step(state, measurement)
+
+
+def place_ranges(problem: Problem) -> dict[str, Ends]:
+    """Coordinates of a place, with their ranges: the numbers of the box and the speed [SI units]."""
+    return {name: problem.span(name) for name in NAMES} | {"speed": problem.speeds}
+
+
+def corners(problem: Problem) -> Iterator[Place]:
+    """Yield the nominal numbers, then the corners of the box, without a speed."""
+    yield {name: problem.nominal(name) for name in NAMES}
+    for ends in product((1, 0), repeat=len(NAMES)):
+        yield {name: problem.span(name)[end] for name, end in zip(NAMES, ends, strict=True)}
+
+
+def missing_torque(problem: Problem, place: Place) -> dict[str, float]:
+    """Torque that holds the reference at a place and that of the full pressure, if the first is larger [N m]."""
+    vehicle, holding = _held(problem, place)
+    full = vehicle.brake.max_torque
+    return dict(zip(LIMIT, (holding, full), strict=True)) if holding > full * (1.0 + BEYOND) else {}
+
+
+def lock(problem: Problem, place: Place) -> dict[str, float]:
+    """When and at which speed a wheel first locks after a start at the reference; empty if none does in the range."""
+    import numpy as np
+
+    law, slip, speed = cast(Protection, problem.controller), problem.slip, place["speed"]
+    numbers = {name: place[name] for name in NAMES}
+    vehicle, rail = plant_with(problem, numbers)
+    braking = full_supply_time(vehicle.brake)
+    _, holding = _held(problem, place)
+    settled = _Settled(
+        law=law,
+        slip=slip,
+        acceleration=-float(slip_dynamics(vehicle, rail, slip, speed).deceleration),
+        wheel_radius=vehicle.wheel_radius,
+    )
+    start = Start(slip=slip, torque=min(holding, vehicle.brake.max_torque), braking_time=braking)
+    scenario = Scenario(rail=rail, initial_speed=speed, start=start)
+    run = simulate(vehicle, settled, scenario, plant="quarter")
+    locked = np.flatnonzero((run.wheel_speed[:, 0] <= 0.0) & (run.speed >= problem.speeds[0]))
+    if not locked.size:
+        return {}
+    first = int(locked[0])
+    return dict(zip(LOCK, (float(run.time[first]), float(run.speed[first])), strict=True))
+
+
+def denies(problem: Problem, place: Place, work: Work) -> Mapping[str, float]:
+    """Return what is true at a place and denies every band, or refuse."""
+    missing = missing_torque(problem, place)
+    if missing:
+        return missing
+    work.spend(STOP_WORK)
+    found = lock(problem, place)
+    if not found:
+        raise Refused("the stop denies nothing: the brake can hold the reference, and no wheel locks")
+    return found
+
+
+def _held(problem: Problem, place: Place) -> tuple[Vehicle, float]:
+    """Vehicle at a place, and the torque that holds the reference there [N m]."""
+    vehicle, rail = plant_with(problem, {name: place[name] for name in NAMES})
+    braking = full_supply_time(vehicle.brake)
+    holding = holding_torque(vehicle, rail, slip=problem.slip, speed=place["speed"], braking_time=braking)
+    return vehicle, holding
