@@ -23,6 +23,7 @@ PAGES = (
     "docs/tutorial.md",
     "docs/certificates.md",
     "docs/campaigns.md",
+    "docs/modes.md",
     "docs/vehicle-files.md",
 )
 WITH_FILES = "docs/how-to.md"  # all its Python blocks are files that its commands use

@@ -20,6 +20,7 @@ _NEUTRAL = 1e-6
 _REAL = 1e-6  # share of an eigenvalue by which it may leave the real axis through rounding
 
 _ALONE = 0.75  # share of the energy of bodies of one kind from which a mode is one body's
+_CARRIED = 0.4  # share of the energy with which bodies that turn on others name a mode
 _MIXED = 0.15  # share of the energy that a second motion of the same bodies needs to count in the name
 
 _DIRECTIONS = {
@@ -88,7 +89,8 @@ class Share:
 class Mode:
     """One eigenvalue with its shape; of a pair of complex ones that with the positive imaginary part."""
 
-    name: str
+    name: str  # numbered where several modes have one
+    motion: str  # the same without a number
     pole: complex  # 1/s
     shares: tuple[Share, ...]  # largest first
     shape: "Shape"  # (n,), rates of the coordinates, of unit kinetic energy; the strongest has phase 0
@@ -190,7 +192,7 @@ def _mode(motion: SmallMotion, pole: complex, shape: "Shape") -> Mode:
         for (kind, direction), share in sorted(parts.items(), key=lambda item: -item[1])
     )
     name = _name(motion, energy, turned, shares, oscillates=pole.imag > 0.0)
-    return Mode(name=name, pole=pole, shares=shares, shape=turned)
+    return Mode(name=name, motion=name, pole=pole, shares=shares, shape=turned)
 
 
 def _motions(motion: SmallMotion) -> list[tuple[str, str]]:
@@ -210,7 +212,9 @@ def _name(
     """Say which bodies move and how, from the largest share of the energy."""
     import numpy as np
 
-    kind, direction = shares[0].kind, shares[0].direction
+    # What turns on another body is moved by it: it names a mode only with much of the energy.
+    leading = next(each for each in shares if each.direction != "turn" or each.share >= _CARRIED)
+    kind, direction = leading.kind, leading.direction
     places = [place for place, each in enumerate(_motions(motion)) if each == (kind, direction)]
     parts = energy[places]
     strongest, _ = _split(motion.coordinates[places[int(np.argmax(parts))]])
@@ -220,7 +224,7 @@ def _name(
         return f"{special} {strongest.removeprefix(f'{kind}_')}" if alone and len(places) > 1 else special
     how = _DIRECTIONS.get(direction, direction)
     if len(places) == 1:
-        return f"{_spoken(strongest)} {_level(motion, shape, shares) or how}"
+        return f"{_spoken(strongest)} {_level(motion, shape, shares, leading) or how}"
     if alone:
         return f"{_spoken(strongest)} {how}"
     if len(places) == 2:
@@ -229,7 +233,7 @@ def _name(
     return f"{_plural(_spoken(kind))} {how}"
 
 
-def _level(motion: SmallMotion, shape: "Shape", shares: tuple[Share, ...]) -> str:
+def _level(motion: SmallMotion, shape: "Shape", shares: tuple[Share, ...], leading: Share) -> str:
     """Tell lower from upper sway where a body sways and rolls in one mode; empty elsewhere.
 
     With x forward, y left and z up a point at height h above the center moves y - h roll. Where y and roll have
@@ -237,7 +241,7 @@ def _level(motion: SmallMotion, shape: "Shape", shares: tuple[Share, ...]) -> st
     """
     import numpy as np
 
-    kind, direction = shares[0].kind, shares[0].direction
+    kind, direction = leading.kind, leading.direction
     other = {"y": "roll", "roll": "y"}.get(direction)
     if not any((each.kind, each.direction) == (kind, other) and each.share >= _MIXED for each in shares):
         return ""

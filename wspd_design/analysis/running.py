@@ -12,7 +12,7 @@ from wspd_design.parameters.loading import constants, steel
 from wspd_design.parameters.records import Rail
 from wspd_design.plants.multibody.mechanics import mechanics
 from wspd_design.plants.multibody.motion import wheel_on_rail
-from wspd_design.plants.multibody.preloads import balanced
+from wspd_design.plants.multibody.preloads import balanced, rest_function
 from wspd_design.plants.multibody.records import Multibody, gears_of
 from wspd_design.plants.multibody.wheels import Irregularity
 
@@ -38,10 +38,11 @@ class RunningVehicle:
 
     model: Multibody  # with the preloads of its conicity
     balance: Any  # casadi.Function of q, v, v', torques, track, conicity, preloads
+    rest: Any  # of :func:`wspd_design.plants.multibody.preloads.rest_function`
 
     def with_conicity(self, conicity: float) -> "RunningVehicle":
         """Return the same vehicle on other cones."""
-        return replace(self, model=balanced(self.model.with_numbers({"conicity": conicity})))
+        return replace(self, model=balanced(self.model.with_numbers({"conicity": conicity}), self.rest))
 
     @property
     def neutral(self) -> "dict[str, Matrix]":
@@ -118,6 +119,7 @@ def running_vehicle(model: Multibody, contact: WheelRail, rail: Rail) -> Running
     """
     import casadi as ca
 
+    rest = rest_function(model)
     n, axles = len(model.coordinates), model.wheelsets
     q, v, a = (ca.SX.sym(name, n) for name in ("q", "v", "a"))
     torques, track, conicity = ca.SX.sym("t", axles), ca.SX.sym("z", axles), ca.SX.sym("c")
@@ -142,7 +144,8 @@ def running_vehicle(model: Multibody, contact: WheelRail, rail: Rail) -> Running
         for each in (q, v, ca.vertcat(torques, track))
     ]
     return RunningVehicle(
-        model=balanced(model),
+        model=balanced(model, rest),
+        rest=rest,
         balance=ca.Function(
             "balance",
             [q, v, a, torques, track, conicity, preloads],

@@ -7,6 +7,7 @@ from pathlib import Path
 from wspd_design.analysis.critical_speed import CriticalSpeed, critical_speeds
 from wspd_design.analysis.modes import Mode, modes
 from wspd_design.analysis.running import (
+    RunningVehicle,
     SteadyRunning,
     contact_of,
     full_slope,
@@ -36,8 +37,10 @@ class VehicleModes:
     vehicle: str
     title: str
     rail: str
+    slip: float  # -, that brakes hold; 0: the wheels roll
     conicity: float  # -, of the modes
     lateral_slope: float  # -, of small lateral creep, over that of Kalker's theory
+    equations: RunningVehicle  # on this conicity
     running: SteadyRunning
     modes: tuple[Mode, ...]
     critical: tuple[CriticalSpeed, ...]  # none of a braked vehicle
@@ -99,8 +102,10 @@ def vehicle_modes(
         vehicle=str(name_or_path),
         title=model.title,
         rail=friction.name,
+        slip=slip,
         conicity=tried[0],
         lateral_slope=lateral_slope,
+        equations=first,
         running=running,
         modes=modes(running.motion),
         critical=() if slip else critical_speeds(vehicle, tried, speeds=SPEEDS),

@@ -49,7 +49,7 @@ def print_written(path: Path, *commands: tuple[str, Sequence[object]]) -> None:
     """Say where a file was written and what to do with it; a command is a purpose and its words after ``wspd``."""
     out = console()
     out.print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)
-    width = max(len(purpose) for purpose, _ in commands) + 2
+    width = max((len(purpose) for purpose, _ in commands), default=0) + 2
     for purpose, words in commands:
         spelled = shlex.join(["wspd", *map(str, words)])
         out.print(f"{purpose + ':':<{width}}{spelled}", markup=False, soft_wrap=True)

@@ -103,6 +103,11 @@ COMMANDS = {
         "Show open-loop poles, input gain and equilibrium torque of the slip over speed.",
         "Example: wspd linearize --rail polach-dry",
     ),
+    "modes": Entry(
+        KNOWING,
+        "Show the modes of a multibody vehicle at one speed, and the speed from which it hunts.",
+        'Examples: wspd modes er24pc-82 --conicity 0.025 --conicity 0.2; wspd modes --slip "14 %" --speed "20 km/h"',
+    ),
     "brake": Entry(
         KNOWING,
         "Show what the brake does while no wheel slides: stops by mean values, braked weight, adhesion asked for.",

@@ -249,7 +249,7 @@ def closed_loop_source(kernels: Kernels, *, stops: int) -> str:
         whole = kernels.whole
         places |= {"NUMBERS": whole.numbers, "VEHICLE_CONSTANTS": whole.vehicle_constants.size1_out(0)}
         of_stop += [whole.vehicle_constants, whole.vehicle]
-        of_lane += [whole.brakes]
+        of_lane += [whole.brakes, whole.slope]
     else:
         split = kernels.split
         of_stop += [split.loads, split.train]

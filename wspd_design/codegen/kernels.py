@@ -20,7 +20,7 @@ from wspd_design.model import adhesion
 from wspd_design.model import brake as brake_model
 from wspd_design.model import slip as slip_model
 from wspd_design.model.further_brakes import build_up
-from wspd_design.model.number import where
+from wspd_design.model.number import maximum, where
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
 from wspd_design.plants.protocol import (
     TRACK_CHANNELS,
@@ -41,6 +41,7 @@ class Surroundings:
     axle_offset: float = 0.0  # m, behind the first axle
     braking_time: float = 0.0  # s, from the application of the brake to the start of the stop
     reservoir_drain: float = 0.0  # -, by which a pressure filled into the cylinders lowers the reservoir
+    creep_growth: float = 1.0  # -, fastest rate of the creep of a coupled plant over that of rigid wheelsets
 
 
 _RECORDS: tuple[tuple[str, type], ...] = (
@@ -99,6 +100,8 @@ def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -
     return [*(getattr(records[record], field) for record, field in _KNOWN), *further_values(vehicle)]
 
 
+_LEAST_SLIDING = 1e-9  # m/s, below which the secant of the creep curve is not asked for
+
 WINDOW = ("start", "start_pressure", "fill_end", "vent_end", "reservoir", "share", "start_level", "goal")
 """What holds from one command of the valves to the next: times [s], pressures [Pa], share of the pressure that is asked
 of the friction brake, and the level of the electrodynamic brake, there and where it goes to."""
@@ -135,6 +138,11 @@ class Kernels(NamedTuple):
         """Those of a coupled plant."""
         assert isinstance(self.of_plant, CoupledKernels)
         return self.of_plant
+
+    @property
+    def slope(self) -> Any:
+        """Slope of the wheel's acceleration, by which steps are chosen."""
+        return self.of_plant.slope
 
     @property
     def axles(self) -> int:
@@ -183,6 +191,7 @@ class CoupledKernels(NamedTuple):
     """Kernels of a coupled plant."""
 
     brakes: Any  # (constants, axle states, torque, level) -> torque of all brakes, of the electrodynamic one, warming
+    slope: Any  # as of a plant that splits, by the fastest of its motions; the contact is not used
     vehicle_constants: Any  # (p, numbers, rail numbers of the axles) -> constants of vehicle
     vehicle: Any  # (constants, speed, wheel speeds, rest, torques, locked, damping, track, time)
     #              -> acceleration, wheel speeds', rest', forces, slips, damping torques, torques that are passed on,
@@ -284,9 +293,12 @@ class _Traced:
         of_plant: SplitKernels | CoupledKernels
         if is_coupled(plant):
             stop_constants, (demand,) = hoist([demand], 1, "stop_constants")
-            lane_constants, (brakes,) = hoist([self._brakes(plant)], 1, "lane_constants")
+            of_lane = [self._brakes(plant), self._steepness(plant)]
+            lane_constants, (brakes, slope) = hoist(of_lane, 1, "lane_constants")
             vehicle_constants, (vehicle,) = hoist([self._vehicle(plant)], 3, "vehicle_constants")
-            of_plant = CoupledKernels(brakes=brakes, vehicle_constants=vehicle_constants, vehicle=vehicle)
+            of_plant = CoupledKernels(
+                brakes=brakes, slope=slope, vehicle_constants=vehicle_constants, vehicle=vehicle
+            )
         else:
             assert is_split(plant)
             of_stop, of_lane = self._of_stop(plant), self._of_lane(plant)
@@ -366,6 +378,31 @@ class _Traced:
             "brakes_kernel",
             [self.p, self.states, self.torque, self.level],
             [brakes.braking, brakes.dynamic, ca.vertcat(ca.SX(0, 1), *brakes.warming)],
+        )
+
+    def _steepness(self, plant: CoupledPlant) -> Any:
+        """Slope of the acceleration of a rigid wheelset in its place, times what the fastest motion is faster.
+
+        A sliding wheel is soft along the rail, but across it the force still grows with the secant of the creep curve.
+        """
+        import casadi as ca
+
+        vehicle, speed, load, wheel = plant.vehicle, self.speed, self.load, self.states[0]
+        sliding = speed - vehicle.wheel_radius * wheel
+        force = adhesion.creep_force(
+            slip_model.slip_ratio(speed, wheel, vehicle.wheel_radius),
+            abs(sliding),
+            load,
+            self.track,
+            adhesion.contact_stiffness(vehicle.contact, load),
+        )
+        tangent = ca.jacobian(force, wheel)
+        secant = vehicle.wheel_radius * force / maximum(abs(sliding), _LEAST_SLIDING)
+        per_force = self.surroundings.creep_growth * 2.0 * vehicle.wheel_radius / vehicle.wheelset_inertia
+        return ca.Function(
+            "slope_kernel",
+            [self.p, speed, self.states, load, ca.SX.sym("contact", 2), self.damping],
+            [-per_force * maximum(abs(tangent), abs(secant))],
         )
 
     def _vehicle(self, plant: CoupledPlant) -> Any:

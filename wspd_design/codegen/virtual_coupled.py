@@ -40,10 +40,8 @@ class CoupledStep(Step):
         super().__init__(kernels, places, state, given)
         self.table, self.track = table, track
 
-    def _allowed(self, span: Any) -> tuple[Any, Any]:  # noqa: ARG002 - the creep rate alone limits a step
-        given = self.given
-        slowest = maximum(self.state["speed"], given["regularization_speed"])
-        return slowest * (given["slope_limit"] / given["creep_rate"]), 0.0 * given["radius"]
+    def _settling(self, slope: Any) -> Any:
+        return 0.0 * slope
 
     def _wheels(self, motion: Any, h: Any, settling: Any) -> "_Classical":  # noqa: ARG002
         return _Classical()

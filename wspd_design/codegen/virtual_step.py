@@ -158,7 +158,7 @@ class Step:
         rolling = later / given["radius"]
         slope = self._slopes(speed, now["axle"])
         bound = allowed < minimum(span, given["longest_step"])
-        settling = where(bound, settling_rates(now, given, slope), 0.0)
+        settling = where(bound, self._settling(slope), 0.0)
         steep = abs(slope)
         moved = wheels + self._limited(steep) * now["rates"][1 : 1 + axles]
         side = where(speed > given["radius"] * wheels, 1.0, -1.0)
@@ -176,6 +176,9 @@ class Step:
             least = minimum(least, limits[axle])
         return where(bound, maximum(least, allowed), allowed), settling
 
+    def _settling(self, slope: Any) -> Any:
+        return settling_rates(self.state, self.given, slope)
+
     def _limited(self, steep: Any) -> Any:
         limit, longest = self.given["slope_limit"], self.given["longest_step"]
         bound = longest * steep > limit
@@ -188,7 +191,7 @@ class Step:
         now = self.state
         return ca.vertcat(
             *(
-                self.kernels.split.slope(
+                self.kernels.slope(
                     self.per_axle("lane_constants", a),
                     speed,
                     states[a :: self.axles],
@@ -366,7 +369,8 @@ class Step:
 
     def _settled(self, speed: Any, wheel: Any) -> tuple[Any, Any, Any, Any]:
         """Wheel speeds, locks and holds after the step, and the impulse that the brake could not pass on."""
-        inertia, held, below = self.given["inertia"], self.state["held"], minimum(wheel, 0.0)
+        inertia, held = self.given["inertia"], self.state["held"]
+        below = where(self.state["locked"], 0.0, minimum(wheel, 0.0))  # a locked wheel may follow its pads
         locked = where(below < 0.0, 1.0, self.state["locked"])
         wheel, lost = wheel - below, inertia * below
         if not self.holding:

@@ -5,6 +5,7 @@ from wspd_design.exchange.certificate_forms import CERTIFICATE
 from wspd_design.exchange.check_forms import VERIFICATION
 from wspd_design.exchange.design_forms import DESIGN_FILE
 from wspd_design.exchange.ladder_forms import LADDER
+from wspd_design.exchange.modes_forms import MODES
 from wspd_design.exchange.search_forms import SEARCH
 from wspd_design.exchange.stop_forms import COMPARISON, STOP
 from wspd_design.exchange.study_forms import BRAKE, LINEARIZATION, REPORT
@@ -17,6 +18,7 @@ STANDING_ALONE = (
     VERIFICATION,
     LADDER,
     LINEARIZATION,
+    MODES,
     BRAKE,
     SEARCH,
     REPORT,

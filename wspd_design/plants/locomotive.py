@@ -12,12 +12,13 @@ followed.
 import math
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, Self
 
 from wspd_design.model import adhesion
 from wspd_design.model import slip as slip_model
 from wspd_design.model.number import Number
 from wspd_design.model.wheel_rail import WheelRail, wheel_rail
+from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import steel
 from wspd_design.parameters.records import Rail, Vehicle
@@ -32,7 +33,6 @@ from wspd_design.plants.protocol import CoupledMotion
 _SHARED: Final = ("mass", "wheel_radius", "wheelbase", "bogie_spacing")
 """Numbers of the file that are those of the vehicle."""
 _CONTACT: Final = ("normal_stiffness", "kalker_c22", "kalker_c23", "lateral_slope")
-_LONGEST_STEP: Final = 5e-4  # s
 _WHEELS: Final = 2  # of one axle
 
 
@@ -41,9 +41,11 @@ class Locomotive(BrakedWheelsets):
     """The multibody vehicle with finite rotations."""
 
     vehicle: Vehicle
+    changed: tuple[tuple[str, float], ...] = ()  # numbers of the file that are others, by their names
     name: ClassVar[str] = "locomotive"
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False
+    longest: ClassVar[float] = 5e-4  # s
     further_traces: ClassVar[tuple[str, ...]] = (
         "wheel_load_left",
         "wheel_load_right",
@@ -68,7 +70,20 @@ class Locomotive(BrakedWheelsets):
     @property
     def model(self) -> Multibody:
         """Topology, and the numbers of the file."""
-        return load_multibody(self.vehicle.multibody)
+        return _of_file(self.vehicle.multibody, self.changed)
+
+    @property
+    def own_bounds(self) -> dict[str, Ends]:
+        """Bounds of the numbers of the file that are not those of the vehicle [SI units]."""
+        model = self.model
+        gears = [gear for name in model.wheelset_names for gear in gears_of(model, name)]
+        rests = [model.body(gear.rotor) for gear in gears] or [model.body(model.wheelset_names[0])]
+        shared = {*_SHARED, *(f"{body.kind}.inertia_axial" for body in rests)}
+        return {name: ends for name, ends in dict(model.bounds).items() if name not in shared}
+
+    def with_number(self, name: str, value: float) -> Self:
+        """Return the same plant with another value of one number of the file."""
+        return replace(self, changed=(*self.changed, (name, value)))
 
     @property
     def offsets(self) -> tuple[Number, ...]:
@@ -85,7 +100,7 @@ class Locomotive(BrakedWheelsets):
     @property
     def longest_step(self) -> float:
         """Longest step that bounce of wheels on rails and driveline allow [s]."""
-        return _LONGEST_STEP
+        return self.longest
 
     @property
     def number_names(self) -> tuple[str, ...]:
@@ -96,7 +111,7 @@ class Locomotive(BrakedWheelsets):
     @property
     def numbers(self) -> tuple[float, ...]:
         """These numbers for the vehicle."""
-        return _numbers(self.vehicle)
+        return _numbers(self.vehicle, self.changed)
 
     def on(self, vehicle: Vehicle) -> "Locomotive":
         """Return the same plant with the numbers of another vehicle."""
@@ -170,19 +185,35 @@ class Locomotive(BrakedWheelsets):
         A wheelset spins against the torsion of its driveline, without the rotor.
         """
         vehicle, numbers = self.vehicle, dict(zip(self.number_names, self.numbers, strict=True))
-        stiffness = adhesion.contact_stiffness(vehicle.contact, slip_model.static_wheel_load(vehicle))
         body = self.model.body(self.model.wheelset_names[0])
         mass, spin = numbers[f"{body.kind}.mass"], numbers[f"{body.kind}.inertia_axial"]
         along = 0.5 * (rail.adhesion_reduction + rail.slip_reduction)
         across = numbers["lateral_slope"] * numbers["kalker_c22"] / vehicle.contact.kalker_c11
         per_slip = max(along * (vehicle.wheel_radius**2 / spin + 1.0 / mass), across / mass)
-        return 4.0 / math.pi * stiffness * _WHEELS * per_slip / speed
+        return self._kalker_slope * per_slip / speed
+
+    def creep_growth(self, rail: Rail) -> float:
+        """Return this rate over that of a rigid wheelset with all that turns with it, in its place."""
+        along = 0.5 * (rail.adhesion_reduction + rail.slip_reduction)
+        rigid = self._kalker_slope * along * self.vehicle.wheel_radius**2 / self.vehicle.wheelset_inertia
+        return float(self.creep_rate(rail, 1.0) / rigid)
+
+    @property
+    def _kalker_slope(self) -> Number:
+        """Initial slope of the force of an axle over its creepage by Kalker's theory, under the static load [N]."""
+        load = slip_model.static_wheel_load(self.vehicle)
+        return _WHEELS * 4.0 / math.pi * adhesion.contact_stiffness(self.vehicle.contact, load)
+
+
+def _of_file(name: str, changed: tuple[tuple[str, float], ...]) -> Multibody:
+    model = load_multibody(name)
+    return model.with_numbers(dict(changed)) if changed else model
 
 
 @lru_cache(maxsize=256)
-def _numbers(vehicle: Vehicle) -> tuple[float, ...]:
+def _numbers(vehicle: Vehicle, changed: tuple[tuple[str, float], ...]) -> tuple[float, ...]:
     """Numbers of the multibody vehicle with the totals of a vehicle, in the order of ``number_names``."""
-    model = balanced(_with_totals(load_multibody(vehicle.multibody), vehicle), _rest(vehicle.multibody))
+    model = balanced(_with_totals(_of_file(vehicle.multibody, changed), vehicle), _rest(vehicle.multibody))
     touching = wheel_rail(vehicle.contact, poisson=steel().poisson)
     contact = (getattr(touching, name) for name in _CONTACT)
     return tuple(map(float, (*model.numbers.values(), *model.preloads.values(), *contact)))
@@ -230,6 +261,7 @@ class LinearLocomotive(Locomotive):
 
     name: ClassVar[str] = "locomotive-linear"
     linear: ClassVar[bool] = True
+    longest: ClassVar[float] = 1e-3  # s
 
     def on(self, vehicle: Vehicle) -> "LinearLocomotive":
         """Return the same plant with the numbers of another vehicle."""

@@ -231,6 +231,9 @@ class CoupledPlant(Plant, Protocol):
             The last of these alone [N].
         """
 
+    def creep_growth(self, rail: Rail) -> float:
+        """Return the fastest rate of creep over that of rigid wheelsets with the inertia of the vehicle, at least 1."""
+
 
 def is_coupled(plant: Plant) -> TypeGuard[CoupledPlant]:
     """Tell whether the right-hand side of a plant is one function."""

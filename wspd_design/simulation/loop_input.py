@@ -214,6 +214,8 @@ def _lanes(plant: Plant, scenario: Scenario, *, calm: bool) -> list[list[float]]
     usual = not (
         calm or vehicle.brake.axle_shares or vehicle.dynamic
     )  # so that campaigns do not wait for copies
+    below = {*rails, *(patch.rail for patch in scenario.patches)}
+    growth = max(map(plant.creep_growth, below)) if is_coupled(plant) else 1.0
     return [
         parameter_values(
             vehicle if usual else _lane_vehicle(vehicle, axle, calm=calm),
@@ -223,6 +225,7 @@ def _lanes(plant: Plant, scenario: Scenario, *, calm: bool) -> list[list[float]]
                 axle_offset=offsets[axle],
                 braking_time=scenario.start.braking_time,
                 reservoir_drain=_drain(vehicle, axle),
+                creep_growth=growth,
             ),
         )
         for axle in range(plant.axles)

@@ -58,7 +58,7 @@ MISTAKES = {
         WAGON,
         "[numbers.car_body.height]",
         "[numbers.car_body.gyration_x2]",
-        "no number of this",
+        "not a number of this",
     ),
     "carries without stiffness": (
         WAGON,

@@ -54,6 +54,9 @@ class CoupledPlanar(BrakedWheelsets):
     def creep_rate(self, rail, speed):
         return self.planar.creep_rate(rail, speed)
 
+    def creep_growth(self, rail):  # noqa: ARG002
+        return 1.0
+
     def motion(
         self,
         rails,

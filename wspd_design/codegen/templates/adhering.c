@@ -2,10 +2,10 @@
 
    With y the sliding speed v - R omega of a wheel and L its rate of settling, y' = L (y - y0) + n, and the method of Cox
    and Matthews (2002) integrates the first part exactly and n by Runge-Kutta of order four; with L = 0 it is the classical
-   one. The train and everything else take the classical stages. */
+   one. The train and everything else take the classical stages, and so do the wheels of a coupled plant. */
+#define STEADY 0.3    /* relative: change of a rate of settling within a step, at most */
 #if !COUPLED
 #define SETTLED 1e-3 /* relative: a sliding speed that is off its balance by no more has settled */
-#define STEADY 0.3    /* relative: change of a rate of settling within a step, at most */
 #define FAST 1.0     /* step times rate of settling, from which on a step is exponential */
 
 typedef struct {

@@ -68,7 +68,6 @@ static double before_change(const Loop *loop, int s, double step)
     return step;
 }
 
-#if !COUPLED
 /* Lengthen the steps where the creep curves are flat, as they are at a sliding wheel: a step is limited by the steeper
    of the slopes now and where the wheel would be after the step. A wheel on its way to rolling is taken as rolling.
    A wheel that adheres and has settled limits nothing: it takes an exponential step. The train may lose a share of its
@@ -86,7 +85,11 @@ static INLINE void lengthen(Loop *loop, const double *limited, double *allowed)
     spread(loop->now.speed, speed);
     spread(ahead, later);
     slope_kernel(loop->lane_fixed, speed, loop->now.wheel, load, loop->contact, damping, slope);
+    #if COUPLED
+    (void)limited;
+    #else
     settle(loop, limited, speed, slope, loop->settling);
+    #endif
     memcpy(wheel, loop->now.wheel, sizeof wheel);
     EACH_LANE {
         double rolling = later[l] / radius[l], side = speed[l] > radius[l] * wheel[l] ? 1.0 : -1.0;
@@ -113,7 +116,6 @@ static INLINE void lengthen(Loop *loop, const double *limited, double *allowed)
     }
 }
 
-#endif
 /* Step of every stop: what the slope of the creep curve allows, in equal parts up to the next valve edge or goal. */
 static INLINE void choose_steps(Loop *loop, double *next)
 {
@@ -149,10 +151,8 @@ static INLINE void choose_steps(Loop *loop, double *next)
         limited[s] = allowed[s] < most && loop->active[s] != 0.0 ? 1.0 : 0.0;
         bound = limited[s] > bound ? limited[s] : bound;
     }
-    #if !COUPLED
     EACH_LANE loop->settling[l] = 0.0;
     if (bound != 0.0) lengthen(loop, limited, allowed);
-    #endif
     EACH_STOP {
         double wanted = allowed[s] < set->longest_step ? allowed[s] : set->longest_step;
         double count = ceil(span[s] / wanted * (1.0 - 1e-12));

@@ -252,7 +252,7 @@ def _named(
             yield from _named(raw, wanted, where, f"{name}.")
         else:
             raise UserError(
-                f"[numbers.{name}] in {where} is no number of this vehicle{did_you_mean(name, wanted)}; correct its "
+                f"[numbers.{name}] in {where} is not a number of this vehicle{did_you_mean(name, wanted)}; correct its "
                 "name, or leave it out where no body, element or place uses it."
             )
 
