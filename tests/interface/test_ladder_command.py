@@ -4,7 +4,7 @@ import json
 
 from wspd_design.exchange.ladder_forms import LADDER
 
-SLOW = ("--speed", "30 km/h")
+SLOW = ("--vehicle", "coach", "--speed", "30 km/h")
 
 
 def test_every_model_has_its_rows(wspd):
@@ -26,5 +26,5 @@ def test_json_has_its_form_and_the_numbers_of_a_stop(wspd):
 
 
 def test_a_stop_too_short_for_a_vibration_has_none(wspd):
-    found = json.loads(wspd("ladder", "none", "--speed", "11 km/h", "--json").out)
+    found = json.loads(wspd("ladder", "none", "--vehicle", "coach", "--speed", "10.2 km/h", "--json").out)
     assert found["rungs"][0]["axles"][0]["vibration_m_s"] is None

@@ -11,11 +11,11 @@ def written(monkeypatch):
     """Write a stand-in for the page."""
     folders = []
 
-    def write_reproduction(folder, progress):
+    def write_reproduction(folder, progress, *, locomotive):
         progress("Table 10")
         folder.mkdir(exist_ok=True)
         (folder / "index.html").write_text("new")
-        folders.append(folder.name)
+        folders.append(folder.name if locomotive else f"{folder.name} small")
         return (folder / "index.html",)
 
     stand_in = ModuleType("wspd_design.reporting.reproduction")
@@ -29,6 +29,8 @@ def test_it_says_where(wspd, written):
     outcome = wspd("reproduce", "-o", "paper")
     assert (outcome.code, outcome.err) == (0, "")
     assert written == ["reproduction", "paper"]
+    assert wspd("reproduce", "--small", "-o", "other").code == 0
+    assert written[-1] == "other small"
     assert "Written: paper/index.html" in outcome.out
 
 

@@ -18,7 +18,7 @@ def written(tmp_path_factory):
     told = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", "1790000000")
-        paths = write_reproduction(folder, told.append)
+        paths = write_reproduction(folder, told.append, locomotive=False)
     return paths, told
 
 

@@ -11,11 +11,11 @@ from wspd_design.design.case import Case
 from wspd_design.exchange.campaign_forms import CAMPAIGN, CAMPAIGNS
 from wspd_design.exchange.check_forms import VERIFICATION
 from wspd_design.exchange.ladder_forms import LADDER
-from wspd_design.exchange.ladder_objects import rungs_object
 from wspd_design.exchange.objects import linearization_point_object, scenario_object, timed_check_object
 from wspd_design.exchange.stop_forms import COMPARISON
 from wspd_design.exchange.study_forms import LINEARIZATION
 from wspd_design.exchange.version import program_version
+from wspd_design.reporting.ladder_record import rungs_object
 from wspd_design.simulation.records import Scenario
 
 if TYPE_CHECKING:

@@ -369,7 +369,8 @@ class Step:
 
     def _settled(self, speed: Any, wheel: Any) -> tuple[Any, Any, Any, Any]:
         """Wheel speeds, locks and holds after the step, and the impulse that the brake could not pass on."""
-        inertia, held, below = self.given["inertia"], self.state["held"], minimum(wheel, 0.0)
+        inertia, held = self.given["inertia"], self.state["held"]
+        below = where(self.state["locked"], 0.0, minimum(wheel, 0.0))  # a locked wheel may follow its pads
         locked = where(below < 0.0, 1.0, self.state["locked"])
         wheel, lost = wheel - below, inertia * below
         if not self.holding:

@@ -18,7 +18,11 @@ RUNG_AXLE = Form(
     keys=(
         Key(name="slip_mean", kind="number", meaning="above 10 km/h"),
         Key(name="slip_max", kind="number", meaning="likewise"),
-        Key(name="static_load_N", kind="number", meaning="of one wheel before the brake is applied"),
+        Key(
+            name="static_load_N",
+            kind="number",
+            meaning="of one wheel before the brake is applied, mean of both",
+        ),
         nullable("braking_load_N", "mean while the brake is built up; null where it never is"),
         nullable("wheel_load_spread_N", "standard deviation about a moving mean over 1 s, likewise"),
         Key(name="least_load_N", kind="number", meaning="above 10 km/h"),
@@ -41,6 +45,11 @@ RUNG = Form(
         Key(name="stopping_time_s", kind="number", meaning="until the ending"),
         nullable("slip_mean", "above 10 km/h, mean of the wheelsets with a brake"),
         Key(name="axles", kind=RUNG_AXLE, many=(1, None), meaning="each wheelset, front first"),
+        Key(
+            name="distance_spread_m",
+            kind="number",
+            meaning="over starts that nobody can tell apart; 0 unless the closed loop is sensitive",
+        ),
         Key(name="step_change", kind="number", meaning="relative change of the distance with half the steps"),
     ),
 )

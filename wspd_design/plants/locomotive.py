@@ -12,12 +12,13 @@ followed.
 import math
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, Self
 
 from wspd_design.model import adhesion
 from wspd_design.model import slip as slip_model
 from wspd_design.model.number import Number
 from wspd_design.model.wheel_rail import WheelRail, wheel_rail
+from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import steel
 from wspd_design.parameters.records import Rail, Vehicle
@@ -40,6 +41,7 @@ class Locomotive(BrakedWheelsets):
     """The multibody vehicle with finite rotations."""
 
     vehicle: Vehicle
+    changed: tuple[tuple[str, float], ...] = ()  # numbers of the file that are others, by their names
     name: ClassVar[str] = "locomotive"
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False
@@ -68,7 +70,20 @@ class Locomotive(BrakedWheelsets):
     @property
     def model(self) -> Multibody:
         """Topology, and the numbers of the file."""
-        return load_multibody(self.vehicle.multibody)
+        return _of_file(self.vehicle.multibody, self.changed)
+
+    @property
+    def own_bounds(self) -> dict[str, Ends]:
+        """Bounds of the numbers of the file that are not those of the vehicle [SI units]."""
+        model = self.model
+        gears = [gear for name in model.wheelset_names for gear in gears_of(model, name)]
+        rests = [model.body(gear.rotor) for gear in gears] or [model.body(model.wheelset_names[0])]
+        shared = {*_SHARED, *(f"{body.kind}.inertia_axial" for body in rests)}
+        return {name: ends for name, ends in dict(model.bounds).items() if name not in shared}
+
+    def with_number(self, name: str, value: float) -> Self:
+        """Return the same plant with another value of one number of the file."""
+        return replace(self, changed=(*self.changed, (name, value)))
 
     @property
     def offsets(self) -> tuple[Number, ...]:
@@ -96,7 +111,7 @@ class Locomotive(BrakedWheelsets):
     @property
     def numbers(self) -> tuple[float, ...]:
         """These numbers for the vehicle."""
-        return _numbers(self.vehicle)
+        return _numbers(self.vehicle, self.changed)
 
     def on(self, vehicle: Vehicle) -> "Locomotive":
         """Return the same plant with the numbers of another vehicle."""
@@ -190,10 +205,15 @@ class Locomotive(BrakedWheelsets):
         return _WHEELS * 4.0 / math.pi * adhesion.contact_stiffness(self.vehicle.contact, load)
 
 
+def _of_file(name: str, changed: tuple[tuple[str, float], ...]) -> Multibody:
+    model = load_multibody(name)
+    return model.with_numbers(dict(changed)) if changed else model
+
+
 @lru_cache(maxsize=256)
-def _numbers(vehicle: Vehicle) -> tuple[float, ...]:
+def _numbers(vehicle: Vehicle, changed: tuple[tuple[str, float], ...]) -> tuple[float, ...]:
     """Numbers of the multibody vehicle with the totals of a vehicle, in the order of ``number_names``."""
-    model = balanced(_with_totals(load_multibody(vehicle.multibody), vehicle), _rest(vehicle.multibody))
+    model = balanced(_with_totals(_of_file(vehicle.multibody, changed), vehicle), _rest(vehicle.multibody))
     touching = wheel_rail(vehicle.contact, poisson=steel().poisson)
     contact = (getattr(touching, name) for name in _CONTACT)
     return tuple(map(float, (*model.numbers.values(), *model.preloads.values(), *contact)))

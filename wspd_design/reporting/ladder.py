@@ -1,5 +1,6 @@
 """The ladder of models in tables, for a page and for the terminal."""
 
+import math
 from collections.abc import Callable
 from typing import TypeAlias
 
@@ -35,6 +36,7 @@ def stops_table(found: Ladder, *, caption: str = "", anchor: str = "") -> Table:
             ColumnOf(title="Lock", unit="s", decimals=2, read=lambda rung: rung.lock),
             worst("Spread of load", "%", 1, lambda axle: PERCENT * axle.relative_spread),
             worst("Vibration", "m/s", 3, lambda axle: axle.vibration),
+            ColumnOf(title="Spread", unit="m", significant=2, read=lambda rung: rung.spread or math.nan),
             ColumnOf(title="Half steps", unit="relative", significant=1, read=lambda rung: rung.step_change),
         ),
         caption=caption,
@@ -101,6 +103,16 @@ def _tolerance(agreement: Agreement) -> str:
 
 def _size(agreement: Agreement, value: float) -> str:
     return numbers.significant(value * (PERCENT if agreement.measure.share else 1.0), 2)
+
+
+def sensitivity(found: Ladder) -> str:
+    """Say what a sensitive loop makes of small differences; nothing where no loop is."""
+    if not found.spread:
+        return ""
+    return (
+        f" The closed loop is sensitive: starts that nobody can tell apart spread its distance by up to "
+        f"{numbers.significant(found.spread, 2)} m, and differences between models below that say nothing."
+    )
 
 
 def sufficiency(found: Ladder) -> str:

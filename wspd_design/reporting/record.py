@@ -5,7 +5,6 @@ from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
-from wspd_design.exchange.ladder_objects import rungs_object
 from wspd_design.exchange.objects import (
     brake_object,
     check_object,
@@ -19,6 +18,7 @@ from wspd_design.exchange.objects import (
 from wspd_design.exchange.plain import finite
 from wspd_design.exchange.study_forms import REPORT
 from wspd_design.exchange.version import program_version
+from wspd_design.reporting.ladder_record import rungs_object
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.judgment import Requirement

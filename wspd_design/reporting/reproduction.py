@@ -11,7 +11,7 @@ from wspd_design.reporting.made_by import made_by
 from wspd_design.reporting.output import write_document
 from wspd_design.reporting.paper.figures import figures
 from wspd_design.reporting.paper.inferred import inferred
-from wspd_design.reporting.paper.locomotive import locomotive
+from wspd_design.reporting.paper.locomotive import locomotive as on_locomotive
 from wspd_design.reporting.paper.model import model
 from wspd_design.reporting.paper.parts import parts
 from wspd_design.reporting.paper.table10 import table10
@@ -26,7 +26,9 @@ NAME = "paper"
 SECTIONS = (conclusions, table10, parts, figures, track)
 
 
-def write_reproduction(folder: Path, progress: Callable[[str], object]) -> tuple[Path, ...]:
+def write_reproduction(
+    folder: Path, progress: Callable[[str], object], *, locomotive: bool = True
+) -> tuple[Path, ...]:
     """Compute Section 7 of the paper again and write the page about it, as HTML and as PDF.
 
     Parameters
@@ -35,6 +37,8 @@ def write_reproduction(folder: Path, progress: Callable[[str], object]) -> tuple
         Where the files go; it is made if it does not exist.
     progress : callable
         Told each stage before it starts.
+    locomotive : bool
+        Whether to simulate the stops on the multibody model, too.
 
     Returns
     -------
@@ -53,7 +57,8 @@ def write_reproduction(folder: Path, progress: Callable[[str], object]) -> tuple
             f"folder {folder} cannot be made ({error.strerror}); choose one that can be written"
         ) from error
     timestamp = report_time()
-    made = reproduce(progress, command=f"wspd reproduce -o {folder.as_posix()}")
+    small = "" if locomotive else " --small"
+    made = reproduce(progress, command=f"wspd reproduce{small} -o {folder.as_posix()}", locomotive=locomotive)
     progress("typesetting")
     document = reproduction_document(made, timestamp)
     paths = (folder / f"{NAME}.html", folder / f"{NAME}.pdf")
@@ -92,7 +97,7 @@ def _on_locomotive(made: Reproduction) -> tuple[Block, ...]:
         return ()
     return (
         *model(found.model, load_entries("vehicle", made.small.vehicle.name)),
-        *locomotive(made.small, found),
+        *on_locomotive(made.small, found),
         *inferred(found.model, found.tornado),
     )
 

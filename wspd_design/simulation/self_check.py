@@ -91,7 +91,9 @@ def simulate_checked(
     return run, check
 
 
-def perturbed_spread(plant: Plant, controller: Law, scenario: Scenario, run: Run) -> float:
+def perturbed_spread(
+    plant: Plant, controller: Law, scenario: Scenario, run: Run, *, neighbours: int = PERTURBED_RUNS
+) -> float:
     """Range of the distance over slightly different initial speeds [m]; 0 where a neighbour stays near the run."""
 
     def neighbour(number: int) -> Run:
@@ -104,7 +106,7 @@ def perturbed_spread(plant: Plant, controller: Law, scenario: Scenario, run: Run
     slipped = slip_difference(plant.vehicle, run, nearest) > SLIP_AMPLIFICATION * PERTURBATION
     if not moved and not slipped:
         return 0.0
-    further = (neighbour(number).totals.distance for number in range(2, PERTURBED_RUNS + 1))
+    further = (neighbour(number).totals.distance for number in range(2, neighbours + 1))
     distances = (distance, nearest.totals.distance, *further)
     return max(distances) - min(distances)
 

@@ -265,7 +265,7 @@ def dossier(
             own,
             scenario,
             slip_reference=asked.slip,
-            plants=models_of(of_vehicle),
+            models=models_of(of_vehicle),
             progress=lambda model: progress(f"ladder of models: {model}"),
         )
         if ladder

@@ -11,6 +11,7 @@ from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import load_rail, load_rail_profile
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.planar import Planar
+from wspd_design.simulation.locked import locked
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.peak import peak_adhesion
 from wspd_design.simulation.records import FAULT_KINDS, Ending, Fault, Patch, Run, Scenario
@@ -144,7 +145,7 @@ def longest_locks(run: Run) -> tuple[float, ...]:
     import numpy as np
 
     judged = run.speed > JUDGING_SPEED
-    return tuple(_longest(run.time, np.asarray(judged & (column <= 0.0))) for column in run.wheel_speed.T)
+    return tuple(_longest(run.time, np.asarray(judged & column)) for column in locked(run).T)
 
 
 def _longest(time: "NDArray[np.float64]", flags: "NDArray[np.bool_]") -> float:

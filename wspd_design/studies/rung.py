@@ -30,8 +30,8 @@ class AxleFigures:
     slip_max: float  # -
     static_load: float  # N, one wheel, before the brake is applied
     braking_load: float  # N, mean while the brake is built up
-    load_spread: float  # N, standard deviation about a moving mean over 1 s
-    least_load: float  # N
+    load_spread: float  # N, standard deviation about a moving mean over 1 s, of the wheel with more of it
+    least_load: float  # N, of either wheel
     lock: float  # s, longest without a break
     vibration: float  # m/s, rms of the rim speed from 8 to 18 Hz in the half second with most of it
     vibration_frequency: float  # Hz, at which the spectrum of that half second is highest
@@ -59,6 +59,7 @@ class Rung:
     metrics: Metrics
     axles: tuple[AxleFigures, ...]  # of every wheelset of the vehicle, front first
     step_change: float  # -, relative change of the distance with half the steps
+    spread: float  # m, of the distance over starts that nobody can tell apart; 0 unless the loop is sensitive
 
     @property
     def lock(self) -> float:
@@ -98,6 +99,7 @@ def axle_figures(
     for axle in range(run.slip.shape[1]):
         slip, load = at_times(run.slip[:, axle]), at_times(run.wheel_load[:, axle])
         rim = wheel_radius * at_times(run.wheel_speed[:, axle])
+        wheels = [at_times(trace[:, axle]) for trace in _single_wheels(run)]
         place, rms, frequency = _vibration(rim, judged)
         part = slice(place, place + round(WINDOW * _RATE))
         found.append(
@@ -106,8 +108,10 @@ def axle_figures(
                 slip_max=float(slip[judged].max()),
                 static_load=float(run.wheel_load[0, axle]),
                 braking_load=float(load[braking].mean()) if braking.any() else math.nan,
-                load_spread=float((load - _moving_mean(load))[braking].std()) if braking.any() else math.nan,
-                least_load=float(load[judged].min()),
+                load_spread=max(float((each - _moving_mean(each))[braking].std()) for each in wheels)
+                if braking.any()
+                else math.nan,
+                least_load=min(float(each[judged].min()) for each in wheels),
                 lock=locks[axle],
                 vibration=rms,
                 vibration_frequency=frequency,
@@ -116,6 +120,14 @@ def axle_figures(
             )
         )
     return tuple(found) if len(found) == wheelsets else tuple(found) * wheelsets
+
+
+def _single_wheels(run: Run) -> "tuple[Trace, ...]":
+    """Return the loads of left and of right wheels where the plant tells them apart, else of one for both."""
+    sides = tuple(
+        run.further[name] for name in ("wheel_load_left", "wheel_load_right") if name in run.further
+    )
+    return sides or (run.wheel_load,)
 
 
 def _moving_mean(values: "Trace") -> "Trace":

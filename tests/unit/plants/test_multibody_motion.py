@@ -8,6 +8,7 @@ from wspd_design.model.wheel_rail import wheel_rail
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.plants.multibody.factoring import factors, sparse
 from wspd_design.plants.multibody.loading import load_multibody
+from wspd_design.plants.multibody.mechanics import mechanics
 from wspd_design.plants.multibody.motion import rest_names, rolling, vehicle_motion
 from wspd_design.plants.multibody.preloads import balanced
 from wspd_design.plants.multibody.wheels import Irregularity
@@ -83,17 +84,47 @@ def test_straight_rolling_needs_no_force(wagon):
     assert np.abs(wheel_rates).max() < 1e-9
 
 
-def test_a_lock_holds_the_spin_exactly_and_tells_the_torque(wagon):
+def test_a_lock_holds_the_disc_against_its_pads_and_tells_the_torque(wagon):
     motion, state = built(wagon), disturbed(wagon)
     torques = np.array([3e3, 4e3])
     _, rates, rest, transmitted, *_ = motion(state, torques, [1, 0])
-    assert rates[0] == 0.0
-    assert rates[1] != 0.0
     assert transmitted[1] == torques[1]
     # The torque that it tells, put on a free wheelset, just holds it.
     free = motion(state, transmitted, 0)
-    assert abs(free[1][0]) < 1e-9
+    np.testing.assert_allclose(free[1], rates, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(free[2], rest, rtol=1e-9, atol=1e-7)
+
+
+@pytest.mark.parametrize("locks", [[1, 0], [1, 1]])
+def test_what_still_slides_at_a_locked_pad_comes_to_rest(wagon, locks):
+    """The power of a brake is its torque times the sliding of its pads, whose rate is that sliding over 5 ms."""
+    n, axles = len(wagon.coordinates), wagon.wheelsets
+    q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
+    along_pads = ca.Function("pads", [q, v], [mechanics(wagon, q, v).brake_directions.T @ v])
+    state = disturbed(wagon)
+    state[-20:] += 0.01  # m/s and rad/s
+    acceleration, wheel_rates, rest_rates, *_ = built(wagon)(state, 0, locks)
+    place = np.array([0.0, *state[1 + axles :][: n - 1]])
+    slides, changes = (
+        np.array(along_pads(place, full_velocity(wagon, *each))).ravel()
+        for each in (
+            (state[0], state[1 : 1 + axles], state[1 + axles :][n - 1 :]),
+            (acceleration, wheel_rates, rest_rates[n - 1 :]),
+        )
+    )
+    for axle in range(axles):
+        if locks[axle]:
+            assert changes[axle] == pytest.approx(-slides[axle] / 5e-3, rel=1e-9)
+        else:
+            assert changes[axle] != pytest.approx(-slides[axle] / 5e-3, rel=1e-3)
+
+
+def full_velocity(model, forward, wheels, others):
+    """Return the rates of all coordinates from those of the state."""
+    known = dict(zip((name for name in rest_names(model) if name.endswith("'")), others, strict=True))
+    known |= {f"{name}.pitch'": wheel for name, wheel in zip(model.wheelset_names, wheels, strict=True)}
+    known[f"{model.coordinates[0]}'"] = np.ravel(forward)[0]
+    return np.array([known[f"{name}'"] for name in model.coordinates])
 
 
 def test_resistance_slows_and_damping_acts_on_both_wheels(wagon):

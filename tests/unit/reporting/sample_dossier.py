@@ -244,7 +244,13 @@ def sample_ladder() -> Ladder:
     axles = axle_figures(made.run, wheelsets=4, wheel_radius=0.55, build_up=1.2)
     alike = tuple(replace(axle, braking_load=axle.static_load) for axle in axles)
     top = Rung(
-        title="planar", plant="planar", run=made.run, metrics=made.metrics, axles=axles, step_change=2e-9
+        title="planar",
+        plant="planar",
+        run=made.run,
+        metrics=made.metrics,
+        axles=axles,
+        step_change=2e-9,
+        spread=0.0,
     )
     loaded = tuple(replace(axle, static_load=94e3) for axle in axles)
     return Ladder(

@@ -9,6 +9,7 @@ from tests.unit.reporting.sample_dossier import sample_dossier, sample_ladder
 from wspd_design.reporting.blocks import Figure, Paragraph, Table
 from wspd_design.reporting.figure_style import figure_style, new_figure
 from wspd_design.reporting.figures.ladder import rungs
+from wspd_design.reporting.ladder import sensitivity
 from wspd_design.reporting.numbering import number, unreferenced
 from wspd_design.reporting.record import report_record
 from wspd_design.reporting.report import report_document
@@ -33,6 +34,13 @@ def test_what_suffices_is_told_and_what_does_not_is_not():
     assert planar
     assert "quarter: distance, time" in quarter
     assert "load transfer" not in quarter.partition("quarter: ")[2]
+
+
+def test_a_sensitive_loop_limits_what_differences_say():
+    assert sensitivity(sample_ladder()) == ""
+    low, top = sample_ladder().rungs
+    shaky = replace(sample_ladder(), rungs=(low, replace(top, spread=0.31)))
+    assert "spread its distance by up to 0.31 m" in sensitivity(shaky)
 
 
 def test_every_table_and_figure_says_what_is_inferred():

@@ -22,7 +22,7 @@ def found(er24pc, make_controller):
         make_controller("afsmc"),
         scenario,
         slip_reference=0.14,
-        plants=models_of(er24pc),
+        models=models_of(er24pc)[:2],
     )
 
 
@@ -37,7 +37,14 @@ def figures(run, build_up=0.0):
 
 def test_the_models_of_a_vehicle_are_the_rungs(found):
     assert [each.plant for each in found.rungs] == ["quarter", "planar"]
-    assert models_of(replace(load_vehicle("er24pc"), wheelsets=1, axles_per_bogie=1)) == ("quarter",)
+    single = replace(load_vehicle("er24pc"), wheelsets=1, axles_per_bogie=1, multibody="")
+    assert [each.title for each in models_of(single)] == ["quarter"]
+    assert [each.title for each in models_of(load_vehicle("er24pc"))] == [
+        "quarter",
+        "planar",
+        "locomotive",
+        "irregular track",
+    ]
 
 
 def test_one_wheelset_stands_for_all(found):
@@ -117,6 +124,18 @@ def test_the_spread_of_a_load_is_that_of_its_noise(planar):
     axles = figures(replace(run, wheel_load=load))
     assert axles[1].load_spread == pytest.approx(5e3 / math.sqrt(2.0), rel=0.02)
     assert axles[0].load_spread < 1e-6
+
+
+def test_the_wheel_that_swings_more_counts_where_both_are_told_apart(planar):
+    run = planar.run
+    left = run.wheel_load + 4e3 * np.sin(2.0 * math.pi * 8.0 * run.time)[:, np.newaxis]
+    right = 2.0 * run.wheel_load - left
+    axles = figures(replace(run, further={"wheel_load_left": left, "wheel_load_right": right}))
+    alone = figures(run)
+    for both, one in zip(axles, alone, strict=True):
+        assert both.braking_load == pytest.approx(one.braking_load, rel=1e-12)
+        assert both.load_spread == pytest.approx(math.hypot(one.load_spread, 4e3 / math.sqrt(2.0)), rel=0.02)
+        assert both.least_load < one.least_load - 3.5e3
 
 
 def test_loads_count_once_the_brake_is_built_up(planar):

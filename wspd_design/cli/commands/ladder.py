@@ -1,5 +1,6 @@
 """``wspd ladder``: the same stop on every model of a vehicle."""
 
+import math
 from typing import TYPE_CHECKING
 
 from wspd_design.cli import options
@@ -24,6 +25,7 @@ _STOPS: "tuple[ColumnOf[Rung], ...]" = (
     ColumnOf(title="slip\nmean", decimals=3, read=lambda rung: rung.metrics.slip_mean),
     ColumnOf(title="slip\nmax", decimals=3, read=lambda rung: max(each.slip_max for each in rung.axles)),
     ColumnOf(title="lock", unit="s", decimals=2, read=lambda rung: rung.lock),
+    ColumnOf(title="spread", unit="m", significant=2, read=lambda rung: rung.spread or math.nan),
     ColumnOf(title="steps", significant=1, read=lambda rung: rung.step_change),
 )
 _AXLES: "tuple[ColumnOf[tuple[Rung, int, AxleFigures]], ...]" = (
@@ -80,7 +82,7 @@ def ladder(
             case.controller,
             stop,
             slip_reference=case.specification.slip,
-            plants=models_of(case.vehicle),
+            models=models_of(case.vehicle),
             progress=tell,
         )
     if as_json:
@@ -90,7 +92,7 @@ def ladder(
 
 
 def _show(found: "Ladder") -> None:
-    from wspd_design.reporting.ladder import agreements_table, sufficiency
+    from wspd_design.reporting.ladder import agreements_table, sensitivity, sufficiency
 
     out = console()
     speed = f"{found.initial_speed * 3.6:g} km/h"
@@ -103,8 +105,14 @@ def _show(found: "Ladder") -> None:
     out.print(
         "Slip and vibration above 10 km/h, loads of one wheel while the brake is built up: spread about a moving "
         "mean over 1 s; vibration: rim speed from 8 to 18 Hz, rms in the half second with most of it, and where its "
-        "spectrum is highest; steps: change of the distance with half the steps.",
+        "spectrum is highest; spread: of d, over starts that nobody can tell apart; steps: change of d with half the "
+        "steps.",
         style="dim",
     )
     out.print(spaced(terminal_table(agreements_table(found))))
-    out.print(f"What suffices here, beside {found.rungs[-1].title}: {sufficiency(found)}.", markup=False)
+    out.print(
+        f"What suffices here, beside {found.rungs[-1].title}: {sufficiency(found)}.{sensitivity(found)}",
+        markup=False,
+    )
+    if found.remark:
+        out.print(found.remark, style="yellow", markup=False)

@@ -14,6 +14,9 @@ def reproduce(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FOLDER", help="Folder to write to.")
     ] = Path("reproduction"),
+    small: Annotated[
+        bool, typer.Option("--small", help="Leave out the model with 82 degrees of freedom.")
+    ] = False,
     force: options.ForceOption = False,
 ) -> None:
     """Compute the tables and figures of the paper and say which of its conclusions hold."""
@@ -21,6 +24,6 @@ def reproduce(
     from wspd_design.reporting.reproduction import write_reproduction
 
     with progress() as tell:
-        written = write_reproduction(output, tell)
+        written = write_reproduction(output, tell, locomotive=not small)
     for path in written:
         console().print(f"Written: {path}", style="bold", markup=False, soft_wrap=True)

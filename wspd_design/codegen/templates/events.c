@@ -96,7 +96,8 @@ static INLINE void settle_locks(Loop *loop, const double *lane_step, Motion *rea
         lane[JUDGED_LOCK * LANES + l] += judged;
         lane[LONGEST_LOCK * LANES + l] = length > longest ? length : longest;
         loop->lock_length[l] = length;
-        double below = wheel < 0.0 ? wheel : 0.0; /* take back the torque that the brake could not pass on since */
+        /* Take back the torque that the brake could not pass on since; a locked wheel may follow its pads. */
+        double below = locked == 0.0 && wheel < 0.0 ? wheel : 0.0;
         lane[TORQUE * LANES + l] += inertia[l] * below;
         reached->wheel[l] = wheel - below;
         loop->locked[l] = below < 0.0 ? 1.0 : locked;

@@ -14,7 +14,7 @@ from wspd_design.model.wheel_rail import WheelRail, creep_forces, flange_force, 
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail
 from wspd_design.plants.multibody.elements import gear_moment
-from wspd_design.plants.multibody.factoring import factors, sparse
+from wspd_design.plants.multibody.factoring import Sparse, factors, sparse
 from wspd_design.plants.multibody.kinematics import first_coordinates
 from wspd_design.plants.multibody.mechanics import mechanics
 from wspd_design.plants.multibody.records import Multibody, gears_of
@@ -22,6 +22,7 @@ from wspd_design.plants.multibody.wheels import Irregularity, Wheel
 
 _PITCH = 4  # among the coordinates of a wheelset
 _PER_AXLE = 2  # wheels
+_SETTLING = 5e-3  # s, in which what still slides at a pad when its wheelset locks comes to rest
 
 
 class CoupledMotion(NamedTuple):
@@ -85,7 +86,7 @@ def vehicle_motion(
     torques : sequence of number
         Braking torque of each wheelset [N m].
     locked : sequence of number
-        1 for a wheelset whose spin is held, 0 for one that rolls.
+        1 for a wheelset whose disc is held by its pads, 0 for one that rolls.
     rails : sequence of Rail
         Under each wheelset.
     irregularities : tuple of Irregularity, optional
@@ -122,18 +123,11 @@ def vehicle_motion(
         split.solve(sparse(ca.sparsify(equations.brake_directions[:, axle])))
         for axle in range(model.wheelsets)
     ]
-    transmitted = []
-    for axle, k in enumerate(spins):
-        # A brake acts on one wheelset and a body that no other wheelset is fixed to, so each lock stands alone.
-        assert not any(k in column for other, column in enumerate(columns) if other != axle)
-        holding = -free[k] / columns[axle][k] if k in columns[axle] else 0.0
-        transmitted.append(locked[axle] * holding + (1.0 - locked[axle]) * torques[axle])
+    transmitted = _transmitted(equations.brake_directions, columns, free, v, torques, locked)
     rates = free
     for column, torque in zip(columns, transmitted, strict=True):
         for k, value in column.items():
             rates[k] = rates[k] + value * torque
-    for axle, k in enumerate(spins):
-        rates[k] = (1.0 - locked[axle]) * rates[k]  # exactly zero where the torque just holds it
 
     referred = [starts[body.name] for body in model.bodies[1:] if not body.on]
     drift = ca.vertcat(*(v[k] - v[forward] if k in referred else v[k] for k in range(n) if k != forward))
@@ -156,6 +150,47 @@ def vehicle_motion(
         ),
     )
     return _at_state(model, motion, (q, v), (speed, wheel_speeds, rest))
+
+
+def _transmitted(
+    directions: Any,
+    columns: Sequence[Sparse],
+    free: Sparse,
+    v: Any,
+    torques: Sequence[Number],
+    locked: Sequence[Number],
+) -> list[Number]:
+    """Braking torques that act: those of the brakes, and of a lock what keeps its pads from sliding.
+
+    Pads hang in a frame that moves: what a lock holds is the disc against its pads, not the spin. A wheelset that is
+    held against the track drives the frame with torques that its motion does work on: the bogie swings ever more.
+    """
+    import casadi as ca
+
+    axles = range(len(columns))
+    rows = [sparse(ca.sparsify(directions[:, axle])) for axle in axles]
+    matrix: list[Sparse] = [{} for _ in axles]
+    right: list[Number] = []
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            common = [k for k in row if k in column]
+            if common:
+                matrix[i][j] = locked[i] * sum(row[k] * column[k] for k in common)
+        matrix[i][i] = matrix[i].get(i, 0.0) + (1.0 - locked[i])
+        driven = sum(value * (free.get(k, 0.0) + v[k] / _SETTLING) for k, value in row.items())
+        right.append((1.0 - locked[i]) * torques[i] - locked[i] * driven)
+    for i in axles:  # Gauss; the pivots are positive, as the mass matrix is
+        for j in range(i + 1, len(columns)):
+            if i not in matrix[j]:
+                continue
+            factor = matrix[j].pop(i) / matrix[i][i]
+            right[j] = right[j] - factor * right[i]
+            for k in [k for k in matrix[i] if k > i]:
+                matrix[j][k] = matrix[j].get(k, 0.0) - factor * matrix[i][k]
+    for i in reversed(axles):
+        known = sum(value * right[k] for k, value in matrix[i].items() if k > i)
+        right[i] = (right[i] - known) / matrix[i][i]
+    return right
 
 
 class OnRail(NamedTuple):

@@ -8,6 +8,7 @@ from wspd_design.reporting.figures.drawing import KILO, KMH, curve, look, note, 
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip
 from wspd_design.simulation.law_memory import reference_range, slip_references
+from wspd_design.simulation.locked import locked
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run
 
@@ -79,12 +80,11 @@ def slip_panel(axes: "Axes", run: Run, specification: Specification, *, top: flo
 def slip_curves(axes: "Axes", run: Run, *, top: float, most: int = MOST) -> None:
     """Draw the slip of all wheelsets; bars at the top edge where they are locked, shade where no slip is judged."""
     wheelsets = run.slip.shape[1]
-    bar = min(LOCK_BAR, LOCK_BARS / wheelsets)
+    bar, stands = min(LOCK_BAR, LOCK_BARS / wheelsets), locked(run)
     for wheelset in range(wheelsets):
-        locked = run.wheel_speed[:, wheelset] <= 0.0
         # Bars at the top edge, front wheelset first: visible when the slip itself has left the picture.
         axes.broken_barh(
-            intervals(run.time, locked),
+            intervals(run.time, stands[:, wheelset]),
             (1.0 - bar * (wheelset + 1), 0.8 * bar),
             transform=axes.get_xaxis_transform(),
             color=look(line_of(wheelset))[0],

@@ -5,7 +5,7 @@ from functools import partial
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph
 from wspd_design.reporting.figures.drawing import picture
 from wspd_design.reporting.figures.ladder import rungs, rungs_alt
-from wspd_design.reporting.ladder import agreements_table, axles_table, stops_table, sufficiency
+from wspd_design.reporting.ladder import agreements_table, axles_table, sensitivity, stops_table, sufficiency
 from wspd_design.reporting.text import escape, rich
 from wspd_design.studies.dossier import Dossier
 
@@ -25,13 +25,14 @@ def ladder(dossier: Dossier) -> tuple[Block, ...]:
                 "[](#ladder-axles) have the figures, [](#ladder-rungs) shows slips and loads, [](#ladder-agreement) "
                 f"how far each model is from {top}, the largest. Within the tolerances there, what suffices for this "
                 f"stop is: {escape(sufficiency(found))}. Checks, drawn stops and requirements of this report do not "
-                f"rest on the largest model.{inferred}"
+                f"rest on the largest model.{sensitivity(found)}{inferred}"
             )
         ),
         stops_table(
             found,
             caption="The stop on each model. Largest slip, lock, spread and vibration are those of the worst wheelset. "
-            f"Half steps: what they change in the distance.{inferred}",
+            f"Spread: of the distance over starts that nobody can tell "
+            f"apart, where the loop is sensitive. Half steps: what they change in the distance.{inferred}",
             anchor="ladder-stops",
         ),
         axles_table(

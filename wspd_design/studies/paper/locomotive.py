@@ -1,12 +1,28 @@
 """Section 7 on the multibody model: on smooth and on irregular track, and what its inferred numbers do."""
 
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
+from wspd_design.controllers.protocol import Law
+from wspd_design.design.catalog import controller
+from wspd_design.design.judging import threads
+from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.multibody.records import Multibody
+from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.metrics import metrics
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.self_check import (
+    StepCheck,
+    distance_difference,
+    perturbed_spread,
+    slip_difference,
+)
+from wspd_design.simulation.stop import simulate_on
 from wspd_design.studies.paper.evidence import CONSTANT_RAILS
-from wspd_design.studies.paper.section7 import Section7
+from wspd_design.studies.paper.published import PublishedStops
+from wspd_design.studies.paper.section7 import Section7, judged, laws_and_rails, parts
 from wspd_design.studies.rung import AxleFigures, axle_figures
-from wspd_design.studies.tornado import Tornado
+from wspd_design.studies.tornado import Tornado, tornado
 
 LAW = "afsmc"
 """The law of the figures of loads and of the tornado."""
@@ -31,3 +47,104 @@ class OnLocomotive:
             wheel_radius=stops.vehicle.wheel_radius,
             build_up=done.metrics.build_up,
         )
+
+
+NEIGHBOURS = 2
+"""Stops from slightly different speeds: fewer than on the small model, as each takes longer."""
+
+
+def on_locomotive(
+    small: Section7,
+    published: PublishedStops,
+    stops: Mapping[str, Scenario],
+    *,
+    seed: int,
+    progress: Callable[[str], object],
+) -> OnLocomotive:
+    """Simulate the stops of Section 7 on the multibody model of the locomotive.
+
+    Parameters
+    ----------
+    small : Section7
+        The same stops on the small model.
+    published : PublishedStops
+        Table 10.
+    stops : mapping of str to Scenario
+        By rail.
+    seed : int
+        Of the irregular track.
+    progress : callable
+        Told each stop once it is done.
+    """
+    vehicle, specification = small.vehicle, small.specification
+    plant = Locomotive(vehicle)
+    rough = {rail: replace(scenario, irregularities="high", seed=seed) for rail, scenario in stops.items()}
+
+    def law(name: str, rail: str) -> Law:
+        return controller(name, vehicle, stops[rail].rail, specification)
+
+    def checked(name: str, rail: str) -> Trial:
+        return _checked(plant, law(name, rail), stops[rail], slip_reference=specification.slip)
+
+    def on_rough_track(name: str, rail: str) -> Trial:
+        return _checked(plant, law(name, rail), rough[rail], slip_reference=specification.slip)
+
+    keys = laws_and_rails()
+    with threads() as pool:
+
+        def told(run: Callable[[str, str], Trial], what: str) -> dict[tuple[str, str], Trial]:
+            found = {}
+            for (name, rail), done in zip(keys, pool.map(run, *zip(*keys, strict=True)), strict=True):
+                progress(f"{name} on {rail}, {what}")
+                found[name, rail] = done
+            return found
+
+        trials = told(checked, "multibody model")
+        progress("parts of the adaptive fuzzy law, multibody model")
+        ablations = tuple(
+            pool.map(lambda each: parts(vehicle, specification, each, plant=plant.name), stops.values())
+        )
+        smooth = judged(
+            vehicle, specification, published, stops, plant=plant.name, trials=trials, ablations=ablations
+        )
+        irregular = judged(
+            vehicle,
+            specification,
+            published,
+            stops,
+            plant=plant.name,
+            trials=told(on_rough_track, "irregular track"),
+            ablations=ablations,
+        )
+        progress("inferred numbers, one at a time")
+        stop = stops[CONSTANT_RAILS[1]]
+        linear = LinearLocomotive(vehicle)
+        found = tornado(
+            linear,
+            law(LAW, stop.rail.name),
+            stop,
+            linear.own_bounds,
+            varied=linear.with_number,
+            build_up=trials[LAW, stop.rail.name].metrics.build_up,
+            pool=pool,
+        )
+    return OnLocomotive(model=plant.model, smooth=smooth, irregular=irregular, seed=seed, tornado=found)
+
+
+def _checked(plant: Locomotive, law: Law, scenario: Scenario, *, slip_reference: float) -> Trial:
+    """Simulate one stop, again with half the steps, and from slightly different speeds, and judge it."""
+    run = simulate_on(plant, law, scenario)
+    finer = simulate_on(plant, law, scenario, refinement=2)
+    spread = perturbed_spread(plant, law, scenario, run, neighbours=NEIGHBOURS)
+    return Trial(
+        run=run,
+        metrics=metrics(run, plant.vehicle, scenario, slip_reference=slip_reference),
+        slip_reference=slip_reference,
+        check=StepCheck(
+            distance=distance_difference(finer, run.totals.distance),
+            slip=slip_difference(plant.vehicle, run, finer),
+            refinement=1,
+            sensitive=spread > 0.0,
+            spread=spread,
+        ),
+    )

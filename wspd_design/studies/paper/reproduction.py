@@ -21,7 +21,7 @@ from wspd_design.studies.paper.disturbances import (
     track_channel,
 )
 from wspd_design.studies.paper.evidence import CONTROLLERS
-from wspd_design.studies.paper.locomotive import OnLocomotive
+from wspd_design.studies.paper.locomotive import OnLocomotive, on_locomotive
 from wspd_design.studies.paper.published import load_table10
 from wspd_design.studies.paper.section7 import Section7, scenarios, section7
 from wspd_design.studies.provenance import Provenance, provenance
@@ -60,7 +60,9 @@ class Reproduction:
     provenance: Provenance
 
 
-def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1) -> Reproduction:
+def reproduce(
+    progress: Callable[[str], object], *, command: str, seed: int = 1, locomotive: bool = True
+) -> Reproduction:
     """Compute Section 7 of the paper again.
 
     Parameters
@@ -71,6 +73,8 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
         Of the synthesized track.
     command : str
         The command line, for the record.
+    locomotive : bool
+        Whether to simulate the stops on the multibody model, too, which takes most of the time.
     """
     vehicle, specification, published = load_vehicle("er24pc"), Specification(), load_table10()
     stops = scenarios(published)
@@ -94,7 +98,9 @@ def reproduce(progress: Callable[[str], object], *, command: str, seed: int = 1)
     ]
     return Reproduction(
         small=small,
-        locomotive=None,
+        locomotive=on_locomotive(small, published, stops, seed=seed, progress=progress)
+        if locomotive
+        else None,
         friction=tuple(_friction(vehicle, each.rail, v) for each in stops.values() for v in FRICTION_SPEEDS),
         spectra=spectra,
         track=tuple(track_channel(spectra, channel, seed=seed) for channel in CHANNELS),

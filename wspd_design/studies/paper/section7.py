@@ -1,6 +1,6 @@
 """The stops of Section 7 on one model of the locomotive, and which conclusions of the paper hold there."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -56,10 +56,9 @@ def section7(
     published: PublishedStops,
     stops: Mapping[str, Scenario],
     *,
-    plant: str = DEFAULT_PLANT,
     progress: Callable[[str], object],
 ) -> Section7:
-    """Simulate the stops of Section 7 on one model and judge the paper by them.
+    """Simulate the stops of Section 7 on the small model and judge the paper by them.
 
     Parameters
     ----------
@@ -71,23 +70,34 @@ def section7(
         Table 10.
     stops : mapping of str to Scenario
         By rail.
-    plant : str
-        Name of the model.
     progress : callable
         Told each stop before it starts.
     """
     trials: dict[tuple[str, str], Trial] = {}
-    for rail, scenario in stops.items():
-        for name in (*CONTROLLERS, UNPROTECTED):
-            progress(f"{name} on {rail}")
-            law = controller(name, vehicle, scenario.rail, specification)
-            trials[name, rail] = trial(vehicle, law, scenario, slip_reference=specification.slip, plant=plant)
+    for name, rail in laws_and_rails():
+        progress(f"{name} on {rail}")
+        law = controller(name, vehicle, stops[rail].rail, specification)
+        trials[name, rail] = trial(vehicle, law, stops[rail], slip_reference=specification.slip)
     ablations = []
     for rail, scenario in stops.items():
         progress(f"parts of the adaptive fuzzy law on {rail}")
-        law = cast(AdaptiveFuzzy, controller("afsmc", vehicle, scenario.rail, specification))
-        ablations.append(ablation(vehicle, law, scenario, plant=plant))
-    return judged(vehicle, specification, published, stops, plant=plant, trials=trials, ablations=ablations)
+        ablations.append(parts(vehicle, specification, scenario))
+    return judged(
+        vehicle, specification, published, stops, plant=DEFAULT_PLANT, trials=trials, ablations=ablations
+    )
+
+
+def laws_and_rails() -> tuple[tuple[str, str], ...]:
+    """Return controller and rail of each stop."""
+    return tuple((name, rail) for rail in RAILS for name in (*CONTROLLERS, UNPROTECTED))
+
+
+def parts(
+    vehicle: Vehicle, specification: Specification, scenario: Scenario, *, plant: str = DEFAULT_PLANT
+) -> Ablation:
+    """Take the adaptive fuzzy law of the paper apart on one rail."""
+    law = cast(AdaptiveFuzzy, controller("afsmc", vehicle, scenario.rail, specification))
+    return ablation(vehicle, law, scenario, plant=plant)
 
 
 def judged(
@@ -98,7 +108,7 @@ def judged(
     *,
     plant: str,
     trials: dict[tuple[str, str], Trial],
-    ablations: list[Ablation],
+    ablations: Sequence[Ablation],
 ) -> Section7:
     """Judge the paper by stops that were simulated; the idealized stops beside them are those of the small model."""
     evidence = Evidence(

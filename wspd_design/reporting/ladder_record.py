@@ -31,6 +31,7 @@ def _rung(rung: Rung) -> dict[str, Any]:
         "stopping_time_s": rung.metrics.stopping_time,
         "slip_mean": rung.metrics.slip_mean,
         "axles": [_axle(each) for each in rung.axles],
+        "distance_spread_m": rung.spread,
         "step_change": rung.step_change,
     }
 
