@@ -25,6 +25,7 @@ PAGES = (
     "docs/campaigns.md",
     "docs/modes.md",
     "docs/vehicle-files.md",
+    "docs/wizard.md",
 )
 WITHOUT_COMMANDS = ("docs/python.md",)  # its commands stand in the text
 WITH_FILES = "docs/how-to.md"  # all its Python blocks are files that its commands use
@@ -76,7 +77,7 @@ def test_console_blocks_show_what_the_program_prints(page, tmp_path):
     assert run > 0
 
 
-@pytest.mark.parametrize("page", [*PAGES, *WITHOUT_COMMANDS])
+@pytest.mark.parametrize("page", [page for page in (*PAGES, *WITHOUT_COMMANDS) if blocks(page, "python")])
 def test_python_blocks_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     space: dict[str, object] = {}

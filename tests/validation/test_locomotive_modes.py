@@ -134,6 +134,15 @@ def test_traction_factors_on_lateral_creep_make_the_car_body_grow_at_low_speed(m
     assert critical_speed(reduced, speeds=(15.0, 30.0)).speed == pytest.approx(20.0, abs=3.0)
 
 
+@pytest.mark.parametrize(("slope", "speed"), [(1.0, 94.0), (0.5, 58.0), (0.2, 26.0)])
+def test_critical_speeds_of_manchester_vehicle_1_fall_with_the_slope_of_creep(slope, speed):
+    """V11, conicity 0.1: the prototype's, on guessed dampers; no published ones were at hand."""
+    coach = load_multibody("manchester-1").with_numbers({"conicity": 0.1})
+    rail = replace(KALKER, adhesion_reduction=slope, slip_reduction=slope)
+    vehicle = running_vehicle(coach, contact_of(coach, lateral_slope=slope), rail)
+    assert critical_speed(vehicle, speeds=(15.0, 110.0)).speed == pytest.approx(speed, rel=0.1)
+
+
 def at_rest_loads(vehicle, speed, slip):
     """Small motion about a slip with the loads of rest, as the prototype had it: no force has moved anything."""
     forward, *turning = vehicle.neutral.values()
