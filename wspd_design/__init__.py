@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from wspd_design.analysis.linearization import Linearization, linearize
+    from wspd_design.analysis.vehicle_modes import vehicle_modes
     from wspd_design.certificates.records import Certificate, Certificates, Problem, Status
     from wspd_design.certificates.suite import verify
     from wspd_design.controllers.protocol import Command, Controller, Measurement
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
         linear_law,
         quarter_system,
         slip_system,
+        vehicle_system,
     )
     from wspd_design.parameters.errors import UserError, WspdError
     from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
@@ -101,6 +103,8 @@ _HOME = {
     "slip_system": "exchange.python_control",
     "stability_problem": "design.problem",
     "trial": "simulation.comparison",
+    "vehicle_modes": "analysis.vehicle_modes",
+    "vehicle_system": "exchange.python_control",
     "verify": "certificates.suite",
     "within_bounds": "simulation.draws",
     "write_design": "design.file",
@@ -166,6 +170,8 @@ __all__ = [
     "slip_system",
     "stability_problem",
     "trial",
+    "vehicle_modes",
+    "vehicle_system",
     "verify",
     "within_bounds",
     "write_design",
