@@ -1,6 +1,13 @@
 """Settings of Sphinx; ``build.py`` stages what it reads."""
 
+import sys
 from importlib.metadata import version as _version
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from docs.site.api import without_attributes
 
 project = "wspd_design"
 author = "The wspd_design authors"
@@ -44,3 +51,13 @@ html_show_search_summary = False
 html_theme_options = {"navigation_with_keys": True, "top_of_page_buttons": []}
 # No page has formulas that a script would set; nothing is ever asked of another host.
 mathjax_path = "no-script-is-loaded.js"
+
+
+def _table_in_place(_app: Any, what: str, _name: str, _item: Any, _options: Any, lines: list[str]) -> None:
+    if what == "class":
+        lines[:] = without_attributes(lines)
+
+
+def setup(app: Any) -> None:
+    """Leave out what tables of the page show, before the docstring is read as NumPy's style."""
+    app.connect("autodoc-process-docstring", _table_in_place, priority=400)

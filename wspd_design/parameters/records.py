@@ -351,15 +351,15 @@ class Vehicle:
     wheel_radius : float [m]
     wheelset_inertia : float [kg m2]
         All that rotates with one wheelset.
-    wheel_damping : float [N m s per wheel at t = 0]
-        B_W.
+    wheel_damping : float [N m s]
+        Per wheel at t = 0, B_W.
     wheel_damping_decay : float [1/s]
     resistance_constant : float [N]
-        A0.
+        Of the running resistance of the whole vehicle, a0 of eq. (4).
     resistance_linear : float [N s/m]
-        A1.
+        The same, a1.
     resistance_quadratic : float [N s2/m2]
-        A2.
+        The same, a2.
     body_mass : float [kg]
         Of one body.
     bogie_mass : float [kg]
@@ -491,9 +491,9 @@ class Rail:
     friction_decay : float [s/m]
         B.
     adhesion_reduction : float [-]
-        KA.
+        Of the stiffness while adhering, kA.
     slip_reduction : float [-]
-        KS.
+        Of the stiffness while sliding, kS.
     bounds : Bounds
     """
 
