@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from wspd_design.certificates.records import Certificate, Certificates, Problem, Status
     from wspd_design.certificates.suite import verify
     from wspd_design.controllers.protocol import Command, Controller, Measurement
-    from wspd_design.design.catalog import controller
+    from wspd_design.design.catalog import baselines, controller
     from wspd_design.design.certification import certify, check
     from wspd_design.design.file import read_design, write_design
     from wspd_design.design.own_controller import load_controller
@@ -79,6 +79,7 @@ _HOME = {
     "UserError": "parameters.errors",
     "Vehicle": "parameters.records",
     "WspdError": "parameters.errors",
+    "baselines": "design.catalog",
     "certify": "design.certification",
     "check": "design.certification",
     "compare": "simulation.comparison",
@@ -145,6 +146,7 @@ __all__ = [
     "Vehicle",
     "WspdError",
     "__version__",
+    "baselines",
     "certify",
     "check",
     "compare",
