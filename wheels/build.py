@@ -128,7 +128,7 @@ def build_wheel(name: str, output: Path) -> None:
     """Build the wheel of a platform from a copy of the package."""
     with tempfile.TemporaryDirectory(prefix="wspd-wheel-") as folder:
         copy = Path(folder)
-        for file in ("pyproject.toml", "README.md", "LICENSE"):
+        for file in ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md"):
             shutil.copy(ROOT / file, copy)
         ignored = shutil.ignore_patterns("__pycache__", "prebuilt")
         shutil.copytree(ROOT / "wspd_design", copy / "wspd_design", ignore=ignored)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from wspd_design.analysis.linearization import Linearization, linearize
+    from wspd_design.analysis.vehicle_modes import vehicle_modes
     from wspd_design.certificates.records import Certificate, Certificates, Problem, Status
     from wspd_design.certificates.suite import verify
     from wspd_design.controllers.protocol import Command, Controller, Measurement
-    from wspd_design.design.catalog import controller
+    from wspd_design.design.catalog import baselines, controller
     from wspd_design.design.certification import certify, check
     from wspd_design.design.file import read_design, write_design
     from wspd_design.design.own_controller import load_controller
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
         linear_law,
         quarter_system,
         slip_system,
+        vehicle_system,
     )
     from wspd_design.parameters.errors import UserError, WspdError
     from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
@@ -77,6 +79,7 @@ _HOME = {
     "UserError": "parameters.errors",
     "Vehicle": "parameters.records",
     "WspdError": "parameters.errors",
+    "baselines": "design.catalog",
     "certify": "design.certification",
     "check": "design.certification",
     "compare": "simulation.comparison",
@@ -100,6 +103,8 @@ _HOME = {
     "slip_system": "exchange.python_control",
     "stability_problem": "design.problem",
     "trial": "simulation.comparison",
+    "vehicle_modes": "analysis.vehicle_modes",
+    "vehicle_system": "exchange.python_control",
     "verify": "certificates.suite",
     "within_bounds": "simulation.draws",
     "write_design": "design.file",
@@ -141,6 +146,7 @@ __all__ = [
     "Vehicle",
     "WspdError",
     "__version__",
+    "baselines",
     "certify",
     "check",
     "compare",
@@ -164,6 +170,8 @@ __all__ = [
     "slip_system",
     "stability_problem",
     "trial",
+    "vehicle_modes",
+    "vehicle_system",
     "verify",
     "within_bounds",
     "write_design",

@@ -1,16 +1,12 @@
 """The page of the public API: the names of ``wspd_design.__all__`` by the room that they live in.
 
-Docstrings are rendered by autodoc. What the fields of a record mean, and their units, stands in the section Attributes
-of its docstring, or behind them in the source as a comment; the table of fields is made of either here.
+Docstrings are rendered by autodoc, but for the section "Attributes" of a record, which becomes a table with defaults.
 """
 
-import ast
 import dataclasses
 import inspect
-import io
 import re
 import textwrap
-import tokenize
 from importlib import import_module
 from typing import Any
 
@@ -31,12 +27,7 @@ ROOMS = {
 """Headings of the rooms, in the order of the page; a room without one stands under its own name at the end."""
 
 _SHORT = 16  # letters of a default
-_BASE = r"(?:kg|m|s|N|Pa|rad|Hz|W|J|K)\d?"
-_UNIT = re.compile(
-    rf"(?P<unit>-|(?:1/\(?)?{_BASE}(?:[ /]{_BASE})*\)?(?: per (?:wheelset|wheel|axle))?)(?:[,;]? +|$)(?P<rest>.*)"
-)
-ATTRIBUTES = "\nAttributes\n----------\n"
-_STATED = re.compile(r"^(\w+) : (.*)$((?:\n {4}.*$)*)", re.MULTILINE)
+_ATTRIBUTE = re.compile(r"(?P<name>\w+) : (?P<type>.+?)(?: \[(?P<unit>[^\]]+)\])?")
 _CODE = re.compile(r"``([^`]+)``")
 
 
@@ -86,31 +77,56 @@ def _class(path: str, item: type) -> str:
     table = field_table(item)
     # The table says what the signature of a record would, and more.
     lines = [f".. autoclass:: {path}{'(**fields)' if table else ''}", "   :members:", ""]
-    if table:
-        lines += textwrap.indent(table, "   ").splitlines()
-    return "\n".join(lines)
+    return "\n".join((*lines, textwrap.indent(table, "   ")))
 
 
 def field_table(item: type) -> str:
-    """Return a table of the fields of a record with type and meaning, empty for what is no record."""
+    """Return a table of the attributes that the docstring of a record states, empty for what is no record."""
     if not dataclasses.is_dataclass(item):
         return ""
-    meanings = {each: text for base in reversed(item.__mro__) for each, text in field_comments(base).items()}
-    stated = stated_fields(item)
+    defaults = {field.name: _default(field) for field in dataclasses.fields(item)}
     rows = [
         (
-            f"``{field.name}``",
-            f"``{_type(field.type)}``",
-            _default(field),
-            *(stated.get(field.name) or with_unit(meanings.get(field.name, ""))),
+            f"``{each['name']}``",
+            f"``{each['type']}``",
+            defaults.get(each["name"], ""),
+            each["unit"],
+            each["meaning"],
         )
-        for field in dataclasses.fields(item)
-        if not field.name.startswith("_")
+        for each in attributes(inspect.getdoc(item) or "")
     ]
     lines = [".. list-table::", "   :header-rows: 1", "   :widths: auto", "   :class: fields", ""]
-    for row in (("field", "type", "default", "unit", "meaning"), *rows):
+    for row in (("attribute", "type", "default", "unit", "meaning"), *rows):
         lines += [f"   {'* -' if number == 0 else '  -'} {cell}" for number, cell in enumerate(row)]
-    return "\n".join(lines)
+    return "\n".join(lines) if rows else ""
+
+
+def attributes(docstring: str) -> list[dict[str, str]]:
+    """Return name, type, unit and meaning of each attribute in a docstring."""
+    found: list[dict[str, str]] = []
+    for line in docstring.splitlines()[_section(docstring.splitlines())]:
+        stated = _ATTRIBUTE.fullmatch(line)
+        if stated:
+            unit = (stated["unit"] or "").replace("-", "\\-")  # a hyphen alone would begin a list
+            found.append({"name": stated["name"], "type": stated["type"], "unit": unit, "meaning": ""})
+        elif found and line.strip():
+            found[-1]["meaning"] = f"{found[-1]['meaning']} {_escaped(line.strip())}".strip()
+    return found
+
+
+def without_attributes(lines: list[str]) -> list[str]:
+    """Return a docstring without the section that the table shows."""
+    section = _section(lines)
+    return [*lines[: max(section.start - 2, 0)], *lines[section.stop :]] if section.start else lines
+
+
+def _section(lines: list[str]) -> slice:
+    """Return where the section "Attributes" lies, without its heading; nowhere if there is none."""
+    heads = [place for place, line in enumerate(lines) if line and not line.strip("-") and len(line) > 3]
+    for head, following in zip(heads, (*heads[1:], len(lines) + 1), strict=False):
+        if lines[head - 1] == "Attributes":
+            return slice(head + 1, following - 1)
+    return slice(0, 0)
 
 
 def _default(field: "dataclasses.Field[Any]") -> str:
@@ -121,70 +137,12 @@ def _default(field: "dataclasses.Field[Any]") -> str:
     return f"``{text}``" if len(text) <= _SHORT and "<" not in text else "``...``"
 
 
-def with_unit(comment: str) -> tuple[str, str]:
-    """Split what stands behind a field into unit and meaning, ``kg, of one body`` for example."""
-    found = _UNIT.match(comment)
-    if not found:
-        return "", comment
-    return found["unit"].replace("-", "\\-"), found["rest"]  # a hyphen alone would begin a list
-
-
-def stated_fields(item: type) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of each field that the section Attributes of a docstring states."""
-    section = inspect.cleandoc(item.__doc__ or "").partition(ATTRIBUTES)[2].partition("\n\n")[0]
-    found = {}
-    for name, kind, meaning in _STATED.findall(section):
-        unit = kind.rpartition(" [")[2].removesuffix("]") if kind.endswith("]") and " [" in kind else ""
-        found[name] = unit.replace("-", "\\-"), " ".join(meaning.split())
-    return found
-
-
-def without_attributes(_app: Any, what: str, _name: str, item: Any, _options: Any, lines: list[str]) -> None:
-    """Leave out the section Attributes of a record where Sphinx shows its docstring: the table says it, and more."""
-    text = "\n".join(lines)
-    if what == "class" and dataclasses.is_dataclass(item) and ATTRIBUTES in text:
-        before, _, after = text.partition(ATTRIBUTES)
-        lines[:] = (before + after.partition("\n\n")[2]).split("\n")
-
-
-def field_comments(item: Any) -> dict[str, str]:
-    """Return the comment behind each field of a class, or the text below it."""
-    try:
-        source = textwrap.dedent(inspect.getsource(item))
-    except (OSError, TypeError):
-        return {}
-    body = ast.parse(source).body
-    if not body or not isinstance(body[0], ast.ClassDef):
-        return {}
-    comments = {
-        token.start[0]: token.string.lstrip("#: ")
-        for token in tokenize.generate_tokens(io.StringIO(source).readline)
-        if token.type == tokenize.COMMENT
-    }
-    found, above = {}, ""
-    for node in body[0].body:
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-            above = node.target.id
-            lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
-            found[above] = " ".join(comments[line] for line in lines if line in comments)
-        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and above:
-            found[above] = found[above] or str(node.value.value)
-        else:
-            above = ""
-    return {name: _escaped(" ".join(text.split())) for name, text in found.items() if text}
-
-
 def _escaped(text: str) -> str:
     """Return plain words as reStructuredText, in which ``code`` stays code."""
     parts = _CODE.split(text)
     plain = (re.sub(r"([*`|_\\])", r"\\\1", part) for part in parts[::2])
     code = (f"``{part}``" for part in parts[1::2])
     return "".join(word for pair in zip(plain, (*code, ""), strict=True) for word in pair)
-
-
-def _type(annotation: Any) -> str:
-    text = annotation if isinstance(annotation, str) else inspect.formatannotation(annotation)
-    return re.sub(r"\b(?:[a-z_]+\.)+", "", text.replace('"', "").replace("'", ""))
 
 
 def _rst(text: str) -> str:

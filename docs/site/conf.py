@@ -5,9 +5,9 @@ from importlib.metadata import version as _version
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from api import without_attributes
+from docs.site.api import without_attributes
 
 project = "wspd_design"
 author = "The wspd_design authors"
@@ -53,6 +53,11 @@ html_theme_options = {"navigation_with_keys": True, "top_of_page_buttons": []}
 mathjax_path = "no-script-is-loaded.js"
 
 
+def _table_in_place(_app: Any, what: str, _name: str, _item: Any, _options: Any, lines: list[str]) -> None:
+    if what == "class":
+        lines[:] = without_attributes(lines)
+
+
 def setup(app: Any) -> None:
-    """Let the tables of fields stand in place of the sections of docstrings that they are made of."""
-    app.connect("autodoc-process-docstring", without_attributes, priority=400)  # before napoleon
+    """Leave out what tables of the page show, before the docstring is read as NumPy's style."""
+    app.connect("autodoc-process-docstring", _table_in_place, priority=400)

@@ -19,7 +19,7 @@ from wspd_design.studies.package import package
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
-FILES = ("pyproject.toml", "README.md", "LICENSE")
+FILES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md")
 FOLDERS = ("wspd_design", "docs")
 SDIST = "from setuptools.build_meta import build_sdist; print(build_sdist('.'))"
 IDENTITY = "from wspd_design.studies.package import package; print(package().sha256)"
@@ -85,10 +85,10 @@ def own_files():
 
 
 def test_both_hold_every_file_of_the_package_and_the_pages(source, wheel):
-    pages = {path.name for path in (ROOT / "docs").glob("*.md")}
+    pages = {*(path.name for path in (ROOT / "docs").glob("*.md")), "CHANGELOG.md"}
     with tarfile.open(source) as archive:
         held = {name.partition("/")[2] for name in archive.getnames()}
-    assert own_files() | {f"docs/{name}" for name in pages} <= held
+    assert own_files() | {name if name in FILES else f"docs/{name}" for name in pages} <= held
     with zipfile.ZipFile(wheel) as archive:
         held = set(archive.namelist())
     assert own_files() <= held

@@ -55,7 +55,7 @@ def test_the_figure_is_the_same_each_time(wspd, tmp_path):
     ("words", "sentence"),
     [
         (["er24pc-83"], 'unknown vehicle "er24pc-83"'),
-        (["coach"], "multibody"),
+        (["metro"], "multibody"),
         (["manchester-1", "--slip", "1.5"], "slip"),
         (["manchester-1", "--conicity", "-1"], "conicity"),
         (["manchester-1", "--speed", "0 km/h"], "speed"),

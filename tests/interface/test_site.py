@@ -1,10 +1,11 @@
 """The documentation site: what is staged, that it is built without a warning, and that faults of it would be seen."""
 
 import importlib.util
+import inspect
 import re
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 
 import pytest
@@ -20,13 +21,25 @@ NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.md"))
 
 @dataclass(frozen=True, kw_only=True)
 class Sample:
-    """A record with a field of each kind."""
+    """A record.
 
-    mass: float  # kg, of ``one`` body|bogie
-    name: str
-    gain: float = 1.0  # 1/(N m s), G
-    angle: float = 0.0
-    """Below the field."""
+    Attributes
+    ----------
+    mass : float [kg]
+        Of ``one`` body|bogie,
+        complete.
+    share : float [-]
+    name : str or None
+
+    Raises
+    ------
+    UserError
+        Never.
+    """
+
+    mass: float
+    share: float = 1.0
+    name: str | None = None
 
 
 def test_every_public_name_is_on_the_api_page():
@@ -36,14 +49,25 @@ def test_every_public_name_is_on_the_api_page():
     assert "autofunction:: wspd_design.testing.assert_certified" in page
 
 
-def test_fields_have_the_units_that_stand_behind_them():
-    rows = api.field_table(Sample)
-    assert "* - ``mass``\n     - ``float``\n     - \n     - kg\n     - of ``one`` body\\|bogie" in rows
-    assert "* - ``gain``\n     - ``float``\n     - ``1.0``\n     - 1/(N m s)\n     - G" in rows
-    assert "- Below the field." in rows
+def test_attributes_become_a_table_with_units_and_defaults():
+    rows = api.field_table(Sample).partition("meaning\n")[2]
+    assert [re.sub(r"^ +(\* )?- ", "", line) for line in rows.splitlines()] == [
+        *("``mass``", "``float``", "", "kg", "Of ``one`` body\\|bogie, complete."),
+        *("``share``", "``float``", "``1.0``", "\\-", ""),
+        *("``name``", "``str or None``", "``None``", "", ""),
+    ]
     assert api.field_table(int) == ""
-    assert api.with_unit("the mean of it") == ("", "the mean of it")
-    assert "``wheel_radius``\n     - ``float``\n     - \n     - m\n" in api.field_table(wd.Vehicle)
+    left = api.without_attributes((inspect.getdoc(Sample) or "").splitlines())
+    assert left == ["A record.", "", "Raises", "------", "UserError", "    Never."]
+    assert api.without_attributes(["One line."]) == ["One line."]
+
+
+def test_every_field_of_a_public_record_is_in_its_table():
+    for name in wd.__all__:
+        item = getattr(wd, name)
+        if is_dataclass(item):
+            stated = {each["name"] for each in api.attributes(inspect.getdoc(item) or "")}
+            assert {field.name for field in fields(item)} - stated == set(), name
 
 
 def test_a_staged_page_links_to_what_is_on_the_site(tmp_path):

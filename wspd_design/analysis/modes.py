@@ -32,9 +32,8 @@ _DIRECTIONS = {
     "yaw": "yaw",
     "turn": "turn",
 }
-_OSCILLATING = {("rotor", "turn"): "driveline"}
-_EVEN = {("rotor", "turn"): "slip", ("wheelset", "pitch"): "slip"}
-"""Names of motions of which those of body and direction say too little, of modes that oscillate and of others."""
+_SPIN = (("wheelset", "pitch"), ("rotor", "turn"))
+"""What spins with one axle: together a driveline where it oscillates, slip where it does not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -212,6 +211,11 @@ def _name(
     """Say which bodies move and how, from the largest share of the energy."""
     import numpy as np
 
+    spin = sum(each.share for each in shares if (each.kind, each.direction) in _SPIN)
+    driven = any(each.share >= _CARRIED * spin for each in shares if each.kind == "rotor")
+    other = max((each.share for each in shares if (each.kind, each.direction) not in _SPIN), default=0.0)
+    if spin >= _CARRIED and spin > other and (driven or not oscillates):
+        return _spinning(motion, energy, "driveline" if oscillates else "slip")
     # What turns on another body is moved by it: it names a mode only with much of the energy.
     leading = next(each for each in shares if each.direction != "turn" or each.share >= _CARRIED)
     kind, direction = leading.kind, leading.direction
@@ -219,9 +223,6 @@ def _name(
     parts = energy[places]
     strongest, _ = _split(motion.coordinates[places[int(np.argmax(parts))]])
     alone = parts.max() >= _ALONE * parts.sum()
-    special = (_OSCILLATING if oscillates else _EVEN).get((kind, direction))
-    if special is not None:
-        return f"{special} {strongest.removeprefix(f'{kind}_')}" if alone and len(places) > 1 else special
     how = _DIRECTIONS.get(direction, direction)
     if len(places) == 1:
         return f"{_spoken(strongest)} {_level(motion, shape, shares, leading) or how}"
@@ -231,6 +232,17 @@ def _name(
         together = np.real(shape[places[0]] * np.conj(shape[places[1]])) > 0.0
         return f"{_plural(_spoken(kind))} {how}, {'in phase' if together else 'in opposition'}"
     return f"{_plural(_spoken(kind))} {how}"
+
+
+def _spinning(motion: SmallMotion, energy: "Matrix", name: str) -> str:
+    """Name a mode of what spins, by the axle that has most of its energy where one does."""
+    parts: dict[str, float] = {}
+    for (kind, direction), coordinate, part in zip(_motions(motion), motion.coordinates, energy, strict=True):
+        if (kind, direction) in _SPIN:
+            number = _split(coordinate)[0].removeprefix(f"{kind}_")
+            parts[number] = parts.get(number, 0.0) + float(part)
+    number, most = max(parts.items(), key=lambda item: item[1])
+    return f"{name} {number}" if len(parts) > 1 and most >= _ALONE * sum(parts.values()) else name
 
 
 def _level(motion: SmallMotion, shape: "Shape", shares: tuple[Share, ...], leading: Share) -> str:

@@ -18,7 +18,7 @@ from wspd_design.model.wheel_rail import WheelRail, wheel_rail
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, read_toml
 from wspd_design.parameters.loading import load_rail, load_vehicle, steel
-from wspd_design.parameters.records import Rail
+from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.plants.locomotive import Locomotive
 from wspd_design.plants.multibody.loading import available_multibodies, load_multibody
 from wspd_design.plants.multibody.records import Multibody
@@ -130,7 +130,11 @@ def multibody_of(name_or_path: str | Path, *, lateral_slope: float = 1.0) -> tup
         raise UserError(
             f'unknown vehicle "{text}"; available: {", ".join(names)}, or the path of a .toml file'
         )
-    vehicle = load_vehicle(name_or_path)
+    return with_totals_of(load_vehicle(name_or_path), lateral_slope=lateral_slope)
+
+
+def with_totals_of(vehicle: Vehicle, *, lateral_slope: float = 1.0) -> tuple[Multibody, WheelRail]:
+    """Return the multibody vehicle of a vehicle, with its mass, wheels and inertia, and its contact."""
     plant = Locomotive(vehicle)
     numbers = dict(zip(plant.number_names, plant.numbers, strict=True))
     model = plant.model.with_numbers({name: numbers[name] for name in plant.model.number_names})

@@ -21,7 +21,6 @@ _USAGE_ERROR: type[Exception] = typer.BadParameter.__bases__[0]
 app = typer.Typer(
     name="wspd",
     cls=LazyGroup,
-    add_completion=False,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -85,7 +84,11 @@ def run(arguments: Sequence[str]) -> int:
         if isinstance(error, OSError) and error.errno == errno.ENOSPC and error.filename is None:
             return _full_disk()  # the standard output stands on it; files have sentences of their own
         traceback.print_exc()
-        print("wspd: this is a fault of the program; please report it with the lines above.", file=sys.stderr)
+        print(
+            "wspd: this is a fault of the program; please report it with the lines above and what "
+            '"wspd doctor --report" prints.',
+            file=sys.stderr,
+        )
         return BUG
     return code if isinstance(code, int) else 0
 

@@ -62,10 +62,10 @@ def print_json(value: dict[str, Any]) -> None:
 
 @contextmanager
 def progress() -> Iterator[Callable[[str], None]]:
-    """Show the current stage on standard error while the block runs; nothing where that is no terminal."""
+    """Show the current stage on standard error while the block runs; a line a minute where that is no terminal."""
     stream = console(error=True)
     if not stream.is_terminal or stream.is_dumb_terminal:
-        yield lambda _stage: None
+        yield StageLines(clock=time.monotonic)
         return
     with stream.status("") as status:
         yield lambda stage: status.update(f"{stage} ...")
@@ -89,6 +89,20 @@ def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
     with Progress(*columns, console=stream, transient=True) as bar:
         task = bar.add_task(what, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+class StageLines:
+    """The current stage in lines, for logs: no more than one a minute, none before the first is over."""
+
+    def __init__(self, *, clock: Callable[[], float]) -> None:
+        self._clock = clock
+        self._told = clock()
+
+    def __call__(self, stage: str) -> None:
+        """Tell the stage that is reached."""
+        if self._clock() - self._told >= _MINUTE:
+            self._told = self._clock()
+            print(f"{stage} ...", file=sys.stderr, flush=True)
 
 
 class ProgressLines:

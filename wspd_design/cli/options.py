@@ -5,6 +5,7 @@ from typing import Annotated, Any, TypeAlias
 
 import typer
 
+from wspd_design.cli.completion import Offers, checks, names_or_files
 from wspd_design.controllers.family import FAMILIES, designed, with_presets
 from wspd_design.design.case import RAIL, VEHICLE
 from wspd_design.design.records import Specification
@@ -40,7 +41,7 @@ def _names(names: list[str]) -> str:
     return f"{', '.join(names)} or a .toml file."
 
 
-def case_option(flag: str, metavar: str, meaning: str, default: str) -> Any:
+def case_option(flag: str, metavar: str, meaning: str, default: str, offers: Offers | None = None) -> Any:
     """Describe an option of the case that is None when it is not given, so that its default shows here."""
     return typer.Option(
         flag,
@@ -48,25 +49,49 @@ def case_option(flag: str, metavar: str, meaning: str, default: str) -> Any:
         help=f"{meaning} Default: {default}.",
         show_default=False,
         rich_help_panel=CASE,
+        autocompletion=offers,
     )
 
 
+_OFFERED = names_or_files(FAMILIES, ".toml", ".py")
 ControllerArgument: TypeAlias = Annotated[
     str | None,
-    typer.Argument(metavar="CONTROLLER", help=f"{_CONTROLLERS} Default: {CONTROLLER}.", show_default=False),
+    typer.Argument(
+        metavar="CONTROLLER",
+        help=f"{_CONTROLLERS} Default: {CONTROLLER}.",
+        show_default=False,
+        autocompletion=_OFFERED,
+    ),
 ]
 ControllersArgument: TypeAlias = Annotated[
     list[str] | None,
-    typer.Argument(metavar="CONTROLLER", help=f"{_CONTROLLERS} Default: all names.", show_default=False),
+    typer.Argument(
+        metavar="CONTROLLER",
+        help=f"{_CONTROLLERS} Default: all names.",
+        show_default=False,
+        autocompletion=_OFFERED,
+    ),
 ]
 ControllerOption: TypeAlias = Annotated[
     str | None,
     typer.Option("--controller", metavar="NAME", help="The same as the argument.", show_default=False),
 ]
 VehicleOption: TypeAlias = Annotated[
-    str | None, case_option("--vehicle", "NAME", _names(available("vehicle")), VEHICLE)
+    str | None,
+    case_option(
+        "--vehicle",
+        "NAME",
+        _names(available("vehicle")),
+        VEHICLE,
+        names_or_files(available("vehicle"), ".toml"),
+    ),
 ]
-RailOption: TypeAlias = Annotated[str | None, case_option("--rail", "NAME", _names(available("rail")), RAIL)]
+RailOption: TypeAlias = Annotated[
+    str | None,
+    case_option(
+        "--rail", "NAME", _names(available("rail")), RAIL, names_or_files(available("rail"), ".toml")
+    ),
+]
 PlantOption: TypeAlias = Annotated[
     str,
     typer.Option(
@@ -125,7 +150,8 @@ SeedOption: TypeAlias = Annotated[
     typer.Option("--seed", min=0, metavar="NUMBER", help="Seed of all random numbers.", rich_help_panel=CASE),
 ]
 OnlyOption: TypeAlias = Annotated[
-    list[str] | None, typer.Option("--only", metavar="CHECK", help="One check; repeat it for several.")
+    list[str] | None,
+    typer.Option("--only", metavar="CHECK", help="One check; repeat it for several.", autocompletion=checks),
 ]
 EffortOption: TypeAlias = Annotated[
     float,

@@ -18,10 +18,10 @@ _FENCE = "```"
 def pages() -> Mapping[str, Path]:
     """Return the file of every page by its name, sorted."""
     root = Path(str(files("wspd_design"))).parent
-    clone = root / "docs"
+    clone = [*(root / "docs").glob("*.md"), root / "CHANGELOG.md"]
     # A folder of this name may lie beside any installed package; that of a clone lies beside its project file.
-    found = list(clone.glob("*.md")) if (root / "pyproject.toml").is_file() else _installed()
-    return {path.stem: path for path in sorted(found)}
+    found = clone if (root / "pyproject.toml").is_file() else _installed()
+    return {path.stem.lower(): path for path in sorted(found, key=lambda path: path.stem.lower())}
 
 
 def _installed() -> list[Path]:

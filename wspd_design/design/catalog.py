@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from wspd_design.controllers.family import FAMILIES, preset_of
+from wspd_design.controllers.family import FAMILIES, preset_of, with_presets
 from wspd_design.controllers.given import Given
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.file import read_design
@@ -62,6 +62,22 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
         )
     )
     return seen_by(specification.sensors, law, vehicle)
+
+
+def baselines(vehicle: Vehicle, rail: Rail, specification: Specification | None = None) -> tuple[Law, ...]:
+    """Return the laws of the industry, each with the table that belongs to the vehicle, to compare others with.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+    rail : Rail
+        Of the stop.
+    specification : Specification, optional
+        Its sample time and sensors count; those of the paper's case by default.
+    """
+    asked = specification or Specification()
+    return tuple(controller(family.name, vehicle, rail, asked) for family in with_presets())
 
 
 def controller_of(made: Design, vehicle: Vehicle, rail: Rail) -> Law:

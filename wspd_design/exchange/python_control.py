@@ -114,6 +114,40 @@ def quarter_system(vehicle: Vehicle, rail: Rail) -> Any:
     )
 
 
+def vehicle_system(vehicle: Vehicle, rail: Rail, *, speed_kmh: float, slip: float = 0.0) -> Any:
+    """Return the whole multibody vehicle, linearized where it rolls or where brakes hold a slip at all wheelsets.
+
+    Parameters
+    ----------
+    vehicle, rail : Vehicle, Rail
+        A vehicle with a multibody file, and the friction under it.
+    speed_kmh : float
+        Train speed [km/h].
+    slip : float
+        Slip of all wheelsets [-]; 0: they roll.
+
+    Returns
+    -------
+    control.StateSpace
+        Deviations, with the names of :class:`wspd_design.analysis.state_space.VehicleLinearization`: inputs are the
+        torques of the axles and the heights of the track under them, outputs speed, wheel speeds, slips and loads.
+
+    Raises
+    ------
+    UserError
+        If an argument is of another kind, the vehicle has no multibody file, or speed or slip are out of range.
+    """
+    from wspd_design.analysis.running import running_vehicle, steady
+    from wspd_design.analysis.state_space import linearization
+    from wspd_design.analysis.vehicle_modes import with_totals_of
+
+    check_vehicle(vehicle, by="vehicle_system")
+    check_rail(rail, by="vehicle_system")
+    model, contact = with_totals_of(vehicle)
+    running = steady(running_vehicle(model, contact, rail), speed_kmh / KMH, slip=slip)
+    return linearization(running).state_space()
+
+
 def law_system(law: Law) -> Any:
     """Return a law as a sampled system: its own ``step``.
 

@@ -12,8 +12,7 @@ from wspd_design.reporting.blocks import Status as Sign
 
 _COLUMNS: tuple[Column[Certificate], ...] = (
     Column(title="verdict", read=lambda each: _sign(each.status)),
-    Column(title="check", read=lambda each: each.name),
-    Column(title="claim", read=lambda each: each.title),
+    Column(title="check", read=lambda each: f"{each.name}: {each.title}"),
     Column(title="margin", read=lambda each: "" if each.margin is None else numbers.margin(each.margin)),
     Column(title="why", read=lambda each: each.explanation),
 )

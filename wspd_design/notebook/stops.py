@@ -31,9 +31,10 @@ _STOPS: tuple[Column[Trial], ...] = (
     Column(title="slip max", unit="-", decimals=3, read=lambda trial: trial.metrics.slip_max),
     Column(title="locked", unit="s", decimals=2, read=lambda trial: trial.metrics.lock_time),
     Column(title="valve switches", read=lambda trial: trial.metrics.valve_switches),
-    Column(title="air", unit="cylinders", decimals=1, read=lambda trial: trial.metrics.vented_air),
+    Column(title="cylinders vented", decimals=1, read=lambda trial: trial.metrics.vented_air),
     Column(title="remark", read=lambda trial: "; ".join(_remarks(trial))),
 )
+"""The last one stands where a stop has a remark alone."""
 _PICTURE = 2.1  # in
 
 
@@ -61,7 +62,7 @@ def comparison_table(trials: Sequence[Trial]) -> Table:
     )
     return table_of(
         trials,
-        _STOPS,
+        _columns(trials),
         caption=f"{run.train} on {run.rail}, from {KMH * run.initial_speed:g} km/h",
         notes=[known, *_notes(trials), _JUDGED],
     )
@@ -121,7 +122,7 @@ def comparison_card(trials: Sequence[Trial]) -> str:
         table.caption,
         verdict=("open", f"{len(moving)} of {len(trials)} laws did not stop the train.") if moving else None,
         pictures=[drawn],
-        tables=[table_of(trials, _STOPS, notes=table.notes)],
+        tables=[table_of(trials, _columns(trials), notes=table.notes)],
     )
 
 
@@ -157,6 +158,10 @@ def _ending(run: Run) -> tuple[str, str]:
     stopped = run.ending is Ending.STOPPED
     said = run.ending.value
     return ("neutral" if stopped else "bad"), f"{said[0].upper()}{said[1:]}."
+
+
+def _columns(trials: Sequence[Trial]) -> tuple[Column[Trial], ...]:
+    return _STOPS if any(map(_remarks, trials)) else _STOPS[:-1]
 
 
 def _remarks(trial: Trial) -> list[str]:

@@ -10,7 +10,8 @@ from wspd_design.parameters.later import later
 
 Item = TypeVar("Item")
 
-_WIDTH = 64  # characters of a column of sentences
+_WIDTH = 98  # characters of a table of words: what a notebook and most terminals show in one line
+_LEAST = 12  # of a column of words
 _BETWEEN = "  "
 
 
@@ -77,22 +78,27 @@ class Table:
     notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        """Set the table in characters of equal width."""
-        cells = [[column.title, f"[{column.unit}]" if column.unit else ""] for column in self.columns]
-        lines: list[list[list[str]]] = []
-        for row in self.texts:
-            lines.append([textwrap.wrap(text, _WIDTH) or [""] for text in row])
-        widths = [
-            max(map(len, [*head, *(part for line in lines for part in line[place])]))
-            for place, head in enumerate(cells)
-        ]
+        """Set the table in characters of equal width; sentences take several lines."""
         right = [self.flush_right(place) for place in range(len(self.columns))]
-        heads = [[[head[part]] for head in cells] for part in range(2 if any(h[1] for h in cells) else 1)]
-        shown = [part for line in heads for part in _set(line, widths, right)]
-        rule = ["-" * len(_BETWEEN.join("-" * width for width in widths))]
-        body = [part for line in lines for part in _set(line, widths, right)]
-        notes = [part for note in self.notes for part in textwrap.wrap(note, 100)]
-        return "\n".join([*([self.caption] if self.caption else []), *shown, *rule, *body, *notes])
+        heads = [
+            [
+                *(column.title.split() if flush else [column.title]),
+                *([f"[{column.unit}]"] if column.unit else []),
+            ]
+            for column, flush in zip(self.columns, right, strict=True)
+        ]
+        widths = _fitting(heads, self.texts, right)
+        height = max(map(len, heads))
+        lines = [[[""] * (height - len(head)) + head for head in heads]] if height else []
+        for row in self.texts:
+            lines.append(
+                [textwrap.wrap(text, width) or [""] for text, width in zip(row, widths, strict=True)]
+            )
+        shown = [part for line in lines for part in _set(line, widths, right)]
+        rule = "-" * (sum(widths) + len(_BETWEEN) * (len(widths) - 1))
+        notes = [part for note in self.notes for part in textwrap.wrap(note, _WIDTH)]
+        caption = textwrap.wrap(self.caption, _WIDTH)
+        return "\n".join([*caption, *shown[:height], rule, *shown[height:], *notes])
 
     __repr__ = __str__
 
@@ -150,6 +156,23 @@ def table_of(
         tones=tuple(map(tone, kept)) if tone else (),
         notes=tuple(filter(None, notes)),
     )
+
+
+def _fitting(
+    heads: Sequence[Sequence[str]], rows: Sequence[Sequence[str]], right: Sequence[bool]
+) -> list[int]:
+    """Width of each column: that of its longest text, the widest columns of words less until the table fits."""
+    widths = [
+        max(map(len, [*head, *(row[place] for row in rows)]), default=1) or 1
+        for place, head in enumerate(heads)
+    ]
+    words = [place for place, flush in enumerate(right) if not flush]
+    while sum(widths) + len(_BETWEEN) * (len(widths) - 1) > _WIDTH and words:
+        widest = max(words, key=lambda place: widths[place])
+        if widths[widest] <= _LEAST:
+            break
+        widths[widest] -= 1
+    return widths
 
 
 def _set(line: list[list[str]], widths: list[int], right: list[bool]) -> list[str]:

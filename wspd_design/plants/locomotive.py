@@ -70,6 +70,14 @@ class Locomotive(BrakedWheelsets):
                 f"vehicle {vehicle.name} has {vehicle.wheelsets} wheelsets and its multibody file "
                 f"{vehicle.multibody} {self.model.wheelsets}; let both have as many"
             )
+        with_brake = {brake.wheelset for brake in self.model.brakes}
+        pairs = zip(self.model.wheelset_names, vehicle.braked, strict=True)
+        bare = next((name for name, braked in pairs if braked and name not in with_brake), "")
+        if bare:
+            raise UserError(
+                f"vehicle {vehicle.name} brakes {bare}, on which its multibody file {vehicle.multibody} has no brake; "
+                "add one to [brakes] there, or give the axle the share 0"
+            )
 
     @property
     def model(self) -> Multibody:

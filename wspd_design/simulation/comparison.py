@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Law
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
@@ -142,7 +143,7 @@ def compare(
     controllers: Sequence[Law],
     scenario: Scenario,
     *,
-    slip_reference: float,
+    slip_reference: float | None = None,
     plant: str = DEFAULT_PLANT,
     progress: Callable[[str], object] = str,
 ) -> Comparison:
@@ -156,8 +157,9 @@ def compare(
         Laws to compare.
     scenario : Scenario
         Rail and initial speed.
-    slip_reference : float
-        Reference of ``slip_rms`` for the laws that hold none of their own [-].
+    slip_reference : float, optional
+        Reference of ``slip_rms`` for the laws that hold none of their own [-]; by default that of the first law that
+        holds one.
     plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
         With load transfer, without, or with all degrees of freedom.
     progress : callable, optional
@@ -169,6 +171,8 @@ def compare(
         A tuple of trials in the order of the controllers.
     """
     check_several(controllers, by="compare")
+    if slip_reference is None:
+        slip_reference = _first_held(controllers)
     trials = []
     for controller in controllers:
         progress(controller.name)
@@ -176,3 +180,15 @@ def compare(
         reference = slip_reference if held is None else held
         trials.append(trial(vehicle, controller, scenario, slip_reference=reference, plant=plant))
     return Comparison(trials)
+
+
+def _first_held(controllers: Sequence[Law]) -> float:
+    """Return the slip of the first law that holds one [-]."""
+    for controller in controllers:
+        held = slip_reference_of(controller)
+        if held is not None:
+            return held
+    raise UserError(
+        "none of these laws holds a slip of its own, so that nothing says what their slip is judged about; give "
+        "slip_reference=0.14 for example"
+    )

@@ -5,7 +5,6 @@ pytest loads this module in every run where the program is installed, so that it
 
 import sys
 from collections.abc import Generator
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -125,42 +124,33 @@ def _expected(marker: pytest.Mark) -> list[Expected]:
     return found
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+# Hook wrappers of the older kind, which every pytest from 7 on takes: no unrelated project stops at this plugin.
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, None]:
     """Let assertions know the folder of the test and where its figures go."""
-    with ExitStack() as stack:
-        stack.enter_context(
-            running(Running(folder=item.path.parent, record=lambda *each: item.user_properties.append(each)))
-        )
-        return (yield)
+    with running(Running(folder=item.path.parent, record=lambda *each: item.user_properties.append(each))):
+        yield
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(
-    item: pytest.Item, call: pytest.CallInfo[None]
-) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, None]:
     """Show a mistake of the user as a sentence with the line that it is in."""
-    report = yield
-    if call.excinfo is not None and _is_mistake(call.excinfo) and not item.config.getoption("fulltrace"):
-        report.longrepr = _short(call.excinfo)
-    return report
+    outcome = yield
+    _shorten(outcome.get_result(), call.excinfo, item.config)
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_make_collect_report(
-    collector: pytest.Collector,
-) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+@pytest.hookimpl(hookwrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, Any, None]:
     """Do the same for what a test file does when it is read."""
-    report = yield
+    outcome = yield
+    report = outcome.get_result()
     call = getattr(report, "call", None)
-    if (
-        call is not None
-        and call.excinfo is not None
-        and _is_mistake(call.excinfo)
-        and not collector.config.getoption("fulltrace")
-    ):
-        report.longrepr = _short(call.excinfo)
-    return report
+    _shorten(report, None if call is None else call.excinfo, collector.config)
+
+
+def _shorten(report: Any, caught: pytest.ExceptionInfo[BaseException] | None, config: pytest.Config) -> None:
+    if caught is not None and _is_mistake(caught) and not config.getoption("fulltrace"):
+        report.longrepr = _short(caught)
 
 
 def _is_mistake(caught: pytest.ExceptionInfo[BaseException]) -> bool:
@@ -177,7 +167,10 @@ def _short(caught: pytest.ExceptionInfo[BaseException]) -> Any:
         path = Path(str(entry.path))
         return not path.is_relative_to(_PACKAGE) and not {"_pytest", "pluggy", "importlib"} & set(path.parts)
 
-    return caught.getrepr(style="short", chain=False, tbfilter=lambda each: each.traceback.filter(outside))
+    kept = caught.traceback.filter(outside)
+    shown = pytest.ExceptionInfo.from_exc_info((caught.type, caught.value, caught.tb))
+    shown.traceback = kept if len(kept) else caught.traceback
+    return shown.getrepr(style="short", chain=False)
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

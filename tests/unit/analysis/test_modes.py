@@ -54,6 +54,18 @@ def test_sway_with_a_low_pole_is_told_from_sway_with_a_high_one():
     assert upper.name == "car body upper sway"
 
 
+def test_what_spins_with_an_axle_is_a_driveline_where_it_oscillates_and_slip_where_not():
+    coordinates = ("wheelset_1.pitch", "rotor_1.turn", "wheelset_2.pitch", "rotor_2.turn")
+    twist = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    stiffness = np.kron(np.diag([1.0, 2.0]), twist) + 1e-3 * np.eye(4)
+    damping = np.diag([1.0, 0.0, 1.0, 0.0])
+    found = modes(small_motion(coordinates, np.eye(4), stiffness, damping))
+    assert {mode.name for mode in found if mode.oscillates} == {"driveline 1", "driveline 2"}
+    assert all(mode.name.startswith("slip ") for mode in found if not mode.oscillates)
+    without = modes(small_motion(("wheelset_1.pitch",), [[1.0]], [[1.0]]))
+    assert [mode.name for mode in without] == ["wheelset 1 pitch"]
+
+
 def test_a_mode_that_grows_is_told_and_neutral_motion_left_out():
     motion = small_motion(
         ("car_body.z", "car_body.x", "car_body.y"),

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from wspd_design.cli.console import ProgressLines, console, print_json, progress, progress_bar
+from wspd_design.cli.console import ProgressLines, StageLines, console, print_json, progress, progress_bar
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
@@ -78,3 +78,13 @@ def test_progress_in_lines_is_one_a_minute_with_the_remaining_time(capsys):
     clock.now += 600.0
     tell(5210)
     assert capsys.readouterr().err == "stops: 5210 of 10000 (52 %), about 79.8 h left\n"
+
+
+def test_stages_in_lines_are_one_a_minute(capsys):
+    """A verification was silent for minutes in the log of a CI job."""
+    clock = Clock()
+    tell = StageLines(clock=clock)
+    for second in range(150):
+        clock.now += 1.0
+        tell(f"reaching: {second} %")
+    assert capsys.readouterr().err.splitlines() == ["reaching: 59 % ...", "reaching: 119 % ..."]

@@ -151,6 +151,15 @@ def test_resume_begins_at_the_first_open_or_wrong_answer():
     assert asked == ["review", "requirements", "review"]
 
 
+def test_answers_that_are_given_are_not_asked_but_can_be_gone_back_to():
+    ask, asked = script()
+    walk(ALL, {"law": "smc", "speeds": "10 to 80 km/h"}, ask)
+    assert asked == ["vehicle", "rail", "slip", "sample_time", "tolerance", "requirements", "review"]
+    ask, asked = script(Back.BACK, None, None)
+    walk(ALL, {"vehicle": "er24pc", "rail": "polach-wet", "slip": "0.2"}, ask)
+    assert asked[:5] == ["law", "rail", "law", "speeds", "sample_time"]
+
+
 def test_draft_round_trip(tmp_path):
     answers = {"vehicle": OWN, "vehicle_file": 'C:\\a "b".toml', "slip": "14 %"}
     write_draft(answers, tmp_path / "a.part")

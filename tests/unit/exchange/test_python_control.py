@@ -149,3 +149,19 @@ def test_a_sampled_loop_has_the_poles_of_its_step_matrix(er24pc, point, law):
 def test_a_speed_that_cannot_be_is_refused(er24pc, rail, speed):
     with pytest.raises(wd.UserError, match=r"speed_kmh = .* must be above 0 and below 540 km/h"):
         wd.slip_system(er24pc, rail, speed_kmh=speed)
+
+
+def test_the_whole_vehicle_has_its_names_and_its_slip_grows(er24pc, rail):
+    system = wd.vehicle_system(er24pc, rail, speed_kmh=KMH, slip=0.14)
+    assert system.input_labels[0] == "torque_1"
+    assert {"speed", "wheel_speed_4", "slip_1", "load_4_right"} <= set(system.output_labels)
+    assert len(system.state_labels) == system.nstates == 159
+    point = wd.linearize(er24pc, rail, slip=0.14, speed=KMH / 3.6)
+    growing = sorted(pole.real for pole in system.poles() if pole.real > 0.2 and abs(pole.imag) < 1e-9)
+    assert len(growing) == 4
+    assert sum(growing) / 4.0 == pytest.approx(point.slip_pole, rel=0.2)  # at a speed that stays
+
+
+def test_a_vehicle_without_a_multibody_file_is_refused(rail):
+    with pytest.raises(wd.UserError, match="multibody"):
+        wd.vehicle_system(wd.load_vehicle("metro"), rail, speed_kmh=KMH)

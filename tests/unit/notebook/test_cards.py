@@ -124,7 +124,7 @@ def test_units_stand_below_titles_and_in_columns_of_frames(shown):
     table = shown.trials.table()
     frame = table.to_pandas()
     assert frame["distance [m]"].tolist() == [trial.metrics.distance for trial in shown.trials]
-    assert "[m]" in str(table).splitlines()[2]
+    assert "[m]" in str(table).splitlines()[3]
     assert f"{shown.trials[0].metrics.distance:.1f}" in str(table)
 
 

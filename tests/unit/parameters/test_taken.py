@@ -177,3 +177,22 @@ def test_kilometres_per_hour_in_place_of_metres_per_second_are_noticed(er24pc, r
 def test_a_long_text_is_cut():
     with pytest.raises(wd.UserError, match=r'not the text "x{40}\.\.\."'):
         wd.Scenario.stop(from_kmh=120, rail="x" * 100)
+
+
+def test_laws_are_judged_about_the_slip_of_the_first_that_holds_one(er24pc, rail, stop):
+    from wspd_design.controllers.offers import slip_reference_of
+
+    holding = wd.controller("smc", er24pc, rail, wd.Specification(slip=0.1))
+    none = wd.controller("none", er24pc, rail, wd.Specification())
+    assert slip_reference_of(holding) == 0.1
+    assert [each.slip_reference for each in wd.compare(er24pc, [none, holding], stop)] == [0.1, 0.1]
+    with pytest.raises(wd.UserError, match=r"none of these laws holds a slip .* give slip_reference=0.14"):
+        wd.compare(er24pc, [none], stop)
+
+
+def test_baselines_are_those_of_the_industry(er24pc, rail):
+    laws = wd.baselines(er24pc, rail, wd.Specification(sample_time=0.02))
+    assert [law.name for law in laws] == ["trenitalia", "knorr-bremse", "mitsubishi"]
+    assert {law.sample_time for law in laws} == {0.02}
+    (first, *_) = wd.baselines(wd.load_vehicle("coach"), rail)
+    assert first.name == "trenitalia (textbook)"

@@ -7,6 +7,7 @@ import pytest
 
 from wspd_design.codegen.kernels import RAIL, Surroundings, parameter_values, plant_kernels
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import data_file
 from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.multibody.loading import load_multibody
@@ -52,6 +53,19 @@ def test_vehicles_that_do_not_fit_are_refused(er24pc, kind):
     ):
         with pytest.raises(UserError, match=why):
             kind(replace(er24pc, **changes)).numbers  # noqa: B018
+
+
+def test_an_axle_that_is_braked_has_a_brake_in_the_file(er24pc, tmp_path):
+    """A torque on an axle without a brake would do nothing."""
+    file = tmp_path / "bare.toml"
+    text = data_file("multibody", "er24pc-82.toml").read_text(encoding="utf-8")
+    start, end = text.index("[brakes.brake]"), text.index("[numbers.mass]")
+    levers = text.index("[numbers.brake.lever]")
+    file.write_text(text[:start] + text[end:levers], encoding="utf-8")
+    bare = replace(er24pc, multibody=str(file))
+    with pytest.raises(UserError, match=r"brakes wheelset_1, on which its multibody file .* has no brake"):
+        Locomotive(bare)
+    Locomotive(replace(bare, brake=replace(er24pc.brake, axle_shares=(0.0,) * 4)))
 
 
 def test_without_brakes_the_locomotive_rolls_on(er24pc):

@@ -141,6 +141,11 @@ def test_remainder_follows_the_mass():
     assert sum(model.mass(body) for body in model.bodies) == pytest.approx(80000.0)
 
 
+def test_unknown_numbers_are_told_with_the_nearest_name():
+    with pytest.raises(UserError, match=r'no number "wheelset.mas" \(did you mean "wheelset.mass"'):
+        load_multibody("er24pc-82").with_numbers({"wheelset.mas": 1.0})
+
+
 def test_numbers_that_nobody_measured_are_marked():
     entries = load_multibody("er24pc-82").entries.values()
     marked = [entry for entry in entries if entry.status == "assumed"]

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
+from wspd_design.cli.completion import names
 from wspd_design.cli.console import progress
 from wspd_design.cli.exit_codes import REFUTED
 from wspd_design.cli.gains import show_design
@@ -14,7 +15,7 @@ from wspd_design.cli.option_records import takes_records
 from wspd_design.cli.output import check_output
 from wspd_design.cli.searching import SPECIFICATIONS, search_design, to_the_files
 from wspd_design.cli.sensor_options import SensorOptions
-from wspd_design.controllers.family import designed_family
+from wspd_design.controllers.family import designed, designed_family
 from wspd_design.design import selection
 from wspd_design.design.case import RAIL, VEHICLE, CaseOptions, specification
 from wspd_design.design.file import seen_from, write_design
@@ -33,7 +34,11 @@ def design(
     law: Annotated[
         str | None,
         typer.Option(
-            "--law", metavar="LAW", help=f"{options.LAWS}. Default: {options.LAW}.", show_default=False
+            "--law",
+            metavar="LAW",
+            help=f"{options.LAWS}. Default: {options.LAW}.",
+            show_default=False,
+            autocompletion=names(*(family.name for family in designed())),
         ),
     ] = None,
     vehicle: options.VehicleOption = None,

@@ -15,6 +15,7 @@ def docs(
         typer.Argument(
             metavar="PAGE",
             help="For example own-controller, theory#band or docs/json.md, as sentences cite it.",
+            autocompletion=lambda incomplete: [name for name in pages() if name.startswith(incomplete)],
         ),
     ] = None,
 ) -> None:

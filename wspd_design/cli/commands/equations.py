@@ -100,3 +100,5 @@ def _show_one(equation: Equation) -> None:
         if content:
             shown.add_row(Text(name, style="dim"), Text(content))
     out.print(spaced(shown))
+    if equation.file or equation.test:
+        out.print("File and test are in the repository; a wheel has neither.", style="dim", markup=False)

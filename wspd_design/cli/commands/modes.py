@@ -200,7 +200,8 @@ def _show_braking(found: "VehicleModes") -> None:
     loads = ", ".join(f"{each / 1e3:.1f}" for each in running.loads.sum(axis=1))
     console().print(
         f"The train slows down by {-running.acceleration:.2f} m/s2; torques {torques} kN m and loads {loads} kN of the "
-        "axles from the front hold the slip. The speed counts as fixed: a mode slower than the stop means little.",
+        "axles from the front hold the slip. The speed counts as fixed: a mode slower than the stop means little. "
+        f"Sideways {running.sideways / 1e3:.2f} kN or kN m are left out at most.",
         markup=False,
     )
 

@@ -9,6 +9,7 @@ import typer
 
 from wspd_design.cli import options
 from wspd_design.cli.arguments import check_plant, chosen
+from wspd_design.cli.completion import names_or_files
 from wspd_design.cli.console import console, progress
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.exit_codes import GOOD, REFUTED
@@ -55,6 +56,7 @@ def report(
             metavar="TEMPLATE|FILE.toml",
             help=f"Judge by these in place of those of the design: {', '.join(TEMPLATES)}, or a table of your own "
             "(wspd docs requirements).",
+            autocompletion=names_or_files(TEMPLATES, ".toml"),
         ),
     ] = None,
     ladder: Annotated[

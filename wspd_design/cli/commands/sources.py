@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
+from wspd_design.cli.completion import names_or_files
 from wspd_design.cli.console import WIDE, console, spaced, table
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
@@ -26,7 +27,9 @@ def sources(
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="NAME", help="Vehicle, rail, controller, track or multibody vehicle, or a .toml file."
+            metavar="NAME",
+            help="Vehicle, rail, controller, track or multibody vehicle, or a .toml file.",
+            autocompletion=names_or_files((name for kind in _KINDS for name in available(kind)), ".toml"),
         ),
     ] = None,
 ) -> None:

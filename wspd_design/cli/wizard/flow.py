@@ -34,7 +34,8 @@ def walk(steps: Sequence[Step], answers: dict[str, str], ask: Ask) -> dict[str, 
         All questions; which of them apply is decided again after each answer. The last one is the review, whose answer
         may be the key of another one: that is asked once more, and after it what no longer fits.
     answers : dict
-        Answers known before. It is filled on the way, so that a caller who is interrupted still has them.
+        Answers known before, which are not asked for where they are valid. It is filled on the way, so that a caller
+        who is interrupted still has them.
     ask : callable
         How to ask.
 
@@ -46,12 +47,13 @@ def walk(steps: Sequence[Step], answers: dict[str, str], ask: Ask) -> dict[str, 
     keys, last = [step.key for step in steps], len(steps) - 1
     index = first_open(steps, answers)
     visited = [i for i in range(index) if steps[i].applies(answers)]
-    reviewed = False
+    given, reviewed = set(answers), False
     while True:
         step = steps[index]
         answer = ask(step, answers, step.suggestion(answers), place(steps, answers, index))
         if isinstance(answer, Back):
             index = visited.pop() if visited else index
+            given.discard(keys[index])
             continue
         if index == last:
             if answer == SAVE:
@@ -62,8 +64,10 @@ def walk(steps: Sequence[Step], answers: dict[str, str], ask: Ask) -> dict[str, 
         answers[step.key] = answer
         visited.append(index)
         _forget(steps, answers)
-        after = 0 if reviewed else index + 1
-        index = next((i for i in range(after, last) if _is_open(steps[i], answers, again=not reviewed)), last)
+        rest = range(0 if reviewed else index + 1, last)
+        index = next(
+            (i for i in rest if _is_open(steps[i], answers, known=reviewed or keys[i] in given)), last
+        )
 
 
 def complete(steps: Sequence[Step], answers: Answers) -> dict[str, str]:
@@ -96,14 +100,14 @@ def place(steps: Sequence[Step], answers: Answers, index: int) -> Place:
 def first_open(steps: Sequence[Step], answers: Answers) -> int:
     """Return the index of the first question without a valid answer, or that of the review."""
     return next(
-        (index for index, step in enumerate(steps[:-1]) if _is_open(step, answers, again=False)),
+        (index for index, step in enumerate(steps[:-1]) if _is_open(step, answers, known=True)),
         len(steps) - 1,
     )
 
 
-def _is_open(step: Step, answers: Answers, *, again: bool) -> bool:
-    """Whether a question is to be asked; ``again`` also with a valid answer."""
-    return step.applies(answers) and (again or not _is_valid(step, answers))
+def _is_open(step: Step, answers: Answers, *, known: bool) -> bool:
+    """Whether a question is to be asked; of a ``known`` answer only if it is not valid."""
+    return step.applies(answers) and not (known and _is_valid(step, answers))
 
 
 def _forget(steps: Sequence[Step], answers: dict[str, str]) -> None:

@@ -6,7 +6,9 @@ from typing import Literal, TypeAlias
 
 from wspd_design.model.number import Number
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Entry
+from wspd_design.parameters.words import did_you_mean
 
 Joint: TypeAlias = Literal["free", "wheelset", "revolute", "rotor"]
 """How a body moves: free; free, in a frame that does not spin; turning on another body; spinning in another body."""
@@ -173,10 +175,19 @@ class Multibody:
         return next(body for body in self.bodies if body.name == name)
 
     def with_numbers(self, numbers: Mapping[str, Number]) -> "Multibody":
-        """Return the same topology with some other numbers, or symbols; its preloads are to be worked out anew."""
-        unknown = set(numbers) - set(self.numbers)
-        if unknown:
-            raise KeyError(min(unknown))
+        """Return the same topology with some other numbers, or symbols; its preloads are to be worked out anew.
+
+        Raises
+        ------
+        UserError
+            If the vehicle has no number of a name.
+        """
+        for name in numbers:
+            if name not in self.numbers:
+                raise UserError(
+                    f'multibody vehicle {self.name} has no number "{name}"{did_you_mean(name, self.numbers)}; '
+                    "its number_names tell them all."
+                )
         merged = {name: numbers.get(name, value) for name, value in self.numbers.items()}
         return replace(self, numbers=merged, preloads={})
 

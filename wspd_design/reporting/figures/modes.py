@@ -98,13 +98,13 @@ def energy_shares(axes: "Axes", modes: "Sequence[Mode]") -> None:
 
 
 def pole_locus(axes: "Axes", locus: "Sequence[tuple[float, Poles]]") -> None:
-    """Draw the poles below 15 Hz, with their speed as color."""
+    """Draw the poles below 15 Hz, real ones too, with their speed as color."""
     import numpy as np
     from matplotlib.colors import LinearSegmentedColormap
 
     speeds = np.concatenate([np.full(len(poles), speed) for speed, poles in locus])
     poles = np.concatenate([each for _, each in locus])
-    shown = (poles.imag > 0.0) & (poles.imag < 2.0 * np.pi * _HIGHEST)
+    shown = (poles.imag >= 0.0) & (poles.imag < 2.0 * np.pi * _HIGHEST)
     colors = LinearSegmentedColormap.from_list("speed", [SERIES[4], SERIES[0], INK])
     dots = axes.scatter(
         poles.real[shown],
