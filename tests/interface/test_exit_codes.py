@@ -19,6 +19,17 @@ def certificate(status):
     )
 
 
+def finding(*made):
+    """Stand in for the checks: find these certificates, each told as it is found."""
+
+    def verify(*_arguments, found, **_options):
+        for each in made:
+            found(each)
+        return made
+
+    return verify
+
+
 @pytest.mark.parametrize(
     ("statuses", "code"),
     [
@@ -32,8 +43,7 @@ def certificate(status):
 )
 @pytest.mark.parametrize("options", [(), ("--json",)], ids=["table", "json"])
 def test_verification(statuses, code, options, wspd, monkeypatch):
-    made = tuple(map(certificate, statuses))
-    monkeypatch.setattr(suite, "verify", lambda *_arguments, **_options: made)
+    monkeypatch.setattr(suite, "verify", finding(*map(certificate, statuses)))
     outcome = wspd("verify", "none", *options)
     assert (outcome.code, outcome.err) == (code, "")
     for status in statuses:
@@ -43,7 +53,7 @@ def test_verification(statuses, code, options, wspd, monkeypatch):
 @pytest.mark.parametrize("status", Status)
 @pytest.mark.parametrize("options", [(), ("--json",)], ids=["table", "json"])
 def test_a_check_that_is_asked_for_is_open_unless_it_is_proved(status, options, wspd, monkeypatch):
-    monkeypatch.setattr(suite, "verify", lambda *_arguments, **_options: (certificate(status),))
+    monkeypatch.setattr(suite, "verify", finding(certificate(status)))
     code = {Status.PROVED: 0, Status.REFUTED: 1, Status.LIMITATION: 1}.get(status, 3)
     assert wspd("verify", "none", "--only", "reaching", *options).code == code
 
