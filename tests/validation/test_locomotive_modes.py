@@ -44,6 +44,11 @@ def dry(model):
 
 
 @pytest.fixture(scope="module")
+def wet(model):
+    return running_vehicle(model, contact_of(model), WET)
+
+
+@pytest.fixture(scope="module")
 def rolling(vehicle):
     return modes(steady(vehicle, 20.0).motion)
 
@@ -160,8 +165,8 @@ def at_rest_loads(vehicle, speed, slip):
     ("rail", "fastest"),
     [(DRY, {33.3: 1.07, 15.0: 5.1, 5.0: 11.7}), (WET, {33.3: 1.07, 15.0: 1.43, 5.0: 0.27})],
 )
-def test_slip_poles_at_the_loads_of_rest_are_those_of_the_prototype(model, dry, rail, fastest):
-    vehicle = dry if rail is DRY else running_vehicle(model, contact_of(model), rail)
+def test_slip_poles_at_the_loads_of_rest_are_those_of_the_prototype(dry, wet, rail, fastest):
+    vehicle = dry if rail is DRY else wet
     for speed, pole in fastest.items():
         found = [each for each in modes(at_rest_loads(vehicle, speed, 0.14)) if not each.oscillates]
         assert max(each.pole.real for each in found) == pytest.approx(pole, abs=0.05)
@@ -298,8 +303,8 @@ def test_hunting_grows_in_time_as_its_eigenvalue_says(vehicle, rates, speed):
 @pytest.mark.parametrize(
     ("rail", "kmh", "grows"), [(DRY, 66.0, False), (DRY, 58.0, True), (WET, 20.0, False)]
 )
-def test_a_braked_driveline_grows_at_low_speed_where_friction_falls_steeply(model, dry, rail, kmh, grows):
-    vehicle = dry if rail is DRY else running_vehicle(model, contact_of(model), rail)
+def test_a_braked_driveline_grows_at_low_speed_where_friction_falls_steeply(dry, wet, rail, kmh, grows):
+    vehicle = dry if rail is DRY else wet
     pole = fastest_above(steady(vehicle, kmh / 3.6, slip=0.14), 10.0)
     assert bool(pole.real > 0.0) is grows
 
