@@ -187,6 +187,13 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
             f"ratio, and below {_FASTEST:g} m/s (540 km/h)"
         )
     model, neutral = vehicle.model, vehicle.neutral
+    braked = {brake.wheelset for brake in model.brakes}
+    free = [name for name in model.wheelset_names if name not in braked]
+    if slip and free:
+        raise UserError(
+            f"{', '.join(free)} of multibody vehicle {model.name} has no brake that could hold slip = {slip:g}; "
+            "add one to its file, or leave the slip out, so that all wheels roll"
+        )
     n, axles = len(model.coordinates), model.wheelsets
     plane = [k for k, name in enumerate(model.coordinates) if name.rpartition(".")[2] in _PLANE]
     kept = [k for k in plane if model.coordinates[k] not in neutral]

@@ -122,9 +122,9 @@ def design_steps() -> tuple[Step, ...]:
             key="requirements",
             title="Requirements",
             explanation="The table of limits by which a report accepts or rejects the design.",
-            help="wspd report takes it as --requirements. A table of your own has limits with their sources: "
-            "wspd docs requirements. Limits on drawn stops, and gains that are searched for them, are stated in a "
-            "specification: wspd docs design-to-requirements.",
+            help="The design names it, and wspd report --requirements takes another one. A table of your own has "
+            "limits with their sources: wspd docs requirements. Limits on drawn stops, and gains that are searched for "
+            "them, are stated in a specification: wspd docs design-to-requirements.",
             default=PAPER,
             options=(
                 *(Option(value=name, text=_TEMPLATES[name]) for name in TEMPLATES),
