@@ -10,8 +10,10 @@ followed.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
+from types import MappingProxyType
 from typing import Any, ClassVar, Final, Self
 
 from wspd_design.model import adhesion
@@ -48,11 +50,13 @@ class Locomotive(BrakedWheelsets):
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False
     longest: ClassVar[float] = 5e-4  # s
-    further_traces: ClassVar[tuple[str, ...]] = (
-        "wheel_load_left",
-        "wheel_load_right",
-        "lateral_position",
-        "driveline_torque",
+    further_traces: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "wheel_load_left": "N",
+            "wheel_load_right": "N",
+            "lateral_position": "m",
+            "driveline_torque": "N m",
+        }
     )
 
     def __post_init__(self) -> None:

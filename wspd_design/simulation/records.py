@@ -492,6 +492,7 @@ class Run:
     pad_temperature: "Trace | None" = None
     track_brake_force: "Trace | None" = None
     further: "Mapping[str, Trace]" = field(default_factory=dict)
+    further_units: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Say in one line what became of the stop."""

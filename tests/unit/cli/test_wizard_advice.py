@@ -7,11 +7,11 @@ import pytest
 from wspd_design.analysis.linearization import linearize
 from wspd_design.analysis.slip_pole import largest_slip_pole, valve_rate
 from wspd_design.certificates.theorems.valve import integrals_of_slip
+from wspd_design.cli.path_completion import common_start, last_part, paths
 from wspd_design.cli.wizard import advice
 from wspd_design.cli.wizard.asked_design import is_of_whole_vehicle
 from wspd_design.cli.wizard.design_steps import design_steps
 from wspd_design.cli.wizard.flow import complete
-from wspd_design.cli.wizard.paths import common_start, last_part, paths
 from wspd_design.cli.wizard.rail_steps import rail_steps
 from wspd_design.cli.wizard.session import again, reviewing
 from wspd_design.cli.wizard.steps import noted
