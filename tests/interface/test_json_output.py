@@ -93,6 +93,7 @@ def test_disturbances_are_recorded_and_change_the_stop(wspd):
         "patches": [{"from_m": 2.0, "rail": "low-adhesion"}],
         "grade": -0.005,
         "pad_vibration": True,
+        "irregularities": "none",
         "speed_noise_m_s": 0.05,
         "pulses_per_turn": 80,
         "period_timing": True,

@@ -7,6 +7,7 @@ from jsonschema import validate
 
 from wspd_design.exchange.files import read_schema
 from wspd_design.exchange.modes_forms import MODES
+from wspd_design.parameters.files import data_file
 
 
 def test_a_rolling_vehicle_has_its_modes_and_its_critical_speed(wspd):
@@ -68,3 +69,14 @@ def test_wrong_use_gets_one_sentence(wspd, words, sentence):
     assert outcome.code == 2
     assert sentence in outcome.err
     assert outcome.err.count("\n") == 1
+
+
+def test_a_wheelset_without_a_brake_cannot_be_held_at_a_slip(wspd, tmp_path):
+    text = data_file("multibody", "two-axle-wagon.toml").read_text()
+    start = text.index("[brakes.")
+    own = tmp_path / "wagon.toml"
+    own.write_text(text[:start] + text[text.index("\n\n", start) :])
+    assert wspd("modes", own).code == 0
+    outcome = wspd("modes", own, "--slip", "0.14")
+    assert outcome.code == 2
+    assert "no brake" in outcome.err

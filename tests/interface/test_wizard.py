@@ -203,9 +203,17 @@ def test_wrong_answers_are_refused_without_a_terminal(arguments, words, wspd, tm
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_next_step_takes_the_requirements(wspd):
+def test_the_design_names_its_requirements(wspd, tmp_path):
     made = wspd("new", "--yes", "--set", "requirements=en-15595-like")
-    assert "wspd report design.toml --requirements en-15595-like -o design.html" in made.out
+    assert "Judged by en-15595-like." in made.out
+    assert read_design(tmp_path / "design.toml").judged_by == "en-15595-like"
+    (tmp_path / "line7.toml").write_text('[requirements.limits]\nlongest_lock = "0.4 s"\n')
+    (tmp_path / "designs").mkdir()
+    own = ("--set", "requirements=own file", "--set", "requirements_file=line7.toml")
+    assert wspd("new", "--yes", *own, "-o", "designs/own.toml").code == 0
+    assert read_design(tmp_path / "designs" / "own.toml").judged_by == "../line7.toml"
+    assert wspd("new", "--yes", "-o", "plain.toml").code == 0
+    assert "judged_by" not in (tmp_path / "plain.toml").read_text()
 
 
 def test_vehicles_and_rails_take_files_of_answers(wspd, tmp_path):

@@ -49,6 +49,14 @@ class StopOptions:
             'Wheel loads vary along a track (ERRI B 176) that the seed draws; standard deviation: "4 %".',
         ),
     ] = None
+    irregularities: Annotated[
+        str | None,
+        _described(
+            "--irregularities",
+            "LEVEL",
+            "The locomotive rolls over a track (ERRI B 176) that the seed draws: high or low.",
+        ),
+    ] = None
     speed_noise: Annotated[
         str | None, _described("--speed-noise", "SPEED", 'Of the measured rim speed, rms: "0.05 m/s".')
     ] = None

@@ -18,7 +18,6 @@ def show_design(
     vehicle: Vehicle,
     rail: Rail,
     *,
-    judged_by: str | None = None,
     on_one_screen: bool = False,
 ) -> None:
     """Print the gains of a design, what its brake asks of the rail, where it was written and what to do with it.
@@ -31,8 +30,6 @@ def show_design(
         Its file.
     vehicle, rail : Vehicle, Rail
         Of the design.
-    judged_by : str, optional
-        Requirements that its report shall take, a template or a file.
     on_one_screen : bool
         Whether the reasons of the gains, which the file holds, give way where the terminal is too low for them.
     """
@@ -45,6 +42,8 @@ def show_design(
         f"{high * 3.6:g} km/h, sample time {specification.sample_time * 1e3:g} ms"
     )
     out.print(adhesion_sentence(vehicle, rail, specification.speeds), markup=False)
+    if made.judged_by:
+        out.print(f"Judged by {made.judged_by}.", markup=False)
     wide = out.width >= WIDE
     shown = table("Gain", "Value", "Why") if wide else table("Gain", "Why")
     for gain in made.gains:
@@ -58,12 +57,11 @@ def show_design(
         out.print(f"\nGains, each with its reason in {path}: {values}.\n", markup=False)
     else:
         out.print(spaced(shown))
-    judged = () if judged_by is None else ("--requirements", judged_by)
     print_written(
         path,
         ("Prove it", ("verify", path)),
         ("Try it", ("simulate", path)),
-        ("Show it", ("report", path, *judged, "-o", path.with_suffix(".html"))),
+        ("Show it", ("report", path, "-o", path.with_suffix(".html"))),
     )
 
 

@@ -21,6 +21,7 @@ from wspd_design.design.requirements import Requirements
 from wspd_design.design.selection import named_design
 from wspd_design.design.stop_requirements import StopRequirements, named_requirements
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import beside
 from wspd_design.studies.inputs import (
     COMMAND,
     DESIGN,
@@ -222,6 +223,8 @@ def over_attachments(
             made, vehicle_name=case.vehicle_name, rail_name=case.rail_name, rail=case.rail
         )
         call = replace(call, law=DESIGN, slip=None, sample_time=None, sensors=SensorOptions())
+        if call.requirements is None and made.requirements is None and made.judged_by:
+            call = replace(call, requirements=beside(made.judged_by, folder))
         law_files = (design_input(attached),)
     wanted = None if call.requirements is None else named_requirements(call.requirements, case.specification)
     files = (

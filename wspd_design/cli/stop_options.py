@@ -12,7 +12,16 @@ from wspd_design.parameters.loading import load_rail, load_rail_profile, load_tr
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import Dimension, parse_quantity
 from wspd_design.parameters.words import did_you_mean
-from wspd_design.simulation.records import FAULT_KINDS, Fault, LoadIrregularity, Patch, Scenario, Sensing
+from wspd_design.simulation.records import (
+    FAULT_KINDS,
+    IRREGULARITIES,
+    Fault,
+    Irregularities,
+    LoadIrregularity,
+    Patch,
+    Scenario,
+    Sensing,
+)
 from wspd_design.simulation.track import irregular_load, standard_deviation, synthesize
 
 _PATCH = re.compile(r"\s*(?P<start>\S+\s*[a-z]+)\s+(?P<rail>\S.*?)\s*")
@@ -79,7 +88,19 @@ def scenario(
         load_irregularity=None
         if disturbances.load_spread is None
         else _loads(disturbances.load_spread, vehicle, seed),
+        irregularities=_irregularities(disturbances.irregularities),
     )
+
+
+def _irregularities(text: str | None) -> Irregularities:
+    """Read the level of the irregularities of the track."""
+    level = "none" if text is None else text.strip().lower()
+    if level not in IRREGULARITIES:
+        offer = did_you_mean(level, IRREGULARITIES)
+        raise UserError(
+            f'--irregularities "{text}" names no level{offer}; it may be {", ".join(IRREGULARITIES)}'
+        )
+    return level
 
 
 def _loads(text: str, vehicle: Vehicle, seed: int) -> LoadIrregularity:

@@ -22,7 +22,11 @@ from wspd_design.parameters.writing import write_whole
 
 SCHEMA = "wspd-design/2"
 _HEAD = ("schema", "name", "law", "vehicle", "vehicle_hash", "rail", "rail_hash")
-_OPTIONAL = ("vehicle_file", "rail_file")  # of vehicles and rails that do not ship with the program
+_OPTIONAL = (
+    "vehicle_file",
+    "rail_file",
+    "judged_by",
+)  # what does not ship with the program, or is not the usual
 _REQUIREMENTS = "requirements"
 _FORMS = {float: "one number", bool: "true or false", tuple[float, ...]: "a list of numbers"}
 _SPECIFICATION = {"slip": "-", "speeds": "m/s", "slips": "-", "slip_tolerance": "-", "sample_time": "s"}

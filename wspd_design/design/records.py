@@ -139,6 +139,8 @@ class Design:
     rail_file : str
     requirements : Requirements or None
         That it was searched for; rails of one's own as seen from here.
+    judged_by : str
+        Other requirements of its reports: a template, or a file as seen from the folder of the design file.
     """
 
     name: str
@@ -152,6 +154,7 @@ class Design:
     vehicle_file: str = ""
     rail_file: str = ""
     requirements: Requirements | None = None
+    judged_by: str = ""
 
     def __repr__(self) -> str:
         """Say in one line what this is."""

@@ -73,6 +73,12 @@ DESIGN_FILE = Form(
         Key(name="rail_hash", kind="text", meaning="fingerprint of the rail that it was made for"),
         Key(name="vehicle_file", kind="text", meaning="of one's own vehicle, from this folder", always=False),
         Key(name="rail_file", kind="text", meaning="of one's own rail, from this folder", always=False),
+        Key(
+            name="judged_by",
+            kind="text",
+            meaning="requirements of its reports, a template or a file, where it has no table of them",
+            always=False,
+        ),
         Key(name="specification", kind=SPECIFICATION_TABLE, meaning="what was asked for"),
         Key(name="gains", kind=GAIN_TABLE, by_name=True, meaning="a table for each gain of the law"),
         Key(name="requirements", kind=REQUIREMENTS_TABLE, meaning="that it was searched for", always=False),

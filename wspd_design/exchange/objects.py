@@ -110,6 +110,7 @@ def scenario_object(scenario: Scenario, *, dead_time: float, shortest_pulse: flo
         "grade": scenario.grade,
         "pad_vibration": scenario.pad_vibration,
         "load_spread": 0.0 if loads is None else loads.spread,
+        "irregularities": scenario.irregularities,
         "speed_noise_m_s": sensing.speed_noise,
         "pulses_per_turn": sensing.pulses_per_turn,
         "period_timing": sensing.period_timing,

@@ -12,7 +12,7 @@ from wspd_design.exchange.common_keys import (
     nullable,
 )
 from wspd_design.exchange.forms import Form, Key
-from wspd_design.simulation.records import FAULT_KINDS
+from wspd_design.simulation.records import FAULT_KINDS, IRREGULARITIES
 
 START = Form(
     name="start",
@@ -59,6 +59,12 @@ SCENARIO = Form(
             name="load_spread",
             kind="number",
             meaning="root mean square of what the relative wheel loads differ from 1 by, along the table",
+        ),
+        Key(
+            name="irregularities",
+            kind="text",
+            meaning="level of the irregularities of the track, ERRI B 176, that the seed draws",
+            words=IRREGULARITIES,
         ),
         Key(name="speed_noise_m_s", kind="number", meaning="rms, of the measured rim speed"),
         Key(

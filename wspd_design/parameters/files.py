@@ -33,6 +33,8 @@ _DECIMAL_COMMA = re.compile(r"^[^\"\[#]*=\s*([-+]?\d+),(\d+)\s*(?:#.*)?$", re.MU
 _FILE_KEYS = ("title", "base")
 PROFILE_RAILS = "profile.rails"
 """The entry of a rail file that changes along the track."""
+MULTIBODY = "multibody"
+"""The entry of a vehicle file that names another file."""
 
 
 def data_file(*parts: str) -> Traversable:
@@ -128,6 +130,9 @@ def _load_own(kind: Kind, path: Path) -> ParameterSet:
     entries = _entries(
         kind, document, schema, where, {"source": "own file", "at": path.name, "status": "assumed"}
     )
+    if MULTIBODY in entries:
+        entry = entries[MULTIBODY]
+        entries[MULTIBODY] = replace(entry, value=beside(str(entry.value), path.parent))
     if "base" in document:
         base, shipped = document["base"], available(kind)
         if base not in shipped:

@@ -10,8 +10,10 @@ followed.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
+from types import MappingProxyType
 from typing import Any, ClassVar, Final, Self
 
 from wspd_design.model import adhesion
@@ -28,12 +30,14 @@ from wspd_design.plants.multibody.motion import rest_names, rolling, vehicle_mot
 from wspd_design.plants.multibody.preloads import balanced, rest_function
 from wspd_design.plants.multibody.records import Multibody, effective_inertia, gears_of
 from wspd_design.plants.multibody.wheels import Irregularity
+from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import CoupledMotion
 
 _SHARED: Final = ("mass", "wheel_radius", "wheelbase", "bogie_spacing")
 """Numbers of the file that are those of the vehicle."""
 _CONTACT: Final = ("normal_stiffness", "kalker_c22", "kalker_c23", "lateral_slope")
 _WHEELS: Final = 2  # of one axle
+_SAME_PLACE: Final = 1e-3  # of the distance
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +50,13 @@ class Locomotive(BrakedWheelsets):
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False
     longest: ClassVar[float] = 5e-4  # s
-    further_traces: ClassVar[tuple[str, ...]] = (
-        "wheel_load_left",
-        "wheel_load_right",
-        "lateral_position",
-        "driveline_torque",
+    further_traces: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {
+            "wheel_load_left": "N",
+            "wheel_load_right": "N",
+            "lateral_position": "m",
+            "driveline_torque": "N m",
+        }
     )
 
     def __post_init__(self) -> None:
@@ -221,10 +227,24 @@ def _of_file(name: str, changed: tuple[tuple[str, float], ...]) -> Multibody:
 @lru_cache(maxsize=256)
 def _numbers(vehicle: Vehicle, changed: tuple[tuple[str, float], ...]) -> tuple[float, ...]:
     """Numbers of the multibody vehicle with the totals of a vehicle, in the order of ``number_names``."""
+    _check_places(vehicle)
     model = balanced(_with_totals(_of_file(vehicle.multibody, changed), vehicle), _rest(vehicle.multibody))
     touching = wheel_rail(vehicle.contact, poisson=steel().poisson)
     contact = (getattr(touching, name) for name in _CONTACT)
     return tuple(map(float, (*model.numbers.values(), *model.preloads.values(), *contact)))
+
+
+def _check_places(vehicle: Vehicle) -> None:
+    """Refuse a multibody file whose axles stand elsewhere than those of the vehicle."""
+    if vehicle.wheelsets == 1:
+        return
+    places = zip(Locomotive(vehicle).offsets, Planar(vehicle).offsets, strict=True)
+    for axle, (place, wanted) in enumerate(places, 1):
+        if abs(place - wanted) > _SAME_PLACE * wanted:
+            raise UserError(
+                f"axle {axle} of vehicle {vehicle.name} stands {wanted:g} m behind the first one, and in its multibody "
+                f"file {vehicle.multibody} {place:g} m; let both agree (wheelbase, bogie_spacing)"
+            )
 
 
 @cache
@@ -234,7 +254,9 @@ def _rest(name: str) -> Any:
 
 def _with_totals(model: Multibody, vehicle: Vehicle) -> Multibody:
     """The multibody vehicle with the numbers that are those of the vehicle."""
-    shared: dict[str, Number] = {name: getattr(vehicle, name) for name in _SHARED if name in model.numbers}
+    stated = {name: getattr(vehicle, name) for name in _SHARED if name in model.numbers}
+    # A vehicle of single axles has no wheelbase.
+    shared: dict[str, Number] = {name: value for name, value in stated.items() if value}
     for name in model.wheelset_names:
         shared |= _inertia_of_rest(model, vehicle, name)
     light = min(model.with_numbers(shared).mass(body) for body in model.bodies)

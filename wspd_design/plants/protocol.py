@@ -8,6 +8,7 @@ then carries symbols in place of numbers.
 """
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple, Protocol, TypeGuard
 
 from wspd_design.model.number import Number
@@ -189,8 +190,8 @@ class CoupledPlant(Plant, Protocol):
         """Numbers beyond those of the vehicle, or that follow from them."""
 
     @property
-    def further_traces(self) -> tuple[str, ...]:
-        """Names of the traces that it adds, each with one number an axle."""
+    def further_traces(self) -> Mapping[str, str]:
+        """Units of the traces that it adds, by their names; each has one number an axle."""
 
     def motion(
         self,

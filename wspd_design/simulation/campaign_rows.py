@@ -259,7 +259,8 @@ def ideal_distances(cases: Cases, runs: str) -> "Array":
     """Return the distances of the ideal stops [m], NaN where there is none; what a law measures does not count."""
     import numpy as np
 
-    if any(scenario.patches or scenario.start != Start() for _, scenario in cases):
+    unknown = (each.patches or each.start != Start() or is_coupled(plant) for plant, each in cases)
+    if any(unknown):
         return np.full(len(cases), np.nan)
     unseeing = [(plant, _unseeing(scenario)) for plant, scenario in cases]
     alike = all(case == unseeing[0] for case in unseeing)

@@ -38,6 +38,7 @@ def disturbances_of(stop: Scenario) -> str:
         (stop.grade, f"grade {1e3 * stop.grade:g} permille"),
         (stop.pad_vibration, "pad vibration"),
         (loads, f"wheel loads that vary by {100.0 * loads.spread:.2g} % rms" if loads else ""),
+        (stop.irregularities != "none", f"track irregularities of ERRI B 176, {stop.irregularities} level"),
         (sensing.speed_noise, f"speed noise {sensing.speed_noise:g} m/s rms"),
         (
             sensing.pulses_per_turn,

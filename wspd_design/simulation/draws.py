@@ -44,6 +44,7 @@ _NEVER = (
     "rail",
     "bounds",
     "load_irregularity",
+    "irregularities",
 )  # of each stop anyway, or no number
 
 

@@ -18,7 +18,7 @@ from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
-from wspd_design.plants.protocol import Plant
+from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.peak import best_slips, log_speeds
 from wspd_design.simulation.records import Ending, Run, Scenario, Start
@@ -96,10 +96,12 @@ def ideal_stop(
     ------
     UserError
         For a change of rail along the track: its peak slip is not known in advance. For a stop that does not
-        start rolling with empty cylinders.
+        start rolling with empty cylinders, and for a coupled plant, whose wheelsets no brake of the loop holds.
     """
     import numpy as np
 
+    if is_coupled(plant_of(plant, vehicle)):
+        raise UserError(f'the ideal stop is not known on plant "{plant}"; take the plant "{DEFAULT_PLANT}"')
     if scenario.start != Start():
         raise UserError(
             "the ideal stop is known where a stop starts rolling with empty cylinders; leave start out"
@@ -138,9 +140,9 @@ def ideal_stop(
 
 def ideal_run(vehicle: Vehicle, scenario: Scenario, *, slip: float, plant: str = DEFAULT_PLANT) -> Run | None:
     """Return the traces of the stop whose slip is not exceeded; None where none is known."""
-    if scenario.start != Start() or scenario.patches or runs_away(vehicle, scenario):
-        return None
     braked = plant_of(plant, vehicle)
+    if scenario.start != Start() or scenario.patches or is_coupled(braked) or runs_away(vehicle, scenario):
+        return None
     calm = replace(scenario, faults=())
     output, engine = run_loop(braked, FILLING, calm, traced(ideal_input([(braked, calm)], slip=slip)))
     return run_record(braked, FILLING, calm, output, engine)

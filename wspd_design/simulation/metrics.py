@@ -11,6 +11,8 @@ from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.later import later
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Vehicle
+from wspd_design.plants.names import plant_of
+from wspd_design.plants.protocol import is_coupled
 from wspd_design.simulation.held_slip import build_up, held_slip_of, perfect_hold
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.law_memory import rms_about_references
@@ -167,7 +169,8 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     -------
     Metrics
         A run that did not come to a standstill gives NaN for lag and plateau; so does one that did not start
-        rolling with empty cylinders, or that came to another rail, whose ideal stop is not known either.
+        rolling with empty cylinders, or that came to another rail, whose ideal stop is not known either;
+        nor is that of a coupled plant.
     """
     totals, time = run.totals, float(run.time[-1])
     stopped = run.ending is Ending.STOPPED
@@ -179,7 +182,8 @@ def metrics(run: Run, vehicle: Vehicle, scenario: Scenario, *, slip_reference: f
     own = rms_about_references(run)
     moved = totals.distance > 0.0  # a start below the stop speed is at rest at once
     known = scenario.start == Start() and not scenario.patches
-    ideal = ideal_stop(vehicle, scenario, plant=run.plant) if known else None
+    followed = known and not is_coupled(plant_of(run.plant, vehicle))  # by an ideal brake
+    ideal = ideal_stop(vehicle, scenario, plant=run.plant) if followed else None
     ideal_distance = math.nan if ideal is None else ideal.distance
     parted = stopped and known and moved
     held = held_slip_of(run, slip_reference)

@@ -458,8 +458,10 @@ class Run:
         Above that before the stop, per wheelset, where friction depends on it.
     track_brake_force : ndarray or None [N]
         Of the magnets of the vehicle.
-    further : Mapping[str, ndarray] [names tell theirs]
+    further : Mapping[str, ndarray] [those of ``further_units``]
         Per wheelset, what a coupled plant adds.
+    further_units : Mapping[str, str]
+        Unit of each trace of ``further``.
     """
 
     controller: str
@@ -492,6 +494,7 @@ class Run:
     pad_temperature: "Trace | None" = None
     track_brake_force: "Trace | None" = None
     further: "Mapping[str, Trace]" = field(default_factory=dict)
+    further_units: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Say in one line what became of the stop."""

@@ -194,6 +194,7 @@ def run_record(plant: Plant, controller: Law, scenario: Scenario, output: LoopOu
         dynamic_torque=None if plant.vehicle.dynamic is None else dynamic,
         pad_temperature=warmth[0] if warmth else None,
         further=dict(zip(plant.further_traces, further, strict=True)) if is_coupled(plant) else {},
+        further_units=plant.further_traces if is_coupled(plant) else {},
         track_brake_force=None
         if magnets is None
         else np.array(

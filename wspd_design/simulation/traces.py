@@ -121,6 +121,11 @@ def _moving(run: Run) -> "Iterator[tuple[str, str, Trace]]":
     ):
         if trace is not None:
             yield from ((f"{name}_{k + 1}", unit, column) for k, column in enumerate(trace.T))
+    for name, trace in run.further.items():
+        unit = run.further_units[name]
+        yield from (
+            (f"{name}_{unit.replace(' ', '')}_{k + 1}", unit, column) for k, column in enumerate(trace.T)
+        )
     if run.track_brake_force is not None:
         yield "track_brake_force_N", "N", run.track_brake_force
 

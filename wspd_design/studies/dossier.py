@@ -24,9 +24,9 @@ from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design, Specification
 from wspd_design.design.requirements import Requirements, seen_from_here
 from wspd_design.design.selection import named_design
-from wspd_design.design.stop_requirements import StopRequirements, paper_requirements
+from wspd_design.design.stop_requirements import StopRequirements, named_requirements, paper_requirements
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.files import available, load_entries
+from wspd_design.parameters.files import available, beside, load_entries
 from wspd_design.parameters.given import given_entries
 from wspd_design.parameters.laden import laden
 from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
@@ -193,7 +193,7 @@ def dossier(
     full_adhesion = _full_adhesion(of_vehicle, scenario)
     judged = judgment(
         own,
-        requirements or _own_requirements(design, folder) or paper_requirements(asked),
+        requirements or _own_requirements(design, folder, asked),
         vehicle=of_vehicle,
         vehicle_name=vehicle_name,
         speeds=asked.speeds,
@@ -284,10 +284,15 @@ def _full_adhesion(vehicle: Vehicle, scenario: Scenario) -> float:
         return math.nan
 
 
-def _own_requirements(design: Design | None, folder: Path) -> Requirements | None:
-    if design is None or design.requirements is None:
-        return None
-    return seen_from_here(design.requirements, folder)
+def _own_requirements(
+    design: Design | None, folder: Path, asked: Specification
+) -> StopRequirements | Requirements:
+    """Return the table that a design holds or names, and what the paper asks where it does neither."""
+    if design is None or not (design.requirements or design.judged_by):
+        return paper_requirements(asked)
+    if design.requirements is not None:
+        return seen_from_here(design.requirements, folder)
+    return named_requirements(beside(design.judged_by, folder), asked)
 
 
 def _asked(made: Design | Law, specification: Specification | None) -> Specification:

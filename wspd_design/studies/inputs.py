@@ -62,6 +62,7 @@ def attached_design(made: Design, *, vehicle_name: str, rail_name: str, rail: Ra
         vehicle_file="" if file_of(vehicle_name) is None else attached_name(vehicle_name),
         rail_file="" if file_of(rail_name) is None or not made.made_on(rail) else attached_name(rail_name),
         requirements=wanted,
+        judged_by=attached_name(made.judged_by),
     )
 
 

@@ -1,14 +1,20 @@
 """The command of a report is written and read without loss, and nothing else is read: it may come from a stranger."""
 
 from dataclasses import fields, replace
+from pathlib import Path
 
 import pytest
 
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.lazy import COMMANDS
-from wspd_design.cli.report_call import ReportCall, check_names, read_call
+from wspd_design.cli.report_call import ReportCall, check_names, over_attachments, read_call
 from wspd_design.cli.sensor_options import SensorOptions
+from wspd_design.design.case import CaseOptions, load_case
+from wspd_design.design.file import write_design
+from wspd_design.design.records import Specification
+from wspd_design.design.selection import design_controller
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.studies.inputs import attached_name
 from wspd_design.studies.provenance import InputFile
 
@@ -109,3 +115,29 @@ def test_names_lose_their_folders_alone():
         "afsmc",
         "knorr-bremse:textbook",
     )
+
+
+CALL = ReportCall(law="observer-smc", vehicle="er24pc", rail="polach-wet")
+
+
+def test_a_design_brings_the_requirements_that_it_names(tmp_path, monkeypatch):
+    """The call over the attachments names them, and their file is attached; an option counts more."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "designs").mkdir()
+    (tmp_path / "line7.toml").write_text('[requirements.limits]\nlongest_lock = "0.4 s"\n')
+    made = design_controller(
+        load_vehicle("er24pc"), load_rail("polach-wet"), Specification(), law="observer-smc"
+    )
+    path = Path("designs") / "mine.toml"
+    write_design(replace(made, judged_by="../line7.toml"), path)
+    case = load_case(str(path), CaseOptions())
+    found, files = over_attachments(case, replace(CALL, law=str(path)))
+    assert found.requirements == "line7.toml"
+    assert "--requirements line7.toml" in found.text
+    attached = {each.name: each.text for each in files}
+    assert "longest_lock" in attached["line7.toml"]
+    assert 'judged_by = "line7.toml"' in attached[found.law]
+    other, _ = over_attachments(case, replace(CALL, law=str(path), requirements="en-15595-like"))
+    assert other.requirements == "en-15595-like"
+    without, _ = over_attachments(load_case("observer-smc", CaseOptions()), CALL)
+    assert without.requirements is None

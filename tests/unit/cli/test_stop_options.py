@@ -217,3 +217,11 @@ def test_load_spread():
     assert loads.spread == pytest.approx(0.04, rel=0.1)
     assert loads == made(load_spread="4 %").load_irregularity
     assert "wheel loads that vary by 4 % rms" in disturbances_of(made(load_spread="4 %"))
+
+
+def test_irregularities():
+    assert made().irregularities == "none"
+    assert made(irregularities="High ").irregularities == "high"
+    assert "track irregularities of ERRI B 176, low level" in disturbances_of(made(irregularities="low"))
+    with pytest.raises(UserError, match='"hihg" names no level.*may be none, low, high'):
+        made(irregularities="hihg")

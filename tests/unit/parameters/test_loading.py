@@ -246,3 +246,12 @@ def test_file_without_permission(write):
     path.chmod(0)
     with pytest.raises(UserError, match=r"cannot be read \(Permission denied\)"):
         loading.load_rail(path)
+
+
+def test_a_multibody_file_stands_beside_its_vehicle_file(tmp_path):
+    own = tmp_path / "own.toml"
+    for named, loaded in (("bodies.toml", str(tmp_path / "bodies.toml")), ("er24pc-82", "er24pc-82")):
+        own.write_text(f'base = "er24pc"\nmultibody = "{named}"\n')
+        assert loading.load_vehicle(own).multibody == loaded
+    own.write_text('base = "er24pc"\n')
+    assert loading.load_vehicle(own).multibody == "er24pc-82"

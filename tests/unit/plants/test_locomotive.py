@@ -8,7 +8,7 @@ import pytest
 from wspd_design.codegen.kernels import RAIL, Surroundings, parameter_values, plant_kernels
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import data_file
-from wspd_design.parameters.loading import load_rail
+from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.multibody.loading import load_multibody
 from wspd_design.plants.multibody.records import effective_inertia
@@ -53,6 +53,19 @@ def test_vehicles_that_do_not_fit_are_refused(er24pc, kind):
     ):
         with pytest.raises(UserError, match=why):
             kind(replace(er24pc, **changes)).numbers  # noqa: B018
+
+
+def test_axles_stand_where_those_of_the_vehicle_do(tmp_path):
+    """A file with a wheelbase of its own lost it to a vehicle of single axles, which has none."""
+    file = tmp_path / "wagon.toml"
+    text = data_file("multibody", "two-axle-wagon.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace("bogie_spacing", "wheelbase"), encoding="utf-8")
+    wagon = replace(load_vehicle("two-axle-wagon"), multibody=str(file))
+    assert Locomotive(wagon).offsets == (0.0, 9.0)
+    with pytest.raises(
+        UserError, match=r"axle 2 of vehicle two-axle-wagon stands 8 m .* 9 m; let both agree"
+    ):
+        Locomotive(replace(wagon, bogie_spacing=8.0)).numbers  # noqa: B018
 
 
 def test_an_axle_that_is_braked_has_a_brake_in_the_file(er24pc, tmp_path):

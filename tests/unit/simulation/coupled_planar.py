@@ -20,7 +20,7 @@ class CoupledPlanar(BrakedWheelsets):
     alike: ClassVar[bool] = False
     model: ClassVar[None] = None
     number_names: ClassVar[tuple[str, ...]] = ("track_gain",)
-    further_traces: ClassVar[tuple[str, ...]] = ("doubled_load",)
+    further_traces: ClassVar[dict[str, str]] = {"doubled_load": "N"}
 
     @property
     def planar(self):

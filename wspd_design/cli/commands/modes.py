@@ -7,12 +7,15 @@ import typer
 
 from wspd_design.cli import options
 from wspd_design.cli.arguments import parse_speed
+from wspd_design.cli.completion import names_or_files
 from wspd_design.cli.console import WIDE, console, print_json, print_written, progress, spaced
 from wspd_design.cli.output import check_output, write_file
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import VEHICLE
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import available
 from wspd_design.parameters.units import KMH, parse_quantity
+from wspd_design.plants.multibody.loading import available_multibodies
 from wspd_design.reporting.tables import ColumnOf, build
 
 if TYPE_CHECKING:
@@ -38,6 +41,7 @@ def modes(
             help="A vehicle with a multibody file, a multibody vehicle such as er24pc-82, or a .toml file of either "
             f"(docs/multibody.md). Default: {VEHICLE}.",
             show_default=False,
+            autocompletion=names_or_files([*available_multibodies(), *available("vehicle")], ".toml"),
         ),
     ] = None,
     speed: Annotated[
@@ -54,6 +58,7 @@ def modes(
             "NAME",
             "Whose factors reduce the slope of longitudinal creep forces.",
             "none where the wheels roll, else polach-dry",
+            names_or_files(available("rail"), ".toml"),
         ),
     ] = None,
     conicity: Annotated[
@@ -261,7 +266,15 @@ def _draw(found: "VehicleModes", highest: float, target: Path, ending: str) -> N
     rows = _shown(found, highest)
     with figure_style():
         figure = new_figure(height=figure_height(rows, found.critical))
-        draw_modes(figure, rows, locus, found.critical)
+        state = f"braked at slip {found.slip:g}" if found.slip else "rolling"
+        draw_modes(
+            figure,
+            rows,
+            locus,
+            found.critical,
+            title=f"{found.vehicle} {state} at {found.running.speed * KMH:g} km/h on {found.rail}; "
+            f"{len(found.assumed)} of {found.numbers} numbers are estimates",
+        )
         if ending == ".svg":
             target.write_text(figure_svg(figure), encoding="utf-8")
         else:

@@ -119,17 +119,15 @@ def _design(answers: Answers, target: Path) -> None:
     with progress() as tell:
         tell("choosing the gains")
         made = selection.design_controller(vehicle, rail, wanted(answers), law=answers["law"])
-    made = replace(made, vehicle_file=seen_from(target, vehicle_name), rail_file=seen_from(target, rail_name))
-    write_design(made, target)
     judged_by = requirements_of(answers)
-    show_design(
+    made = replace(
         made,
-        target,
-        vehicle,
-        rail,
-        judged_by=None if judged_by == PAPER else judged_by,
-        on_one_screen=True,
+        vehicle_file=seen_from(target, vehicle_name),
+        rail_file=seen_from(target, rail_name),
+        judged_by="" if judged_by == PAPER else seen_from(target, judged_by) or judged_by,
     )
+    write_design(made, target)
+    show_design(made, target, vehicle, rail, on_one_screen=True)
 
 
 COMMANDS = {"vehicle": vehicle, "rail": rail}

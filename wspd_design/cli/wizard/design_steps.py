@@ -79,6 +79,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="slip",
+            dimension="ratio",
             title="Slip reference",
             explanation=f"The slip that the controller holds. The paper takes {options.SLIP} at all speeds; on rails "
             "whose friction falls with sliding speed the best slip falls as the train gets faster.",
@@ -91,6 +92,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="speeds",
+            dimension="speed",
             title="Speed range",
             explanation="Speeds for which the gains are chosen and the claims are checked. Below 10 km/h "
             "a wheel slide costs next to nothing.",
@@ -100,6 +102,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="sample_time",
+            dimension="time",
             title="Sample time",
             explanation="How often the controller reads the wheel speeds and sets the valves. "
             f"The paper uses {options.SAMPLE_TIME}.",
@@ -110,6 +113,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="tolerance",
+            dimension="ratio",
             title="Slip tolerance",
             explanation="Width of the band about the reference. A narrow one asks for more switching than "
             "a valve with a lag can give.",
@@ -122,9 +126,9 @@ def design_steps() -> tuple[Step, ...]:
             key="requirements",
             title="Requirements",
             explanation="The table of limits by which a report accepts or rejects the design.",
-            help="wspd report takes it as --requirements. A table of your own has limits with their sources: "
-            "wspd docs requirements. Limits on drawn stops, and gains that are searched for them, are stated in a "
-            "specification: wspd docs design-to-requirements.",
+            help="The design names it, and wspd report --requirements takes another one. A table of your own has "
+            "limits with their sources: wspd docs requirements. Limits on drawn stops, and gains that are searched for "
+            "them, are stated in a specification: wspd docs design-to-requirements.",
             default=PAPER,
             options=(
                 *(Option(value=name, text=_TEMPLATES[name]) for name in TEMPLATES),
@@ -133,6 +137,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="requirements_file",
+            help="Tab completes the path. wspd docs requirements says what the table holds.",
             title="File of the requirements",
             explanation="A .toml file with a table [requirements].",
             default="",

@@ -27,6 +27,8 @@ def draw_modes(
     modes: "Sequence[Mode]",
     locus: "Sequence[tuple[float, Poles]]",
     critical: "Sequence[CriticalSpeed]",
+    *,
+    title: str,
 ) -> "Figure":
     """Draw the energy of each mode, poles over speed, and critical speeds where there are several.
 
@@ -40,7 +42,10 @@ def draw_modes(
         Speeds [m/s] and the poles there [1/s].
     critical : sequence of CriticalSpeed
         For each conicity.
+    title : str
+        What vehicle is shown, and how sure its numbers are.
     """
+    figure.suptitle(title, x=0.01, ha="left", fontsize=8.0, color=MUTED)
     lower = 1 + (len(critical) > 1)
     heights = [max(0.16 * len(modes) + 0.5, 1.5), *[2.6] * lower]
     panels = figure.subplots(1 + lower, 1, gridspec_kw={"height_ratios": heights})
