@@ -15,9 +15,8 @@ from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.versions import OUTDATED, OutdatedWarning, check_schema
 from wspd_design.studies.previous import previous
 
-OLD = Path(__file__).with_name(
-    "design-1.toml"
-)  # as the program of 2026-11-27 wrote it, before the present version
+OLD = Path(__file__).with_name("design-1.toml")
+"""As the program wrote it at the commit before dd16d67, which made version 2."""
 
 
 def test_the_version_before_is_read_with_a_notice():
