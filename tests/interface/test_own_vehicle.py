@@ -1,6 +1,7 @@
 """A brake engineer with a vehicle of their own: every command that is printed runs as printed, from any folder."""
 
 import json
+import re
 import shlex
 from pathlib import Path
 
@@ -128,6 +129,12 @@ def assert_check_runs(wspd, report, folder):
     assert "PROVED" in by_hand.out
 
 
+# Names of the plants and of their classes, which say nothing of a vehicle.
+PLANTS_NAMED = re.compile(
+    r'"locomotive(-linear)?"|plants\.locomotive|locomotive and locomotive-linear|\b(Linear)?Locomotive\b'
+)
+
+
 def test_sentences_about_every_vehicle_do_not_speak_of_a_locomotive():
     """Reports of a coach told of "the four-axle locomotive" and "the quarter locomotive"."""
     package = Path(wspd_design.__file__).parent
@@ -135,7 +142,8 @@ def test_sentences_about_every_vehicle_do_not_speak_of_a_locomotive():
     sources = [path for room in rooms for path in (package / room).rglob("*.py")]
     assert len(sources) > 100
     for path in sources:
-        assert "locomotive" not in path.read_text(encoding="utf-8").lower(), path
+        text = PLANTS_NAMED.sub("", path.read_text(encoding="utf-8"))
+        assert "locomotive" not in text.lower(), path
 
 
 @pytest.mark.slow

@@ -172,6 +172,44 @@ def test_traces_are_written(wspd, tmp_path):
     assert list(tmp_path.iterdir()) == [tmp_path / "run.csv"]
 
 
+def test_traces_on_a_uniform_grid(wspd, tmp_path):
+    every = wspd("simulate", "trenitalia", *SLOW, "-o", "run.csv", "--every", "10 ms")
+    assert (every.code, every.err) == (0, "")
+    with (tmp_path / "run.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    times = [float(row["time_s"]) for row in rows]
+    assert times == pytest.approx([0.01 * k for k in range(len(rows))], abs=1e-12)
+    assert {"fill_1", "vent_4", "pressure_Pa_2", "told_wheel_speed_rad_s_3"} <= set(rows[0])
+    assert {float(row["fill_1"]) for row in rows[:10]} == {float(rows[0]["fill_1"])}  # one sample
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--every", "10 ms"), "--every is about the traces of one stop in a file; add -o FILE.csv"),
+        (("--every", "10 ms", "--runs", "3", "-o", "a.csv"), "and leave out --runs"),
+        (("--every", "10", "-o", "a.csv"), '--every = "10" has no unit'),
+        (("--every", "10 m", "-o", "a.csv"), "has a unit of length, not of time"),
+        (("--every", "0 ms", "-o", "a.csv"), "must be finite and above 0"),
+    ],
+)
+def test_a_wrong_interval_is_one_sentence(wspd, tmp_path, options, sentence):
+    outcome = wspd("simulate", "none", *SLOW, *options)
+    assert outcome.code == 2
+    assert sentence in outcome.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_traces_of_a_design_say_which_one(wspd, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    wspd("design", "--law", "smc", "--rail", "polach-wet", "-o", "mine.toml")
+    assert wspd("simulate", "mine.toml", *SLOW, "--seed", "5", "-o", "run.parquet").code == 0
+    about = parquet.read_schema(tmp_path / "run.parquet").metadata
+    assert about[b"wspd.seed"] == b"5"
+    assert about[b"wspd.design"] == about[b"wspd.controller"]
+    assert len(about[b"wspd.design_hash"]) == 64
+
+
 def test_design_is_written_and_can_be_used(wspd, tmp_path):
     made = wspd("design", "--law", "smc", "--slip", "16 %", "--speeds", "15 km/h", "100 km/h", "-o", "a.toml")
     assert made.code == 0

@@ -54,7 +54,7 @@ _RULES = (
     ".wspd th{font-weight:600;border-bottom:1.5px solid currentColor;vertical-align:bottom}"
     ".wspd th span{display:block;font-weight:400;color:var(--muted)}"
     ".wspd td{border-bottom:1px solid var(--grid)}"
-    ".wspd .right{text-align:right!important;white-space:nowrap}"
+    ".wspd .right{text-align:right!important}.wspd td.right,.wspd td .verdict{white-space:nowrap}"
     ".wspd .good{color:var(--good)}.wspd .bad{color:var(--bad)}.wspd .open{color:var(--open)}"
     ".wspd .neutral{color:var(--neutral)}.wspd .verdict{font-weight:600}"
     ".wspd svg{display:block;max-width:100%;height:auto;font-family:'DejaVu Sans',Verdana,sans-serif}"

@@ -1,5 +1,6 @@
 """Certificates: the verdict in words, the claim with its domain, margin and worst point."""
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 
@@ -10,11 +11,12 @@ from wspd_design.parameters.table import Column, Table, table_of
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Status as Sign
 
+_FIRST_SENTENCE = re.compile(r"(?<=\.)\s+(?=[A-Z])")
 _COLUMNS: tuple[Column[Certificate], ...] = (
     Column(title="verdict", read=lambda each: _sign(each.status)),
     Column(title="check", read=lambda each: f"{each.name}: {each.title}"),
     Column(title="margin", read=lambda each: "" if each.margin is None else numbers.margin(each.margin)),
-    Column(title="why", read=lambda each: each.explanation),
+    Column(title="why", read=lambda each: _FIRST_SENTENCE.split(each.explanation, maxsplit=1)[0]),
 )
 _RANK = (Status.REFUTED, Status.LIMITATION, Status.UNDECIDED, Status.EVIDENCE, Status.PROVED, Status.VACUOUS)
 
@@ -26,7 +28,7 @@ def proofs_table(certificates: Sequence[Certificate]) -> Table:
     notes = (
         f"Not about this controller or vehicle: {', '.join(silent)}." if silent else "",
         "Proved and refuted hold exactly on the domain of the claim; evidence is samples, which prove nothing beyond "
-        "them.",
+        "them. One certificate alone, .named(NAME), tells domain, assumptions and the rest of its explanation.",
     )
     return table_of(
         spoken,

@@ -128,11 +128,13 @@ def trial(
     controller: Law,
     scenario: Scenario,
     *,
-    slip_reference: float,
+    slip_reference: float | None = None,
     plant: str = DEFAULT_PLANT,
 ) -> Trial:
     """Simulate one stop, check its steps and judge it; parameters as of :func:`compare`."""
     check_stop(vehicle, controller, scenario, plant, by="trial")
+    if slip_reference is None:
+        slip_reference = _first_held([controller])
     run, check = simulate_checked(vehicle, controller, scenario, plant=plant)
     figures = metrics(run, vehicle, scenario, slip_reference=slip_reference)
     return Trial(run=run, metrics=figures, check=check, slip_reference=slip_reference)
@@ -189,6 +191,6 @@ def _first_held(controllers: Sequence[Law]) -> float:
         if held is not None:
             return held
     raise UserError(
-        "none of these laws holds a slip of its own, so that nothing says what their slip is judged about; give "
+        "no law here holds a slip of its own, so that nothing says what the slip is judged about; give "
         "slip_reference=0.14 for example"
     )

@@ -154,6 +154,18 @@ def test_a_refuted_check_is_never_green(shown):
     assert '<span class="verdict bad">✗ refuted' in card
 
 
+def test_a_table_of_proofs_has_the_first_sentence_and_says_where_the_rest_is(shown):
+    table = shown.proofs.table()
+    for row, certificate in zip(table.rows, shown.proofs, strict=True):
+        assert certificate.explanation.startswith(row[-1])
+        assert row[-1].endswith(".")
+        assert certificate.explanation in structure(certificate._repr_html_()).text
+    assert any(".named(NAME)" in note for note in table.notes)
+    assert "claim" not in [
+        column.title for column in table.columns
+    ]  # it stands with its domain, on the one card
+
+
 @pytest.mark.parametrize(
     ("statuses", "tone"),
     [
