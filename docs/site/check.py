@@ -1,4 +1,6 @@
-"""What is wrong with a built site: links that lead nowhere, pages that none leads to, requests to other hosts."""
+"""What is wrong with a built site: links that lead nowhere, pages that none leads to, requests to other hosts, pictures
+without words.
+"""
 
 import re
 from html.parser import HTMLParser
@@ -19,6 +21,7 @@ class _Page(HTMLParser):
         self.links: list[str] = []
         self.loads: list[str] = []
         self.targets: set[str] = {""}
+        self.silent: list[str] = []  # pictures without a description of their own
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Take what counts of a tag."""
@@ -26,6 +29,8 @@ class _Page(HTMLParser):
         self.targets |= {found[name] for name in ("id", "name") if name in found}
         if tag == "a" and "href" in found:
             self.links.append(found["href"])
+        if tag == "img" and (not found.get("alt") or found["alt"].endswith(found["src"].rpartition("/")[2])):
+            self.silent.append(found["src"])
         if tag in _LOADS and _LOADS[tag] in found and found.get("rel") not in _POINTED_AT:
             self.loads.append(found[_LOADS[tag]])
 
@@ -53,6 +58,7 @@ def _faults(path: Path, page: _Page, pages: dict[Path, _Page], site: Path) -> li
             found.append(f"{name}: asks {load}")
         elif not load.startswith("data:") and not _target(path, load)[0].exists():
             found.append(f"{name}: {load} is missing")
+    found += [f"{name}: {picture} has no words for those who do not see it" for picture in page.silent]
     for link in page.links:
         if urlsplit(link).scheme or urlsplit(link).netloc:
             continue

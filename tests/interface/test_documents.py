@@ -12,7 +12,9 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
 
+from wspd_design.cli.app import app
 from wspd_design.cli.lazy import COMMANDS
 
 pytestmark = pytest.mark.slow
@@ -107,6 +109,9 @@ def calls():
 def parsed(words):
     """Read a command line as the program does, and call nothing."""
     name, *rest = shlex.split(SHELL.sub("1", words), comments=True)
+    if name.startswith("-"):  # an option of the program itself, which acts as soon as it is read
+        assert any(name in option.opts for option in typer.main.get_command(app).params), name
+        return
     COMMANDS[name].load(name).make_context(name, rest)
 
 

@@ -104,6 +104,7 @@ def test_faults_of_a_site_are_seen(tmp_path):
     assert check.faults(tmp_path) == [
         "a.html: asks https://cdn.example.org/x.js",
         "a.html: no.png is missing",
+        "a.html: no.png has no words for those who do not see it",
         "index.html: a.html#here names no place of that page",
         "index.html: gone.html leads nowhere",
         "alone.html: no page leads here",

@@ -70,9 +70,8 @@ def test_82_eigenfrequencies_of_the_equations_of_motion(model, vibrations, frequ
     assert np.abs(ours / frequencies - 1.0).max() < TOLERANCE
 
 
-@pytest.mark.parametrize("number", ["drive.ratio", "motor_mount.half_width"])
-def test_a_number_that_is_wrong_by_a_thousandth_is_seen(model, frequencies, number):
-    wrong = model.with_numbers({number: 1.001 * model.numbers[number]})
+def test_a_number_that_is_wrong_by_a_thousandth_is_seen(model, frequencies):
+    wrong = model.with_numbers({"drive.ratio": 1.001 * model.numbers["drive.ratio"]})
     assert np.abs(undamped_frequencies(*on_springs(wrong)) / frequencies - 1.0).max() > TOLERANCE
 
 

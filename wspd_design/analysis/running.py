@@ -33,7 +33,8 @@ _FORWARD = 0  # the coordinate of the vehicle
 class RunningVehicle:
     """Equations of motion of a vehicle on its rails with their derivatives, for any speed and torques.
 
-    They are the balance M(q) v' - (all forces) = 0, which the plants of the closed loop solve for v'.
+    They are the balance M(q) v' - (all forces) = 0, which the plants of the closed loop solve for v', without running
+    resistance and the damping of the wheels.
     """
 
     model: Multibody  # with the preloads of its conicity
@@ -102,7 +103,7 @@ def contact_of(model: Multibody, *, lateral_slope: float = 1.0) -> WheelRail:
 
 def full_slope(rail: Rail) -> Rail:
     """Return a rail on which small longitudinal creep meets the whole slope of Kalker's theory."""
-    return replace(rail, name=f"{rail.name}, full slope", adhesion_reduction=1.0, slip_reduction=1.0)
+    return replace(rail, name=f"{rail.name} with Kalker's slope", adhesion_reduction=1.0, slip_reduction=1.0)
 
 
 def running_vehicle(model: Multibody, contact: WheelRail, rail: Rail) -> RunningVehicle:
@@ -179,21 +180,8 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
     """
     import numpy as np
 
-    if not 0.0 <= slip < 1.0:
-        raise UserError(f"slip = {slip:g} must lie in [0, 1); for percent write for example 0.14 or 14 %")
-    if not constants().slip_regularization_speed <= speed < _FASTEST:
-        raise UserError(
-            f"speed = {speed:g} m/s must be at least {constants().slip_regularization_speed:g} m/s, where slip is a "
-            f"ratio, and below {_FASTEST:g} m/s (540 km/h)"
-        )
+    _check(vehicle, speed, slip)
     model, neutral = vehicle.model, vehicle.neutral
-    braked = {brake.wheelset for brake in model.brakes}
-    free = [name for name in model.wheelset_names if name not in braked]
-    if slip and free:
-        raise UserError(
-            f"{', '.join(free)} of multibody vehicle {model.name} has no brake that could hold slip = {slip:g}; "
-            "add one to its file, or leave the slip out, so that all wheels roll"
-        )
     n, axles = len(model.coordinates), model.wheelsets
     plane = [k for k, name in enumerate(model.coordinates) if name.rpartition(".")[2] in _PLANE]
     kept = [k for k in plane if model.coordinates[k] not in neutral]
@@ -202,6 +190,7 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
     radius = model.numbers["wheel_radius"]
     q, torques, track = np.zeros(n), np.zeros(axles), np.zeros(axles)
     spins, acceleration = np.full(axles, (1.0 - slip) * speed / radius), 0.0
+    unknown = torques if slip else spins  # of the axles
     preloads = [model.preloads[name] for name in model.preload_names]
     for _ in range(_STEPS):
         v = forward * speed + turning @ spins
@@ -216,7 +205,7 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
         columns = np.column_stack([by_place[:, kept], of_axles, mass @ slowing])
         step = np.linalg.solve(columns[plane], -left[plane, 0])
         q[kept] += step[: len(kept)]
-        (torques if slip else spins).__iadd__(step[len(kept) : -1])
+        unknown += step[len(kept) : -1]
         acceleration += step[-1]
     else:
         raise UserError(
@@ -242,3 +231,22 @@ def steady(vehicle: RunningVehicle, speed: float, *, slip: float = 0.0) -> Stead
         from_inputs=-by_input,
         to_outputs=np.hstack(derivatives),
     )
+
+
+def _check(vehicle: RunningVehicle, speed: float, slip: float) -> None:
+    """Refuse what is no state of running."""
+    if not 0.0 <= slip < 1.0:
+        raise UserError(f"slip = {slip:g} must lie in [0, 1); for percent write for example 0.14 or 14 %")
+    if not constants().slip_regularization_speed <= speed < _FASTEST:
+        raise UserError(
+            f"speed = {speed:g} m/s must be at least {constants().slip_regularization_speed:g} m/s, where slip is a "
+            f"ratio, and below {_FASTEST:g} m/s (540 km/h)"
+        )
+    model = vehicle.model
+    braked = {brake.wheelset for brake in model.brakes}
+    free = [name for name in model.wheelset_names if name not in braked]
+    if slip and free:
+        raise UserError(
+            f"{', '.join(free)} of multibody vehicle {model.name} has no brake that could hold slip = {slip:g}; "
+            "add one to its file, or leave the slip out, so that all wheels roll"
+        )

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 
-from wspd_design.cli.wizard.paths import paths
+from wspd_design.cli.path_completion import paths
 
 Offers = Callable[[str], list[str]]
 """Takes what was typed, returns what it may become."""

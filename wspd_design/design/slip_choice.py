@@ -8,7 +8,8 @@ from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.records import Scenario
 
-_SLIPS = tuple(round(0.01 * each, 2) for each in range(1, 31))
+MOST = 0.3  # slip beyond which none is tried
+_SLIPS = tuple(round(0.01 * each, 2) for each in range(1, round(100 * MOST) + 1))
 
 
 class BestSlip(NamedTuple):

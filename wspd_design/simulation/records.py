@@ -462,8 +462,10 @@ class Run:
         Above that before the stop, per wheelset, where friction depends on it.
     track_brake_force : ndarray or None [N]
         Of the magnets of the vehicle.
-    further : Mapping[str, ndarray] [names tell theirs]
+    further : Mapping[str, ndarray] [those of ``further_units``]
         Per wheelset, what a coupled plant adds.
+    further_units : Mapping[str, str]
+        Unit of each trace of ``further``.
     """
 
     controller: str

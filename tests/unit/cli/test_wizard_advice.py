@@ -7,18 +7,20 @@ import pytest
 from wspd_design.analysis.linearization import linearize
 from wspd_design.analysis.slip_pole import largest_slip_pole, valve_rate
 from wspd_design.certificates.theorems.valve import integrals_of_slip
+from wspd_design.cli.path_completion import common_start, last_part, paths
 from wspd_design.cli.wizard import advice
 from wspd_design.cli.wizard.asked_design import is_of_whole_vehicle
 from wspd_design.cli.wizard.design_steps import design_steps
 from wspd_design.cli.wizard.flow import complete
-from wspd_design.cli.wizard.paths import common_start, last_part, paths
+from wspd_design.cli.wizard.rail_steps import rail_steps
 from wspd_design.cli.wizard.session import again, reviewing
 from wspd_design.cli.wizard.steps import noted
+from wspd_design.cli.wizard.vehicle_steps import vehicle_steps
 from wspd_design.controllers.family import designed
 from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.design.certification import problem_of_case
 from wspd_design.design.slip_choice import best_constant_slip, held_distance
-from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.parameters.loading import available, load_rail, load_vehicle
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.records import Scenario
 
@@ -76,8 +78,9 @@ def test_the_slip_is_suggested_by_the_rail_and_its_cost_told():
     assert STEPS["slip"].suggestion(dry) == "0.03"
     said = note("slip", "0.14", rail="polach-dry")
     assert "slip 0.14 from 120 km/h stops in 214.3 m" in said
-    assert "0.03, the best constant slip, takes 183.4 m" in said
-    assert "no constant slip stops shorter" in note("slip", "3 %", rail="polach-dry")
+    assert "0.03, the best constant slip up to 0.3, takes 183.4 m" in said
+    assert "no constant slip up to 0.3 stops shorter" in note("slip", "3 %", rail="polach-dry")
+    assert STEPS["slip"].suggestion({**dry, "rail": "table10-dry"}) == "0.14"  # friction that does not fall
     assert STEPS["tolerance"].suggestion({**dry, "slip": "0.03"}) == "0.015"
     assert "counts only where it is constant" in note("slip", "0.14", law="observer-smc")
 
@@ -100,6 +103,24 @@ def test_a_brake_that_does_not_slide_is_told_so_and_gets_no_other_advice():
     for key, text in (("law", "smc"), ("slip", "0.14"), ("sample_time", "100 ms")):
         assert note(key, text, **coach) == ""
     assert STEPS["slip"].suggestion(coach) == "0.14"
+
+
+@pytest.mark.parametrize("vehicle", available("vehicle"))
+def test_every_vehicle_gets_advice_without_a_fault(vehicle):
+    for law in ("smc", "torque-feedback"):
+        answers = complete(ALL, {"vehicle": vehicle, "rail": "low-adhesion", "law": law})
+        assert all(STEPS[key].note(answers[key], answers) for key in ("rail", "law", "slip", "sample_time"))
+
+
+@pytest.mark.parametrize(
+    "questions", [design_steps(), vehicle_steps(), rail_steps()], ids=["design", "vehicle", "rail"]
+)
+def test_each_question_has_help_beyond_its_key(questions):
+    for step in questions:
+        said = step.more()
+        assert said.endswith(f"Key of the answer: {step.key}.")
+        assert said != f"Key of the answer: {step.key}.", step.key
+    assert "Units: s, ms, min." in STEPS["sample_time"].more()
 
 
 def test_nothing_is_said_about_what_is_not_accepted():

@@ -21,7 +21,9 @@ def test_every_error_of_the_package_is_below_the_root():
         kind
         for module in modules
         for _, kind in inspect.getmembers(module, inspect.isclass)
-        if issubclass(kind, BaseException) and kind.__module__.startswith("wspd_design.")
+        if issubclass(kind, BaseException)
+        and not issubclass(kind, Warning)
+        and kind.__module__.startswith("wspd_design.")
     }
     assert {UserError, WspdError} < errors
     public = {kind for kind in errors if not kind.__name__.startswith("_")} - {Refused}

@@ -43,7 +43,7 @@ def of_law(text: str, answers: Answers) -> str:
 
 def of_slip(text: str, answers: Answers) -> str:
     """Say what a slip costs that is held all the way."""
-    from wspd_design.design.slip_choice import best_constant_slip, held_distance
+    from wspd_design.design.slip_choice import MOST, best_constant_slip, held_distance
 
     if is_of_whole_vehicle(answers):
         return "The reference of this law falls with the train speed; this slip counts only where it is constant."
@@ -56,9 +56,9 @@ def of_slip(text: str, answers: Answers) -> str:
     if math.isnan(distance) or math.isnan(best.distance):
         return ""
     others = (
-        "no constant slip stops shorter"
+        f"no constant slip up to {MOST:g} stops shorter"
         if distance <= best.distance
-        else f"{best.slip:g}, the best constant slip, takes {best.distance:.1f} m"
+        else f"{best.slip:g}, the best constant slip up to {MOST:g}, takes {best.distance:.1f} m"
     )
     return (
         f"A brake that holds slip {slip:g} from {speed * KMH:g} km/h stops in {distance:.1f} m on {rail.name}; "
@@ -95,14 +95,17 @@ def of_sample_time(text: str, answers: Answers) -> str:
 
 
 def suggested_slip(answers: Answers) -> str:
-    """Return the paper's slip for its case and for laws that hold another one, else the best constant slip."""
+    """Return the best constant slip; the paper's for its case, for laws that hold another one, and where none is best.
+
+    On rails whose friction does not fall more slip always stops a little shorter.
+    """
     names = vehicle_and_rail(answers)
     if names == _PAPERS_CASE or is_of_whole_vehicle(answers) or not _slides(*names):
         return options.SLIP
-    from wspd_design.design.slip_choice import best_constant_slip
+    from wspd_design.design.slip_choice import MOST, best_constant_slip
 
     best = best_constant_slip(load_vehicle(names[0]), load_rail(names[1]), wanted({}).speeds[1])
-    return options.SLIP if math.isnan(best.distance) else f"{best.slip:g}"
+    return options.SLIP if math.isnan(best.distance) or best.slip == MOST else f"{best.slip:g}"
 
 
 def suggested_tolerance(answers: Answers) -> str:

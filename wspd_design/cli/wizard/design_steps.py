@@ -79,6 +79,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="slip",
+            dimension="ratio",
             title="Slip reference",
             explanation=f"The slip that the controller holds. The paper takes {options.SLIP} at all speeds; on rails "
             "whose friction falls with sliding speed the best slip falls as the train gets faster.",
@@ -91,6 +92,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="speeds",
+            dimension="speed",
             title="Speed range",
             explanation="Speeds for which the gains are chosen and the claims are checked. Below 10 km/h "
             "a wheel slide costs next to nothing.",
@@ -100,6 +102,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="sample_time",
+            dimension="time",
             title="Sample time",
             explanation="How often the controller reads the wheel speeds and sets the valves. "
             f"The paper uses {options.SAMPLE_TIME}.",
@@ -110,6 +113,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="tolerance",
+            dimension="ratio",
             title="Slip tolerance",
             explanation="Width of the band about the reference. A narrow one asks for more switching than "
             "a valve with a lag can give.",
@@ -133,6 +137,7 @@ def design_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="requirements_file",
+            help="Tab completes the path. wspd docs requirements says what the table holds.",
             title="File of the requirements",
             explanation="A .toml file with a table [requirements].",
             default="",

@@ -43,6 +43,7 @@ def rail_steps() -> tuple[Step, ...]:
     return (
         Step(
             key="curve",
+            help="Tab completes the path. A line of headings may stand above the numbers.",
             title="Measured creep curve",
             explanation="A CSV file with slip and adhesion, both as shares, in its first two columns: the five numbers "
             f'of the rail are fitted to it. "{NONE}" where there is none.',
@@ -52,6 +53,7 @@ def rail_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="like",
+            help="wspd sources NAME shows every number of a shipped rail with its source.",
             title="Kind",
             explanation="The shipped rail that yours is most like; it suggests the shape of the creep curve.",
             default=LIKE,
@@ -60,6 +62,7 @@ def rail_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="vehicle",
+            help="Tab completes the path of a file. The size of the contact follows from it, and so does the curve.",
             title="Vehicle",
             explanation="Whose wheels and load belong to the curve or the peak: a shipped vehicle or a .toml file.",
             default=VEHICLE,
@@ -68,6 +71,7 @@ def rail_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="speed",
+            dimension="speed",
             title="Speed",
             explanation="Of the vehicle in the measurement, or at which the peak is stated.",
             default=SPEED,
@@ -76,6 +80,8 @@ def rail_steps() -> tuple[Step, ...]:
         *(_shape(name) for name in _SHAPE),
         Step(
             key="peak",
+            help="Suggested is the peak of the rail that yours is most like.",
+            dimension="ratio",
             title="Adhesion at the peak",
             explanation="Of the creep curve at that speed, force over wheel load: what a test or a standard names. The "
             "friction coefficient follows from it.",
@@ -126,6 +132,7 @@ def _shape(name: str) -> Step:
         title=title,
         explanation=explanation,
         default="",
+        dimension=quantity.dimension,
         suggest=lambda answers: format_quantity(getattr(load_rail(answers.get("like", LIKE)), name), unit),
         check=lambda text, _answers: format_quantity(_number(text, quantity, name), unit),
         applies=_without_curve,

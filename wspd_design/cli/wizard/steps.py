@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.units import Dimension, units_of
 
 Answers: TypeAlias = Mapping[str, str]
 """What the user wrote, by the key of the step."""
@@ -47,6 +48,7 @@ class Step:
     applies: Callable[[Answers], bool] = lambda _answers: True
     suggest: Callable[[Answers], str] | None = None
     note: Callable[[str, Answers], str] = lambda _text, _answers: ""
+    dimension: Dimension | None = None  # of the quantity that is asked for
     files: str = ""  # ending of the files whose paths Tab completes
 
     def suggestion(self, answers: Answers) -> str:
@@ -61,7 +63,8 @@ class Step:
     def more(self) -> str:
         """Return what is said to a user who asks with ``?``."""
         allowed = f"One of {', '.join(option.value for option in self.options)}." if self.options else ""
-        return " ".join(filter(None, (self.help, allowed, f"Key of the answer: {self.key}.")))
+        units = "" if self.dimension is None else f"Units: {', '.join(units_of(self.dimension))}."
+        return " ".join(filter(None, (self.help, allowed, units, f"Key of the answer: {self.key}.")))
 
 
 def review_step(explanation: str, saves: str) -> Step:

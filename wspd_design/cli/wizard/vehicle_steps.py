@@ -9,7 +9,7 @@ from wspd_design.cli.wizard.vehicle_answers import KIND, NO, NONE, READERS, YES,
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import gear_of
 from wspd_design.parameters.loading import available, load_entries, load_vehicle
-from wspd_design.parameters.units import format_quantity
+from wspd_design.parameters.units import dimension_of, format_quantity
 from wspd_design.studies.new_vehicle import ELECTRIC, PIPE, Wanted, derived_vehicle, wanted_like
 
 
@@ -23,6 +23,7 @@ def vehicle_steps() -> tuple[Step, ...]:
     return (
         Step(
             key="kind",
+            help="wspd sources NAME shows every number of a shipped vehicle with its source.",
             title="Kind",
             explanation="The shipped vehicle that yours is most like. It suggests the answers below, and gives what is "
             "not asked, such as heights and springs; the file says so at each number.",
@@ -34,6 +35,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="laden_mass",
+            dimension="mass",
             title="Laden mass",
             explanation=f'With passengers or goods, or "{NONE}". "FILE:laden" is then the laden vehicle.',
             default=NONE,
@@ -58,6 +60,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="axles",
+            help="A whole number.",
             title="Axles",
             explanation="Of the whole vehicle; how many stand in a bogie follows from the kind.",
             default="4",
@@ -72,6 +75,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="wheelbase",
+            dimension="length",
             title="Wheelbase of a bogie",
             explanation="From its first to its last axle.",
             default="2.5 m",
@@ -81,6 +85,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="wheel_diameter",
+            dimension="length",
             title="Wheel diameter",
             explanation="Of new wheels; worn ones follow as the lower bound.",
             default="920 mm",
@@ -89,6 +94,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="rotating_mass",
+            dimension="mass",
             title="Rotating mass",
             explanation="What all that turns adds to the mass of the train, of the whole vehicle: a mass, or % of the "
             "empty one. Trailers have 4 to 8 %, driven vehicles 8 to 15 %.",
@@ -110,6 +116,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="deceleration",
+            dimension="acceleration",
             title="Deceleration",
             explanation="Mean of the fully developed brake, dry and level, after EN 14531: it gives the torque.",
             default="1.2 m/s^2",
@@ -129,6 +136,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="build_up_delay",
+            dimension="time",
             title="Dead time of the demand",
             explanation="Until the demand begins to rise.",
             default="0.2 s",
@@ -138,6 +146,7 @@ def vehicle_steps() -> tuple[Step, ...]:
         ),
         Step(
             key="build_up_time",
+            dimension="time",
             title="Time of the build-up",
             explanation="By the main pipe, until 95 % of the pressure: position P has 3 to 5 s. By wire, the time of "
             "the ramp: about 1 s.",
@@ -206,6 +215,7 @@ def _line(key: str, title: str, explanation: str, text: Callable[[Wanted], str])
         title=title,
         explanation=explanation,
         default="",
+        dimension=dimension_of(_UNITS[key]),
         suggest=_suggested(text),
         check=_echo(key, say),
     )

@@ -11,8 +11,8 @@ from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
 from prompt_toolkit.layout import BufferControl, FormattedTextControl, HSplit, Layout, VSplit, Window
 from prompt_toolkit.styles import Style
 
+from wspd_design.cli.path_completion import common_start, last_part, paths
 from wspd_design.cli.wizard.flow import Back, Place
-from wspd_design.cli.wizard.paths import common_start, last_part, paths
 from wspd_design.cli.wizard.steps import Answers, Option, Step, accept, noted
 from wspd_design.parameters.errors import UserError
 
