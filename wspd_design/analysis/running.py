@@ -103,7 +103,7 @@ def contact_of(model: Multibody, *, lateral_slope: float = 1.0) -> WheelRail:
 
 def full_slope(rail: Rail) -> Rail:
     """Return a rail on which small longitudinal creep meets the whole slope of Kalker's theory."""
-    return replace(rail, name=f"{rail.name}, full slope", adhesion_reduction=1.0, slip_reduction=1.0)
+    return replace(rail, name=f"{rail.name} with Kalker's slope", adhesion_reduction=1.0, slip_reduction=1.0)
 
 
 def running_vehicle(model: Multibody, contact: WheelRail, rail: Rail) -> RunningVehicle:

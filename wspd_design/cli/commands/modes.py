@@ -39,7 +39,7 @@ def modes(
         typer.Argument(
             metavar="VEHICLE",
             help="A vehicle with a multibody file, a multibody vehicle such as er24pc-82, or a .toml file of either "
-            f"(docs/multibody.md). Default: {VEHICLE}.",
+            f"(wspd docs multibody). Default: {VEHICLE}.",
             show_default=False,
             autocompletion=names_or_files([*available_multibodies(), *available("vehicle")], ".toml"),
         ),
