@@ -8,7 +8,7 @@ from wspd_design.model.brake import flow_rates
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Brake, Rail, Vehicle
-from wspd_design.parameters.taken import check_rail, check_vehicle, notice_of_speed
+from wspd_design.parameters.taken import check_numbers, check_rail, check_vehicle, notice_of_speed
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Linearization:
     slip_pole : float [1/s]
         Without the valve lag.
     gain : float [1/(N m s)]
-        G.
+        Of the torque, G.
     time_constant : float [s]
         Of the averaged valve at this duty and torque; of lags between T_F and T_V.
     state_matrix : ndarray [1/s, 1/(N m s), N m/s, 1/s]
@@ -165,6 +165,8 @@ def linearize(
     """
     check_vehicle(vehicle, by="linearize", whole=False)
     check_rail(rail, by="linearize")
+    numbers = {"slip": (slip, ""), "speed": (speed, "m/s"), "speed_kmh": (speed_kmh, "km/h")}
+    check_numbers("linearize", numbers)
     if (speed is None) == (speed_kmh is None):
         raise UserError("linearize takes one speed: speed=22.2 in m/s, or speed_kmh=80")
     if speed_kmh is not None:

@@ -37,6 +37,7 @@ from wspd_design.certificates.search.progress import Listener, listening
 from wspd_design.certificates.theorems.table import THEOREMS
 from wspd_design.controllers.offers import Linear
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.taken import check_record
 from wspd_design.parameters.words import did_you_mean
 
 CHECKS: Mapping[str, Check] = {
@@ -115,6 +116,10 @@ def verify(
     UserError
         If a name is unknown, or problem and controller state different references or sample times.
     """
+    remedy = "make one with stability_problem, or give the design to certify"
+    check_record(problem, Problem, by="verify", remedy=remedy)
+    if isinstance(only, str):
+        raise UserError(f'only = "{only}" must be a list of names; write only=["{only}"]')
     for name in only or ():
         if name not in NAMES:
             raise UserError(

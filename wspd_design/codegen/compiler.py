@@ -32,8 +32,13 @@ PORTABLE_FLAGS = (
     "-std=gnu11",
 )
 COMPILER_INSTALLATION = 'pip install "wspd-design[compiler]"'
-# Not every machine knows the first two.
-FLAGS = ("-march=native", "-mprefer-vector-width=512", *PORTABLE_FLAGS)
+# Not every machine knows the first two. The third is of GCC: kernels of coupled plants touch thousands of numbers.
+FLAGS = (
+    "-march=native",
+    "-mprefer-vector-width=512",
+    "--param=loop-max-datarefs-for-datadeps=100000",
+    *PORTABLE_FLAGS,
+)
 
 
 class NoCompilerError(WspdError, RuntimeError):

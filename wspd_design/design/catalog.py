@@ -13,6 +13,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.taken import check_kinds, check_record
 from wspd_design.parameters.words import did_you_mean
 
 
@@ -38,6 +39,8 @@ def controller(name_or_path: str, vehicle: Vehicle, rail: Rail, specification: S
     UserError
         If there is no such controller, or the design file does not fit the vehicle.
     """
+    check_kinds(vehicle, rail, by="controller")
+    check_record(specification, Specification, by="controller", remedy="make one, Specification(slip=0.14)")
     if is_design_file(name_or_path):
         return controller_of(read_design(name_or_path), vehicle, rail)
     base, colon, preset = name_or_path.partition(":")

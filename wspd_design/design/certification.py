@@ -13,6 +13,7 @@ from wspd_design.design.problem import stability_problem
 from wspd_design.design.records import Design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.taken import described
 from wspd_design.parameters.writing import write_whole
 
 if TYPE_CHECKING:
@@ -136,6 +137,11 @@ def problem_of(
         if vehicle is not None or rail is not None:
             raise UserError("a problem has its own vehicle and rail; leave vehicle and rail out")
         return design
+    if not isinstance(design, Design | str | Path):
+        raise UserError(
+            f"what is certified is a Design, a Problem or a name, not {described(design)}; of a law make a problem, "
+            "stability_problem(vehicle, rail, law, Specification())"
+        )
     options = CaseOptions(vehicle=vehicle, rail=rail)
     if isinstance(design, Design):
         return problem_of_case(case_of(design, options, where=design.name))

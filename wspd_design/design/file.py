@@ -16,6 +16,7 @@ from wspd_design.design.requirements import read_requirements, requirements_text
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import read_toml
 from wspd_design.parameters.laden import LADEN
+from wspd_design.parameters.taken import check_record
 from wspd_design.parameters.versions import check_schema
 from wspd_design.parameters.words import near_or_allowed
 from wspd_design.parameters.writing import write_whole
@@ -68,6 +69,7 @@ def write_design(design: Design, path: str | Path) -> None:
     UserError
         If the folder does not exist or cannot be written.
     """
+    check_record(design, Design, by="write_design", remedy="the path of the file comes second")
     write_whole(Path(path), lambda part: part.write_text(design_text(design), encoding="utf-8"))
 
 

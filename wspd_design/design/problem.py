@@ -6,6 +6,8 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.design.records import Specification
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.records import Brake, Contact, Rail, Vehicle
+from wspd_design.parameters.taken import check_kinds, check_record
+from wspd_design.simulation.taken import check_law
 
 
 def stated_bounds(vehicle: Vehicle, rail: Rail) -> Bounds:
@@ -41,6 +43,10 @@ def stability_problem(
     seed : int
         Of samples.
     """
+    check_kinds(vehicle, rail, by="stability_problem")
+    check_law(controller, by="stability_problem")
+    remedy = "make one, Specification(slip=0.14)"
+    check_record(specification, Specification, by="stability_problem", remedy=remedy)
     return Problem(
         vehicle=vehicle,
         rail=rail,

@@ -17,7 +17,7 @@ from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.later import later
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
-from wspd_design.parameters.taken import notice_of_fast_train
+from wspd_design.parameters.taken import check_kinds, check_numbers, notice_of_fast_train
 from wspd_design.parameters.units import KMH, dimension_of, factor, units_of
 
 if TYPE_CHECKING:
@@ -56,6 +56,16 @@ class Specification:
 
     def __post_init__(self) -> None:
         """Refuse what no wheel can do, in one sentence each."""
+        check_numbers(
+            "Specification",
+            {
+                "slip": (self.slip, ""),
+                "speeds": (self.speeds, "m/s"),
+                "slips": (self.slips, ""),
+                "slip_tolerance": (self.slip_tolerance, ""),
+                "sample_time": (self.sample_time, "s"),
+            },
+        )
         low, high = self.speeds
         if not 0.0 < self.slip < 1.0:
             raise UserError(f"slip = {self.slip:g} must lie in (0, 1); for percent write for example 14 %")
@@ -197,6 +207,7 @@ class Design:
             If vehicle or rail is another one or its numbers have changed since, or a gain has a unit that does not
             fit.
         """
+        check_kinds(vehicle, rail, by="Design.build")
         if vehicle.name != self.vehicle:
             raise UserError(
                 f"design {self.name} was made for vehicle {self.vehicle}, not for {vehicle.name}; "

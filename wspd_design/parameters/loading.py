@@ -48,6 +48,7 @@ from wspd_design.parameters.records import (
     Vehicle,
 )
 from wspd_design.parameters.schema import MITSUBISHI_LEVELS, PRESETS, TRACK_ROWS, Preset
+from wspd_design.parameters.taken import described
 
 __all__ = [
     "available",
@@ -106,6 +107,7 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     UserError
         If there is no such vehicle, its file is wrong, or its running gear or masses contradict each other.
     """
+    _check_name(name_or_path, "load_vehicle")
     parameters = load_entries("vehicle", name_or_path)
     vehicle = vehicle_of(parameters)
     if _is_own(name_or_path):
@@ -195,6 +197,7 @@ def load_rail(name_or_path: str | Path) -> Rail:
     UserError
         If there is no such rail, its file is wrong, or it changes along the track.
     """
+    _check_name(name_or_path, "load_rail")
     parameters = load_entries("rail", name_or_path)
     if PROFILE_RAILS in parameters.entries:
         rails = parameters.entries[PROFILE_RAILS].value
@@ -297,6 +300,11 @@ def load_track_spectrum(name: str) -> TrackSpectrum:
         for row in TRACK_ROWS
     }
     return _build(TrackSpectrum, values, name=parameters.name, rows=rows, one_sided=values["sides"] == 1.0)
+
+
+def _check_name(name_or_path: object, by: str) -> None:
+    if not isinstance(name_or_path, str | Path):
+        raise UserError(f"{by} takes a name or the path of a file, not {described(name_or_path)}")
 
 
 def _is_own(name_or_path: str | Path) -> bool:

@@ -489,7 +489,7 @@ class Rail:
     friction_ratio : float [-]
         A = mu_infinity / mu0.
     friction_decay : float [s/m]
-        B.
+        With which the friction falls over the sliding speed, B.
     adhesion_reduction : float [-]
         Of the stiffness while adhering, kA.
     slip_reduction : float [-]

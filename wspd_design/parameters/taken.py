@@ -1,7 +1,7 @@
 """What functions take: records, not their names, and numbers that fit together."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -72,6 +72,30 @@ def check_record(value: object, kind: type, *, by: str, remedy: str) -> None:
         raise UserError(f"{by} takes a {kind.__name__}, not {described(value)}; {remedy}")
 
 
+def check_kinds(vehicle: object, rail: object, *, by: str) -> None:
+    """Refuse what is not a vehicle and a rail, whatever their numbers are."""
+    for value, kind in ((vehicle, Vehicle), (rail, Rail)):
+        if not isinstance(value, kind):
+            raise UserError(_other(value, kind, by))
+
+
+def check_numbers(record: str, values: Mapping[str, tuple[object, str]]) -> None:
+    """Refuse texts and other things in place of numbers.
+
+    Parameters
+    ----------
+    record : str
+        What the numbers are of, for the sentence.
+    values : mapping
+        Value and unit by name; None is a number that is not given.
+    """
+    for name, (value, unit) in values.items():
+        for each in value if isinstance(value, tuple | list) else (value,):
+            if each is not None and (isinstance(each, bool | str) or not hasattr(each, "__float__")):
+                wanted = f"a number in {unit}" if unit else "a number"
+                raise UserError(f"{name} of {record} is {described(each)}; give {wanted}")
+
+
 def notice_of_speed(speed: float, what: str, remedy: str) -> None:
     """Warn about a speed that is more likely one in km/h [m/s]."""
     if speed > _NUMERALS_OF_KMH:
@@ -136,7 +160,7 @@ def _stated(record: Vehicle | Rail, name: str) -> "Iterator[tuple[Any, Any]]":
 
 
 def _impossible(value: Any, quantity: Quantity, *, zero: bool) -> str:
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool | str) or not hasattr(value, "__float__"):
         return f"is {described(value)}; give a number in SI units"
     given = format_quantity(value, units_of(quantity.dimension)[0])
     if not math.isfinite(value):

@@ -10,6 +10,7 @@ from wspd_design.plotting.axes import on_axes
 from wspd_design.reporting.figure_style import INK
 from wspd_design.reporting.figures.comparison import distance_panel
 from wspd_design.reporting.figures.drawing import KILO, curve
+from wspd_design.reporting.figures.estimate import estimate_panel
 from wspd_design.reporting.figures.stop import (
     MOST,
     line_of,
@@ -23,6 +24,7 @@ from wspd_design.reporting.figures.stop import (
     wheelset_legend,
 )
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.law_memory import speed_estimate
 from wspd_design.simulation.records import Run
 
 if TYPE_CHECKING:
@@ -87,7 +89,12 @@ def plot_comparison(
 
 
 def _plot_run(run: Run, what: str, ax: "Axes | None", slip_reference: float | None) -> "Axes":
-    _known(what, (*_TRACES, "valve"))
+    _known(what, (*_TRACES, "valve", "estimate"))
+    estimate = speed_estimate(run) if what == "estimate" else None
+    if what == "estimate" and estimate is None:
+        raise UserError(
+            f"{run.controller} estimates no train speed: it is told it; there is nothing to compare"
+        )
 
     def draw(axes: "Axes") -> None:
         if what == "slip":
@@ -101,12 +108,14 @@ def _plot_run(run: Run, what: str, ax: "Axes | None", slip_reference: float | No
             axes.set_ylabel(_TRACES["pressure"][0])
         elif what == "load":
             load_panel(axes, run)
+        elif estimate is not None:
+            estimate_panel(axes, run, estimate)
         else:
             valve_panel(axes, run)
             axes.set_ylabel("fill [-], by wheelset")
         axes.set(xlabel="time [s]", xlim=(0.0, float(run.time[-1])))
         axes.set_title(f"{run.controller} on {run.rail}, {run.train}")
-        if what not in ("speed", "valve"):
+        if what not in ("speed", "valve", "estimate"):
             _legend(axes, run)
 
     return on_axes(ax, draw)

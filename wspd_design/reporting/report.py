@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.taken import check_record
 from wspd_design.reporting import numbers
 from wspd_design.reporting.attachments import attachments
 from wspd_design.reporting.blocks import Document
@@ -78,6 +79,8 @@ def write_report(dossier: Dossier, *paths: str | Path, template: Template = BLAN
     UserError
         If an ending is unknown, a file cannot be written, or ``SOURCE_DATE_EPOCH`` is not a number of seconds.
     """
+    remedy = "make one, dossier(design, vehicle=vehicle, rail=rail, scenario=stop)"
+    check_record(dossier, Dossier, by="write_report", remedy=remedy)
     document = report_document(dossier, report_time(), template)
     for path in paths:
         write_document(document, path)

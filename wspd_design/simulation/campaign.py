@@ -22,6 +22,7 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Vehicle
+from wspd_design.parameters.taken import check_numbers
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.campaign_rows import Plan, columns, compute_rows, make_plan, plan_key
 from wspd_design.simulation.campaign_store import Store
@@ -199,6 +200,11 @@ def simulate_many(
     import numpy as np
 
     check_stop(vehicle, controller, scenario, plant, by="simulate_many")
+    if isinstance(draws, str):
+        raise UserError(
+            f'draws takes a list of Draw, not the text "{draws}"; give within_bounds(...) or [Draw(...)]'
+        )
+    check_numbers("simulate_many", {"count": (count, ""), "first": (first, "")})
     if count < 1:
         raise UserError(f"count = {count} must be at least 1")
     if first < 0:

@@ -56,8 +56,8 @@ class Trial:
 
         Parameters
         ----------
-        what : {"slip", "speed", "torque", "pressure", "load", "valve"}
-            Which trace.
+        what : {"slip", "speed", "torque", "pressure", "load", "valve", "estimate"}
+            Which trace; an estimate is the train speed that a law works out, beside the true one.
         ax : Axes, optional
             Where to draw; new axes by default.
 

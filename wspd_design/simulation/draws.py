@@ -16,6 +16,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import gear_of
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.parameters.schema import Kind, schema_of
+from wspd_design.parameters.taken import check_record
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.records import Scenario
 
@@ -210,6 +211,8 @@ def within_bounds(*parameters: ParameterSet) -> tuple[Draw, ...]:
     *parameters : ParameterSet
         Files, as :func:`wspd_design.load_entries` returns them.
     """
+    for each in parameters:
+        check_record(each, ParameterSet, by="within_bounds", remedy='give load_entries("vehicle", "er24pc")')
     return tuple(
         Draw(name=f"{each.kind}.{name}", distribution=Uniform(low=limits[0], high=limits[1]))
         for each in parameters

@@ -17,6 +17,7 @@ from wspd_design.controllers.baselines.unprotected import Unprotected
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
+from wspd_design.parameters.taken import check_record
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.loop_input import loop_input
@@ -100,6 +101,9 @@ def ideal_stop(
     """
     import numpy as np
 
+    check_record(vehicle, Vehicle, by="ideal_stop", remedy='load it with load_vehicle("er24pc")')
+    remedy = "make one with Scenario.stop(from_kmh=120, rail=rail)"
+    check_record(scenario, Scenario, by="ideal_stop", remedy=remedy)
     if is_coupled(plant_of(plant, vehicle)):
         raise UserError(f'the ideal stop is not known on plant "{plant}"; take the plant "{DEFAULT_PLANT}"')
     if scenario.start != Start():

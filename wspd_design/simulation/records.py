@@ -10,7 +10,7 @@ from wspd_design.controllers.protocol import Measurement
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Brake, Rail
-from wspd_design.parameters.taken import check_rail, notice_of_fast_train
+from wspd_design.parameters.taken import check_numbers, check_rail, notice_of_fast_train
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -291,6 +291,9 @@ class Scenario:
         """Refuse what is not a stop."""
         for rail in (self.rail, *(self.axle_rails or ()), *(patch.rail for patch in self.patches)):
             check_rail(rail, by="Scenario")
+        check_numbers("Scenario", {"initial_speed": (self.initial_speed, "m/s"), "grade": (self.grade, "")})
+        if not hasattr(self.seed, "__index__"):
+            raise UserError(f"seed = {self.seed} of Scenario must be a whole number")
         if not 0.0 < self.initial_speed < 150.0:
             raise UserError(
                 f"initial speed = {self.initial_speed:g} m/s must be above 0 and below 150 m/s (540 km/h); "
@@ -316,6 +319,7 @@ class Scenario:
     @classmethod
     def stop(cls, *, from_kmh: float, rail: Rail, seed: int = 0) -> "Scenario":
         """Brake to standstill from a speed in km/h."""
+        check_numbers("Scenario.stop", {"from_kmh": (from_kmh, "km/h")})
         return cls(rail=rail, initial_speed=from_kmh / 3.6, seed=seed)
 
 
@@ -512,8 +516,8 @@ class Run:
 
         Parameters
         ----------
-        what : {"slip", "speed", "torque", "pressure", "load", "valve"}
-            Which trace.
+        what : {"slip", "speed", "torque", "pressure", "load", "valve", "estimate"}
+            Which trace; an estimate is the train speed that a law works out, beside the true one.
         ax : Axes, optional
             Where to draw; new axes by default.
 

@@ -32,10 +32,12 @@ from wspd_design.parameters.laden import laden
 from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
 from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS, Kind
+from wspd_design.parameters.taken import check_record
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.taken import check_law
 from wspd_design.studies.faults import Robustness, robustness
 from wspd_design.studies.inputs import design_input, law_inputs, parameter_inputs, python_input, side_by_side
 from wspd_design.studies.judgment import Judgment, judgment
@@ -163,6 +165,11 @@ def dossier(
     import numpy as np
 
     design = made if isinstance(made, Design) else None
+    if design is None:
+        check_law(made, by="dossier")
+    check_record(
+        scenario, Scenario, by="dossier", remedy="make one with Scenario.stop(from_kmh=120, rail=rail)"
+    )
     vehicle_set, rail_set = _stated("vehicle", vehicle), _stated("rail", rail)
     of_vehicle = vehicle_of(vehicle_set) if isinstance(vehicle, Vehicle) else load_vehicle(vehicle)
     of_rail = rail if isinstance(rail, Rail) else load_rail(rail)

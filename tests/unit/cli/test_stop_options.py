@@ -223,5 +223,5 @@ def test_irregularities():
     assert made().irregularities == "none"
     assert made(irregularities="High ").irregularities == "high"
     assert "track irregularities of ERRI B 176, low level" in disturbances_of(made(irregularities="low"))
-    with pytest.raises(UserError, match='"hihg" names no level.*may be none, low, high'):
+    with pytest.raises(UserError, match=r'"hihg" names no level.*may be none, low, high'):
         made(irregularities="hihg")

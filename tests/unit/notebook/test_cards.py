@@ -80,7 +80,7 @@ def test_a_card_is_whole_and_asks_no_other_host(shown, name):
     assert not re.search(r"\son\w+=|url\((?!#)|@import", card)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", ["rail", "trial", "campaign"])
 def test_a_card_is_the_same_each_time(shown, name):
     assert getattr(shown, name)._repr_html_() == getattr(shown, name)._repr_html_()
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import wspd_design as wd
+from wspd_design.controllers.observers.sensors import Sensors
 
 mpl.use("Agg")
 plt = pytest.importorskip("matplotlib.pyplot")
@@ -87,6 +88,7 @@ def test_adhesion_at_no_slip_speed_is_that_of_the_model(shown):
     ("call", "sentence"),
     [
         (lambda s: s.trial.plot("slipp"), r'no trace "slipp" to plot; did you mean "slip"\?'),
+        (lambda s: s.run.plot("estimate"), "estimates no train speed: it is told it"),
         (lambda s: s.trials.plot("valve"), r'no trace "valve" to plot; .*There are distance, slip'),
         (lambda s: s.trials.plot("slip", wheelset=5), "wheelset = 5 must lie between 1 and 4"),
         (
@@ -103,3 +105,16 @@ def test_adhesion_at_no_slip_speed_is_that_of_the_model(shown):
 def test_what_cannot_be_plotted_gets_a_sentence(shown, call, sentence):
     with pytest.raises(wd.UserError, match=sentence):
         call(shown)
+
+
+def test_an_estimate_is_drawn_beside_the_truth(shown):
+    sensors = Sensors(speed="wheels")
+    specification = wd.Specification(sample_time=0.02, sensors=sensors)
+    law = wd.controller("observer-smc", shown.vehicle, shown.rail, specification)
+    run = wd.simulate(shown.vehicle, law, wd.Scenario.stop(from_kmh=30, rail=shown.rail))
+    axes = run.plot("estimate")
+    true, estimated = axes.get_lines()
+    place = run.memory.index("train_speed")
+    assert estimated.get_ydata()[0] == pytest.approx(3.6 * run.samples[0].state[place])
+    assert true.get_ydata()[0] == pytest.approx(30.0)
+    assert "[km/h]" in axes.get_ylabel()

@@ -5,6 +5,7 @@ import warnings
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import wspd_design as wd
@@ -25,6 +26,11 @@ def law(er24pc, rail):
 @pytest.fixture(scope="module")
 def stop(rail):
     return wd.Scenario.stop(from_kmh=20, rail=rail)
+
+
+@pytest.fixture(scope="module")
+def design(er24pc, rail):
+    return wd.design_controller(er24pc, rail, wd.Specification(), law="smc")
 
 
 NO_VEHICLE = r'takes a Vehicle, not the text "er24pc"; load it with load_vehicle\("er24pc"\)'
@@ -95,8 +101,68 @@ def test_what_is_no_record_is_told(er24pc, rail, law, stop, call, sentence):
         call(SimpleNamespace(v=er24pc, r=rail, c=law, s=stop))
 
 
-def test_a_design_is_built_first(er24pc, rail, stop):
-    design = wd.design_controller(er24pc, rail, wd.Specification(), law="afsmc")
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda g: wd.certify(g.v), "a Design, a Problem or a name, not a Vehicle; of a law make a problem"),
+        (lambda g: wd.certify(g.c), "not an Unprotected; .* stability_problem"),
+        (lambda g: wd.verify(g.d), "verify takes a Problem, not a Design; .* or give the design to certify"),
+        (lambda g: wd.certify(g.d, only="sampling"), r'must be a list of names; write only=\["sampling"\]'),
+        (lambda g: wd.write_report(g.d, "a.html"), r"takes a Dossier, not a Design; make one, dossier\("),
+        (
+            lambda g: wd.dossier("smc", vehicle=g.v, rail=g.r, scenario=g.s),
+            'dossier takes a law, not the text "smc"',
+        ),
+        (lambda g: wd.dossier(g.c, vehicle=g.v, rail=g.r, scenario="stop"), "dossier takes a Scenario"),
+        (lambda g: g.d.build("er24pc", g.r), "Design.build takes a Vehicle"),
+        (lambda g: g.d.build(g.v, RAIL), "Design.build takes a Rail"),
+        (lambda g: wd.controller("smc", "er24pc", g.r, wd.Specification()), "controller takes a Vehicle"),
+        (lambda g: wd.controller("smc", g.v, g.r, 0.14), "controller takes a Specification, not 0.14"),
+        (
+            lambda g: wd.stability_problem(g.v, g.r, "smc", wd.Specification()),
+            "stability_problem takes a law",
+        ),
+        (lambda g: wd.ideal_stop("er24pc", g.s), "ideal_stop takes a Vehicle"),
+        (lambda g: wd.ideal_stop(g.v, g.r), "ideal_stop takes a Scenario, not a Rail"),
+        (lambda g: wd.load_vehicle(g.v), "load_vehicle takes a name or the path of a file, not a Vehicle"),
+        (lambda _g: wd.load_rail(None), "load_rail takes a name or the path of a file, not None"),
+        (
+            lambda _g: wd.within_bounds("er24pc"),
+            r'takes a ParameterSet, not .*; give load_entries\("vehicle"',
+        ),
+        (
+            lambda g: wd.simulate_many(g.v, g.c, g.s, count=2, draws="vehicle.mass"),
+            "draws takes a list of Draw",
+        ),
+        (lambda g: wd.simulate_many(g.v, g.c, g.s, count="2"), 'count of simulate_many is the text "2"'),
+        (
+            lambda g: wd.Scenario(rail=g.r, initial_speed="120 km/h"),
+            'is the text "120 km/h"; give a number in m/s',
+        ),
+        (lambda g: wd.Scenario.stop(from_kmh="120", rail=g.r), 'is the text "120"; give a number in km/h'),
+        (
+            lambda g: wd.Scenario.stop(from_kmh=120, rail=g.r, seed=1.5),
+            "seed = 1.5 of Scenario must be a whole",
+        ),
+        (lambda _g: wd.Specification(slip="14 %"), 'slip of Specification is the text "14 %"; give a number'),
+        (lambda _g: wd.Specification(speeds=("10", 30.0)), 'speeds of Specification is the text "10"'),
+        (lambda g: wd.linearize(g.v, g.r, slip="14 %", speed=20.0), 'slip of linearize is the text "14 %"'),
+        (lambda g: wd.write_design("a.toml", g.d), "the path of the file comes second"),
+    ],
+)
+def test_what_is_of_another_kind_is_told(er24pc, rail, law, stop, design, call, sentence):
+    with pytest.raises(wd.UserError, match=sentence):
+        call(SimpleNamespace(v=er24pc, r=rail, c=law, s=stop, d=design))
+
+
+def test_numbers_of_numpy_are_numbers(er24pc, rail):
+    stop = wd.Scenario.stop(from_kmh=np.int64(20), rail=rail, seed=np.int64(3))
+    law = wd.controller("none", er24pc, rail, wd.Specification(slip=np.float32(0.14)))
+    heavy = replace(er24pc, wheelsets=np.int64(4))
+    assert wd.simulate(heavy, law, stop).totals.distance > 0.0
+
+
+def test_a_design_is_built_first(er24pc, stop, design):
     with pytest.raises(
         wd.UserError, match=r"takes a law, not a Design; build it, design.build\(vehicle, rail\)"
     ):

@@ -56,9 +56,7 @@ def test_commands_are_held_from_sample_to_sample(run, traces):
         assert set(traces["law_integral_of_the_slip_error_2"][held]) == {sample.state[0]}
 
 
-@pytest.mark.parametrize("vibration", [False, True])
-@pytest.mark.parametrize("pads", [False, True])
-@pytest.mark.parametrize("dynamic", [False, True])
+@pytest.mark.parametrize(("vibration", "pads", "dynamic"), [(False, False, False), (True, True, True)])
 def test_the_pressure_is_that_behind_the_torque_that_the_law_is_told(er24pc, vibration, pads, dynamic):
     """The program tells its law the torque of the pressures; the traces find the pressure from what brakes give."""
     table = Pads(

@@ -98,8 +98,8 @@ def design(
         resume=resume,
         yes=yes,
         command="wspd new",
-        remedy='answer with --set KEY=VALUE or --answers FILE ("wspd new --print-answers" shows one), or add --yes and '
-        "take what is suggested",
+        remedy='take what is suggested with "wspd new --yes", or answer with --set KEY=VALUE or --answers FILE '
+        '("wspd new --print-answers" shows one); see "wspd --help" for the commands that ask nothing',
     )
     _design(answers, target)
     if resume is not None:

@@ -31,7 +31,7 @@ def estimate_panels(figure: "Figure", run: Run, estimate: SpeedEstimate) -> "Fig
         What its law estimated.
     """
     speed, error, distance = figure.subplots(3, 1, sharex=True, height_ratios=(2.4, 1.6, 1.6))
-    _speeds(speed, run, estimate)
+    estimate_panel(speed, run, estimate)
     speed.set_title("Train speed, true and as the law has it; bars: wheelsets released to look")
     curve(error, estimate.time, 100.0 * estimate.error, ESTIMATE, linewidth=1.0)
     error.axhline(0.0, color=INK, linewidth=0.7)
@@ -67,7 +67,8 @@ def estimate_alt(run: Run, estimate: SpeedEstimate) -> str:
     )
 
 
-def _speeds(axes: "Axes", run: Run, estimate: SpeedEstimate) -> None:
+def estimate_panel(axes: "Axes", run: Run, estimate: SpeedEstimate) -> None:
+    """Draw the estimated speed beside the true one; bars at the top edge where a wheelset is released to look."""
     axes.plot(*thinned(run.time, run.speed * KMH), color=INK, linewidth=1.6, label="train")
     curve(axes, estimate.time, estimate.speed * KMH, ESTIMATE, linewidth=1.2, label="estimate")
     flags = released(run)

@@ -1,20 +1,22 @@
-"""Files of other versions: the design file before is read with a notice, all others are refused in one sentence."""
+"""Files of other versions: the design file before is read with a notice, others are refused in one sentence."""
 
 import warnings
 from pathlib import Path
 
 import pytest
 
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.kernel.file import read_certificate
 from wspd_design.design.file import design_text, read_design
 from wspd_design.design.problem import stability_problem
 from wspd_design.exchange.version import program_version
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.versions import OUTDATED, OutdatedWarning, check_schema
+from wspd_design.studies.previous import previous
 
-OLD = Path(__file__).with_name(
-    "design-1.toml"
-)  # as the program of 2026-11-27 wrote it, before the present version
+OLD = Path(__file__).with_name("design-1.toml")
+"""As the program wrote it at the commit before dd16d67, which made version 2."""
 
 
 def test_the_version_before_is_read_with_a_notice():
@@ -59,6 +61,21 @@ def test_others_are_refused_in_one_sentence(change, sentence, tmp_path):
 def test_a_schema_of_another_name_is_not_a_newer_one():
     with pytest.raises(UserError, match=r'"wspd-report/9" must be "wspd-design/2"'):
         check_schema("wspd-report/9", "wspd-design/2", "a.toml", what="a design", remedy="no")
+
+
+def test_an_older_certificate_is_refused_with_what_to_do():
+    with pytest.raises(Refused, match="not a certificate of this version, wspd-certificate/2; make it again"):
+        read_certificate('{"schema": "wspd-certificate/1", "check": "reaching"}')
+
+
+@pytest.mark.parametrize("version", [2, 3, 9])
+def test_the_record_of_a_report_of_any_version_is_compared_with(version):
+    assert previous(f'{{"schema": "wspd-report/{version}"}}', "old.json").record
+
+
+def test_another_object_is_no_record_of_a_report():
+    with pytest.raises(UserError, match=r"take the report\.json that a report attaches"):
+        previous('{"schema": "wspd-stop/2"}', "old.json")
 
 
 def numbers(version):
