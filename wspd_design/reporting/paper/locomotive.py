@@ -46,8 +46,8 @@ def locomotive(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
                 "The same laws, rails and stops on the model with 82 degrees of freedom, on smooth track and on one "
                 f"with the irregularities of Table 9 (seed {made.seed}). The friction was fitted to Table 10 on "
                 "the small model and is not fitted again: [](#locomotive-table10) and [](#locomotive-torques) set both "
-                "models beside the paper, [](#locomotive-distances) has all rails, [](#locomotive-loads) what becomes of the wheel loads. "
-                "[](#locomotive-conclusions) tells which of the paper's conclusions change."
+                "models beside the paper, [](#locomotive-distances) has all rails, [](#locomotive-loads) what becomes "
+                "of the wheel loads. [](#locomotive-conclusions) tells which of the paper's conclusions change."
             )
         ),
         _table10(small, made),
