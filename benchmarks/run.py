@@ -19,6 +19,7 @@ from pathlib import Path
 
 import references
 from case import LAW, SAMPLE_TIME, VEHICLE, Scalar, given, scenario, without_compiler
+from locomotive import measure_locomotive
 from proofs import measure_proofs
 from rows import Row, process_cpu
 
@@ -312,7 +313,7 @@ def main() -> int:
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         rows = [*measure_stops(Scalar(Path(folder))), *measure_axles(), measure_threads()]
-        rows += [*measure_starts(), *measure_proofs()]
+        rows += [*measure_locomotive(ROUNDS), *measure_starts(), *measure_proofs()]
     for row in rows:
         what, goal, spread, verdict, note = row.cells()
         print(f"{verdict.strip('*'):10}  {spread:28}  {goal:20}  {what}{f' ({note})' if note else ''}")

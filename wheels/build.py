@@ -24,6 +24,7 @@ from wspd_design.codegen.kernels import plant_kernels  # noqa: E402
 from wspd_design.codegen.prebuilt import CPU_LEVEL, library_name  # noqa: E402
 from wspd_design.parameters.files import available  # noqa: E402
 from wspd_design.parameters.loading import load_vehicle  # noqa: E402
+from wspd_design.plants.locomotive import LinearLocomotive, Locomotive  # noqa: E402
 from wspd_design.plants.names import plant_of  # noqa: E402
 from wspd_design.plants.planar import Planar  # noqa: E402
 from wspd_design.plants.quarter import Quarter  # noqa: E402
@@ -79,7 +80,10 @@ setup(distclass=Binary, cmdclass={{"bdist_wheel": Wheel}})
 
 
 def plant_sources() -> Iterator[tuple[str, int]]:
-    """Sources of all plants that are built, with their number of stops side by side; each source once."""
+    """Sources of all plants that are built, with their number of stops side by side; each source once.
+
+    Those with all degrees of freedom are large: of them one stop alone is built, without the vibration of the pads.
+    """
     plain = load_vehicle("er24pc")
     plants = [
         plant_of(name, replace(plain, wheelsets=axles))
@@ -91,7 +95,15 @@ def plant_sources() -> Iterator[tuple[str, int]]:
         closed_loop_source(plant_kernels(plant, disturbed=disturbed), stops=stops): stops
         for plant, disturbed, stops in product(plants, (False, True), (1, STOPS_SIDE_BY_SIDE))
     }
-    yield from found.items()
+    whole = [
+        plant_of(kind.name, vehicle)
+        for vehicle in map(load_vehicle, available("vehicle"))
+        if vehicle.multibody
+        for kind in (Locomotive, LinearLocomotive)
+    ]
+    yield from (
+        found | {closed_loop_source(plant_kernels(each, disturbed=False), stops=1): 1 for each in whole}
+    ).items()
 
 
 def compile_plants(platform: Platform, folder: Path) -> None:
