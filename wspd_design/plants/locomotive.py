@@ -99,6 +99,10 @@ class Locomotive(BrakedWheelsets):
         """Return the same plant with another value of one number of the file."""
         return replace(self, changed=(*self.changed, (name, value)))
 
+    def as_filed(self) -> Self:
+        """Return the same plant with the numbers of its file."""
+        return replace(self, changed=())
+
     @property
     def offsets(self) -> tuple[Number, ...]:
         """Distance of each axle behind the first one [m]."""

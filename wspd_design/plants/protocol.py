@@ -232,6 +232,9 @@ class CoupledPlant(Plant, Protocol):
             The last of these alone [N].
         """
 
+    def as_filed(self) -> "CoupledPlant":
+        """Return the same plant with the numbers of its file."""
+
     def creep_growth(self, rail: Rail) -> float:
         """Return the fastest rate of creep over that of rigid wheelsets with the inertia of the vehicle, at least 1."""
 

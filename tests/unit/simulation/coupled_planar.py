@@ -45,6 +45,9 @@ class CoupledPlanar(BrakedWheelsets):
     def on(self, vehicle):
         return replace(self, vehicle=vehicle)
 
+    def as_filed(self):
+        return replace(self, track_gain=0.0)
+
     def rest_at(self, speed, wheel_speeds):  # noqa: ARG002
         return (0.0,) * self.rest_states
 
