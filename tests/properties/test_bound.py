@@ -142,7 +142,8 @@ def test_every_number_of_the_vehicle_is_drawn():
     made = {"wheelsets", "body_mass", "bogie_mass", "wheel_damping", "wheel_damping_decay"}
     vehicle = load_vehicle("er24pc")
     parts = {"brake": vehicle.brake, "contact": vehicle.contact}
-    names = _given(vehicle) - parts.keys() - {"name"}
+    words = {"name", "multibody"}
+    names = _given(vehicle) - parts.keys() - words
     names |= {f"{part}.{name}" for part, record in parts.items() for name in _given(record)}
     assert names == SHARES.keys() | geometry | pitch | scale | disturbance | made
 

@@ -173,6 +173,8 @@ def uncertainty(
     bounds = {f"{each.kind}.{name}": ends for each in parameters for name, ends in each.bounds.items()}
     progress(f"uncertainty: {sets} drawn sets")
     campaign = simulate_many(vehicle, law, scenario, count=sets, draws=draws, plant=plant)
+    if not campaign.complete:  # a part of the sets is no answer
+        raise KeyboardInterrupt
     table = campaign.table
     checked = table["step_distance_change"][~np.isnan(table["step_distance_change"])]
     basis = _Basis(

@@ -169,3 +169,12 @@ def test_a_load_is_a_condition_of_its_own(nominal):
     (load,) = (each for each in found.variants if each.subject == "load")
     assert load.words == "laden, 90 t"
     assert dict(load.outcome)["distance"] > found.spread_of("distance").nominal
+
+
+def test_interrupted_sets_are_no_answer(nominal, monkeypatch):
+    def interrupted(*arguments, **options):
+        return replace(simulate_many(*arguments, **options), complete=False)
+
+    monkeypatch.setattr("wspd_design.studies.uncertainty.simulate_many", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        spread_out(nominal)
