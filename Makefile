@@ -65,7 +65,7 @@ reports: $(VENV)/.installed
 	$(BIN)/wspd design --law torque-feedback --rail polach-wet --sample-time "20 ms" --output reports/torque-feedback-polach-wet/design.toml --force
 	$(BIN)/wspd report reports/torque-feedback-polach-wet/design.toml --output reports/torque-feedback-polach-wet/report.html --force
 	$(BIN)/wspd design $(PROTECTION)/specification.toml --rules-only --output $(PROTECTION)/design.toml --force
-	$(BIN)/wspd report $(PROTECTION)/design.toml $(SENSING) --output $(PROTECTION)/report.html --force
+	$(BIN)/wspd report $(PROTECTION)/design.toml $(SENSING) --ladder --output $(PROTECTION)/report.html --force
 	$(BIN)/wspd reproduce --output reports/paper --force
 
 wheels: $(VENV)/.installed-dev

@@ -161,5 +161,7 @@ def test_a_wheel_that_locks_rings_its_driveline(locked):
         ]
         assert swings[1].std() > 5.0 * swings[0].std()
         assert swings[1].std() > 500.0
+        frequency = np.fft.rfftfreq(4000, 2e-3)
         spectrum = np.abs(np.fft.rfft(swings[1] * np.hanning(400), 4000))
-        assert 8.0 < np.fft.rfftfreq(4000, 2e-3)[spectrum.argmax()] < 12.0
+        ringing = frequency > 6.0  # above the decay of the torque itself
+        assert 8.0 < frequency[ringing][spectrum[ringing].argmax()] < 12.0

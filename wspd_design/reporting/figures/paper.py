@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 MOST = 320
 """Points of a curve: a panel is 8 cm wide, and a page has many of them."""
 
+NAMED = 0.35
+"""Share of a panel's width that the name of a wheelset takes."""
+
 PAPER_WHEELSET_1 = -1
 """The paper counts its wheelsets from the rear: 3 and 4 are in front. Its wheelset 1 is our last one."""
 
@@ -109,8 +112,12 @@ def vertical_forces(figure: "Figure", trials: Trials, controller: str, rails: tu
             force = 2.0 * run.wheel_load[:, wheelset] / KILO
             curve(axes, run.time, force, wheelset, most=MOST, linewidth=0.9)
             above = wheelset == 0
-            place = {"xytext": (0, 9 if above else -9), "va": "bottom" if above else "top"}
-            note(axes, name(run, wheelset), run.time[-1], float(force[-1]), ha="right", **place)
+            named = force[
+                run.time > (1.0 - NAMED) * run.time[-1]
+            ]  # the name stands beyond the curve below it
+            place = {"xytext": (0, 3 if above else -3), "va": "bottom" if above else "top"}
+            edge = float(named.max() if above else named.min())
+            note(axes, name(run, wheelset), run.time[-1], edge, ha="right", **place)
         axes.set_title(rail)
         axes.set_xlim(0.0, float(run.time[-1]))
         axes.margins(y=0.15)

@@ -31,7 +31,8 @@ def inferred(model: Multibody, found: Tornado) -> tuple[Block, ...]:
         Paragraph(
             text=rich(
                 f"Each number of {model.name} with bounds, alone at both ends of them, all others nominal: "
-                f"{found.stops} stops with {found.controller} on {found.rail}, on the plant {found.plant}. "
+                f"{found.stops} stops with {found.controller} on {found.rail}, on the plant {found.plant}. The loop of "
+                "this law settles, so that its stop moves with the numbers; a limit cycle would move with anything. "
                 f"{_strongest(found)} [](#inferred-distance), [](#inferred-transfer) and [](#inferred-slip) draw the "
                 "strongest, [](#inferred-table) lists all. Two numbers together can do what neither does alone. "
                 f"{mark(model)}"

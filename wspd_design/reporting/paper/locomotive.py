@@ -18,13 +18,15 @@ from wspd_design.reporting.figures.drawing import KILO
 from wspd_design.reporting.paper.figures import Setting, figures_of
 from wspd_design.reporting.tables import ColumnOf, Uncertain, build
 from wspd_design.reporting.text import Link, references, rich
-from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.metrics import Metrics
 from wspd_design.studies.inferred import mark
 from wspd_design.studies.paper.conclusions.records import Conclusion
 from wspd_design.studies.paper.disturbances import LOAD_SPREAD
 from wspd_design.studies.paper.evidence import CONSTANT_RAILS, CONTROLLERS, RAILS, UNPROTECTED
 from wspd_design.studies.paper.locomotive import OnLocomotive
+from wspd_design.studies.paper.published import PublishedStop
 from wspd_design.studies.paper.section7 import Section7
+from wspd_design.studies.paper.table10 import Table10Row
 
 SMALL, SMOOTH, IRREGULAR = "four axles", "82 DOF", "irregular"
 _TOP = "locomotive-figure"
@@ -43,12 +45,13 @@ def locomotive(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
             text=rich(
                 "The same laws, rails and stops on the model with 82 degrees of freedom, on smooth track and on one "
                 f"with the irregularities of Table 9 (seed {made.seed}). The friction was fitted to Table 10 on "
-                "the small model and is not fitted again: [](#locomotive-table10) sets both models beside the paper, "
-                "[](#locomotive-distances) has all rails, [](#locomotive-loads) what becomes of the wheel loads. "
-                "[](#locomotive-conclusions) tells which of the paper's conclusions change."
+                "the small model and is not fitted again: [](#locomotive-table10) and [](#locomotive-torques) set both "
+                "models beside the paper, [](#locomotive-distances) has all rails, [](#locomotive-loads) what becomes "
+                "of the wheel loads. [](#locomotive-conclusions) tells which of the paper's conclusions change."
             )
         ),
         _table10(small, made),
+        _torques(small, made),
         _distances(small, made),
         _loads(made),
         Heading(text="Which conclusions change", anchor="locomotive-changes", level=2),
@@ -69,44 +72,70 @@ def locomotive(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
 
 
 def _table10(small: Section7, made: OnLocomotive) -> Table:
-    def columns(
-        title: str, unit: str, decimals: int, ours: Callable[[Trial], float], paper: Callable[[int], float]
-    ) -> list[ColumnOf[int]]:
-        def of(stops: Section7) -> Callable[[int], float]:
-            def read(row: int) -> float:
-                published = small.table10[row].published
-                return ours(stops.trials[published.controller, published.rail])
-
-            return read
-
-        return [
-            ColumnOf(title=f"{title}, paper", unit=unit, decimals=decimals, read=paper),
-            ColumnOf(title=SMALL, unit=unit, decimals=decimals, read=of(small)),
-            ColumnOf(title=SMOOTH, unit=unit, decimals=decimals, read=of(made.smooth)),
-            ColumnOf(title=IRREGULAR, unit=unit, decimals=decimals, read=of(made.irregular)),
-        ]
-
-    published = [row.published for row in small.table10]
     return build(
-        range(len(published)),
+        small.table10,
         (
-            ColumnOf(title="Controller", read=lambda row: published[row].controller),
-            ColumnOf(title="Rail", read=lambda row: published[row].rail.removeprefix("table10-")),
-            *columns("Distance", "m", 1, lambda t: t.metrics.distance, lambda row: published[row].distance_m),
-            *columns(
-                "Time", "s", 2, lambda t: t.metrics.stopping_time, lambda row: published[row].stopping_time_s
-            ),
-            *columns(
-                "Torque",
-                "kN m s",
-                0,
-                lambda t: t.metrics.torque_integral / KILO,
-                lambda row: published[row].torque_integral_kNms,
+            ColumnOf(title="Controller", read=lambda row: row.published.controller),
+            ColumnOf(title="Rail", read=lambda row: row.published.rail.removeprefix("table10-")),
+            *_beside_the_paper(small, made, "Distance", "m", 1, lambda m: m.distance, lambda p: p.distance_m),
+            *_beside_the_paper(
+                small, made, "Time", "s", 2, lambda m: m.stopping_time, lambda p: p.stopping_time_s
             ),
         ),
-        caption=f"Table 10 of the paper, on the small model, on the multibody model and on that on irregular track. "
-        f"{mark(made.model)}",
+        caption="Distances and times of Table 10 of the paper, on the small model, on the multibody model and on that "
+        f"on irregular track. {mark(made.model)}",
         anchor="locomotive-table10",
+    )
+
+
+def _torques(small: Section7, made: OnLocomotive) -> Table:
+    return build(
+        small.table10,
+        (
+            ColumnOf(title="Controller", read=lambda row: row.published.controller),
+            ColumnOf(title="Rail", read=lambda row: row.published.rail.removeprefix("table10-")),
+            *_beside_the_paper(
+                small,
+                made,
+                "Torque integral",
+                "kN m s",
+                1,
+                lambda m: m.torque_integral / KILO,
+                lambda p: p.torque_integral_kNms,
+            ),
+        ),
+        caption="Torque integrals of Table 10 likewise: a balance of momentum on every model, as the effective inertia "
+        f"of a wheelset is the same. {mark(made.model)}",
+        anchor="locomotive-torques",
+    )
+
+
+def _beside_the_paper(
+    small: Section7,
+    made: OnLocomotive,
+    title: str,
+    unit: str,
+    decimals: int,
+    ours: Callable[[Metrics], float],
+    paper: Callable[[PublishedStop], float],
+) -> tuple[ColumnOf[Table10Row], ...]:
+    """Return the columns of one figure: the paper's, and those of our stops on each model."""
+
+    def of(name: str, stops: Section7) -> ColumnOf[Table10Row]:
+        return ColumnOf(
+            title=name,
+            unit=unit,
+            decimals=decimals,
+            read=lambda row: ours(stops.trials[row.published.controller, row.published.rail].metrics),
+        )
+
+    return (
+        ColumnOf(
+            title=f"{title}, paper", unit=unit, decimals=decimals, read=lambda row: paper(row.published)
+        ),
+        of(SMALL, small),
+        of(SMOOTH, made.smooth),
+        of(IRREGULAR, made.irregular),
     )
 
 

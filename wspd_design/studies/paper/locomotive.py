@@ -1,14 +1,18 @@
 """Section 7 on the multibody model: on smooth and on irregular track, and what its inferred numbers do."""
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.catalog import controller
 from wspd_design.design.judging import threads
+from wspd_design.design.records import Specification
+from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.multibody.records import Multibody
 from wspd_design.simulation.comparison import Trial
+from wspd_design.simulation.held_slip import build_up
 from wspd_design.simulation.metrics import metrics
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.self_check import (
@@ -25,7 +29,10 @@ from wspd_design.studies.rung import AxleFigures, axle_figures
 from wspd_design.studies.tornado import Tornado, tornado
 
 LAW = "afsmc"
-"""The law of the figures of loads and of the tornado."""
+"""The law of the figures of loads."""
+
+SETTLING = ("torque-feedback", "polach-wet", 0.02)
+"""Law, rail and sample time [s] of the single effects: a loop that settles, whose stop moves with the numbers alone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,18 +124,27 @@ def on_locomotive(
             ablations=ablations,
         )
         progress("inferred numbers, one at a time")
-        stop = stops[CONSTANT_RAILS[1]]
-        linear = LinearLocomotive(vehicle)
-        found = tornado(
-            linear,
-            law(LAW, stop.rail.name),
-            stop,
-            linear.own_bounds,
-            varied=linear.with_number,
-            build_up=trials[LAW, stop.rail.name].metrics.build_up,
-            pool=pool,
-        )
+        found = single_effects(vehicle, specification, stops, pool)
     return OnLocomotive(model=plant.model, smooth=smooth, irregular=irregular, seed=seed, tornado=found)
+
+
+def single_effects(
+    vehicle: Vehicle, specification: Specification, stops: Mapping[str, Scenario], pool: Executor
+) -> Tornado:
+    """Simulate a stop with each number of the multibody file at both ends of its bounds, on the linear model."""
+    name, rail, sample_time = SETTLING
+    law = controller(name, vehicle, stops[rail].rail, replace(specification, sample_time=sample_time))
+    linear = LinearLocomotive(vehicle)
+    nominal = simulate_on(linear, law, stops[rail])
+    return tornado(
+        linear,
+        law,
+        stops[rail],
+        linear.own_bounds,
+        varied=linear.with_number,
+        build_up=build_up(nominal)[0],
+        pool=pool,
+    )
 
 
 def _checked(plant: Locomotive, law: Law, scenario: Scenario, *, slip_reference: float) -> Trial:
