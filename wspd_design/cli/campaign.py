@@ -16,6 +16,7 @@ from wspd_design.cli.tables import write_table
 from wspd_design.cli.terminal_tables import terminal_table
 from wspd_design.design.case import Case
 from wspd_design.parameters.files import load_entries
+from wspd_design.plants.names import plant_of
 from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.campaign import Campaign, simulate_many
 from wspd_design.simulation.description import disturbances_of, rails_of
@@ -139,7 +140,7 @@ def simulate_runs(
     start : WitnessStart or None
         The witness that the stops start at.
     """
-    draws = () if nominal else drawn_by_runs(case, scenario)
+    draws = () if nominal else drawn_by_runs(case, scenario, extent.plant)
     series = [Series(case=case, scenario=scenario, draws=draws)]
     what = f"{extent.count} stops with {case.controller.name}"
     (summary,) = simulate_series(series, extent, _usual_executor, what=what)
@@ -227,10 +228,10 @@ def _say_rows(path: Path) -> None:
     console().print(f"Rows: {path}", markup=False, soft_wrap=True)
 
 
-def drawn_by_runs(case: Case, scenario: Scenario) -> tuple[Draw, ...]:
-    """Return what many stops of a case draw: all numbers with bounds of its files."""
+def drawn_by_runs(case: Case, scenario: Scenario, plant: str) -> tuple[Draw, ...]:
+    """Return what many stops of a case draw: all numbers with bounds of its files that count on the plant."""
     files = load_entries("vehicle", case.vehicle_name), load_entries("rail", case.rail_name)
-    return within_bounds_of_stop(scenario, files)
+    return within_bounds_of_stop(scenario, files, plant_of(plant, case.vehicle))
 
 
 def show(summary: Summary, series: Series) -> None:

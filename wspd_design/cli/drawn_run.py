@@ -36,7 +36,7 @@ def drawn_run(
     drawn : dict
         The numbers by their names [SI units].
     """
-    draws = drawn_by_runs(case, stop)
+    draws = drawn_by_runs(case, stop, plant)
     if not draws:
         raise UserError(
             f"vehicle {case.vehicle.name} and rail {case.rail.name} have no numbers with bounds to draw from; leave "

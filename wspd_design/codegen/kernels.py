@@ -237,7 +237,8 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
     kinds = {name: getattr(present, name) for name in KINDS} | {
         "reservoir_volume": float(present.reservoir_volume > 0.0)
     }
-    shape = plant.on(
+    filed = plant.as_filed() if is_coupled(plant) else plant  # its numbers are inputs
+    shape = filed.on(
         Vehicle(**{**blank, **counts, **blank_parts(plant.vehicle), "brake": Brake(**brake | kinds)})
     )
     return _memory.get((shape, disturbed), kinds_of(plant), lambda: _traced(shape, disturbed))

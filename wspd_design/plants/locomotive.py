@@ -101,6 +101,14 @@ class Locomotive(BrakedWheelsets):
         """Return the same plant with another value of one number of the file."""
         return replace(self, changed=(*self.changed, (name, value)))
 
+    def with_own(self, numbers: Mapping[str, float]) -> Self:
+        """Return the same plant with other numbers of its file."""
+        return replace(self, changed=(*self.changed, *numbers.items()))
+
+    def as_filed(self) -> Self:
+        """Return the same plant with the numbers of its file."""
+        return replace(self, changed=())
+
     @property
     def offsets(self) -> tuple[Number, ...]:
         """Distance of each axle behind the first one [m]."""

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import NamedTuple, Protocol, TypeGuard
 
 from wspd_design.model.number import Number
+from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.records import Rail, Vehicle
 
 
@@ -174,6 +175,13 @@ TRACK_CHANNELS = ("vertical", "lateral", "cross_level")
 """Irregularities of the track [m, m, rad] that a coupled plant sees under each wheelset."""
 
 
+PLANAR_NUMBERS = (
+    *("body_mass", "bogie_mass", "body_height", "bogie_height", "traction_rod_height"),
+    *("body_pitch_frequency", "bogie_pitch_frequency", "pitch_damping_ratio"),
+)
+"""Numbers of a vehicle by which load moves on the planar plant; a coupled plant has others in their place."""
+
+
 class CoupledPlant(Plant, Protocol):
     """A plant whose right-hand side is one function."""
 
@@ -231,6 +239,16 @@ class CoupledPlant(Plant, Protocol):
         grade_force : number
             The last of these alone [N].
         """
+
+    @property
+    def own_bounds(self) -> Mapping[str, Ends]:
+        """Bounds of the numbers of its file, by their names; those that are the vehicle's are left out."""
+
+    def with_own(self, numbers: Mapping[str, float]) -> "CoupledPlant":
+        """Return the same plant with other numbers of its file."""
+
+    def as_filed(self) -> "CoupledPlant":
+        """Return the same plant with the numbers of its file."""
 
     def creep_growth(self, rail: Rail) -> float:
         """Return the fastest rate of creep over that of rigid wheelsets with the inertia of the vehicle, at least 1."""

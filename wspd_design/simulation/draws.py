@@ -17,7 +17,7 @@ from wspd_design.parameters.gear import gear_of
 from wspd_design.parameters.records import ParameterSet
 from wspd_design.parameters.schema import Kind, schema_of
 from wspd_design.parameters.taken import check_record
-from wspd_design.plants.protocol import Plant
+from wspd_design.plants.protocol import PLANAR_NUMBERS, CoupledPlant, Plant, is_coupled
 from wspd_design.simulation.records import Scenario
 
 FILE_KINDS: Mapping[str, Kind] = {"vehicle": "vehicle", "rail": "rail"}
@@ -36,6 +36,7 @@ _CASTS: Mapping[Any, Callable[[float], Any]] = {
     int: round,
     bool: bool,
 }  # of fields that can be drawn
+_OWN = "multibody"  # begins the names of numbers of a coupled plant's own file
 _NEVER = (
     "seed",
     "wheelsets",
@@ -190,7 +191,8 @@ class Draw:
     """A number that each stop draws anew.
 
     Its name is the path of its record: ``vehicle.mass``, ``vehicle.brake.fill_time``, ``rail.mu0``,
-    ``stop.initial_speed``, ``stop.sensing.speed_noise``. Every number of :class:`Vehicle`, :class:`Rail` and
+    ``stop.initial_speed``, ``stop.sensing.speed_noise``; ``multibody.primary.stiffness_z`` of the file behind the plant
+    ``locomotive``. Every number of :class:`Vehicle`, :class:`Rail` and
     :class:`Scenario` can be drawn, and what is on or off as 0 and 1.
 
     Attributes
@@ -222,9 +224,27 @@ def within_bounds(*parameters: ParameterSet) -> tuple[Draw, ...]:
     )
 
 
-def within_bounds_of_stop(scenario: Scenario, parameters: Sequence[ParameterSet]) -> tuple[Draw, ...]:
-    """Draw every number with bounds; rails of single axles stay, or they would all become the same rail."""
-    return within_bounds(*(each for each in parameters if each.kind != "rail" or scenario.axle_rails is None))
+def within_bounds_of_stop(
+    scenario: Scenario, parameters: Sequence[ParameterSet], plant: Plant | None = None
+) -> tuple[Draw, ...]:
+    """Draw every number with bounds that counts on a plant.
+
+    Rails of single axles stay, or they would all become the same rail.
+    """
+    draws = within_bounds(
+        *(each for each in parameters if each.kind != "rail" or scenario.axle_rails is None)
+    )
+    if plant is None or not is_coupled(plant):
+        return draws
+    return tuple(draw for draw in draws if draw.name.removeprefix("vehicle.") not in PLANAR_NUMBERS)
+
+
+def within_own_bounds(plant: CoupledPlant) -> tuple[Draw, ...]:
+    """Draw every number with bounds of the multibody file behind a plant, but those that the vehicle file has."""
+    return tuple(
+        Draw(name=f"{_OWN}.{name}", distribution=Uniform(low=low, high=high))
+        for name, (low, high) in plant.own_bounds.items()
+    )
 
 
 class Deck:
@@ -234,9 +254,13 @@ class Deck:
         self._plant, self._scenario = plant, scenario
         roots = {"vehicle": plant.vehicle, "rail": scenario.rail, "stop": scenario}
         self._columns = {draw.name: column for column, draw in enumerate(draws)}
+        self._own: dict[str, float] = {}  # numbers of the plant's own file
+        if is_coupled(plant):
+            known = dict(zip(plant.number_names, plant.numbers, strict=True))
+            self._own = {f"{_OWN}.{name}": known[name] for name in plant.own_bounds}
         for draw in draws:
-            _check_name(draw.name, roots)
-        self._spreads = {draw.name: _spread(draw, roots) for draw in draws}
+            _check_name(draw.name, roots, self._own)
+        self._spreads = {draw.name: _spread(draw, roots, self._own) for draw in draws}
         if len(self._columns) < len(draws):
             raise UserError(f"{_twice([draw.name for draw in draws])} is drawn twice; name it once")
         drawn = {root: _below(self._columns, root) for root in roots}
@@ -271,6 +295,9 @@ class Deck:
         plant, rail = self._plant, self._scenario.rail
         if "vehicle" in self._make:
             plant = plant.on(self._make["vehicle"](row, **self._carried(row)))
+        own = _below(self._columns, _OWN)
+        if own and is_coupled(plant):
+            plant = plant.with_own({name: row[column] for name, column in own.items()})
         if "rail" in self._make:
             rail = self._make["rail"](row)
         return plant, self._stop(row, rail=rail, seed=seed)
@@ -344,20 +371,20 @@ def _twice(names: list[str]) -> str:
     return next(name for name in names if names.count(name) > 1)
 
 
-def _check_name(name: str, roots: Mapping[str, Any]) -> None:
-    known = [each for root, record in roots.items() for each in drawable(record, root)]
+def _check_name(name: str, roots: Mapping[str, Any], own: Mapping[str, float]) -> None:
+    known = [*(each for root, record in roots.items() for each in drawable(record, root)), *own]
     if name not in known:
         near = get_close_matches(name, known, n=1)
         remedy = f'did you mean "{near[0]}"?' if near else f"what can be drawn: {', '.join(known)}"
         raise UserError(f'"{name}" is not a number of vehicle, rail or stop that can be drawn; {remedy}')
 
 
-def _spread(draw: Draw, roots: Mapping[str, Any]) -> Distribution:
+def _spread(draw: Draw, roots: Mapping[str, Any], own: Mapping[str, float]) -> Distribution:
     """Return the distribution of a draw; refuse ends that a parameter file must not have either."""
     root, _, name = draw.name.partition(".")
     spread = draw.distribution
     if isinstance(spread, About):
-        value = attrgetter(name)(roots[root])
+        value = own[draw.name] if root == _OWN else attrgetter(name)(roots[root])
         spread = spread.of(0.0 if value is None else float(value), draw.name)
     if root not in FILE_KINDS:
         return spread

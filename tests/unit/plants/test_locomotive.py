@@ -97,3 +97,10 @@ def test_without_brakes_the_locomotive_rolls_on(er24pc):
     # The wheels are cones: their spin on the rail pushes them sideways, and the loads left and right differ.
     np.testing.assert_allclose(turning, 0.0, atol=0.01)
     assert (np.abs(rates) > 1.0).sum() == 8  # turns of wheelsets and rotors, which run on
+
+
+def test_other_numbers_of_the_file_are_the_same_code(er24pc):
+    plant = LinearLocomotive(er24pc)
+    softer = plant.with_number("primary.stiffness_z", 1e6)
+    assert softer.numbers != plant.numbers
+    assert plant_kernels(softer, disturbed=False) is plant_kernels(plant, disturbed=False)

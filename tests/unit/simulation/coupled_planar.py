@@ -45,6 +45,14 @@ class CoupledPlanar(BrakedWheelsets):
     def on(self, vehicle):
         return replace(self, vehicle=vehicle)
 
+    own_bounds: ClassVar[dict] = {"track_gain": (0.0, 10.0)}
+
+    def with_own(self, numbers):
+        return replace(self, **numbers)
+
+    def as_filed(self):
+        return replace(self, track_gain=0.0)
+
     def rest_at(self, speed, wheel_speeds):  # noqa: ARG002
         return (0.0,) * self.rest_states
 

@@ -8,10 +8,13 @@ from coupled_planar import CoupledPlanar
 from test_lock import LOCK_AND_RELEASE
 
 from wspd_design.codegen.closed_loop import load_closed_loop
+from wspd_design.codegen.kernels import plant_kernels
 from wspd_design.codegen.virtual_machine import run_virtual
 from wspd_design.parameters.errors import UserError
+from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.loading import load_rail, load_track_spectrum
 from wspd_design.plants.planar import Planar
+from wspd_design.simulation.draws import Deck, within_bounds_of_stop, within_own_bounds
 from wspd_design.simulation.loop_input import loop_input, sample_rows
 from wspd_design.simulation.records import Fault, LoadIrregularity, Patch, Scenario, Sensing
 from wspd_design.simulation.stop import simulate_on
@@ -121,3 +124,30 @@ def test_an_irregular_track_needs_a_plant_that_rolls_over_it(er24pc, make_contro
     even = LoadIrregularity(spacing=1.0, factors=((1.0,),) * 4)
     with pytest.raises(UserError, match="works out its wheel loads itself"):
         simulate_on(CoupledPlanar(er24pc), make_controller("none"), replace(WET, load_irregularity=even))
+
+
+def test_numbers_of_the_own_file_are_drawn(er24pc, make_controller):
+    plant = CoupledPlanar(er24pc)
+    draws = within_own_bounds(plant)
+    assert [draw.name for draw in draws] == ["multibody.track_gain"]
+    scenario = replace(WET, irregularities="low")
+    cases = Deck(plant, scenario, draws).cases(0, 3)
+    gains = [each.track_gain for each, _ in cases]
+    assert len(set(gains)) == 3
+    assert all(0.0 < gain < 10.0 for gain in gains)
+    assert plant_kernels(cases[0][0], disturbed=False) is plant_kernels(plant, disturbed=False)
+    law = make_controller("trenitalia")
+    one, other = (simulate_on(each, law, stop).totals.distance for each, stop in cases[:2])
+    assert one != other
+    with pytest.raises(UserError, match=r'did you mean "multibody\.track_gain"'):
+        Deck(plant, scenario, [replace(draws[0], name="multibody.track_gian")])
+
+
+def test_what_moves_load_on_the_planar_plant_alone_is_not_drawn(er24pc):
+    files = (load_entries("vehicle", "er24pc"),)
+    planar, coupled = (
+        {draw.name for draw in within_bounds_of_stop(WET, files, kind(er24pc))}
+        for kind in (Planar, CoupledPlanar)
+    )
+    assert planar - coupled >= {"vehicle.body_height", "vehicle.body_pitch_frequency"}
+    assert coupled >= {"vehicle.mass", "vehicle.wheelset_inertia", "vehicle.brake.fill_time"}
