@@ -46,8 +46,10 @@ class Locomotive(BrakedWheelsets):
 
     vehicle: Vehicle
     changed: tuple[tuple[str, float], ...] = field(default=(), compare=False)
-    """Numbers of the file that are others here, by their names. All of them are inputs of the motion: plants that differ
-    in these alone are one to what is traced or compiled from them."""
+    """Numbers of the file that are others here, by their names.
+
+    All are inputs of the motion: plants that differ in these alone are one to what is traced or compiled from them.
+    """
     name: ClassVar[str] = "locomotive"
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False
