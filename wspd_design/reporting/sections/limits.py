@@ -21,8 +21,8 @@ EVERYWHERE: tuple[str, ...] = (
 )
 
 _WHOLE = (
-    "Most masses and stiffnesses of the multibody file are estimates; curves are not modeled, a locked wheel does not turn "
-    "backwards, and a grade pulls at the center of the body."
+    "Most masses and stiffnesses of the multibody file are estimates; curves are not modeled, a locked wheel does not "
+    "turn backwards, and a grade pulls at the center of the body."
 )
 OF_PLANT = {
     "quarter": "One wheelset stands for all, with the same load: weight transfer, and wheelsets that "
