@@ -11,7 +11,7 @@ followed.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, lru_cache
 from types import MappingProxyType
 from typing import Any, ClassVar, Final, Self
@@ -45,7 +45,11 @@ class Locomotive(BrakedWheelsets):
     """The multibody vehicle with finite rotations."""
 
     vehicle: Vehicle
-    changed: tuple[tuple[str, float], ...] = ()  # numbers of the file that are others, by their names
+    changed: tuple[tuple[str, float], ...] = field(default=(), compare=False)
+    """Numbers of the file that are others here, by their names.
+
+    All are inputs of the motion: plants that differ in these alone are one to what is traced or compiled from them.
+    """
     name: ClassVar[str] = "locomotive"
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False

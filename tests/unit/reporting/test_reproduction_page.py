@@ -211,8 +211,8 @@ def test_the_strongest_number_is_named_with_what_it_does(document):
     assert "5 stops with afsmc on table10-wet, on the plant locomotive" in text
     assert "load of the first wheelset by braking: traction rod: height, by up to 6.0 %" in text
     rows = {plain(row[0]): [plain(cell) for cell in row] for row in _table(document, "inferred-table").rows}
-    assert rows["traction rod: height"][2:5] == ["inferred: assumed", "200.00 / 201.00", "5.0 / 16.0"]
-    assert rows["conicity"][2:4] == ["printed", "200.00 / \N{EN DASH}"]
+    assert rows["traction rod: height"][2:5] == ["inferred: assumed", "200.000 / 201.000", "5.0 / 16.0"]
+    assert rows["conicity"][2:4] == ["printed", "200.000 / \N{EN DASH}"]
 
 
 def test_a_page_without_the_multibody_model_has_none_of_it():

@@ -17,7 +17,7 @@ from wspd_design.studies.tornado import Swing, Tornado
 MOST_BARS = 12
 BAR_HEIGHT = 0.33  # in
 FIGURES = (
-    ("distance", "stopping distance", "m", 1.0, 2),
+    ("distance", "stopping distance", "m", 1.0, 3),
     ("transfer", "load of the first wheelset by braking", "%", 100.0, 1),
     ("slip", "largest mean slip of a wheelset", "-", 1.0, 4),
 )
