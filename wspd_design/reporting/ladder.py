@@ -77,7 +77,7 @@ def agreements_table(found: Ladder, *, caption: str = "", anchor: str = "") -> T
     return build(
         found.agreements,
         (
-            ColumnOf(title="Measure", read=lambda each: each.measure.name),
+            ColumnOf(title="Worst wheelset", read=lambda each: each.measure.name),
             *(_deviation(found, rung) for rung in below),
             ColumnOf(title="Tolerance", flush_right=True, read=lambda each: _tolerance(each)),
             ColumnOf(title="Suffices", read=lambda each: found.rungs[each.suffices].title),
