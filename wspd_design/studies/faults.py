@@ -10,7 +10,7 @@ from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.gear import static_shares
 from wspd_design.parameters.loading import load_rail, load_rail_profile
 from wspd_design.parameters.records import Vehicle
-from wspd_design.plants.planar import Planar
+from wspd_design.plants.quarter import Quarter
 from wspd_design.simulation.locked import locked
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.peak import peak_adhesion
@@ -98,7 +98,7 @@ def robustness(
     scenario : Scenario
         The stop without these faults.
     plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
-        Faults belong to single axles: only the planar plant has them.
+        Faults belong to single axles, which the quarter plant does not have.
     progress : callable, optional
         Told each kind of fault before its stops.
 
@@ -107,7 +107,7 @@ def robustness(
     Robustness or None
         None for a plant on which one wheelset stands for all, or a vehicle with one.
     """
-    if plant != Planar.name or vehicle.wheelsets == 1:
+    if plant == Quarter.name or vehicle.wheelsets == 1:
         return None
     plain = replace(scenario, faults=())
 

@@ -19,6 +19,7 @@ from wspd_design.codegen.kernels import plant_kernels
 from wspd_design.codegen.prebuilt import CPU_LEVEL, SUFFIX, library_name, prebuilt_library
 from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail, load_vehicle
+from wspd_design.plants.names import plant_of
 from wspd_design.plants.planar import Planar
 from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.loop_input import loop_input, sample_rows
@@ -152,7 +153,9 @@ def test_a_plant_from_a_wheel_is_not_compiled(er24pc, make_controller, scenario,
     law = make_controller("trenitalia")
     simulate(er24pc, law, scenario)
     assert compiled == []
-    simulate(replace(er24pc, wheelsets=6), law, scenario)  # of a number of axles that is not there
+    body = er24pc.body_mass - er24pc.bogie_mass
+    longer = replace(er24pc, wheelsets=6, body_mass=body)  # a number of axles that is not there
+    simulate(longer, law, scenario)
     assert len(compiled) == 1
 
 
@@ -254,6 +257,12 @@ def test_a_wheel_holds_the_plants_of_shipped_vehicles(name, make_controller, bui
     simulate(load_vehicle(name), make_controller("none"), stop)
     assert len(asked) == 1
     assert asked <= built
+
+
+@pytest.mark.parametrize("name", ["locomotive", "locomotive-linear"])
+def test_a_wheel_holds_the_locomotive(name, er24pc, built):
+    kernels = plant_kernels(plant_of(name, er24pc), disturbed=False)
+    assert closed_loop_source(kernels, stops=1) in built
 
 
 MAGIC = {".so": b"\x7fELF", ".dll": b"MZ", ".dylib": b"\xcf\xfa\xed\xfe"}

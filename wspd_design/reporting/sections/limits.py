@@ -20,11 +20,17 @@ EVERYWHERE: tuple[str, ...] = (
     "Sampled checks prove nothing between their samples; see the resolution of each.",
 )
 
+_WHOLE = (
+    "Most masses and stiffnesses of the multibody file are estimates; curves are not modeled, a locked wheel does not "
+    "turn backwards, and a grade pulls at the center of the body."
+)
 OF_PLANT = {
     "quarter": "One wheelset stands for all, with the same load: weight transfer, and wheelsets that "
     "slide differently, are not shown.",
     "planar": "Bodies and bogies pitch about a quasi-static weight transfer without the moment by which turning "
     "wheelsets are slowed down; suspension, lateral motion and curves are not modeled.",
+    "locomotive": _WHOLE,
+    "locomotive-linear": f"Suspension and inertia are expanded about rest. {_WHOLE}",
 }
 
 
