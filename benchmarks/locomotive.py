@@ -24,7 +24,6 @@ CASES = (
     ("locomotive", "high", 1, 8.0),
     ("locomotive-linear", "none", 1, 80.0),
     ("locomotive-linear", "high", 1, 80.0),
-    ("locomotive", "high", SIDE_BY_SIDE, 15.0),
     ("locomotive-linear", "high", SIDE_BY_SIDE, 150.0),
 )
 

@@ -53,6 +53,7 @@ class Locomotive(BrakedWheelsets):
     name: ClassVar[str] = "locomotive"
     alike: ClassVar[bool] = False
     linear: ClassVar[bool] = False
+    side_by_side: ClassVar[bool] = False
     longest: ClassVar[float] = 5e-4  # s
     further_traces: ClassVar[Mapping[str, str]] = MappingProxyType(
         {
@@ -303,6 +304,7 @@ class LinearLocomotive(Locomotive):
 
     name: ClassVar[str] = "locomotive-linear"
     linear: ClassVar[bool] = True
+    side_by_side: ClassVar[bool] = True
     longest: ClassVar[float] = 1e-3  # s
 
     def on(self, vehicle: Vehicle) -> "LinearLocomotive":

@@ -190,6 +190,10 @@ class CoupledPlant(Plant, Protocol):
         """What the function is made from beyond the vehicle."""
 
     @property
+    def side_by_side(self) -> bool:
+        """Tell whether stops side by side take less time than one after the other; large code gains nothing."""
+
+    @property
     def number_names(self) -> tuple[str, ...]:
         """Names of its numbers beyond those of the vehicle, in the order of ``numbers``."""
 

@@ -11,7 +11,7 @@ from wspd_design.codegen.loop_numbers import LoopInput, LoopOutput
 from wspd_design.codegen.sampled import GOOD
 from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.errors import UserError
-from wspd_design.plants.protocol import Plant
+from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import run_loop
 
@@ -39,7 +39,7 @@ def run_batch(cases: Cases, controller: Law, numbers: Callable[[Cases], LoopInpu
     Parameters
     ----------
     cases : sequence of (Plant, Scenario)
-        Plants of one kind; ``STOPS_SIDE_BY_SIDE`` of them run in one loop, any other number one after another.
+        Plants of one kind; ``STOPS_SIDE_BY_SIDE`` of them run in one loop, any other number one after another, and so do stops of large plants.
     controller : Law
         Law of every wheelset, or of the vehicle.
     numbers : callable
@@ -65,11 +65,12 @@ def run_batch(cases: Cases, controller: Law, numbers: Callable[[Cases], LoopInpu
 
 def _side_by_side(cases: Cases, controller: Law, numbers: Callable[[Cases], LoopInput]) -> list[LoopOutput]:
     """Run all stops in one compiled loop; empty where their number or this machine does not allow it."""
-    if len(cases) != STOPS_SIDE_BY_SIDE:
+    plant = cases[0][0]
+    if len(cases) != STOPS_SIDE_BY_SIDE or (is_coupled(plant) and not plant.side_by_side):
         return []
     shaken = any(scenario.pad_vibration for _, scenario in cases)
     try:
-        loop = load_closed_loop(cases[0][0], controller, stops=len(cases), disturbed=shaken)
+        loop = load_closed_loop(plant, controller, stops=len(cases), disturbed=shaken)
     except (NoCompilerError, UntraceableError):
         return []
     return [loop.run(numbers(cases))]

@@ -19,6 +19,7 @@ class CoupledPlanar(BrakedWheelsets):
     name: ClassVar[str] = "coupled planar"
     alike: ClassVar[bool] = False
     model: ClassVar[None] = None
+    side_by_side: ClassVar[bool] = True
     number_names: ClassVar[tuple[str, ...]] = ("track_gain",)
     further_traces: ClassVar[dict[str, str]] = {"doubled_load": "N"}
 

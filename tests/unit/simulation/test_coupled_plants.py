@@ -14,6 +14,7 @@ from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.loading import load_rail, load_track_spectrum
 from wspd_design.plants.planar import Planar
+from wspd_design.simulation.batch import run_batch
 from wspd_design.simulation.draws import Deck, within_bounds_of_stop, within_own_bounds
 from wspd_design.simulation.loop_input import loop_input, sample_rows
 from wspd_design.simulation.records import Fault, LoadIrregularity, Patch, Scenario, Sensing
@@ -151,3 +152,22 @@ def test_what_moves_load_on_the_planar_plant_alone_is_not_drawn(er24pc):
     )
     assert planar - coupled >= {"vehicle.body_height", "vehicle.body_pitch_frequency"}
     assert coupled >= {"vehicle.mass", "vehicle.wheelset_inertia", "vehicle.brake.fill_time"}
+
+
+def test_a_stop_does_not_know_those_beside_it(er24pc, make_controller):
+    law, stops = make_controller("trenitalia"), 16
+    cases = [
+        (
+            CoupledPlanar(er24pc, track_gain=5.0),
+            replace(WET, initial_speed=6.0, irregularities=level, seed=seed),
+        )
+        for seed in range(stops // 2)
+        for level in ("high", "none")
+    ]
+    beside = run_batch(cases, law, lambda some: loop_input(some, law), what="here")
+    alone = [
+        load_closed_loop(cases[0][0], law).run(loop_input([case], law)).stop_totals["distance"][0]
+        for case in cases
+    ]
+    np.testing.assert_array_equal(beside.stops["distance"], alone)
+    assert len(set(alone)) == 1 + stops // 2
