@@ -2,34 +2,26 @@
 
 from collections.abc import Callable
 
-from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import (
     Block,
-    Cell,
-    Definition,
-    Definitions,
     Figure,
     Heading,
     Paragraph,
-    Status,
     Table,
 )
 from wspd_design.reporting.figures.drawing import KILO
+from wspd_design.reporting.paper.changes import IRREGULAR, SMALL, SMOOTH, changes
 from wspd_design.reporting.paper.figures import Setting, figures_of
 from wspd_design.reporting.tables import ColumnOf, Uncertain, build
-from wspd_design.reporting.text import Link, references, rich
+from wspd_design.reporting.text import references, rich
 from wspd_design.simulation.metrics import Metrics
 from wspd_design.studies.inferred import mark
-from wspd_design.studies.paper.conclusions.records import Conclusion
 from wspd_design.studies.paper.disturbances import LOAD_SPREAD
 from wspd_design.studies.paper.evidence import CONSTANT_RAILS, CONTROLLERS, RAILS, UNPROTECTED
 from wspd_design.studies.paper.locomotive import OnLocomotive
 from wspd_design.studies.paper.published import PublishedStop
 from wspd_design.studies.paper.section7 import Section7
 from wspd_design.studies.paper.table10 import Table10Row
-
-SMALL, SMOOTH, IRREGULAR = "four axles", "82 DOF", "irregular"
-_TOP = "locomotive-figure"
 
 
 def locomotive(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
@@ -46,18 +38,17 @@ def locomotive(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
                 "The same laws, rails and stops on the model with 82 degrees of freedom, on smooth track and on one "
                 f"with the irregularities of Table 9 (seed {made.seed}). The friction was fitted to Table 10 on "
                 "the small model and is not fitted again: [](#locomotive-table10) and [](#locomotive-torques) set both "
-                "models beside the paper, [](#locomotive-distances) has all rails, [](#locomotive-loads) what becomes "
-                "of the wheel loads. [](#locomotive-conclusions) tells which of the paper's conclusions change."
+                "models beside the paper, [](#locomotive-distances) and [](#locomotive-slips) have all rails, "
+                "[](#locomotive-loads) what becomes of the wheel loads. "
+                "[](#locomotive-conclusions) tells which of the paper's conclusions change."
             )
         ),
         _table10(small, made),
         _torques(small, made),
         _distances(small, made),
+        _slips(small, made),
         _loads(made),
-        Heading(text="Which conclusions change", anchor="locomotive-changes", level=2),
-        Paragraph(text=_changes(small, made)),
-        _conclusions(small, made),
-        *_findings(small, made),
+        *changes(small, made),
         Heading(text="The figures on the locomotive", anchor="locomotive-figures", level=2),
         Paragraph(
             text=(
@@ -172,14 +163,34 @@ def _distances(small: Section7, made: OnLocomotive) -> Table:
             change("from four axles", made.smooth, small),
             distance(IRREGULAR, made.irregular),
             change("from smooth", made.irregular, made.smooth),
-            ColumnOf(
-                title="Slip, four axles", decimals=3, read=lambda row: small.trials[row].metrics.slip_mean
-            ),
-            ColumnOf(title=SMOOTH, decimals=3, read=lambda row: made.smooth.trials[row].metrics.slip_mean),
         ),
-        caption="Distances and mean slips on all rails. ±: half the spread of a sensitive closed loop over initial "
+        caption="Distances on all rails. ±: half the spread of a sensitive closed loop over initial "
         f"speeds that differ by millionths. {mark(made.model)}",
         anchor="locomotive-distances",
+    )
+
+
+def _slips(small: Section7, made: OnLocomotive) -> Table:
+    rows = [(name, rail) for rail in RAILS for name in CONTROLLERS]
+
+    def slip(title: str, stops: Section7, read: Callable[[Metrics], float]) -> ColumnOf[tuple[str, str]]:
+        return ColumnOf(title=title, decimals=3, read=lambda row: read(stops.trials[row].metrics))
+
+    return build(
+        rows,
+        (
+            ColumnOf(title="Rail", read=lambda row: row[1] if row[0] == CONTROLLERS[0] else ""),
+            ColumnOf(title="Controller", read=lambda row: row[0]),
+            slip(f"Mean slip, {SMALL}", small, lambda m: m.slip_mean),
+            slip(SMOOTH, made.smooth, lambda m: m.slip_mean),
+            slip(IRREGULAR, made.irregular, lambda m: m.slip_mean),
+            slip(f"Largest, {SMALL}", small, lambda m: m.slip_max),
+            slip(SMOOTH, made.smooth, lambda m: m.slip_max),
+            slip(IRREGULAR, made.irregular, lambda m: m.slip_max),
+        ),
+        caption="Mean and largest slip of the same stops above 10 km/h. A slip above 1 is that of a locked wheel that "
+        f"follows the pads of its moving frame. {mark(made.model)}",
+        anchor="locomotive-slips",
     )
 
 
@@ -209,69 +220,6 @@ def _loads(made: OnLocomotive) -> Table:
         f"for irregular track. {mark(made.model)}",
         anchor="locomotive-loads",
     )
-
-
-def _changes(small: Section7, made: OnLocomotive) -> str:
-    """Say which conclusions are judged otherwise on the multibody model."""
-    changed = [
-        f"{ours.name} ({theirs.verdict.value} on four axles, {ours.verdict.value} here)"
-        for theirs, ours in zip(small.conclusions, made.smooth.conclusions, strict=True)
-        if theirs.verdict is not ours.verdict
-    ]
-    rough = [
-        f"{ours.name} ({ours.verdict.value})"
-        for theirs, ours in zip(made.smooth.conclusions, made.irregular.conclusions, strict=True)
-        if theirs.verdict is not ours.verdict
-    ]
-    first = (
-        f"On smooth track {numbers.count(len(changed), 'conclusion')} of {len(small.conclusions)} "
-        f"{'is' if len(changed) == 1 else 'are'} judged otherwise "
-        f"than on the small model: {numbers.listing(changed)}."
-        if changed
-        else f"On smooth track all {len(small.conclusions)} conclusions are judged as on the small model."
-    )
-    second = (
-        f" On irregular track, of these otherwise again: {numbers.listing(rough)}."
-        if rough
-        else " Irregular track changes no verdict."
-    )
-    return first + second
-
-
-def _conclusions(small: Section7, made: OnLocomotive) -> Table:
-    rows = list(zip(small.conclusions, made.smooth.conclusions, made.irregular.conclusions, strict=True))
-
-    def verdict(title: str, index: int) -> ColumnOf[tuple[Conclusion, ...]]:
-        return ColumnOf(title=title, read=lambda row: Cell(status=Status[row[index].verdict.name]))
-
-    return build(
-        rows,
-        (
-            ColumnOf(
-                title="Conclusion of the paper",
-                read=lambda row: (Link(anchor=f"conclusion-{row[0].name}", text=row[0].claim),),
-            ),
-            verdict(SMALL, 0),
-            verdict(SMOOTH, 1),
-            verdict(IRREGULAR, 2),
-        ),
-        caption="The paper's conclusions on both models, by the same rules. The ideal stops beside them are "
-        f"those of the small model; the parts of the law run on smooth track. {mark(made.model)}",
-        anchor="locomotive-conclusions",
-    )
-
-
-def _findings(small: Section7, made: OnLocomotive) -> tuple[Block, ...]:
-    """Tell the numbers behind each verdict that changes."""
-    triples = zip(small.conclusions, made.smooth.conclusions, made.irregular.conclusions, strict=True)
-    rows = tuple(
-        Definition(
-            term=ours.claim, text=f"On smooth track: {ours.finding} On irregular track: {rough.finding}"
-        )
-        for theirs, ours, rough in triples
-        if len({theirs.verdict, ours.verdict, rough.verdict}) > 1
-    )
-    return (Definitions(rows=rows),) if rows else ()
 
 
 def _irregular_forces(made: OnLocomotive) -> Figure:
