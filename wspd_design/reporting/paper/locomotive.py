@@ -224,7 +224,8 @@ def _changes(small: Section7, made: OnLocomotive) -> str:
         if theirs.verdict is not ours.verdict
     ]
     first = (
-        f"On smooth track {numbers.count(len(changed), 'conclusion')} of {len(small.conclusions)} is judged otherwise "
+        f"On smooth track {numbers.count(len(changed), 'conclusion')} of {len(small.conclusions)} "
+        f"{'is' if len(changed) == 1 else 'are'} judged otherwise "
         f"than on the small model: {numbers.listing(changed)}."
         if changed
         else f"On smooth track all {len(small.conclusions)} conclusions are judged as on the small model."

@@ -1,5 +1,6 @@
 """Section 7 on the multibody model: on smooth and on irregular track, and what its inferred numbers do."""
 
+import math
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -11,10 +12,11 @@ from wspd_design.design.records import Specification
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.multibody.records import Multibody
+from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.held_slip import build_up
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.records import Ending, Scenario
 from wspd_design.simulation.self_check import (
     StepCheck,
     distance_difference,
@@ -91,10 +93,10 @@ def on_locomotive(
         return controller(name, vehicle, stops[rail].rail, specification)
 
     def checked(name: str, rail: str) -> Trial:
-        return _checked(plant, law(name, rail), stops[rail], slip_reference=specification.slip)
+        return checked_trial(plant, law(name, rail), stops[rail], small.trials[name, rail])
 
     def on_rough_track(name: str, rail: str) -> Trial:
-        return _checked(plant, law(name, rail), rough[rail], slip_reference=specification.slip)
+        return checked_trial(plant, law(name, rail), rough[rail], small.trials[name, rail])
 
     keys = laws_and_rails()
     with threads() as pool:
@@ -147,15 +149,26 @@ def single_effects(
     )
 
 
-def _checked(plant: Locomotive, law: Law, scenario: Scenario, *, slip_reference: float) -> Trial:
-    """Simulate one stop, again with half the steps, and from slightly different speeds, and judge it."""
+def checked_trial(plant: Plant, law: Law, scenario: Scenario, small: Trial) -> Trial:
+    """Simulate one stop, again with half the steps, and from slightly different speeds, and judge it.
+
+    The ideal stop is that of the small model, which is known: its brake and friction are the same.
+    """
     run = simulate_on(plant, law, scenario)
     finer = simulate_on(plant, law, scenario, refinement=2)
     spread = perturbed_spread(plant, law, scenario, run, neighbours=NEIGHBOURS)
+    reference, ideal = small.slip_reference, small.metrics.ideal_stop
+    judged = metrics(run, plant.vehicle, scenario, slip_reference=reference)
+    stopped = run.ending is Ending.STOPPED
     return Trial(
         run=run,
-        metrics=metrics(run, plant.vehicle, scenario, slip_reference=slip_reference),
-        slip_reference=slip_reference,
+        metrics=replace(
+            judged,
+            ideal_stop=ideal,
+            ideal_ending=small.metrics.ideal_ending,
+            efficiency=ideal / judged.distance if stopped else math.nan,
+        ),
+        slip_reference=reference,
         check=StepCheck(
             distance=distance_difference(finer, run.totals.distance),
             slip=slip_difference(plant.vehicle, run, finer),
