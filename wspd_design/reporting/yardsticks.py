@@ -40,8 +40,8 @@ def ideal_sentence(figures: Metrics) -> str:
             )
         case None:
             return (
-                "The ideal stop is not known: it needs one rail from end to end, and a start that rolls with "
-                "empty cylinders."
+                "The ideal stop is not known: it needs one rail from end to end, a start that rolls with empty "
+                "cylinders, and the plant quarter or planar."
             )
         case ending:
             return f"There is no ideal stop: {NO_IDEAL_STOP[ending]}."

@@ -39,7 +39,8 @@ def run_batch(cases: Cases, controller: Law, numbers: Callable[[Cases], LoopInpu
     Parameters
     ----------
     cases : sequence of (Plant, Scenario)
-        Plants of one kind; ``STOPS_SIDE_BY_SIDE`` of them run in one loop, any other number one after another, and so do stops of large plants.
+        Plants of one kind; ``STOPS_SIDE_BY_SIDE`` of them run in one loop, any other number one after another, and so
+        do those of large plants.
     controller : Law
         Law of every wheelset, or of the vehicle.
     numbers : callable

@@ -274,7 +274,8 @@ def _accuracy(trials: tuple[Trial, ...]) -> Table:
         "most in the slip at any sample above 0.3 m/s, after steps of the usual length divided as stated; a "
         "stop is unresolved if none of them is short enough. A sensitive closed loop amplifies: its spread is the "
         "range of the distance over initial speeds that differ by millionths. The residuals are what the "
-        "balances of momentum and energy miss, relative to their initial values.",
+        "balances of momentum and energy miss, relative to their initial values; with all degrees of freedom also "
+        "what the other bodies, springs and dampers have.",
         anchor="accuracy-table",
     )
 
