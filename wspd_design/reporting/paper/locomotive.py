@@ -215,9 +215,9 @@ def _loads(made: OnLocomotive) -> Table:
             ColumnOf(title="least", unit="kN", decimals=1, read=lambda row: row[1][1].least_load / KILO),
         ),
         caption="Load of one wheel, mean of both wheels of a wheelset, with the adaptive fuzzy law on "
-        f"{CONSTANT_RAILS[1]}; spread: standard deviation about a moving mean over 1 s, in percent of the load at "
-        f"rest, on smooth and on irregular track; least: there. The small model is given {100.0 * LOAD_SPREAD:.0f} % "
-        f"for irregular track. {mark(made.model)}",
+        f"{CONSTANT_RAILS[1]}; spread: standard deviation of the wheel with more of it about a moving mean over 1 s, "
+        "in percent of the load at rest, on smooth and on irregular track; least: there. The small model is given "
+        f"{100.0 * LOAD_SPREAD:.0f} % for irregular track. {mark(made.model)}",
         anchor="locomotive-loads",
     )
 

@@ -23,7 +23,7 @@ def ladder(dossier: Dossier) -> tuple[Block, ...]:
             text=rich(
                 "The stop of this report on every model of the vehicle, with the same law: [](#ladder-stops) and "
                 "[](#ladder-axles) have the figures, [](#ladder-rungs) shows slips and loads, [](#ladder-agreement) "
-                f"how far each model is from {top}, the largest. Within the tolerances there, what suffices for this "
+                f"how far each rung is from the last one, {top}. Within the tolerances there, what suffices for this "
                 f"stop is: {escape(sufficiency(found))}. Checks, drawn stops and requirements of this report do not "
                 f"rest on the largest model.{sensitivity(found)}{inferred}"
             )
