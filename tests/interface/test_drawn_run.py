@@ -11,6 +11,7 @@ import pytest
 from wspd_design.cli.disturbances import StopOptions
 from wspd_design.cli.report_call import ReportCall
 from wspd_design.design.case import CaseOptions, load_case
+from wspd_design.exchange.columns import with_unit
 from wspd_design.parameters.loading import load_entries
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.records import Scenario, Sensing
@@ -29,7 +30,7 @@ def test_it_is_that_row_of_the_table(wspd):
     with open("rows.csv", newline="") as stream:
         row = list(csv.DictReader(stream))[2]
     alone = only_object(wspd("simulate", *CASE, "--only-run", "2", "--json"))
-    assert alone["drawn"] == {name: float(row[name]) for name in alone["drawn"]}
+    assert alone["drawn"] == {name: float(row[with_unit(name)]) for name in alone["drawn"]}
     assert alone["distance_m"] == pytest.approx(float(row["distance_m"]), rel=1e-4)
     assert alone["seed"] == int(row["seed"]) == 6
     assert only_object(wspd("simulate", *CASE, "--json"))["drawn"] is None

@@ -44,7 +44,8 @@ def entries(table, prefix=""):
 
 def numbers(text, kind):
     """Return the numbers of a vehicle or rail in SI units by their names, and their bounds."""
-    found = {f"{kind}.{name}": each for name, each in entries(tomllib.loads(text))}
+    every = {f"{kind}.{name}": each for name, each in entries(tomllib.loads(text))}
+    found = {name: each for name, each in every.items() if not isinstance(each["value"], str)}
     values = {name: each["value"] * UNITS[each["unit"]] for name, each in found.items()}
     bounds = {
         name: [end * UNITS[each["unit"]] for end in each["bounds"]]

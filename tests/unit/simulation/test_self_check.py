@@ -123,6 +123,7 @@ def test_steps_that_are_too_long_are_refined_or_unresolved(er24pc, make_controll
     assert not check.sensitive  # the steps are too long, which is no fault of the loop
 
 
+@pytest.mark.filterwarnings("ignore:.*faster than trains run")
 def test_the_start_of_the_fastest_train_has_neighbours(er24pc, make_controller):
     scenario = Scenario(rail=load_rail("table10-dry"), initial_speed=149.99999)
     _, check = simulate_checked(er24pc, make_controller("none"), scenario)
