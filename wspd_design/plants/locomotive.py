@@ -5,8 +5,8 @@ the other bodies leave; wheel radius, wheelbase and spacing of bogies, and the e
 wheelset, of which the rotors are what the other parts leave. Brakes, contact and running resistance are the vehicle's,
 all else is the file's.
 
-A locked wheel is held whatever its driveline asks for against the brake: wheels that would turn backwards are not
-followed.
+A locked wheelset is held by its pads, with the frame that carries them, whatever its driveline asks for: wheels that
+would turn backwards are not followed.
 """
 
 import math
