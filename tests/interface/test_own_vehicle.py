@@ -131,7 +131,7 @@ def assert_check_runs(wspd, report, folder):
 
 # Names of the plants and of their classes, which say nothing of a vehicle.
 PLANTS_NAMED = re.compile(
-    r'"locomotive(-linear)?"|plants\.locomotive|locomotive and locomotive-linear|\b(Linear)?Locomotive\b'
+    r'"locomotive(-linear)?"|``locomotive``|plants\.locomotive|locomotive and locomotive-linear|\b(Linear)?Locomotive\b'
 )
 
 
