@@ -300,13 +300,13 @@ STOP = Form(
         Key(
             name="momentum_residual",
             kind="number",
-            meaning="what is missing in the balance, relative to the initial value; on a locomotive with all degrees "
+            meaning="what is missing in the balance, relative to the initial value; on a vehicle with all degrees "
             "of freedom also what its other bodies, springs and dampers have",
         ),
         Key(
             name="energy_residual",
             kind="number",
-            meaning="what is missing in the balance, relative to the initial value; on a locomotive with all degrees "
+            meaning="what is missing in the balance, relative to the initial value; on a vehicle with all degrees "
             "of freedom also what its other bodies, springs and dampers have",
         ),
         Key(name="step_check", kind=STEP_CHECK, meaning="what half the integration steps change"),
