@@ -48,7 +48,8 @@ def without_compiler() -> ClosedLoop:
     plant = Planar(VEHICLE)
     kernels, axles = law_kernels(LAW), plant.axles
     library = load_library(closed_loop_source(plant_kernels(plant, disturbed=False), stops=1))
-    law = LoadedLaw(kernels, axles, virtual_law(kernels, axles))
+    engine = virtual_law(kernels, axles=axles, stops=1)
+    law = LoadedLaw(kernels, engine, axles=axles, stops=1)
     return ClosedLoop(library, law, axles=axles, stops=1)
 
 
