@@ -140,7 +140,7 @@ class Locomotive(BrakedWheelsets):
         """These numbers for the vehicle."""
         return _numbers(self.vehicle, self.changed)
 
-    def on(self, vehicle: Vehicle) -> "Locomotive":
+    def on(self, vehicle: Vehicle) -> Self:
         """Return the same plant with the numbers of another vehicle."""
         return replace(self, vehicle=vehicle)
 
@@ -306,7 +306,3 @@ class LinearLocomotive(Locomotive):
     linear: ClassVar[bool] = True
     side_by_side: ClassVar[bool] = True
     longest: ClassVar[float] = 1e-3  # s
-
-    def on(self, vehicle: Vehicle) -> "LinearLocomotive":
-        """Return the same plant with the numbers of another vehicle."""
-        return replace(self, vehicle=vehicle)

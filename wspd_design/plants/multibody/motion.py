@@ -25,7 +25,7 @@ _PER_AXLE = 2  # wheels
 _SETTLING = 5e-3  # s, in which what still slides at a pad when its wheelset locks comes to rest
 
 
-class CoupledMotion(NamedTuple):
+class MultibodyMotion(NamedTuple):
     """A vehicle at one instant; forces and slips of an axle are means of its wheels, positive when braking."""
 
     acceleration: Number  # m/s2, of the first body
@@ -68,7 +68,7 @@ def vehicle_motion(
     damping: Number = 0.0,
     linear: bool = False,
     profile: WheelProfile | None = None,
-) -> CoupledMotion:
+) -> MultibodyMotion:
     """Build the rates of a vehicle on its rails.
 
     Parameters
@@ -133,7 +133,7 @@ def vehicle_motion(
     drift = ca.vertcat(*(v[k] - v[forward] if k in referred else v[k] for k in range(n) if k != forward))
     others = [rates[k] for k in range(n) if k != forward and k not in spins]
     pairs = [touching[_PER_AXLE * axle : _PER_AXLE * (axle + 1)] for axle in range(model.wheelsets)]
-    motion = CoupledMotion(
+    motion = MultibodyMotion(
         acceleration=rates[forward],
         wheel_rates=tuple(rates[k] for k in spins),
         rest_rates=ca.vertcat(drift, *others),
@@ -230,8 +230,8 @@ def _apart(model: Multibody) -> tuple[int, tuple[int, ...]]:
 
 
 def _at_state(
-    model: Multibody, motion: CoupledMotion, symbols: tuple[Any, Any], state: tuple[Any, Sequence[Any], Any]
-) -> CoupledMotion:
+    model: Multibody, motion: MultibodyMotion, symbols: tuple[Any, Any], state: tuple[Any, Sequence[Any], Any]
+) -> MultibodyMotion:
     """Put the states of the closed loop in place of coordinates and rates."""
     import casadi as ca
 
@@ -254,7 +254,7 @@ def _at_state(
         tuple(ca.vertsplit(new)) if isinstance(old, tuple) else new
         for old, new in zip(motion, placed, strict=True)
     ]
-    return CoupledMotion(*values)
+    return MultibodyMotion(*values)
 
 
 def rolling(model: Multibody, speed: float, wheel_speeds: Sequence[float]) -> tuple[float, ...]:

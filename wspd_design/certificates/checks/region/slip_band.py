@@ -61,11 +61,12 @@ def _departure(problem: Problem) -> Stated:
             if missing_torque(problem, {**each, "speed": speed}):
                 return Stated(place={**each, "speed": speed})
     low, high = problem.speeds
-    for each in places[: max(1, round(len(places) * min(budget().effort, 1.0)))]:
+    tried = places[: max(1, round(len(places) * min(budget().effort, 1.0)))]
+    for each in tried:
         middle = {**each, "speed": math.sqrt(low * high)}
         if lock(problem, middle):
             return Stated(place=middle)
-    return Stated(effort=Effort(boxes=len(places), undecided=1.0, cut=False))
+    return Stated(effort=Effort(boxes=len(tried), undecided=1.0, cut=len(tried) < len(places)))
 
 
 def figures(problem: Problem, certificate: Certificate) -> Figures:

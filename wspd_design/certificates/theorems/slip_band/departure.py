@@ -8,7 +8,7 @@ wheel locks from there, no band is narrower than the way to lock.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import cast
+from typing import NamedTuple, cast
 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Place
@@ -20,7 +20,7 @@ from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import TRAIN_SPEED, Command, State, VehicleMeasurement
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.bounds import Ends
-from wspd_design.parameters.records import Vehicle
+from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.start import full_supply_time, holding_torque
 from wspd_design.simulation.stop import simulate
@@ -87,9 +87,9 @@ def corners(problem: Problem) -> Iterator[Place]:
 
 def missing_torque(problem: Problem, place: Place) -> dict[str, float]:
     """Torque that holds the reference at a place and that of the full pressure, if the first is larger [N m]."""
-    vehicle, holding = _held(problem, place)
-    full = vehicle.brake.max_torque
-    return dict(zip(LIMIT, (holding, full), strict=True)) if holding > full * (1.0 + BEYOND) else {}
+    at = _reference(problem, place)
+    full = at.vehicle.brake.max_torque
+    return dict(zip(LIMIT, (at.holding, full), strict=True)) if at.holding > full * (1.0 + BEYOND) else {}
 
 
 def lock(problem: Problem, place: Place) -> dict[str, float]:
@@ -97,10 +97,7 @@ def lock(problem: Problem, place: Place) -> dict[str, float]:
     import numpy as np
 
     law, slip, speed = cast(Protection, problem.controller), problem.slip, place["speed"]
-    numbers = {name: place[name] for name in NAMES}
-    vehicle, rail = plant_with(problem, numbers)
-    braking = full_supply_time(vehicle.brake)
-    _, holding = _held(problem, place)
+    vehicle, rail, braking, holding = _reference(problem, place)
     settled = _Settled(
         law=law,
         slip=slip,
@@ -129,9 +126,17 @@ def denies(problem: Problem, place: Place, work: Work) -> Mapping[str, float]:
     return found
 
 
-def _held(problem: Problem, place: Place) -> tuple[Vehicle, float]:
-    """Vehicle at a place, and the torque that holds the reference there [N m]."""
+class _Reference(NamedTuple):
+    """What holds the reference at a place."""
+
+    vehicle: Vehicle
+    rail: Rail
+    braking: float  # s, since the brake was applied: the supply is full
+    holding: float  # N m
+
+
+def _reference(problem: Problem, place: Place) -> _Reference:
     vehicle, rail = plant_with(problem, {name: place[name] for name in NAMES})
     braking = full_supply_time(vehicle.brake)
     holding = holding_torque(vehicle, rail, slip=problem.slip, speed=place["speed"], braking_time=braking)
-    return vehicle, holding
+    return _Reference(vehicle, rail, braking, holding)
