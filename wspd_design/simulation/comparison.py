@@ -51,28 +51,11 @@ class Trial:
         table: Table = later("notebook.stops", "trial_table")(self)
         return table
 
-    def plot(self, what: str = "slip", *, ax: "Axes | None" = None) -> "Axes":
-        """Plot a trace of every wheelset over time.
-
-        Parameters
-        ----------
-        what : {"slip", "speed", "torque", "pressure", "load", "valve", "estimate"}
-            Which trace; an estimate is the train speed that a law works out, beside the true one.
-        ax : Axes, optional
-            Where to draw; new axes by default.
-
-        Returns
-        -------
-        Axes
-            With units at both axes; nothing is shown or saved.
-
-        Raises
-        ------
-        UserError
-            If there is no such trace.
-        """
+    def plot(self, what: str = "slip", *, ax: "Axes | None" = None) -> "Axes":  # noqa: D102 - that of a run
         axes: Axes = later("plotting.stops", "plot_trial")(self, what, ax=ax)
         return axes
+
+    plot.__doc__ = Run.plot.__doc__
 
 
 class Comparison(tuple[Trial, ...]):
