@@ -43,8 +43,8 @@ THEOREMS = (
             "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
             "and torque above zero: there the law is the written one",
             "wheel speed, pressure and train speed measured exactly, without dead time; full supply pressure",
-            "the slip that is held is constant or c/sqrt(v); beside that it may move within stated bounds, at most at a "
-            "stated rate, of which the law knows nothing",
+            "the slip that is held is constant or c/sqrt(v); beside that it may move within stated bounds, at most at "
+            "a stated rate, of which the law knows nothing",
             "drift of torque and reference, and the error of the filtered acceleration, between their bounds: while "
             "the train slows down, the friction at the reference rises",
         ),
