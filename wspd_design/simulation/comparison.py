@@ -11,7 +11,8 @@ from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.metrics import Metrics, metrics
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.self_check import StepCheck, simulate_checked
 from wspd_design.simulation.taken import check_several, check_stop
 

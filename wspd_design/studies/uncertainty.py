@@ -10,7 +10,8 @@ from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.judging import threads
 from wspd_design.parameters.bounds import Ends
-from wspd_design.parameters.records import ParameterSet, Vehicle
+from wspd_design.parameters.provenance import ParameterSet
+from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import plant_of
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE
