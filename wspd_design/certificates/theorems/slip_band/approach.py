@@ -76,7 +76,7 @@ class Plant:
     supply_rate: Affine  # 1/s
 
 
-NAMES = (*STATED, "supply rate")
+NUMBERS = (*STATED, "supply rate")
 """Numbers that differ from box to box; those of the band, and the rate of the supply."""
 
 
@@ -90,11 +90,11 @@ def plant_of(vehicle: Vehicle, rail: Rail, full: float, numbers: Mapping[str, Af
     full : float
         Nominal torque at full pressure, in which the law counts [N m].
     numbers : mapping of str to form
-        Of :data:`NAMES`.
+        Of :data:`NUMBERS`.
     first : int
         First of the symbols that stand for the errors of combinations.
     """
-    mass, inertia, radius, mu0, torque, fill, vent, supply = (numbers[name] for name in NAMES)
+    mass, inertia, radius, mu0, torque, fill, vent, supply = (numbers[name] for name in NUMBERS)
     named = (combined.named(first + k) for k, combined in enumerate(_combined(vehicle, full, mass, inertia, radius, mu0, torque)))
     curvature, over_mass, over_inertia, turning, gradient, effect = named
     return Plant(
@@ -208,8 +208,8 @@ def _moved(
 
 def _missed(whole: Affine, share: Affine, speed: float) -> Affine:
     """What the mean over the sample lacks of a change that goes exponentially and ends with the pulse."""
-    # 1/(1 - exp(-x)) - 1/x lies between 1/2 and 1/2 + x/12 for x up to the speed.
-    return (whole * share) * constant(0.5, whole).widened(0.0, speed / 12.0)
+    # Over the pulse the mean lacks 1 + 1/x - 1/(1 - exp(-x)) of the change, 1/2 - x/12 to 1/2 for x up to the speed.
+    return (whole * share) * constant(0.5, whole).widened(speed / 12.0, 0.0)
 
 
 class Moved(NamedTuple):
@@ -443,10 +443,10 @@ def follow(
             return form.named(next(free))
 
         state = State(*(Affine(centers[:, k], columns[:, k], np.zeros(count)) for k in range(STATES)))
-        rows = np.zeros((count, len(NAMES), size))
-        rows[:, :, : len(NAMES)] = spread
-        numbers = {name: Affine(middle[:, k], rows[:, k], np.zeros(count)) for k, name in enumerate(NAMES)}
-        plant = plant_of(vehicle, rail, full, numbers, len(NAMES))
+        rows = np.zeros((count, len(NUMBERS), size))
+        rows[:, :, : len(NUMBERS)] = spread
+        numbers = {name: Affine(middle[:, k], rows[:, k], np.zeros(count)) for k, name in enumerate(NUMBERS)}
+        plant = plant_of(vehicle, rail, full, numbers, len(NUMBERS))
         decided = decide(law, plant, state, fresh)
         moved = motion(plant, law, state, decided, KEPT, fresh)
         following = State(

@@ -1,0 +1,140 @@
+"""Search for strips of friction and supply rate that cover the way from rolling; nothing here is trusted."""
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.plant import plant_with
+from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, SUPPLY, Piece, followed
+from wspd_design.controllers.protection import Protection
+from wspd_design.parameters.records import Rail, Vehicle
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal value
+WIDTHS = ((0.2, 0.02), (0.1, 0.01), (0.05, 0.006))
+"""Half width of a piece over half of the range of the friction, and width of a strip over its supply rate."""
+MOST = 320  # strips, with an effort of 1
+SETTLED, LATER = 0.004, 0.3  # slip beside the reference, and what is followed from there [-, s]
+STEPS = 8  # strips between two stops that tell how long they are followed
+SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
+CHANGE = 0.01  # relative, by which a number is changed to see what it does
+
+
+class Plan(NamedTuple):
+    """Pieces of a share of the friction, and whether they are all that is to be shown."""
+
+    share: float
+    pieces: tuple[Piece, ...]
+
+
+def plan(problem: Problem, law: Protection, effort: float) -> Plan | None:
+    """Choose pieces and strips that the budget can follow, for the largest share of the friction; None if none can.
+
+    Strips at the corners of both ranges are tried; the checker follows all.
+    """
+    for half, width in WIDTHS:
+        if not _corners_hold(problem, law, half, width):
+            continue
+        for share in SHARES:
+            pieces = _pieces(problem, law, share, half, width, MOST * effort)
+            if pieces is not None:
+                return Plan(share, pieces)
+    return None
+
+
+def _pieces(
+    problem: Problem, law: Protection, share: float, half: float, width: float, most: float
+) -> tuple[Piece, ...] | None:
+    """Divide a share of the friction into pieces with strips of a relative width, unless they are too many."""
+    (low, high), nominal = problem.span(FRICTION), problem.nominal(FRICTION)
+    low, high = nominal + share * (low - nominal), nominal + share * (high - nominal)
+    whole = 0.5 * (problem.span(FRICTION)[1] - problem.span(FRICTION)[0])
+    count = max(1, math.ceil((high - low) / (2.0 * half * whole) - 1e-9)) if share else 1
+    edges = [low + (high - low) * k / count for k in range(count)] + [high]
+    slowest, fastest = problem.span(SUPPLY)
+    if count * math.log(fastest / slowest) / width > most:
+        return None
+    found = []
+    for one, other in zip(edges, edges[1:], strict=False):
+        slope = _slope(problem, law, 0.5 * (one + other)) if share else 0.0
+        shift = abs(slope) * 0.5 * (other - one) * (1.0 + 1e-9) + 1e-9 * slowest
+        first, last = slowest - shift, fastest + shift
+        number = max(1, math.ceil(math.log(last / first) / width))
+        borders = tuple(first * (last / first) ** (k / number) for k in range(number + 1))
+        piece = Piece(friction=(one, other), slope=slope, borders=borders, samples=(1,) * number)
+        found.append(replace(piece, samples=_samples(problem, law, piece)))
+    return tuple(found) if sum(len(each.samples) for each in found) <= most else None
+
+
+def _stop(problem: Problem, law: Protection, friction: float, supply: float) -> "tuple[Array, Array]":
+    """Times and slips of a simulated stop [s, -]."""
+    import numpy as np
+
+    from wspd_design.simulation.records import Scenario
+    from wspd_design.simulation.stop import simulate
+
+    vehicle, rail = _changed(problem, friction, supply)
+    run = simulate(vehicle, law, Scenario(rail=rail, initial_speed=problem.speeds[1]), plant="quarter")
+    return np.asarray(run.time), np.asarray(run.slip)[:, 0]
+
+
+def _changed(problem: Problem, friction: float, supply: float) -> tuple[Vehicle, Rail]:
+    vehicle, rail = plant_with(problem, {FRICTION: friction})
+    return replace(vehicle, brake=replace(vehicle.brake, supply_rate=supply)), rail
+
+
+def _slope(problem: Problem, law: Protection, friction: float) -> float:
+    """Supply rate over the friction along which wheels reach the same slip at the same time [1/s]."""
+    import numpy as np
+
+    def reached(friction: float, supply: float) -> float:
+        time, slip = _stop(problem, law, friction, supply)
+        beyond = np.flatnonzero(slip >= SLIDING * problem.slip)
+        if not beyond.size:
+            return math.inf
+        k = int(beyond[0])
+        return float(np.interp(SLIDING * problem.slip, slip[k - 1 : k + 1], time[k - 1 : k + 1]))
+
+    supply = problem.nominal(SUPPLY)
+    by_friction = reached(friction * (1.0 + CHANGE), supply) - reached(friction * (1.0 - CHANGE), supply)
+    by_supply = reached(friction, supply * (1.0 + CHANGE)) - reached(friction, supply * (1.0 - CHANGE))
+    if not math.isfinite(by_friction) or not math.isfinite(by_supply) or by_supply == 0.0:
+        return 0.0
+    return -(by_friction / friction) / (by_supply / supply)
+
+
+def _samples(problem: Problem, law: Protection, piece: Piece) -> tuple[int, ...]:
+    """How long each strip is followed: until a stop at its slower end, or that of one before, has settled."""
+    import numpy as np
+
+    found: list[int] = []
+    for first in range(0, len(piece.samples), STEPS):
+        time, slip = _stop(problem, law, piece.friction[1], piece.borders[first])
+        reached = np.flatnonzero(slip >= problem.slip - SETTLED)
+        settled = float(time[reached[0]]) if reached.size else float(time[-1])
+        found += [math.ceil((settled + LATER) / law.sample_time)] * min(STEPS, len(piece.samples) - first)
+    return tuple(found)
+
+
+def _corners_hold(problem: Problem, law: Protection, half: float, width: float) -> bool:
+    """Follow a strip at each corner of both ranges."""
+    low, high = problem.span(FRICTION)
+    slowest, fastest = problem.span(SUPPLY)
+    reach, chosen = half * (high - low), []
+    for one, other in ((low, low + reach), (high - reach, high)):
+        slope = _slope(problem, law, 0.5 * (one + other))
+        for borders in ((slowest, slowest * (1.0 + width)), (fastest / (1.0 + width), fastest)):
+            alone = Piece(friction=(one, other), slope=slope, borders=borders, samples=(1,))
+            chosen.append(replace(alone, samples=_samples(problem, law, alone)))
+    try:
+        followed(problem, law, chosen)
+    except Refused:
+        return False
+    return True
