@@ -43,6 +43,8 @@ THEOREMS = (
             "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
             "and torque above zero: there the law is the written one",
             "wheel speed, pressure and train speed measured exactly, without dead time; full supply pressure",
+            "the slip that is held is constant or c/sqrt(v); beside that it may move within stated bounds, at most at "
+            "a stated rate, of which the law knows nothing",
             "drift of torque and reference, and the error of the filtered acceleration, between their bounds: while "
             "the train slows down, the friction at the reference rises",
         ),
@@ -54,6 +56,7 @@ THEOREMS = (
         not_said="How a wheel gets into the set; what happens with noise, dead time or a brake that is the limit.",
         identities=(
             Identity("phi e - g psi y solves e' = q e - g y", slip_loop.between_residual),
+            Identity("a steady change of the slip adds delta psi", slip_loop.moving_residual),
             Identity("psi along an edge has the slope (1 - exp(-q h))/q over phi", slip_loop.slope_residual),
             Identity(
                 "d phi along an edge has the sign of the last minus the first secant", slip_loop.run_residual

@@ -21,8 +21,9 @@ h, g, rho, late, seen, phi, psi = sp.symbols("h g rho late seen phi psi", positi
 e, p, N, Y, k, a, theta = sp.symbols(
     "error observer_error friction torque gain ahead observer_pole", real=True
 )
-accel, asked, rise, held, turn, turned = sp.symbols(
-    "acceleration_error command_error torque_drift mean_torque_drift reference_drift mean_reference_drift",
+accel, asked, rise, held, turn, turned, moved, bent = sp.symbols(
+    "acceleration_error command_error torque_drift mean_torque_drift reference_drift mean_reference_drift "
+    "slip_drift uneven_slip_drift",
     real=True,
 )
 
@@ -32,6 +33,11 @@ _grown = sp.exp(q * time)
 _psi = (_grown - 1) / q
 between_residual = sp.simplify(
     sp.diff(_grown * e - g * _psi * y, time) - (q * (_grown * e - g * _psi * y) - g * y)
+)
+delta = sp.Symbol("delta", real=True)  # slip' v/R, steady
+moving_residual = sp.simplify(
+    sp.diff(_grown * e + delta * time + delta * (_psi - time), time)
+    - (q * (_grown * e + delta * time + delta * (_psi - time)) + delta)
 )
 
 # --- one change of q, at the time s before the end: q_1 first, q_2 for s --------------------------------------------
@@ -70,8 +76,8 @@ _mean = J * ((Y + seen * went) / h + _t0)  # of the torque over the sample, as t
 _expected = _observed + h / J * (_friction - _mean)
 _measured = w_r1 + _e1
 _r = _measured - _expected
-innovation = _e1 - e - p - N + Y + seen * went + turned
-_reference = {w_r1: w_r + h * rate + turned}
+innovation = _e1 - e - p - N + Y + seen * went + turned - moved
+_reference = {w_r1: w_r + h * rate + turned - moved}
 innovation_residual = sp.expand((_r - innovation).subs(_reference))
 _observer_next = _expected + (1 - theta**2) * _r - _measured
 _friction_next = h * ((_friction + (1 - theta) ** 2 * J / h * _r) / J - (_t0 + rise / h) - (rate + turn / h))
@@ -83,7 +89,7 @@ friction_residual = sp.expand((_friction_next - friction_next).subs(_reference))
 # --- the valve: T goes the part rho of the way to T* -----------------------------------------------------------------
 _step = rho * went
 torque_next = Y + _step - rise
-error_next = phi * e - g * psi * (Y + (1 - late) * _step - held)
+error_next = phi * e - g * psi * (Y + (1 - late) * _step - held) + moved + bent
 x, c, u = sp.symbols("x c u", positive=True)
 part = (1 - x**c) / (1 - x)  # with x = (T_in - T*)/(T_in - T), or T*/T
 longest = sp.Symbol("longest", positive=True)
@@ -123,7 +129,9 @@ _STATE = {
     "torque_drift": "Change of h t0 over the sample [rad/s]",
     "mean_torque_drift": "Its weighted mean over the sample [rad/s]",
     "reference_drift": "Change of h w_r' over the sample [rad/s]",
-    "mean_reference_drift": "Change of w_r over the sample beyond h w_r' [rad/s]",
+    "mean_reference_drift": "Change of w_r over the sample beyond h w_r' at a fixed slip [rad/s]",
+    "slip_drift": "What the change of the slip takes off w_r over the sample, D [rad/s]",
+    "uneven_slip_drift": "What more it adds to the error, because an error grows or fades within the sample [rad/s]",
     "last_secant": "Secant in the last part of the sample, not 0 [1/s]",
     "first_secant": "Secant in the first part, not 0 [1/s]",
     "span": "Share of the sample that is the last part [-]",
@@ -163,7 +171,7 @@ FUNCTIONS = (
     ),
     _function(
         "next_sample",
-        (e, p, N, Y, way, phi, psi, g, rho, late, seen, theta, asked, rise, held, turn, turned),
+        (e, p, N, Y, way, phi, psi, g, rho, late, seen, theta, asked, rise, held, turn, turned, moved, bent),
         (
             error_next,
             observer_next.subs(_e1, error_next),

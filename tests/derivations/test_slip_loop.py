@@ -18,7 +18,7 @@ def test_every_identity_holds(name):
 
 
 def test_there_are_identities():
-    assert len(RESIDUALS) == 11
+    assert len(RESIDUALS) == 12
 
 
 def test_bend_says_which_way_the_edges_curve():
@@ -28,29 +28,33 @@ def test_bend_says_which_way_the_edges_curve():
 
 H, INERTIA, TRUE_INERTIA, PADS, RADIUS = 0.02, 752.0, 830.0, 0.88, 0.55
 SPEED, BRAKING, SLIP, JERK = 8.0, -1.3, 0.14, 0.6
+SLIP_RATE = 0.05  # 1/s, of the slip that is held, where it changes
 FRICTION, SECANT = 21e3, -3.0  # N m on the reference at the start, 1/s
 RATE, OBSERVER, AHEAD = 8.0, 30.0, 0.45
 FULL, FILL_TIME, SHARE = 60e3, 0.45, 0.6 * 0.6  # N m, s, s that the law assumes
 
 
-def reference(t):
-    v = SPEED + BRAKING * t + JERK * t * t / 2.0
-    return (1.0 - SLIP) * v / RADIUS, (1.0 - SLIP) * (BRAKING + JERK * t) / RADIUS
+def reference(t, rate):
+    """Wheel speed of a slip that changes, and its rate at a fixed slip."""
+    v, slip = SPEED + BRAKING * t + JERK * t * t / 2.0, SLIP + rate * t
+    return (1.0 - slip) * v / RADIUS, (1.0 - slip) * (BRAKING + JERK * t) / RADIUS
 
 
-def friction(t, w):
-    return FRICTION + 900.0 * t + SECANT * TRUE_INERTIA * (w - reference(t)[0])
+@pytest.mark.parametrize("slip_rate", [0.0, SLIP_RATE, -SLIP_RATE])
+def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant(slip_rate):
+    def reference_at(t):
+        return reference(t, slip_rate)
 
+    def friction(t, w):
+        return FRICTION + 900.0 * t + SECANT * TRUE_INERTIA * (w - reference_at(t)[0])
 
-def held(t):
-    """Torque that holds the reference, over the inertia of the law."""
-    g = PADS * INERTIA / TRUE_INERTIA
-    return (friction(t, reference(t)[0]) / TRUE_INERTIA - reference(t)[1]) / g
+    def held(t):
+        """Torque that holds the reference, over the inertia of the law."""
+        g = PADS * INERTIA / TRUE_INERTIA
+        return (friction(t, reference_at(t)[0]) / TRUE_INERTIA - reference_at(t)[1]) / g
 
-
-def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant():
     e, p, observed_friction, torque = 0.03, -0.004, FRICTION * 1.02, 22.9e3
-    w0, rate0 = reference(0.0)
+    w0, rate0 = reference_at(0.0)
     known_rate, theta = rate0 - 0.05, math.exp(-OBSERVER * H)
     ahead = e + AHEAD * H * ((observed_friction - torque) / INERTIA - known_rate)
     target = observed_friction - INERTIA * (known_rate - RATE * ahead)
@@ -70,9 +74,10 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant():
     expected = w0 + e + p + H / INERTIA * (observed_friction - mean)
     r = w1 - expected
     after = (
-        w1 - reference(H)[0],
+        w1 - reference_at(H)[0],
         expected + (1 - theta**2) * r - w1,
-        H * ((observed_friction + (1 - theta) ** 2 * INERTIA / H * r) / INERTIA - held(H) - reference(H)[1]),
+        H
+        * ((observed_friction + (1 - theta) ** 2 * INERTIA / H * r) / INERTIA - held(H) - reference_at(H)[1]),
         H * (seen_torque(H) / INERTIA - held(H)),
     )
 
@@ -91,6 +96,11 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant():
         return weight[0] / weight[1]
 
     late = weighted(lambda t: 1.0 - (seen_torque(t) - torque) / (seen_torque(H) - torque))
+
+    def sliding(t):
+        return slip_rate * (SPEED + BRAKING * t + JERK * t * t / 2.0) / RADIUS
+
+    moved = quad(sliding, 0.0, H)[0]
     found = generated.next_sample(
         *state,
         way,
@@ -104,8 +114,10 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant():
         0.0,
         H * (held(H) - held(0.0)),
         H * weighted(lambda t: held(t) - held(0.0)),
-        H * (reference(H)[1] - rate0),
-        reference(H)[0] - w0 - H * rate0,
+        H * (reference_at(H)[1] - rate0),
+        reference_at(H)[0] - w0 - H * rate0 + moved,
+        moved,
+        quad(lambda t: (math.exp(SECANT * (H - t)) - 1.0) * sliding(t), 0.0, H)[0],
     )
     np.testing.assert_allclose(found, after, rtol=1e-7, atol=1e-10)
     assert generated.part_of_way(SHARE / FILL_TIME, H / SHARE) >= rho >= SHARE / FILL_TIME
