@@ -37,6 +37,9 @@ _decay = sp.Symbol("decay", positive=True)
 _excess = sp.Symbol("excess", positive=True)  # of the surface beyond the layer
 _driven = _excess * sp.exp(-_decay * _excess)
 turning_residual = sp.simplify(sp.diff(_driven, _excess).subs(_excess, 1 / _decay))
+_worst = sp.Symbol("worst", positive=True)  # surface at which the drive is largest
+_steps = ((_decay, kappa), (_worst, layer + 1 / _decay))
+_bound = (_worst - layer) * sp.exp(-_decay * (_worst - middle)) / leakage
 drive_bound = sp.exp(-kappa * (layer - middle) - 1) / (kappa * leakage)
 bound_residual = sp.simplify(
     (_driven.subs(_excess, 1 / _decay) * sp.exp(-_decay * (layer - middle)) / leakage).subs(_decay, kappa)
@@ -86,6 +89,7 @@ def _function(
     value: sp.Expr | tuple[sp.Expr, ...],
     summary: str,
     returns: str,
+    steps: tuple[tuple[sp.Symbol, sp.Expr], ...] = (),
 ) -> Generated:
     return Generated(
         name=name,
@@ -93,6 +97,7 @@ def _function(
         value=value,
         summary=summary,
         returns=returns,
+        steps=steps,
         equation="docs/theory.md#fuzzy-sector",
         meanings={each.name: _MEANINGS[each.name] for each in arguments},
     )
@@ -102,9 +107,10 @@ FUNCTIONS = (
     _function(
         "largest_drive",
         (own, other, width, layer, leakage),
-        drive_bound,
+        _bound,
         "Bound of what a surface above the layer drives the weight of a rule to",
         "Weight, a share of the sample [-]",
+        _steps,
     ),
     _function(
         "surface",

@@ -26,9 +26,10 @@ def largest_drive(
     Number
         Weight, a share of the sample [-].
     """
-    x0 = width**2
-    x1 = 2.0 * other_center - 2.0 * own_center
-    return x0 * exp(-1.0 - x1 * (layer - 0.5 * other_center - 0.5 * own_center) / x0) / (leakage * x1)
+    decay = (2.0 * other_center - 2.0 * own_center) / width**2
+    worst = layer + 1.0 / decay
+    x0 = -worst
+    return (-layer - x0) * exp(-decay * (-0.5 * other_center - 0.5 * own_center - x0)) / leakage
 
 
 def surface(
