@@ -45,6 +45,7 @@ bound_residual = sp.simplify(
     (_driven.subs(_excess, 1 / _decay) * sp.exp(-_decay * (layer - middle)) / leakage).subs(_decay, kappa)
     - drive_bound
 )
+steps_residual = sp.simplify(_bound.subs(_worst, _steps[1][1]).subs(_decay, kappa) / drive_bound - 1)
 
 # --- one sample inside the layer --------------------------------------------------------------------------------------
 e, before, rate, W, phi, psi = sp.symbols("error error_before rate torque phi psi", real=True)
