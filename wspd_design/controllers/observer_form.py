@@ -7,7 +7,7 @@ It is said, not believed: the check compares the traced ``start`` and ``step`` w
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol, runtime_checkable
 
-from wspd_design.controllers.protocol import State
+from wspd_design.controllers.protocol import State, VehicleController
 from wspd_design.model.number import Number
 
 
@@ -51,12 +51,14 @@ class ObserverForm:
     vent_time: float  # s
     time_share: float  # -, of the nominal times, with which the valve is inverted
     torque_slew: float | None = None  # N m/s, of a braking curve far from the reference, if there is one
-    slip_error: float = 0.0  # -, by which the slip may differ from the reference, where the train speed is told wrong
+    slip_error: float = (
+        0.0  # -, by which the slip may differ from the reference, where the train speed is told wrong
+    )
     slip_rate: float = 0.0  # 1/s, how fast it may do so
 
 
 @runtime_checkable
-class TorqueObserver(Protocol):
+class TorqueObserver(VehicleController, Protocol):
     """A law of a vehicle that says its form."""
 
     @property

@@ -89,9 +89,11 @@ def _traced(law: Any) -> _Traced:
     state = ca.SX.sym("state", len(initial))
     before = law.observed(tuple(state.elements()))
     following, commands = law.step(tuple(state.elements()), seen)
-    own = _named(law.observed(following))
-    for k, each in enumerate(commands, start=1):
-        own |= {_fill(k): each.fill, _vent(k): each.vent}
+    asked = dict(enumerate(commands, start=1))
+    own = {_fill(k): each.fill for k, each in asked.items()} | {
+        _vent(k): each.vent for k, each in asked.items()
+    }
+    own = _named(law.observed(following), own)
     samples = {way: _sample(form, law.sample_time, before, seen, way) for way in (FILL, VENT)}
     begun, scaled = _begun(form, seen)
     return _Traced(
@@ -126,7 +128,8 @@ def _vent(wheelset: int) -> str:
     return f"share of venting of wheelset {wheelset}"
 
 
-def _named(observed: Observed) -> Numbers:
+def _named(observed: Observed, commands: Numbers | None = None) -> Numbers:
+    """Give what is compared its names, in an order in which a number comes after those that it follows from."""
     found = {
         "scale of the train speed": observed.scale,
         "train speed": observed.speed,
@@ -135,6 +138,7 @@ def _named(observed: Observed) -> Numbers:
     for k, each in enumerate(observed.wheelsets, start=1):
         found[f"observed speed of wheelset {k}"] = each.speed
         found[f"observed friction torque of wheelset {k}"] = each.friction_torque
+    found |= commands or {}
     for k, each in enumerate(observed.wheelsets, start=1):
         found[f"mean torque of wheelset {k}"] = each.mean_torque
     return found
@@ -159,8 +163,18 @@ def _sample(
     slip = form.slip / sqrt(speed) if form.falls else form.slip
     wanted_speed = (1.0 - slip) * speed / form.wheel_radius
     wanted_rate = (1.0 - (slip / 2.0 if form.falls else slip)) * acceleration / form.wheel_radius
-    inertia, theta, available = form.wheelset_inertia, exp(-form.observer_rate * h), seen.demand * form.full_torque
-    known: Numbers = {"demand": seen.demand, "told": seen.speed, "speed": speed, "slip": slip, "available": available}
+    inertia, theta, available = (
+        form.wheelset_inertia,
+        exp(-form.observer_rate * h),
+        seen.demand * form.full_torque,
+    )
+    known: Numbers = {
+        "demand": seen.demand,
+        "told": seen.speed,
+        "speed": speed,
+        "slip": slip,
+        "available": available,
+    }
     commands: Numbers = {}
     wheelsets = []
     for k, (was, wheel, pressure) in enumerate(
@@ -199,7 +213,9 @@ def _range(name: str, form: ObserverForm, problem: Problem, slips: Range, ways: 
         case "told":
             return problem.speeds
         case "speed":
-            return problem.speeds[0] * form.wheel_radius / worn[1], problem.speeds[1] * form.wheel_radius / worn[0]
+            return problem.speeds[0] * form.wheel_radius / worn[1], problem.speeds[
+                1
+            ] * form.wheel_radius / worn[0]
         case "slip":
             return slips
         case "demand":
@@ -263,7 +279,9 @@ def _in_start(traced: _Traced, law: Any, problem: Problem) -> str:
         for k, scale in enumerate(inner):
             speed = _speed(problem, k)
             wheel = scale * speed / form.wheel_radius
-            seen.append(_measured(form, [wheel] * law.wheelsets, speed, [form.full_torque / 4.0] * law.wheelsets, 0.0))
+            seen.append(
+                _measured(form, [wheel] * law.wheelsets, speed, [form.full_torque / 4.0] * law.wheelsets, 0.0)
+            )
         inputs = _inputs(seen, traced.gains)
         measured = inputs[0]
         for k in range(law.wheelsets, 2 * law.wheelsets):
@@ -324,14 +342,19 @@ def _difference(
         if own[k].field == wanted.field:
             continue
         apart = next(
-            (pair for pair in zip(own[k].real, wanted.real, strict=True) if not isclose(*pair, rel_tol=DIGITS)), None
+            (
+                pair
+                for pair in zip(own[k].real, wanted.real, strict=True)
+                if not isclose(*pair, rel_tol=DIGITS)
+            ),
+            None,
         )
         if apart is None:
             return (
                 f"gives the {name} of the law that it declares only for numbers that were tried, or but for rounding: "
                 "what stands in step must be worked out there from the declared numbers, and branch no further"
             )
-        return f"gives {apart[0]:.5g} for the {name}, and the law that it declares {apart[1]:.5g}"
+        return f"gives {apart[0]:.6g} for the {name}, and the law that it declares {apart[1]:.6g}"
     return ""
 
 
@@ -353,9 +376,7 @@ def _settled(law: Any, problem: Problem, number: int) -> tuple[Sequence[float], 
     for sample in range(samples + 1):
         seen_speed = form.wheel_radius / radius * speed
         slip = form.slip / sqrt(seen_speed) if form.falls else form.slip
-        wheels = [
-            (1.0 - slip) * speed / radius + WOBBLE * (1.0 + number + k) for k in range(law.wheelsets)
-        ]
+        wheels = [(1.0 - slip) * speed / radius + WOBBLE * (1.0 + number + k) for k in range(law.wheelsets)]
         measured = _measured(form, wheels, speed, torques)
         if sample < samples:
             state, _ = law.step(state, measured)

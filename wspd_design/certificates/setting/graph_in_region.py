@@ -132,7 +132,7 @@ def _in_field(name: str, x: list[tuple[int, bool]]) -> tuple[int, bool]:
 
 
 def positive(d: Value, known: Sequence[Known], *, zero: bool) -> bool | None:
-    """Tell whether a number is above 0 in the whole region, or None; ``zero`` is the answer where it is 0 everywhere."""
+    """Tell whether a number is above 0 in the whole region, or None; ``zero`` is said where it is 0 everywhere."""
     if not any(d.field):
         return zero
     for low, high in _ranges(d, known):
@@ -162,7 +162,8 @@ def _ranges(d: Value, known: Sequence[Known]) -> Iterator[tuple[float, float]]:
         if factor == 0.0 or not math.isfinite(factor):
             continue
         at_ends = [_at(d, g, end, factor) for end in (each.low, each.high)]
-        yield min(at_ends), max(at_ends)
+        if not any(map(math.isnan, at_ends)):
+            yield min(at_ends), max(at_ends)
 
 
 def _at(d: Value, g: Value, end: float, factor: float) -> float:

@@ -8,7 +8,7 @@ wheel locks from there, no band is narrower than the way to lock.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Place
@@ -97,7 +97,9 @@ def lock(problem: Problem, place: Place) -> dict[str, float]:
     """When and at which speed a wheel first locks after a start at the reference; empty if none does in the range."""
     import numpy as np
 
-    law, speed = cast(Protection, problem.controller), place["speed"]
+    law, speed = problem.controller, place["speed"]
+    if not isinstance(law, Protection):  # how the observers of another law have settled is not known
+        return {}
     vehicle, rail, braking, slip, turning, holding = _reference(problem, place)
     settled = _Settled(
         law=law,
@@ -141,7 +143,7 @@ class _Reference(NamedTuple):
 def _reference(problem: Problem, place: Place) -> _Reference:
     vehicle, rail = plant_with(problem, {name: place[name] for name in NAMES})
     braking = full_supply_time(vehicle.brake)
-    law, speed, radius = law_of(cast(Protection, problem.controller)), place["speed"], vehicle.wheel_radius
+    law, speed, radius = law_of(problem.controller), place["speed"], vehicle.wheel_radius
     slip, turning = slip_at(law, speed, radius), turning_at(law, speed, radius)
     holding = holding_torque(vehicle, rail, slip=slip, speed=speed, braking_time=braking)
     braked = float(slip_dynamics(vehicle, rail, slip, speed).deceleration)
