@@ -37,7 +37,7 @@ FAULTS = {
         ("clip(self.share * brake.fill_time", "clip(0.5 * brake.fill_time"),
         "for the share of filling",
     ),
-    "mean": (("* end * vented\n", "* end\n"), "for the mean torque of wheelset 1"),
+    "mean": (("* end * vented\n", "* end\n"), "for the mean torque of wheelset"),
     "one wheelset": (
         (
             "commands.append(",
