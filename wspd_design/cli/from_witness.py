@@ -16,7 +16,8 @@ from wspd_design.design.certification import problem_of_case, read_certificate_f
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.start import leaving_time
 
 LEFT = 0.05
