@@ -172,7 +172,7 @@ def simulate_many(
     first : int
         Number of the first one.
     draws : sequence of Draw
-        Numbers that each stop draws anew; :func:`~wspd_design.simulation.draws.within_bounds` makes them from
+        Numbers that each stop draws anew; :func:`~wspd_design.within_bounds` makes them from
         parameter files.
     plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
         With load transfer, without, or with all degrees of freedom.
@@ -247,6 +247,19 @@ def simulate_many(
         complete=complete,
         remade=() if kept is None else tuple(kept.remade),
     )
+
+
+def whole(campaign: Campaign) -> Campaign:
+    """Return a campaign that has all its stops, for answers that a part of them does not give.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        The one that ended the campaign early, which it had kept to itself.
+    """
+    if not campaign.complete:
+        raise KeyboardInterrupt
+    return campaign
 
 
 def chunks(first: int, count: int) -> list[tuple[int, int]]:
