@@ -50,6 +50,7 @@ def next_sample(
     mean_torque_drift: Number,
     reference_drift: Number,
     mean_reference_drift: Number,
+    speed_error: Number,
 ) -> tuple[Number, Number, Number, Number]:
     """State of the loop one sample later, docs/theory.md#band.
 
@@ -80,7 +81,7 @@ def next_sample(
     observer_pole : Number
         Pole theta of the observer [-].
     command_error : Number
-        What dead band and shortest pulse add to the wanted change [rad/s].
+        What dead band, shortest pulse and errors of measured speeds add to the wanted change [rad/s].
     torque_drift : Number
         Change of h t0 over the sample [rad/s].
     mean_torque_drift : Number
@@ -89,6 +90,8 @@ def next_sample(
         Change of h w_r' over the sample [rad/s].
     mean_reference_drift : Number
         Change of w_r over the sample beyond h w_r' [rad/s].
+    speed_error : Number
+        Measured wheel speed at the end of the sample minus the true one [rad/s].
 
     Returns
     -------
@@ -98,11 +101,11 @@ def next_sample(
     x0 = command_error + way
     x1 = rho * x0
     x2 = error * phi - g * psi * (-mean_torque_drift + torque + x1 * (1.0 - late))
-    x3 = -error - friction + mean_reference_drift - observer_error + seen * x0 + torque + x2
+    x3 = -error - friction + mean_reference_drift - observer_error + seen * x0 + speed_error + torque + x2
     x4 = -torque_drift
     return (
         x2,
-        -(observer_pole**2) * x3,
+        -(observer_pole**2) * x3 + speed_error,
         friction - reference_drift + x3 * (1.0 - observer_pole) ** 2 + x4,
         torque + x1 + x4,
     )
@@ -159,7 +162,7 @@ def part_of_way(c: Number, longest: Number) -> Number:
     return (1.0 - exp(-c * longest)) / (1.0 - exp(-longest))
 
 
-def lateness(m: Number, pulse: Number) -> Number:
+def lateness(m: Number, pulse: Number, delay: Number) -> Number:
     """Largest share of the sample that can see the torque before the pulse, docs/theory.md#band.
 
     Parameters
@@ -168,10 +171,41 @@ def lateness(m: Number, pulse: Number) -> Number:
         Secant times sample time, not 0 [-].
     pulse : Number
         Longest pulse over the sample time [-].
+    delay : Number
+        Time from the sample to the latest beginning of a pulse, over the sample time [-].
 
     Returns
     -------
     Number
         Share [-].
     """
-    return (1.0 - (1.0 - exp(-m * pulse)) / (m * pulse)) / (1.0 - exp(-m))
+    return (1.0 - (1.0 - exp(-m * pulse)) * exp(-delay * m) / (m * pulse)) / (1.0 - exp(-m))
+
+
+def added_by_supply(
+    supply_rate: Number, fill_time: Number, h: Number, pulse: Number, delay: Number, room: Number
+) -> Number:
+    """Largest way that a rising supply adds to a pulse that fills, over the way that it goes without, docs/theory.md#band.
+
+    Parameters
+    ----------
+    supply_rate : Number
+        Rate of the supply, eq. (8) [1/s].
+    fill_time : Number
+        Time constant of filling [s].
+    h : Number
+        Sample time [s].
+    pulse : Number
+        Longest pulse over the sample time [-].
+    delay : Number
+        Time from the sample to the latest beginning of a pulse, over the sample time [-].
+    room : Number
+        Least room above the cylinder over what the supply lacks of its final value [-].
+
+    Returns
+    -------
+    Number
+        Share [-].
+    """
+    x0 = 0.5 * pulse
+    return h * supply_rate * (delay + x0) / (room * (1.0 - h * x0 / fill_time))
