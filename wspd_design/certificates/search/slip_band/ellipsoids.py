@@ -202,7 +202,7 @@ def _inequalities(
     if faster is not None:
         _around(asked, task, faster, band + 1)
     found = asked.minimize(np.eye(band + 2)[band], rough=True)
-    if found is None:
+    if found is None or not sum(found[first:band]) > 0.0:
         return None
     return np.tensordot(found[:first], units, 1), found[first:band], float(found[band + 1])
 

@@ -192,13 +192,12 @@ def _one_window(
     hints: Sequence[int],
 ) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Find an ellipsoid for one of the longest pulses; shorter ones leave less room and less to be uncertain about."""
-    for pulse in PULSES:
+    # A pulse ends in its sample, however late it begins.
+    for pulse in dict.fromkeys(min(each, 1 - conditions.delay) for each in PULSES):
 
         def loops(supply: Fraction, pulse: Fraction = pulse) -> Loop:
             return loop_of(problem, law, cell, window, friction, pulse, conditions._replace(supply=supply))
 
-        if pulse + conditions.delay > 1:
-            continue
         found = ellipsoid(law, loops, pulse, conditions.supply, faster, hints)
         if found is not None:
             return found

@@ -15,7 +15,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from wspd_design.certificates.kernel.arb import Ball, above, below, point
+from wspd_design.certificates.kernel.arb import Ball, above, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Matrix, Pair, corners, wanted
@@ -95,8 +95,8 @@ def _check(
     return {
         "share": float(found.share),
         "cells": float(len(found.cells)),
-        "delay": below(point(found.delay * law.sample_time)),
-        "noise": below(point(found.noise)),
+        "delay": float(found.delay * law.sample_time),
+        "noise": float(found.noise),
         **{f"supply {k}": above(point(each)) for k, each in enumerate(supplies)},
         **{
             f"band {k} {side}": above(radius * largest / point(window[0]))
