@@ -18,6 +18,7 @@ from wspd_design.controllers.protocol import Measurement
 AXLES = VEHICLE.wheelsets
 STOP_SPEED = 0.005
 TOLERANCES = {"rtol": 1e-6, "atol": 1e-8}
+NEAR_ROUNDING = {"rtol": 1e-12, "atol": 1e-12}
 exp, atan, pi = math.exp, math.atan, math.pi
 
 
@@ -208,7 +209,7 @@ def scipy_stop(make=make_rates, *, method: str = "RK45", tolerances: dict = TOLE
 
 def reference_stop() -> float:
     """Distance by an implicit method with tolerances near rounding; shares no code with the compiled loop."""
-    return scipy_stop(method="Radau", tolerances={"rtol": 1e-12, "atol": 1e-12})
+    return scipy_stop(method="Radau", tolerances=NEAR_ROUNDING)
 
 
 def rk4_stop() -> float:

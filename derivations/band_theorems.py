@@ -44,6 +44,8 @@ THEOREMS = (
             "and torque above zero: there the law is the written one",
             "pressure measured exactly, wheel and train speed within a bound; pulses begin within a bound after the "
             "sample and end in it; the supply has at least a share of the full pressure, and rises by eq. (8)",
+            "the slip that is held is constant or c/sqrt(v); beside that it may move within stated bounds, at most at "
+            "a stated rate, of which the law knows nothing",
             "drift of torque and reference, and the error of the filtered acceleration, between their bounds: while "
             "the train slows down, the friction at the reference rises",
         ),
@@ -52,10 +54,11 @@ THEOREMS = (
         "times goes the part rho of the wanted way. The map is affine in each of (phi, psi), g, rho, the late share "
         "and the share in the mean torque, so that a convex function of its values is largest at corners. Between "
         "samples e has the same form with a part of the change of the torque.",
-        not_said="How a wheel gets into the set; what happens where a pulse goes on into the next sample, or with a brake "
-        "that is the limit.",
+        not_said="How a wheel gets into the set; what happens where a pulse goes on into the next sample, or with a "
+        "brake that is the limit.",
         identities=(
             Identity("phi e - g psi y solves e' = q e - g y", slip_loop.between_residual),
+            Identity("a steady change of the slip adds delta psi", slip_loop.moving_residual),
             Identity("psi along an edge has the slope (1 - exp(-q h))/q over phi", slip_loop.slope_residual),
             Identity(
                 "d phi along an edge has the sign of the last minus the first secant", slip_loop.run_residual

@@ -24,9 +24,9 @@ h, g, rho, late, seen, phi, psi = sp.symbols("h g rho late seen phi psi", positi
 e, p, N, Y, k, a, theta = sp.symbols(
     "error observer_error friction torque gain ahead observer_pole", real=True
 )
-accel, asked, rise, held, turn, turned, misread = sp.symbols(
+accel, asked, rise, held, turn, turned, moved, bent, misread = sp.symbols(
     "acceleration_error command_error torque_drift mean_torque_drift reference_drift mean_reference_drift "
-    "speed_error",
+    "slip_drift uneven_slip_drift speed_error",
     real=True,
 )
 
@@ -36,6 +36,11 @@ _grown = sp.exp(q * time)
 _psi = (_grown - 1) / q
 between_residual = sp.simplify(
     sp.diff(_grown * e - g * _psi * y, time) - (q * (_grown * e - g * _psi * y) - g * y)
+)
+delta = sp.Symbol("delta", real=True)  # slip' v/R, steady
+moving_residual = sp.simplify(
+    sp.diff(_grown * e + delta * time + delta * (_psi - time), time)
+    - (q * (_grown * e + delta * time + delta * (_psi - time)) + delta)
 )
 
 # --- one change of q, at the time s before the end: q_1 first, q_2 for s --------------------------------------------
@@ -76,8 +81,8 @@ _mean = J * ((Y + seen * went) / h + _t0)  # of the torque over the sample, as t
 _expected = _observed + h / J * (_friction - _mean)
 _true = w_r1 + _e1
 _r = _true + misread - _expected
-innovation = _e1 + misread - e - p - N + Y + seen * went + turned
-_reference = {w_r1: w_r + h * rate + turned}
+innovation = _e1 + misread - e - p - N + Y + seen * went + turned - moved
+_reference = {w_r1: w_r + h * rate + turned - moved}
 innovation_residual = sp.expand((_r - innovation).subs(_reference))
 _observer_next = _expected + (1 - theta**2) * _r - _true
 _friction_next = h * ((_friction + (1 - theta) ** 2 * J / h * _r) / J - (_t0 + rise / h) - (rate + turn / h))
@@ -89,7 +94,7 @@ friction_residual = sp.expand((_friction_next - friction_next).subs(_reference))
 # --- the valve: T goes the part rho of the way to T* -----------------------------------------------------------------
 _step = rho * went
 torque_next = Y + _step - rise
-error_next = phi * e - g * psi * (Y + (1 - late) * _step - held)
+error_next = phi * e - g * psi * (Y + (1 - late) * _step - held) + moved + bent
 x, c, u = sp.symbols("x c u", positive=True)
 part = (1 - x**c) / (1 - x)  # with x = (T_in - T*)/(T_in - T), or T*/T
 longest = sp.Symbol("longest", positive=True)
@@ -98,7 +103,7 @@ part_residual = sp.simplify(sp.integrate(c * u ** (c - 1), (u, x, 1), conds="non
 
 # --- what a supply that rises by (8) adds to a pulse that fills: D' = (what the supply has risen by - D)/T_F, so that D
 # is at most as if the supply rose at its first rate and D did not hold it back; a pulse that begins late sees it later.
-# A pulse over T_F of x goes at least the part x - x^2/2 of the room, which is at least room times what the supply lacks --
+# A pulse over T_F of x goes at least the part x - x^2/2 of the room; that is at least "room" times what the supply lacks -
 _begun = brake.supply.subs(brake.t, brake.t0)
 _added = brake.filled - (_begun + (brake.P0 - _begun) * brake.fading)
 _risen = (brake.P_max - _begun) * (1 - sp.exp(-brake.rate * (brake.t - brake.t0)))
@@ -107,15 +112,15 @@ pulse = sp.Symbol("pulse", positive=True)  # its length over h
 delay = sp.Symbol("delay", nonnegative=True)  # until it begins, over h
 rising, filling = sp.symbols("supply_rate fill_time", positive=True)
 room = sp.Symbol("room", positive=True)
-_added = sp.integrate(rising * (u + delay * h) / filling, (u, 0, pulse * h))  # over what the supply lacks
+_gained = sp.integrate(rising * (u + delay * h) / filling, (u, 0, pulse * h))  # over what the supply lacks
 _x = pulse * h / filling
 added = rising * h * (delay + pulse / 2) / (room * (1 - _x / 2))
-added_bound_residual = sp.simplify(_added / (room * (_x - _x**2 / 2)) - added)
+added_bound_residual = sp.simplify(_gained / (room * (_x - _x**2 / 2)) - added)
 _more = sp.Symbol("more", positive=True)  # what is added, at worst when the sample is over
 latest_residual = sp.simplify((1 - (late + _more) / (1 + _more)) * (1 + _more) - (1 - late))
 
 # --- errors of the measured train speed in its filtered slope, a <- a + (1 - kept) ((v - v before)/h - a): the last one
-# counts (1 - kept)/h, that of j samples ago less the first of the two terms below, all of them less than as much again --
+# counts (1 - kept)/h, those of up to count samples ago sum up to less, whatever their signs ---------------------------
 _kept = sp.Symbol("kept", positive=True)  # below 1
 _count, _j = sp.symbols("count j", integer=True, positive=True)
 _earlier = sp.summation((1 - _kept) * (_kept ** (_j - 1) - _kept**_j), (_j, 1, _count))
@@ -130,7 +135,9 @@ lateness_residual = sp.simplify(
     + sp.integrate((1 - (u - delay) / pulse) * _weight, (u, delay, delay + pulse))
     - lateness * sp.integrate(_weight, (u, 0, 1))
 )
-seen_of_drift = 1 - lateness.subs({pulse: 1, delay: 0})  # share of a steady drift in its mean with the same weight
+seen_of_drift = 1 - lateness.subs(
+    {pulse: 1, delay: 0}
+)  # share of a steady drift in its mean with the same weight
 seen_of_drift_residual = sp.simplify(
     sp.integrate(u * _weight, (u, 0, 1)) - seen_of_drift * sp.integrate(_weight, (u, 0, 1))
 )
@@ -156,7 +163,9 @@ _STATE = {
     "torque_drift": "Change of h t0 over the sample [rad/s]",
     "mean_torque_drift": "Its weighted mean over the sample [rad/s]",
     "reference_drift": "Change of h w_r' over the sample [rad/s]",
-    "mean_reference_drift": "Change of w_r over the sample beyond h w_r' [rad/s]",
+    "mean_reference_drift": "Change of w_r over the sample beyond h w_r' at a fixed slip [rad/s]",
+    "slip_drift": "What the change of the slip takes off w_r over the sample, D [rad/s]",
+    "uneven_slip_drift": "What more it adds to the error, because an error grows or fades within the sample [rad/s]",
     "last_secant": "Secant in the last part of the sample, not 0 [1/s]",
     "first_secant": "Secant in the first part, not 0 [1/s]",
     "span": "Share of the sample that is the last part [-]",
@@ -202,7 +211,7 @@ FUNCTIONS = (
         "next_sample",
         (
             *(e, p, N, Y, way, phi, psi, g, rho, late, seen, theta),
-            *(asked, rise, held, turn, turned, misread),
+            *(asked, rise, held, turn, turned, moved, bent, misread),
         ),
         (
             error_next,

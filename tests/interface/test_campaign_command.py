@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from wspd_design.cli import campaign as command
+from wspd_design.cli.console import progress_bar
 from wspd_design.design.catalog import controller
 from wspd_design.design.records import Specification
 from wspd_design.exchange.columns import with_unit
@@ -102,6 +103,30 @@ def test_an_interrupt_keeps_what_is_done(wspd, tmp_path, interrupt_after):
     assert outcome.code == 130
     assert outcome.err == f"wspd: interrupted after {done} of 500 stops; they are in rows.csv.\n"
     assert f"{done} stops of none" in outcome.out
+
+
+def test_with_a_store_the_same_command_goes_on(wspd, tmp_path, interrupt_after, monkeypatch):
+    words = ("simulate", "none", *SLOW, "--runs", "300", "-o", "rows.csv", "--store", "kept")
+    interrupt_after(20)
+    left = wspd(*words)
+    kept = {path: path.stat().st_mtime_ns for path in (tmp_path / "kept").iterdir()}
+    assert 1 <= len(kept) < 3
+    assert (left.code, "rows.csv" in left.err) == (130, False)
+    assert left.err.endswith("of 300 stops; they are in kept, and the same command goes on from there.\n")
+    assert not (tmp_path / "rows.csv").exists()  # which the same command would refuse to replace
+    monkeypatch.setattr(command, "progress_bar", progress_bar)
+    assert wspd(*words).code == 0
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept  # read, not simulated again
+    assert wspd("simulate", "none", *SLOW, "--runs", "300", "-o", "anew.csv").code == 0
+    assert (tmp_path / "rows.csv").read_bytes() == (tmp_path / "anew.csv").read_bytes()
+
+
+def test_a_store_is_for_many_stops(wspd):
+    outcome = wspd("simulate", "none", *SLOW, "--store", "kept")
+    assert (outcome.code, outcome.err) == (
+        2,
+        "wspd: --store keeps many stops; add --runs, for example --runs 1000.\n",
+    )
 
 
 def test_an_interrupt_leaves_json_clean(wspd, interrupt_after):

@@ -37,6 +37,7 @@ _NAMES = {
     "valve_switches_per_s": "valve switches [1/s]",
     "vented_air": "cylinders vented",
 }
+GOES_ON = "; they are in {store}, and the same command goes on from there"
 _BLOCK = 8192  # rows that are written at a time
 
 
@@ -121,6 +122,9 @@ def simulate_runs(
 ) -> None:
     """Simulate many stops and say how they spread; an interrupt keeps what is done.
 
+    Where there is a store, it is that which keeps it: no rows are written then, which the same command would refuse to
+    replace when it goes on.
+
     Parameters
     ----------
     case : Case
@@ -144,8 +148,8 @@ def simulate_runs(
     series = [Series(case=case, scenario=scenario, draws=draws)]
     what = f"{extent.count} stops with {case.controller.name}"
     (summary,) = simulate_series(series, extent, _usual_executor, what=what)
-    table = summary.campaign.table
-    written = output if len(table) else None
+    table, complete = summary.campaign.table, summary.campaign.complete
+    written = output if complete or (len(table) and extent.store is None) else None
     if written is not None:
         write_table(written, [table], force=force, about=_about(series))
     if as_json:
@@ -154,9 +158,12 @@ def simulate_runs(
         show(summary, series[0])
         if written is not None:
             _say_rows(written)
-    if not summary.campaign.complete:
-        kept = f"; they are in {written}" if written is not None else ""
-        raise interrupted(f"{len(table)} of {extent.count} stops{kept}")
+    if complete:
+        return
+    kept = f"; they are in {written}" if written is not None else ""
+    if extent.store is not None:
+        kept = GOES_ON.format(store=extent.store)
+    raise interrupted(f"{len(table)} of {extent.count} stops{kept}")
 
 
 def tell_series(

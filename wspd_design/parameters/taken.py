@@ -103,9 +103,15 @@ def notice_of_speed(speed: float, what: str, remedy: str) -> None:
 
 
 def notice_of_fast_train(speed: float, what: str, remedy: str) -> None:
-    """Warn about a speed at which no train runs, which is more likely one in km/h [m/s]."""
-    if speed > _FASTEST:
-        tell(f"{what} = {speed:g} m/s is {KMH * speed:.4g} km/h, faster than trains run; {remedy}")
+    """Warn about a speed in m/s that is more likely one in km/h: faster than trains run, or high and a whole number.
+
+    A record cannot know what its speed was converted from, and 80.0 m/s may be the 288 km/h of a fast train. But no
+    conversion gives an ``int``: whoever gives one above 200 km/h has typed it.
+    """
+    fast = speed > _FASTEST
+    if fast or (speed > _NUMERALS_OF_KMH and hasattr(speed, "__index__")):
+        told = ", faster than trains run" if fast else ""
+        tell(f"{what} = {speed:g} m/s is {KMH * speed:.4g} km/h{told}; {remedy}")
 
 
 def described(value: object) -> str:

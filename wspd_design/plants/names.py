@@ -5,13 +5,28 @@ from typing import Final
 
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
-from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.planar import Planar
 from wspd_design.plants.protocol import Plant
 from wspd_design.plants.quarter import Quarter
 
+
+def _locomotive(vehicle: Vehicle) -> Plant:
+    from wspd_design.plants.locomotive import Locomotive  # what no stop on a small plant needs
+
+    return Locomotive(vehicle)
+
+
+def _linear_locomotive(vehicle: Vehicle) -> Plant:
+    from wspd_design.plants.locomotive import LinearLocomotive
+
+    return LinearLocomotive(vehicle)
+
+
 _PLANTS: Final[dict[str, Callable[[Vehicle], Plant]]] = {
-    kind.name: kind for kind in (Planar, Quarter, Locomotive, LinearLocomotive)
+    Planar.name: Planar,
+    Quarter.name: Quarter,
+    "locomotive": _locomotive,
+    "locomotive-linear": _linear_locomotive,
 }
 
 PLANTS: Final = tuple(_PLANTS)

@@ -169,7 +169,10 @@ def test_other_laws_are_not_spoken_about(half):
     assert "observer" in reason(controller=sliding.build(half.vehicle, half.rail))
     assert "holds slip 0.14" in reason(slip=0.15)
     law = half.controller
-    assert "constant slip" in reason(controller=replace(law, pressure_sensors=False))
+    assert "pressure sensors" in reason(controller=replace(law, pressure_sensors=False))
+    seeking = replace(wd.Specification(), sample_time=0.02, reference="seeking", speeds=half.speeds)
+    searching = wd.design_controller(half.vehicle, half.rail, seeking, law="observer-smc")
+    assert "searches for the peak" in reason(controller=searching.build(half.vehicle, half.rail))
     assert "holds its valves" in reason(controller=replace(law, cut_out_speed=5.0))
 
 

@@ -230,9 +230,17 @@ def test_kilometres_per_hour_in_place_of_metres_per_second_are_noticed(er24pc, r
         wd.Scenario(rail=rail, initial_speed=120)
     with pytest.warns(UserWarning, match=r"highest speed of the range = 120 m/s is 432 km/h"):
         wd.Specification(speeds=(10, 120))
+    with pytest.warns(
+        UserWarning, match=r"initial speed = 80 m/s is 288 km/h; for 80 km/h write Scenario.stop\(from_kmh=80"
+    ):
+        wd.Scenario(rail=rail, initial_speed=80)
+    with pytest.warns(UserWarning, match=r"highest speed of the range = 80 m/s is 288 km/h; for km/h write"):
+        wd.Specification(speeds=(3, 80))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         fast = wd.linearize(er24pc, rail, slip=0.14, speed_kmh=288)  # meant
+        replace(wd.Scenario.stop(from_kmh=288, rail=rail), seed=1)  # so is the 80.0 m/s in it
+        wd.Scenario(rail=rail, initial_speed=30)  # a speed of trains in m/s, too
     assert fast.speed == 80.0
     assert (
         wd.linearize(er24pc, rail, slip=0.14, speed_kmh=72).slip_pole

@@ -27,6 +27,8 @@ DISTURBANCES = (
     "mean torque drift",
     "reference drift",
     "mean reference drift",
+    "slip drift",
+    "uneven slip drift",
     "speed error",
 )
 """Beside the state; each is bounded [rad/s]."""

@@ -1,7 +1,8 @@
 """The protection that the band of slip speaks about, written out: sliding mode of relative degree two, told speed.
 
-It shares with the classes of the law nothing but the numbers: constant slip reference, the train speed of a source of
-its own with the scale of the rolling wheels, pressure sensors, and an observer of the friction torque of each wheelset.
+It shares with the classes of the law nothing but the numbers: a slip that is constant or falls as 1/sqrt(v), the train
+speed of a source of its own with the scale of the rolling wheels, pressure sensors, and an observer of the friction
+torque of each wheelset.
 """
 
 from collections.abc import Sequence
@@ -17,7 +18,7 @@ from wspd_design.controllers.observers.rolling import RELEASED_DEMAND
 from wspd_design.controllers.observers.told import ToldSpeed
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import Command, State, VehicleMeasurement
-from wspd_design.controllers.references import ConstantSlip
+from wspd_design.controllers.references import ConstantSlip, FallingSlip
 from wspd_design.model.number import Number, exp, log, maximum, minimum, sqrt, where
 from wspd_design.parameters.loading import constants
 
@@ -37,7 +38,7 @@ class WrittenProtection:
 
     of: Protection
     core: ObserverSmc
-    reference: ConstantSlip
+    reference: ConstantSlip | FallingSlip
     source: ToldSpeed
 
     @property
@@ -74,7 +75,7 @@ class WrittenProtection:
         rolling = rolling * (abs(scale - 1.0) <= self.source.largest_scale_error)
         scale = where(rolling, scale, 1.0)
         torques = [self._torque(m, k) for k in range(n)]
-        slips = (self.reference.slip,) * n
+        slips = (self._slip(m.speed)[0],) * n
         return (
             scale * m.speed,
             0.0 * scale,
@@ -86,6 +87,15 @@ class WrittenProtection:
             *m.wheel_speeds,
             *(0.0,) * n,
         )
+
+    def _slip(self, speed: Number) -> tuple[Number, Number]:
+        """Slip that is held, and the part of a change of the train speed that the rims take part in."""
+        if isinstance(self.reference, ConstantSlip):
+            return self.reference.slip, 1.0 - self.reference.slip
+        least = maximum(speed, constants().slip_regularization_speed)
+        own = self.reference.slip / sqrt(least)
+        slip = minimum(own, self.reference.largest)
+        return slip, 1.0 - slip + where(own < self.reference.largest, speed * own / (2.0 * least), 0.0)
 
     def _full(self, k: int) -> Number:
         return self.of.torque_shares[k] * self.of.valve.brake.max_torque
@@ -102,8 +112,9 @@ class WrittenProtection:
         new = 1.0 - exp(-h / self.source.acceleration_time)
         acceleration = acceleration + new * ((speed - before) / h - acceleration)
         theta = exp(-self.of.observer_rate * h)
-        wanted_speed = (1.0 - self.reference.slip) * speed / self.of.wheel_radius
-        wanted_rate = acceleration / self.of.wheel_radius * (1.0 - self.reference.slip)
+        slip, turning = self._slip(speed)
+        wanted_speed = (1.0 - slip) * speed / self.of.wheel_radius
+        wanted_rate = acceleration / self.of.wheel_radius * turning
         commands, speeds, torques = [], [], []
         taus = []
         for k in range(n):
@@ -123,7 +134,7 @@ class WrittenProtection:
         ]
         after = [self._after(k, m, torques[k], each) for k, each in enumerate(commands)]
         ends, averages = zip(*after, strict=True)
-        slips = (self.reference.slip,) * n
+        slips = (slip,) * n
         following = (speed, acceleration, scale, *slips, *taus, *ends, *averages, *speeds, *(0.0,) * n)
         return following, tuple(commands)
 
@@ -220,11 +231,12 @@ def written(law: object) -> WrittenProtection | None:
     if not isinstance(law, Protection):
         return None
     core, reference, source = law.core, law.reference, law.source
-    kinds = type(core) is ObserverSmc and type(reference) is ConstantSlip and type(source) is ToldSpeed
+    kinds = type(core) is ObserverSmc and type(reference) in (ConstantSlip, FallingSlip)
+    kinds = kinds and type(source) is ToldSpeed
     if not kinds or law.seeking is not None or not law.pressure_sensors or law.valve.brake.valve != "lag":
         return None
     assert isinstance(core, ObserverSmc)
-    assert isinstance(reference, ConstantSlip)
+    assert isinstance(reference, ConstantSlip | FallingSlip)
     assert isinstance(source, ToldSpeed)
     return WrittenProtection(of=law, core=core, reference=reference, source=source)
 
@@ -232,8 +244,13 @@ def written(law: object) -> WrittenProtection | None:
 def not_written(law: Protection) -> str:
     """Say why the step of a protection is not shown to be the one that is written here; empty if it is."""
     wanted = written(law)
+    if law.seeking is not None:
+        return "searches for the peak, so that its reference jumps, which no bound on its rate covers"
     if wanted is None:
-        return "is not the sliding mode of relative degree two with told speed, constant slip and pressure sensors"
+        return (
+            "is not the sliding mode of relative degree two with told speed, a slip that is constant or falls as "
+            "1/sqrt(v), and pressure sensors"
+        )
     try:
         pair = law_constants(law), law_constants(wanted)
     except UntraceableError as reason:

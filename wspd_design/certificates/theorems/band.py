@@ -11,7 +11,7 @@ from functools import partial
 from typing import cast
 
 from wspd_design.certificates.kernel.claim import Claim, Relation
-from wspd_design.certificates.kernel.finding import Finding
+from wspd_design.certificates.kernel.finding import Finding, Place
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import CONTACT, RAIL
@@ -23,15 +23,22 @@ from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.slip_band.checker import checker
 from wspd_design.certificates.theorems.slip_band.departure import LIMIT, denies, place_ranges
 from wspd_design.certificates.theorems.slip_band.loop import Friction
+from wspd_design.certificates.theorems.slip_band.reference import (
+    reference_text,
+    slip_at,
+    slips_around,
+    slips_held,
+)
 from wspd_design.certificates.theorems.slip_band.statement import (
     JERK_FACTORS,
     NAMES,
+    Interval,
     law_of,
-    slips_of,
     windows_of,
 )
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
 from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.references import FallingSlip
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH
@@ -56,10 +63,13 @@ def key(name: str, window: int, relation: Relation) -> str:
 def claims(problem: Problem) -> dict[str, Claim]:
     """Claims about the friction; whatever bound is proved counts."""
     found = {}
+    law, radius = law_of(cast(Protection, problem.controller)), _radii(problem)
     for k, window in enumerate(windows_of(problem)):
         there = _held(replace(problem, speeds=window))
+        held = slips_held(law, window, radius)
+        around = slips_around(law, window, radius, problem.speeds[0])
         for name, claim in BOUNDED.items():
-            slips = slips_of(problem, window) if name == "slope" else (problem.slip, problem.slip)
+            slips = around if name == "slope" else held
             for relation in DIRECTIONS:
                 found[key(name, k, relation)] = claim(there, slips, relation, Fraction(0))
     return found
@@ -81,6 +91,11 @@ def varied(problem: Problem) -> tuple[str, ...]:
     return (*VARIED, *(("supply rate",) if problem.vehicle.brake.build_up == "main-pipe" else ()))
 
 
+def _radii(problem: Problem) -> Interval:
+    low, high = problem.span("wheel radius")
+    return Fraction(low), Fraction(high)
+
+
 def _held(problem: Problem) -> Problem:
     """Hold the contact and the shape of the friction at their nominal values."""
     kept = {name: ends for name, ends in problem.bounds.items() if name in varied(problem)}
@@ -90,9 +105,7 @@ def _held(problem: Problem) -> Problem:
 def held_names(problem: Problem) -> tuple[str, ...]:
     """Names of the numbers with bounds that the claim depends on and holds."""
     return tuple(
-        name
-        for name in domain.uncertain(problem)
-        if name in (*CONTACT, *RAIL) and name not in VARIED
+        name for name in domain.uncertain(problem) if name in (*CONTACT, *RAIL) and name not in VARIED
     )
 
 
@@ -108,13 +121,21 @@ def speaks_about(problem: Problem) -> str:
     if (brake.max_pressure, problem.vehicle.wheelsets) != (modeled.max_pressure, law.wheelsets):
         return "was made for another vehicle"
     numbers = law_of(law)
-    if numbers.slip != Fraction(problem.slip):
+    if not numbers.falls and numbers.slip != Fraction(problem.slip):
         return f"holds slip {float(numbers.slip):g}, not {problem.slip:g}"
+    if isinstance(law.reference, FallingSlip) and not _largest_slip(problem) < law.reference.largest:
+        return f"holds no more than slip {law.reference.largest:g}, which ends its fall inside the range of speed"
     if law.cut_out_speed > problem.speeds[0]:
         return f"holds its valves below {law.cut_out_speed * KMH:.3g} km/h, inside the range of speed"
     if brake.dead_time >= law.sample_time:
         return f"commands valves that have a dead time of {1e3 * brake.dead_time:g} ms, a sample or more"
     return ""
+
+
+def _largest_slip(problem: Problem) -> float:
+    """Largest slip of the reference, at the lowest speed that a sample may lead to [-]."""
+    law = law_of(cast(Protection, problem.controller))
+    return slips_held(law, windows_of(problem)[0], _radii(problem))[1]
 
 
 def _obligations(problem: Problem) -> tuple[Obligation, ...]:
@@ -154,13 +175,13 @@ def _covered(problem: Problem, findings: Findings) -> Finding:
 def _tell(problem: Problem, findings: Findings) -> Certificate:
     cells, windows = _covered(problem, findings), windows_of(problem)
     friction = proved_friction(problem, findings)
-    held = held_names(problem)
+    held, reference = held_names(problem), reference_text(law_of(cast(Protection, problem.controller)))
     within = domain.domain_of(_held(problem), varied(problem), held)
     low, high = (speed * KMH for speed in problem.speeds)
     claim = (
-        f"Once the state of a wheelset is in its ellipsoid, its slip stays in a band around {problem.slip:g} at every "
-        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit, while the supply has the share "
-        f"of the full pressure that is told. On "
+        f"Once the state of a wheelset is in its ellipsoid, its slip stays in a band around {reference} at every "
+        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit, "
+        f"while the supply has the share of the full pressure that is told. On "
         f"{within.text}, all of them constant; sampled every "
         f"{problem.sample_time * 1e3:g} ms, with any course of the friction whose slope stays within its proved range."
     )
@@ -172,7 +193,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         explanation = (
             f"{_bands(windows, cells)} {cells.numbers['cells']:g} cells of the box, each with an ellipsoid "
         )
-        explanation += "for each window of speed, that of a faster window inside that of the next slower one. "
+        explanation += (
+            "for each window of speed, that of a faster window inside that of the next slower one. "
+        )
         explanation += _supplies(windows, cells)
         if share < 1.0:
             status = Status.UNDECIDED
@@ -180,12 +203,13 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             explanation = f"Shown on {part}, not on all of it. {explanation}"
         else:
             largest = max(cells.numbers[f"band {k} above"] for k in range(len(windows)))
-            margin = Range(low=1.0 - problem.slip - largest, high=None, unit="-")
-            worst = (Point(name="slip", value=problem.slip + largest, unit="-"),)
+            slip = _largest_slip(problem) + largest
+            margin = Range(low=1.0 - slip, high=None, unit="-")
+            worst = (Point(name="slip", value=slip, unit="-"),)
     away = findings[DEPARTURE]
     if away.status is Status.REFUTED and away.stated is not None:
         status, margin = Status.REFUTED, None
-        values = {**away.stated.place, "slip": problem.slip}
+        values = {**away.stated.place, "slip": _slip_there(problem, away.stated.place)}
         worst = place(values, ("slip", "speed", *NAMES))
         explanation = f"{_departure(problem, away)} {explanation}"
     return Certificate(
@@ -230,8 +254,9 @@ def _departure(problem: Problem, away: Finding) -> str:
     numbers = away.numbers
     if LIMIT[0] in numbers:
         holding, full = (numbers[name] / 1e3 for name in LIMIT)
+        slip = _slip_there(problem, away.stated.place) if away.stated is not None else math.nan
         return (
-            f"The brake is the limit in a corner of the box: there holding slip {problem.slip:g} takes {holding:.3g} "
+            f"The brake is the limit in a corner of the box: there holding slip {slip:.3g} takes {holding:.3g} "
             f"kN m, and full pressure gives {full:.3g}."
         )
     speed = away.stated.place["speed"] if away.stated is not None else math.nan
@@ -241,6 +266,10 @@ def _departure(problem: Problem, away: Finding) -> str:
         f"{numbers['lock time']:.2g} s later, at {numbers['lock speed'] * KMH:.3g} km/h: no set around the reference "
         "keeps a band."
     )
+
+
+def _slip_there(problem: Problem, place: Place) -> float:
+    return slip_at(law_of(cast(Protection, problem.controller)), place["speed"], place["wheel radius"])
 
 
 def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
@@ -272,13 +301,14 @@ def _dead_band(problem: Problem) -> str:
     """Compare what the law leaves out with what a sample of venting can do."""
     law = law_of(cast(Protection, problem.controller))
     h, speed = float(law.sample_time), problem.speeds[0]
+    slip = slip_at(law, speed, problem.vehicle.wheel_radius)
     held = (
         2.0
         * problem.vehicle.wheel_radius
-        * float(slip_dynamics(problem.vehicle, problem.rail, problem.slip, speed).creep_force)
+        * float(slip_dynamics(problem.vehicle, problem.rail, slip, speed).creep_force)
     )
     vented = held * -math.expm1(-h / float(law.vent_time))
-    sliding = problem.slip * speed / problem.vehicle.wheel_radius
+    sliding = slip * speed / problem.vehicle.wheel_radius
     narrowed = float(law.dead_band_share * law.inertia * law.approach_rate) * sliding
     left_out = min(float(law.dead_band), narrowed)
     return (

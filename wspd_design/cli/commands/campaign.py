@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from wspd_design.cli import options
-from wspd_design.cli.campaign import Extent, simulate_series, tell_series
+from wspd_design.cli.campaign import GOES_ON, Extent, simulate_series, tell_series
 from wspd_design.cli.campaign_file import read_campaign
 from wspd_design.cli.console import interrupted
 from wspd_design.cli.executors import EXECUTORS, executor
@@ -92,7 +92,7 @@ def campaign(
         tell_series(wanted.series, summaries, output=output, force=force, as_json=as_json)
         return
     done, total = sum(len(each.campaign.table) for each in summaries), len(wanted.series) * count
-    raise interrupted(f"{done} of {total} stops; they are in {kept}, and the same command goes on from there")
+    raise interrupted(f"{done} of {total} stops{GOES_ON.format(store=kept)}")
 
 
 def _part(text: str, stops: int) -> tuple[int, int]:

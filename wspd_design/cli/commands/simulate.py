@@ -78,6 +78,16 @@ def simulate(
             rich_help_panel=_MANY,
         ),
     ] = False,
+    store: Annotated[
+        Path | None,
+        typer.Option(
+            "--store",
+            metavar="FOLDER",
+            help="With --runs: keep finished chunks, so that the same command goes on after an interrupt.",
+            show_default=False,
+            rich_help_panel=_MANY,
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -111,6 +121,8 @@ def simulate(
         check_table(output, force=force)
     if nominal and runs is None:
         raise UserError("--nominal is about many stops; add --runs, for example --runs 1000")
+    if store is not None and runs is None:
+        raise UserError("--store keeps many stops; add --runs, for example --runs 1000")
     if only_run is not None and (runs is not None or from_witness is not None):
         other = "--runs" if runs is not None else "--from-witness"
         raise UserError(f"--only-run is one stop with drawn numbers; leave {other} out")
@@ -144,7 +156,7 @@ def simulate(
         simulate_runs(
             case,
             stop,
-            Extent(plant=plant, first=0, count=runs, check_every=CHECK_EVERY, store=None),
+            Extent(plant=plant, first=0, count=runs, check_every=CHECK_EVERY, store=store),
             nominal=nominal,
             output=output,
             force=force,

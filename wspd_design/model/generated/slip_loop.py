@@ -50,6 +50,8 @@ def next_sample(
     mean_torque_drift: Number,
     reference_drift: Number,
     mean_reference_drift: Number,
+    slip_drift: Number,
+    uneven_slip_drift: Number,
     speed_error: Number,
 ) -> tuple[Number, Number, Number, Number]:
     """State of the loop one sample later, docs/theory.md#band.
@@ -89,7 +91,11 @@ def next_sample(
     reference_drift : Number
         Change of h w_r' over the sample [rad/s].
     mean_reference_drift : Number
-        Change of w_r over the sample beyond h w_r' [rad/s].
+        Change of w_r over the sample beyond h w_r' at a fixed slip [rad/s].
+    slip_drift : Number
+        What the change of the slip takes off w_r over the sample, D [rad/s].
+    uneven_slip_drift : Number
+        What more it adds to the error, because an error grows or fades within the sample [rad/s].
     speed_error : Number
         Measured wheel speed at the end of the sample minus the true one [rad/s].
 
@@ -100,11 +106,11 @@ def next_sample(
     """
     x0 = command_error + way
     x1 = rho * x0
-    x2 = error * phi - g * psi * (-mean_torque_drift + torque + x1 * (1.0 - late))
+    x2 = error * phi - g * psi * (-mean_torque_drift + torque + x1 * (1.0 - late)) + uneven_slip_drift
     x3 = -error - friction + mean_reference_drift - observer_error + seen * x0 + speed_error + torque + x2
     x4 = -torque_drift
     return (
-        x2,
+        slip_drift + x2,
         -(observer_pole**2) * x3 + speed_error,
         friction - reference_drift + x3 * (1.0 - observer_pole) ** 2 + x4,
         torque + x1 + x4,

@@ -46,8 +46,8 @@ def ellipsoid(
 ) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Find an ellipsoid with a small band around that of the next faster window, or none.
 
-    It is sought with the room that this share of the full pressure leaves; then the least share is found that its states
-    have room in.
+    It is sought with the room that this share of the full pressure leaves; then the least share is found in which its
+    states have room.
 
     Parameters
     ----------
@@ -92,7 +92,10 @@ def _least_supply(loops: Callable[[Fraction], Loop], supply: Fraction, found: El
     """Return the least share of the full pressure, in steps of what this one lacks, that the states have room in."""
     if supply == 1:
         return supply
-    p, center = [[point(each) for each in row] for row in found.matrix], [point(each) for each in found.center]
+    p, center = (
+        [[point(each) for each in row] for row in found.matrix],
+        [point(each) for each in found.center],
+    )
     step = 1 - supply
     low, high = 1, int(supply / step)
     while low < high:

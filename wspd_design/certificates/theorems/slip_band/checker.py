@@ -191,7 +191,7 @@ def _within(law: LoopLaw, loop: Loop, p: Sequence[Sequence[Ball]], center: Seque
     """Bound the error at every instant of a sample, by parts of it in which phi and psi are enclosed."""
     h, (low, high) = law.sample_time, loop.ranges.secants
     asked, lowest, highest = wanted(law), center[0], center[0]
-    known, command, _, mean, *_ = (a.union(b) for a, b in loop.disturbances)
+    known, command, _, mean, _, _, moved, uneven, _ = (a.union(b) for a, b in loop.disturbances)
     for part in range(PARTS):
         begin, end = h * part / PARTS, h * (part + 1) / PARTS
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]
@@ -203,6 +203,7 @@ def _within(law: LoopLaw, loop: Loop, p: Sequence[Sequence[Ball]], center: Seque
             row = [phi * (k == 0) - g * psi * ((k == 3) + gone * each) for k, each in enumerate(way)]
             # A part of the sample has seen at most the drift of the whole one.
             disturbed = -g * psi * (gone * (asked[STATES] * known + command) - mean.union(point(0)))
+            disturbed += (moved + uneven).union(point(0))
             there = sum((a * c for a, c in zip(row, center, strict=True)), point(0)) + disturbed
             reach = reaches(p, row)
             lowest, highest = lowest.min(there - reach), highest.max(there + reach)

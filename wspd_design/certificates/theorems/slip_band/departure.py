@@ -14,7 +14,8 @@ from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Place
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import plant_with
-from wspd_design.certificates.theorems.slip_band.statement import NAMES
+from wspd_design.certificates.theorems.slip_band.reference import slip_at, turning_at
+from wspd_design.certificates.theorems.slip_band.statement import NAMES, law_of
 from wspd_design.controllers.observers.protocol import TRAIN_ACCELERATION
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import TRAIN_SPEED, Command, State, VehicleMeasurement
@@ -36,7 +37,7 @@ class _Settled:
     """A protection that begins as if it had held its reference for long."""
 
     law: Protection
-    slip: float  # -, that the wheels have
+    turning: float  # -, part of a change of the train speed that the rims at the reference take part in
     acceleration: float  # m/s2, of the train
     wheel_radius: float  # m, true
 
@@ -56,7 +57,7 @@ class _Settled:
         """Begin one sample back, with the scale of the speed that rolling wheels have shown."""
         law, back = self.law, self.law.sample_time
         scale = law.wheel_radius / self.wheel_radius
-        turning = self.acceleration * (1.0 - self.slip) / self.wheel_radius
+        turning = self.acceleration * self.turning / self.wheel_radius
         known = dict(zip(law.memory, law.start(measurement), strict=True))
         settled = {
             TRAIN_SPEED: scale * (measurement.speed - self.acceleration * back),
@@ -96,11 +97,11 @@ def lock(problem: Problem, place: Place) -> dict[str, float]:
     """When and at which speed a wheel first locks after a start at the reference; empty if none does in the range."""
     import numpy as np
 
-    law, slip, speed = cast(Protection, problem.controller), problem.slip, place["speed"]
-    vehicle, rail, braking, holding = _reference(problem, place)
+    law, speed = cast(Protection, problem.controller), place["speed"]
+    vehicle, rail, braking, slip, turning, holding = _reference(problem, place)
     settled = _Settled(
         law=law,
-        slip=slip,
+        turning=turning,
         acceleration=-float(slip_dynamics(vehicle, rail, slip, speed).deceleration),
         wheel_radius=vehicle.wheel_radius,
     )
@@ -132,11 +133,17 @@ class _Reference(NamedTuple):
     vehicle: Vehicle
     rail: Rail
     braking: float  # s, since the brake was applied: the supply is full
+    slip: float  # -
+    turning: float  # -, part of a change of the train speed that the rims take part in
     holding: float  # N m
 
 
 def _reference(problem: Problem, place: Place) -> _Reference:
     vehicle, rail = plant_with(problem, {name: place[name] for name in NAMES})
     braking = full_supply_time(vehicle.brake)
-    holding = holding_torque(vehicle, rail, slip=problem.slip, speed=place["speed"], braking_time=braking)
-    return _Reference(vehicle, rail, braking, holding)
+    law, speed, radius = law_of(cast(Protection, problem.controller)), place["speed"], vehicle.wheel_radius
+    slip, turning = slip_at(law, speed, radius), turning_at(law, speed, radius)
+    holding = holding_torque(vehicle, rail, slip=slip, speed=speed, braking_time=braking)
+    braked = float(slip_dynamics(vehicle, rail, slip, speed).deceleration)
+    holding += vehicle.wheelset_inertia * (turning - (1.0 - slip)) * braked / radius  # of a slip that changes
+    return _Reference(vehicle, rail, braking, slip, turning, holding)

@@ -12,9 +12,11 @@ from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import LoopLaw, LoopRanges, Pair, parts_of, wanted
+from wspd_design.certificates.theorems.slip_band.reference import held_in
 from wspd_design.certificates.theorems.slip_band.statement import (
     FASTEST_LOSS,
     JERK_FACTORS,
+    NAMES,
     SLIP_AROUND,
     BandLaw,
     Cell,
@@ -25,6 +27,7 @@ from wspd_design.parameters.loading import constants
 
 Row: TypeAlias = tuple[Ball, ...]
 
+RADIUS = NAMES.index("wheel radius")
 LEAST = Fraction(2, 1000)  # of the full torque, of which the law takes a logarithm as it is
 ROOM = Fraction(1, 4)  # of what the supply lacks, that the cylinder lacks of the supply at least
 
@@ -87,45 +90,69 @@ def loop_of(
     """Work out the loop of a cell in a window of speed, with pulses of at most this share of the sample."""
     if pulse + conditions.delay > 1:
         raise Refused("a pulse may go on into the next sample")
+    if 2 * conditions.noise > window[0]:
+        raise Refused("the noise is more than half of a speed")
     mass, inertia, radius, mu0, torque, fill, vent = (ball(*each) for each in cell)
-    speed, h, slip = ball(*window), point(law.sample_time), point(law.slip)
+    speed, h, reference = ball(*window), point(law.sample_time), held_in(law, window, cell[RADIUS])
+    slip = reference.slip
     vehicle = problem.vehicle
     damping = 2 * point(vehicle.wheel_damping)
     normal = mass * point(constants().gravity) / wheels(vehicle) * mu0  # mu0 Q
-    rolling = (1 - slip) / radius
+    rolling, turned = (1 - slip) / radius, reference.turning / radius
     drag = _resistance(problem, speed) / mass
     # All axles are within their bands, and from the reference to their slip the force follows the slope.
-    used = ball(*friction.level) + ball(*friction.slope) * ball(-SLIP_AROUND, SLIP_AROUND) * point(
-        problem.speeds[0]
-    )
+    slope = ball(*friction.slope)
+    used = ball(*friction.level) + slope * ball(-SLIP_AROUND, SLIP_AROUND) * point(problem.speeds[0])
     braking = point(constants().gravity) * mu0 * used + drag
     if not braking < point(FASTEST_LOSS) or not braking > 0:
         raise Refused("the train may lose more speed in a sample than the windows overlap, or gain some")
     slowing = ball(Fraction(0), Fraction(above(braking)))
     friction_torque = 2 * radius * normal * ball(*friction.level) - damping * rolling * speed
     fading = -2 * radius * normal * slip * ball(*friction.fading)
-    secants = (2 * radius * radius * normal * ball(*friction.slope) - damping) / inertia
+    # Torque that a wheel at the reference gains in time because the slip of the reference changes.
+    moving = -2 * radius * normal * slope * speed * (reference.fall * braking + reference.rate)
+    secants = (2 * radius * radius * normal * slope - damping) / inertia
     pads = torque / point(law.full_torque)
     seen_inertia = pads * point(law.inertia)  # true torque over the number Y h counts it in
-    held = (friction_torque + inertia * rolling * slowing) / seen_inertia
+    held = (friction_torque + inertia * turned * slowing) / seen_inertia
     # While the train slows down the friction at the reference rises, and with it the deceleration.
     rising = wheels(vehicle) * fading / (2 * radius * mass) - _resistance(problem, speed, 1) / mass
-    jerk = ball(*JERK_FACTORS) * braking * rising
-    drift = h * h * ((fading + damping * rolling) * braking + inertia * rolling * jerk) / seen_inertia
-    turning = -h * h * rolling * jerk
-    # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2.
-    share = -(-h / point(law.acceleration_time)).expm1()
-    either = ball(Fraction(-1), Fraction(1))
-    turns = point(conditions.noise) / radius  # by which a wheel seems to turn faster or slower
-    rolls = rolling * point(conditions.noise)  # by which its reference does
-    # Of the train speed the filter shows a change at most twice, its first step over the sample time.
-    known = turning * (1 / share - point(Fraction(1, 2))) + 2 * share * rolls * either
-    left_out = h / point(law.inertia) * _dead_band(law, slip * (speed + point(conditions.noise)) / radius)
+    jerk = ball(*JERK_FACTORS) * (braking * rising + wheels(vehicle) * moving / (2 * radius * mass))
+    bending = reference.bend / radius * braking**2 + reference.rate / radius * braking
+    turning = h * h * (bending - turned * jerk)
+    # By how much a wheel and its reference seem to turn faster or slower. The filter shows an error of the train speed
+    # at most twice, its first step over the sample time; a wrong speed also asks for another share of the deceleration.
+    turns = point(conditions.noise) / radius * ball(Fraction(-1), Fraction(1))
+    rolls = turns * (1 + point(law.slip_error))
     misread = turns + rolls
+    share = -(-h / point(law.acceleration_time)).expm1()
+    misread_rate = 2 * share * rolls + 3 * reference.bend * point(FASTEST_LOSS) * h * turns
+    # How fast the slip moves the wheel speed at the reference; the filter saw it at higher speeds, too.
+    sliding = (
+        h
+        * reference.rate
+        * (speed + point(FASTEST_LOSS) * h / share * ball(Fraction(0), Fraction(1)))
+        / radius
+    )
+    drift = (
+        h * h * ((fading + damping * turned) * braking + moving) + h * damping * sliding - inertia * turning
+    ) / seen_inertia
+    # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2.
+    slowly = h * h * (reference.rate / radius * braking - turned * jerk)
+    known = slowly * (1 / share - point(Fraction(1, 2))) + sliding + misread_rate
+    left_out = (
+        h
+        / point(law.inertia)
+        * _dead_band(law, slip * (speed + point(conditions.noise)) / radius)
+        * ball(Fraction(-1), Fraction(1))
+    )
     low, high = _ends(secants)
+    uneven = sliding * most_of([(high * h).exp() - 1, 1 - (low * h).exp(), point(0)])
     # The share of a steady drift that a sample has seen; a later weight sees more of it.
     half_way = (1 - lateness(high * h, 1, 0)).union(1 - lateness(low * h, 1, 0))
     added = _added(problem, law, fill, pulse, conditions)
+    left_out += loop_law(law).gain * misread
+    disturbed = (known, left_out, drift, drift * half_way, turning, turning / 2, sliding, uneven, turns)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
@@ -136,21 +163,8 @@ def loop_of(
             delay=point(conditions.delay),
             added=added,
         ),
-        disturbances=tuple(
-            map(
-                _ends,
-                (
-                    known,
-                    (left_out + loop_law(law).gain * misread) * either,
-                    drift,
-                    drift * half_way,
-                    turning,
-                    turning / 2,
-                    turns * either,
-                ),
-            )
-        ),
-        limits=_limits(law, pulse, conditions.supply, held, rolling * slowing, known, misread * either),
+        disturbances=tuple(map(_ends, disturbed)),
+        limits=_limits(law, pulse, conditions.supply, held, turned * slowing, known, misread),
         widest=point(SLIP_AROUND) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
     )
 

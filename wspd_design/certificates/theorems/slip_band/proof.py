@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 
-FORMAT = "wspd-slip-band/3"
+FORMAT = "wspd-slip-band/4"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 

@@ -10,7 +10,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.controllers.observer_smc import ObserverSmc
 from wspd_design.controllers.observers.told import ToldSpeed
 from wspd_design.controllers.protection import Protection
-from wspd_design.controllers.references import ConstantSlip
+from wspd_design.controllers.references import ConstantSlip, FallingSlip
 
 Interval: TypeAlias = tuple[Fraction, Fraction]
 
@@ -35,7 +35,10 @@ SLIP_AROUND = Fraction(
 class BandLaw:
     """Exact numbers of the law."""
 
-    slip: Fraction  # -, reference
+    slip: Fraction  # -, reference; at 1 m/s where it falls
+    falls: bool  # as 1/sqrt(v)
+    slip_error: Fraction  # -, by which the slip that is held may differ from that
+    slip_rate: Fraction  # 1/s, how fast it may do so
     sample_time: Fraction  # s, h
     approach_rate: Fraction  # 1/s, k
     ahead: Fraction  # -
@@ -54,15 +57,18 @@ class BandLaw:
 
 
 def law_of(law: Protection) -> BandLaw:
-    """Exact numbers of a protection with constant reference and sliding mode of relative degree two."""
+    """Exact numbers of a protection with sliding mode of relative degree two; the reference is constant or falls."""
     core, reference, source = law.core, law.reference, law.source
     assert isinstance(core, ObserverSmc)
-    assert isinstance(reference, ConstantSlip)
+    assert isinstance(reference, ConstantSlip | FallingSlip)
     assert isinstance(source, ToldSpeed)
     tracking, valve = core.tracking, law.valve
     share = Fraction(valve.time_share)
     return BandLaw(
         slip=Fraction(reference.slip),
+        falls=isinstance(reference, FallingSlip),
+        slip_error=Fraction(0),
+        slip_rate=Fraction(0),
         sample_time=Fraction(law.sample_time),
         approach_rate=Fraction(tracking.approach_rate),
         ahead=Fraction(tracking.ahead),
@@ -105,9 +111,3 @@ def windows_of(problem: Problem) -> tuple[tuple[float, float], ...]:
     edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
     loss = float(FASTEST_LOSS) * problem.sample_time
     return tuple((slow - loss, fast) for slow, fast in pairwise(edges))
-
-
-def slips_of(problem: Problem, window: tuple[float, float]) -> tuple[float, float]:
-    """Range of slip in which a window bounds the slope of the friction."""
-    around = float(SLIP_AROUND) * problem.speeds[0] / window[0]
-    return max(problem.slip - around, 0.0), problem.slip + around

@@ -1,0 +1,442 @@
+"""Runs that attack a proved band of slip: starts on the boundary of its ellipsoids, and stops from rolling wheels.
+
+The plant is that of :mod:`tests.attack.plant`, the protection is written once more here, both over arrays of runs. Of
+the package come only the numbers of the law and the proof that is attacked::
+
+    python -m tests.certificates.band.band_attack DESIGN CERTIFICATE --starts 100000 --stops 10000
+
+For stops from rolling, corners of the box, scattered points and differential evolution look for the largest slip on
+the way into the ellipsoid, and then for the largest share of the band that is used afterwards.
+"""
+
+import argparse
+import sys
+import time
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tests.attack.plant import Plant, creep_force, filled, holding_torque, resistance, static_load, vented
+from tests.attack.search import Attack, assail
+from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.theorems.slip_band.proof import read
+from wspd_design.certificates.theorems.slip_band.statement import LETTERS, box_of, halved, windows_of
+from wspd_design.design.certification import check, problem_of
+
+BOX = {
+    "mass": "mass",
+    "wheelset inertia": "wheelset_inertia",
+    "wheel radius": "wheel_radius",
+    "mu0": "mu0",
+    "max torque": "max_torque",
+    "fill time": "fill_time",
+    "vent time": "vent_time",
+}
+"""Numbers that cells divide, in the order of the proof, by their names in the plant."""
+BESIDE = {
+    "supply rate": "supply_rate",
+    "resistance constant": "resistance_constant",
+    "resistance linear": "resistance_linear",
+    "resistance quadratic": "resistance_quadratic",
+}
+"""Other numbers that differ between the runs."""
+SUBSTEP = 2e-3  # s, at most
+CHUNK = 5000  # runs at once
+SETTLED = 50  # samples that starts on the boundary are followed
+SLOWEST_START = 2.0  # times the lowest speed, from which stops may begin
+
+
+@dataclass(frozen=True)
+class Sets:
+    """What was proved: windows, cells, ellipsoids and bands, as arrays."""
+
+    speeds: Any  # (windows,) upper ends, the slowest first [m/s]
+    lowest: float  # m/s
+    cells: Any  # (cells, numbers, 2)
+    matrices: Any  # (cells, windows, 4, 4)
+    centers: Any  # (cells, windows, 4)
+    bands: Any  # (windows, 2): below and above the reference [-]
+
+    def window(self, speed):
+        """Number of the window of each speed."""
+        return np.minimum(np.searchsorted(self.speeds, speed), len(self.speeds) - 1)
+
+    def cell(self, plant):
+        """Number of the cell that each plant lies in."""
+        numbers = np.array([getattr(plant, name) for name in BOX.values()])
+        low, high = self.cells[:, :, :1], self.cells[:, :, 1:]
+        return np.argmax(np.all((numbers >= low) & (numbers <= high), axis=1), axis=0)
+
+
+def sets_of(problem, proof, numbers):
+    """Read a proof and the numbers that its checker tells."""
+    windows = windows_of(problem)
+    found = read(proof, len(windows))
+    waiting, cells = [box_of(problem, found.share)], []
+    for step in found.steps:
+        cell = waiting.pop()
+        if step in LETTERS:
+            waiting += halved(cell, step)[::-1]
+        else:
+            cells.append(cell)
+    return Sets(
+        speeds=np.array([high for _, high in windows]),
+        lowest=problem.speeds[0],
+        cells=np.array(cells, dtype=float),
+        matrices=np.array([[each.matrix for each in cell] for cell in found.cells], dtype=float),
+        centers=np.array([[each.center for each in cell] for cell in found.cells], dtype=float),
+        bands=np.array(
+            [[numbers[f"band {k} {side}"] for side in ("below", "above")] for k in range(len(windows))]
+        ),
+    )
+
+
+def box(problem, sets):
+    """Ranges of all numbers that differ between the runs."""
+    covered = np.stack([sets.cells[:, :, 0].min(axis=0), sets.cells[:, :, 1].max(axis=0)], axis=1)
+    return dict(zip(BOX, covered, strict=True)) | {name: problem.span(name) for name in BESIDE}
+
+
+def plant_of(problem, points):
+    """The plant with numbers of a box, arrays over the runs."""
+    vehicle, rail = problem.vehicle, problem.rail
+    sources = (vehicle, vehicle.brake, vehicle.contact, rail)
+    names = [each.name for each in fields(Plant) if each.name not in ("load_share", "train_deceleration")]
+    own = {name: next(getattr(s, name) for s in sources if hasattr(s, name)) for name in names}
+    return Plant(**own | {name: points[word] for word, name in (BOX | BESIDE).items()})
+
+
+def some(record, chosen):
+    """The same record for some of the runs."""
+    values = {each.name: getattr(record, each.name) for each in fields(record)}
+    return replace(record, **{n: v[chosen] for n, v in values.items() if isinstance(v, np.ndarray)})
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What the law remembers of each run, after a measurement."""
+
+    scale: Any  # of the told speed
+    told: Any  # m/s, as scaled
+    acceleration: Any  # m/s2
+    observed: Any  # rad/s
+    friction: Any  # N m
+
+
+class Law:
+    """Friction-torque observer, surface with braking curve, and inverted valve, for a constant reference."""
+
+    def __init__(self, protection, slip):
+        self.tracking, self.valve, self.source = protection.core.tracking, protection.valve, protection.source
+        self.h, self.inertia, self.radius = (
+            protection.sample_time,
+            protection.wheelset_inertia,
+            protection.wheel_radius,
+        )
+        self.slip, self.slew = slip, protection.core.torque_slew / self.inertia
+        self.full = self.valve.brake.max_torque
+        self.theta = np.exp(-protection.observer_rate * self.h)
+        self.new = 1.0 - np.exp(-self.h / self.source.acceleration_time)
+
+    def rolling(self, speed, radius):
+        """Memory where rolling wheels and a released brake have shown the scale of the speed."""
+        found = self.radius / radius
+        scale = np.where(abs(found - 1.0) <= self.source.largest_scale_error, found, 1.0)
+        return Memory(scale, scale * speed, 0.0 * speed, speed / radius, 0.0 * speed)
+
+    def measured(self, memory, mean, speed, wheel):
+        """Take in a measurement after a sample with a mean torque."""
+        told, h = memory.scale * speed, self.h
+        expected = memory.observed + h / self.inertia * (memory.friction - mean)
+        r = wheel - expected
+        return Memory(
+            scale=memory.scale,
+            told=told,
+            acceleration=memory.acceleration + self.new * ((told - memory.told) / h - memory.acceleration),
+            observed=expected + (1.0 - self.theta**2) * r,
+            friction=np.maximum(memory.friction + (1.0 - self.theta) ** 2 * self.inertia / h * r, 0.0),
+        )
+
+    def desired(self, memory):
+        """Wheel speed at the reference, and its rate."""
+        return tuple((1.0 - self.slip) / self.radius * each for each in (memory.told, memory.acceleration))
+
+    def pulses(self, memory, wheel, seen, available):
+        """Seconds of filling and of venting, and the mean torque that the law makes of them."""
+        h, k, brake = self.h, self.tracking.approach_rate, self.valve.brake
+        wanted, rate = self.desired(memory)
+        error = wheel - wanted + self.tracking.ahead * h * ((memory.friction - seen) / self.inertia - rate)
+        curve = np.sqrt(np.maximum(2.0 * self.slew * (error - 0.5 * self.slew / k**2), 0.0))
+        pull = np.where(error * k**2 > self.slew, curve, k * error)
+        target = np.clip(memory.friction - self.inertia * (rate - pull), 0.0, available)
+        sliding = memory.told / self.radius - wanted
+        narrowed = self.tracking.dead_band_share * sliding * self.inertia * k
+        band = np.minimum(np.minimum(self.tracking.dead_band, narrowed), 0.5 * seen)
+        least = 1e-3 * self.full + 1e-3  # what a logarithm is taken of
+
+        def share(way, time, ratio):
+            found = np.minimum(self.valve.time_share * time * np.log(ratio), h)
+            return np.where((way > band) & (found >= self.valve.least_pulse), found, 0.0)
+
+        room, left = np.maximum(available - seen, least), np.maximum(available - target, least)
+        fill = share(target - seen, brake.fill_time, room / left)
+        vent = share(seen - target, brake.vent_time, np.maximum(seen, least) / np.maximum(target, least))
+        supply = np.maximum(available, seen)
+        full = supply - (supply - seen) * np.exp(-fill / brake.fill_time)
+        end = full * np.exp(-vent / brake.vent_time)
+        area = supply * fill - brake.fill_time * (full - seen) + brake.vent_time * (full - end)
+        return fill, vent, (area + (h - fill - vent) * end) / h
+
+
+@dataclass(frozen=True)
+class Runs:
+    """States of many runs at a sample, after the measurement."""
+
+    plant: Plant
+    memory: Memory
+    speed: Any  # m/s
+    wheel: Any  # rad/s
+    torque: Any  # N m, of the brake
+    number: Any  # of the run
+
+    def some(self, chosen):
+        """Some of the runs."""
+        own = some(self, chosen)
+        return replace(own, plant=some(self.plant, chosen), memory=some(self.memory, chosen))
+
+
+def motion(plant, speed, wheel, torque):
+    """Accelerations of train and wheel; all axles do the same."""
+    force = creep_force(plant, 1.0 - plant.wheel_radius * wheel / speed, speed, static_load(plant))
+    friction = 2.0 * plant.wheel_radius * force - 2.0 * plant.wheel_damping * wheel
+    slowing = (2.0 * plant.wheelsets * force + resistance(plant, speed)) / plant.mass
+    return -slowing, (friction - torque) / plant.wheelset_inertia
+
+
+def sampled(law, runs, since):
+    """One sample later, with the smallest and the largest slip in between; ``since`` the demand [s]."""
+    plant, h = runs.plant, law.h
+    pads = plant.max_torque / law.full
+    available = law.full * (1.0 - np.exp(-plant.supply_rate * since))
+    fill, vent, mean = law.pulses(runs.memory, runs.wheel, runs.torque / pads, available)
+
+    def torque(t):
+        return vented(
+            plant, filled(plant, runs.torque, np.minimum(t, fill), since=since), np.clip(t - fill, 0.0, vent)
+        )
+
+    speed, wheel, count = runs.speed, runs.wheel, int(np.ceil(h / SUBSTEP))
+    slips, dt = [], h / count
+    for k in range(count):
+        braked = torque((k + 0.5) * dt)
+        v, w = motion(plant, speed, wheel, braked)
+        v, w = motion(plant, speed + dt / 2 * v, wheel + dt / 2 * w, braked)
+        speed, wheel = speed + dt * v, np.maximum(wheel + dt * w, 0.0)
+        slips.append(1.0 - plant.wheel_radius * wheel / speed)
+    after = replace(
+        runs,
+        memory=law.measured(runs.memory, mean, speed, wheel),
+        speed=speed,
+        wheel=wheel,
+        torque=torque(h),
+    )
+    return after, np.min(slips, axis=0), np.max(slips, axis=0)
+
+
+def deviations(law, runs):
+    """State of the theorem: errors of wheel speed and observer, and of friction and torque over what holds [rad/s]."""
+    plant, h = runs.plant, law.h
+    wanted, _ = law.desired(runs.memory)
+    slip = 1.0 - plant.wheel_radius * runs.wheel / runs.speed
+    held, rate = holds(law, plant, runs.speed, slip)
+    friction = h * (runs.memory.friction / law.inertia - held - rate)
+    seen = runs.torque * law.full / plant.max_torque
+    return np.array(
+        [runs.wheel - wanted, runs.memory.observed - runs.wheel, friction, h * (seen / law.inertia - held)]
+    )
+
+
+def holds(law, plant, speed, slip):
+    """Torque that holds the reference over the inertia, as the law counts it, and the rate of the reference."""
+    slowing = -motion(plant, speed, (1.0 - slip) * speed / plant.wheel_radius, 0.0)[0]
+    rate = -(1.0 - law.slip) / plant.wheel_radius * slowing
+    torque = holding_torque(plant.with_numbers({"train_deceleration": slowing}), law.slip, speed)
+    return torque * law.full / plant.max_torque / law.inertia, rate
+
+
+@dataclass
+class Seen:
+    """What runs have done."""
+
+    entered: Any  # whether the state has been in its ellipsoid
+    left: Any  # whether state or slip have left it, or the band, afterwards
+    way_in: Any  # largest slip before
+    used: Any  # (windows, 2): largest deviation below and above the reference afterwards, over all runs [-]
+    share: Any  # largest of them over the band, for each run
+
+
+def follow(law, sets, runs, *, samples, since):
+    """Follow runs down to the lowest speed, or for a number of samples; ``since`` is inf where the supply is full."""
+    count = len(runs.speed)
+    seen = Seen(
+        entered=np.zeros(count, bool),
+        left=np.zeros(count, bool),
+        way_in=np.zeros(count),
+        used=np.zeros_like(sets.bands),
+        share=np.zeros(count),
+    )
+    cells = sets.cell(runs.plant)
+    for k in range(samples):
+        runs = runs.some(runs.speed > sets.lowest)
+        if not len(runs.speed):
+            break
+        now, window = runs.number, sets.window(runs.speed)
+        apart = deviations(law, runs) - sets.centers[cells[now], window].T
+        size = np.einsum("ik,kij,jk->k", apart, sets.matrices[cells[now], window], apart)
+        inside = size <= 1.0 + 1e-9
+        seen.left[now] |= seen.entered[now] & ~inside
+        seen.entered[now] |= inside
+        runs, lowest, highest = sampled(law, runs, since + k * law.h)
+        entered = seen.entered[now]
+        seen.way_in[now] = np.where(entered, seen.way_in[now], np.maximum(seen.way_in[now], highest))
+        strayed = np.where(entered, np.array([law.slip - lowest, highest - law.slip]), 0.0)
+        for side in range(2):
+            np.maximum.at(seen.used[:, side], window, strayed[side])
+        share = np.max(strayed.T / sets.bands[window], axis=1)
+        seen.share[now] = np.maximum(seen.share[now], share)
+    seen.left |= seen.share > 1.0
+    return seen
+
+
+def boundary(problem, law, sets, random, count, larger=1.0):
+    """Starts on the boundary of the ellipsoids, half of the numbers at their ends; ``larger`` starts outside."""
+    ends = box(problem, sets)
+    even = random.random((len(ends), count))
+    unit = np.where(random.random(even.shape) < 0.5, np.round(even), random.random(even.shape))
+    points = {name: low + (high - low) * u for (name, (low, high)), u in zip(ends.items(), unit, strict=True)}
+    plant = plant_of(problem, points)
+    window, cell = random.integers(0, len(sets.speeds), count), sets.cell(plant)
+    edges = np.concatenate([[sets.lowest], sets.speeds])
+    speed = edges[window] + (edges[window + 1] - edges[window]) * random.random(count)
+    direction = random.normal(size=(count, 4))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    roots = np.linalg.cholesky(np.linalg.inv(sets.matrices[cell, window]))
+    e, p, n, y = (sets.centers[cell, window] + larger * np.einsum("kij,kj->ki", roots, direction)).T
+    wheel = (1.0 - law.slip) * speed / plant.wheel_radius + e
+    held, rate = holds(law, plant, speed, 1.0 - plant.wheel_radius * wheel / speed)
+    scale = law.radius / plant.wheel_radius
+    memory = Memory(
+        scale=scale,
+        told=scale * speed,
+        acceleration=rate * law.radius / (1.0 - law.slip),
+        observed=wheel + p,
+        friction=law.inertia * (n / law.h + held + rate),
+    )
+    torque = law.inertia * (y / law.h + held) * plant.max_torque / law.full
+    return Runs(plant=plant, memory=memory, speed=speed, wheel=wheel, torque=torque, number=np.arange(count))
+
+
+def rolling(problem, law, points):
+    """Stops that begin with rolling wheels at the moment of the demand."""
+    plant, speed = plant_of(problem, points), np.asarray(points["speed"])
+    memory = law.rolling(speed, plant.wheel_radius)
+    return Runs(
+        plant=plant,
+        memory=memory,
+        speed=speed,
+        wheel=speed / plant.wheel_radius,
+        torque=0.0 * speed,
+        number=np.arange(len(speed)),
+    )
+
+
+@np.errstate(all="ignore")  # wheels that lock, and pulses from nothing
+def attack_boundary(problem, sets, *, starts, seed=7, larger=1.0, samples=SETTLED):
+    """Follow starts on the boundary, and tell how they went."""
+    law, random = Law(problem.controller, problem.slip), np.random.default_rng(seed)
+    found = []
+    for begin in range(0, starts, CHUNK):
+        runs = boundary(problem, law, sets, random, min(CHUNK, starts - begin), larger)
+        found.append(follow(law, sets, runs, samples=samples, since=np.inf))
+    return joined(found)
+
+
+@np.errstate(all="ignore")
+def attack_stops(problem, sets, *, stops, seed=7):
+    """Look for the worst stops from rolling, half of the runs for each aim, and tell how all of them went."""
+    law, found = Law(problem.controller, problem.slip), []
+    ends = box(problem, sets) | {"speed": (SLOWEST_START * problem.speeds[0], problem.speeds[1])}
+    most = int(200.0 / law.h)
+
+    def followed(points):
+        found.append(follow(law, sets, rolling(problem, law, points), samples=most, since=0.0))
+        return found[-1]
+
+    aims = {
+        "largest slip on the way": lambda points: -followed(points).way_in,
+        "largest share of the band": lambda points: -followed(points).share,
+    }
+    worst = {
+        aim: assail(
+            Attack(check="slip_band", statement=aim, box=ends, margin=margin),
+            evaluations=stops // 2,
+            seed=seed,
+        )
+        for aim, margin in aims.items()
+    }
+    return joined(found), worst
+
+
+def joined(found):
+    """What all runs have done."""
+    arrays = {
+        n: np.concatenate([getattr(f, n) for f in found]) for n in ("entered", "left", "way_in", "share")
+    }
+    return Seen(**arrays, used=np.max([each.used for each in found], axis=0))
+
+
+def told(seen, sets):
+    """Say what runs have done, window by window."""
+    lines = [f"{len(seen.left)} runs, {seen.entered.sum()} entered, {seen.left.sum()} left what was proved"]
+    for k, (band, used) in enumerate(zip(sets.bands, seen.used, strict=True)):
+        low = sets.lowest if k == 0 else sets.speeds[k - 1]
+        lines.append(
+            f"  {low * 3.6:5.1f} to {sets.speeds[k] * 3.6:5.1f} km/h: proved -{band[0]:.4f} +{band[1]:.4f}, "
+            f"seen -{used[0]:.4f} +{used[1]:.4f}, width over that of the worst runs {band.sum() / used.sum():.2f}"
+        )
+    return "\n".join(lines)
+
+
+def main(arguments):
+    """Attack the certificate of a design; 1 if a run left what was proved."""
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.certificates.band.band_attack", description=__doc__
+    )
+    parser.add_argument("design", type=Path)
+    parser.add_argument("certificate", type=Path)
+    parser.add_argument("--starts", type=int, default=100_000, help="on the boundary of the ellipsoids")
+    parser.add_argument("--stops", type=int, default=10_000, help="from rolling wheels")
+    given = parser.parse_args(arguments)
+    replayed = check(given.certificate, given.design)
+    if replayed.certificate is None:
+        parser.error(f"{given.certificate} is refused: {replayed.reason}")
+    finding, problem = replayed.certificate.findings[CELLS], problem_of(given.design)
+    if finding.stated is None or finding.stated.proof is None:
+        parser.error(f"{given.certificate} proves no band")
+    sets = sets_of(problem, finding.stated.proof, finding.numbers)
+    begun = time.process_time()
+    starts = attack_boundary(problem, sets, starts=given.starts)
+    print(f"Starts on the boundary: {told(starts, sets)}")
+    stops, worst = attack_stops(problem, sets, stops=given.stops)
+    print(f"Stops from rolling: {told(stops, sets)}")
+    for aim, each in worst.items():
+        numbers = ", ".join(f"{name} {value:.4g}" for name, value in each.point.items())
+        print(f"{aim} after {each.evaluations} stops: {abs(each.margin):.4g} at {numbers}")
+    print(f"{time.process_time() - begun:.0f} s of CPU")
+    return int(starts.left.any() or stops.left.any())
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,210 @@
+"""References that change: numbers of the loop against a wheel that holds them, and what wrong numbers would miss."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from flint import ctx
+
+import wspd_design as wd
+from tests.certificates.band.conftest import LOCO, WET, certificate_of
+from tests.certificates.band.test_slip_band_departure import polach
+from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.records import Status
+from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
+from wspd_design.certificates.theorems.slip_band.checker import checker
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, loop_of
+from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held, turning_at
+from wspd_design.certificates.theorems.slip_band.statement import NAMES, law_of, windows_of
+from wspd_design.design.problem import stability_problem
+from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.loading import constants
+
+WINDOW = (8.0, 8.05)
+EXACT = Conditions(supply=Fraction(1), delay=Fraction(0), noise=Fraction(0))
+LAW_SPEEDS = (10.0 / 3.6, 120.0 / 3.6)
+
+
+def falling_problem(rail, share, **numbers):
+    """Closed loop of the designed law on a slip c/sqrt(v), without dead band, on a part of the stated box."""
+    specification = wd.Specification(sample_time=0.02, reference="falling", speeds=LAW_SPEEDS)
+    law = wd.design_controller(LOCO, rail, specification, law="observer-smc").build(LOCO, rail)
+    law = replace(law, core=replace(law.core, tracking=replace(law.core.tracking, dead_band=0.0)))
+    problem = stability_problem(
+        LOCO, rail, replace(law, reference=replace(law.reference, **numbers)), specification
+    )
+    ends = {}
+    for name in NAMES:
+        (low, high), middle = problem.span(name), problem.nominal(name)
+        ends[name] = (middle + share * (low - middle), middle + share * (high - middle))
+    return replace(problem, bounds=Bounds.of(ends))
+
+
+class Course:
+    """A train all of whose wheels hold a slip over time exactly, in equations of its own."""
+
+    def __init__(self, problem, law, slip):
+        self.problem, self.law, self.slip = problem, law, slip
+
+    def braking(self, speed, slip):
+        vehicle, mass = self.problem.vehicle, self.problem.nominal("mass")
+        drag = vehicle.resistance_constant + vehicle.resistance_linear * speed
+        drag += vehicle.resistance_quadratic * speed**2
+        return (8.0 * self.force(speed, slip) + drag) / mass
+
+    def force(self, speed, slip):
+        load = self.problem.nominal("mass") * constants().gravity / 8.0
+        return polach(self.problem.rail, self.problem.vehicle, self.problem.rail.mu0, slip, speed, load)
+
+    def speeds(self, speed, times):
+        found = [speed]
+        for before, after in pairwise(times):
+            middle = found[-1] - (after - before) / 2.0 * self.braking(
+                found[-1], self.slip(before, found[-1])
+            )
+            at = (before + after) / 2.0
+            found.append(found[-1] - (after - before) * self.braking(middle, self.slip(at, middle)))
+        return np.array(found)
+
+    def numbers(self, speed, start=0.0):
+        """h (change of t0), h (change of w_r' at a fixed course of the slip) and what the slip moves, in a sample."""
+        h, radius = float(self.law.sample_time), self.problem.vehicle.wheel_radius
+        inertia = self.problem.vehicle.wheelset_inertia
+        times = start + np.linspace(0.0, h, 21)
+        speeds = self.speeds(speed, times)
+        known = []
+        for t, v in zip(times, speeds, strict=True):
+            slip = self.slip(t, v)
+            aside = slip - slip_at(self.law, v, radius)
+            rate = -self.braking(v, slip) * (turning_at(self.law, v, radius) - aside) / radius
+            torque = 2.0 * radius * self.force(v, slip)
+            torque -= 2.0 * self.problem.vehicle.wheel_damping * (1.0 - slip) * v / radius
+            known.append(((torque / inertia - rate), rate))
+        (t0, rate0), (t1, rate1) = known[0], known[-1]
+        asides = [self.slip(t, v) - slip_at(self.law, v, radius) for t, v in zip(times, speeds, strict=True)]
+        middle = (speeds[1:] + speeds[:-1]) / 2.0
+        return h * (t1 - t0), h * (rate1 - rate0), float(np.sum(np.diff(asides) * middle)) / radius
+
+
+def friction_at(problem, window, slips):
+    """Friction in the neighborhood of a reference, by differences."""
+    course = Course(problem, None, None)
+    weight = problem.nominal("mass") * constants().gravity / 8.0 * problem.rail.mu0
+    slopes, levels, fadings = [], [], []
+    for v in window:
+        for slip in np.linspace(*slips, 9):
+            d = 1e-5
+            force = course.force(v, slip) / weight
+            levels.append(force)
+            slopes.append(-(course.force(v, slip + d) - course.force(v, slip - d)) / (2 * d * v) / weight)
+            fade = (course.force(v + d, slip) - course.force(v - d, slip)) / (2 * d) / weight
+            fadings.append(fade / slip)
+    return Friction(*((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, levels, fadings)))
+
+
+def loop_numbers(problem, law, *, told=None):
+    """Disturbances of the loop with nominal numbers; ``told`` is the law that the statement believes in."""
+    law = told or law
+    with ctx.workprec(128):
+        cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
+        slips = slips_held(law, WINDOW, cell[2])
+        friction = friction_at(problem, WINDOW, (slips[0] - 1e-3, slips[1] + 1e-3))
+        found = loop_of(problem, law, cell, WINDOW, friction, Fraction(1, 2), EXACT).disturbances
+        return [tuple(float(end.mid()) for end in each) for each in found]
+
+
+def inside(value, ends):
+    return ends[0] - 1e-9 <= value <= ends[1] + 1e-9
+
+
+@pytest.fixture(scope="module")
+def falling():
+    return falling_problem(WET, 0.0, slip=0.5, largest=0.5)
+
+
+def test_drift_along_a_falling_slip_is_in_its_bounds(falling):
+    law = law_of(falling.controller)
+    course = Course(falling, law, lambda _, v: slip_at(law, v, falling.vehicle.wheel_radius))
+    ends = loop_numbers(falling, law)
+    torque, turning, moved = course.numbers(8.03)
+    assert inside(torque, ends[2])
+    assert inside(turning, ends[4])
+    assert moved == pytest.approx(0.0, abs=1e-12)
+    assert ends[6] == ends[7] == (0.0, 0.0)
+
+
+def test_wrong_slope_of_the_reference_would_be_left(falling):
+    """Numbers of a constant slip of the same size do not hold for one that falls."""
+    law = law_of(falling.controller)
+    course = Course(falling, law, lambda _, v: slip_at(law, v, falling.vehicle.wheel_radius))
+    constant = replace(law, falls=False, slip=Fraction(slip_at(law, 8.03, falling.vehicle.wheel_radius)))
+    ends = loop_numbers(falling, law, told=constant)
+    torque, turning, _ = course.numbers(8.03)
+    assert not (inside(torque, ends[2]) and inside(turning, ends[4]))
+
+
+@pytest.mark.parametrize("falls", [True, False])
+def test_slip_that_wanders_is_in_its_bounds_and_a_smaller_rate_would_be_left(falling, falls):
+    law = replace(law_of(falling.controller), slip_error=Fraction(1, 100), slip_rate=Fraction(1, 20))
+    if not falls:
+        law = replace(law, falls=False, slip=Fraction(9, 50))
+    radius, pace = falling.vehicle.wheel_radius, 0.05 / 0.01
+
+    def slip(t, v):
+        return slip_at(law, v, radius) + 0.01 * math.sin(pace * t)
+
+    course, ends = Course(falling, law, slip), loop_numbers(falling, law)
+    seen = [course.numbers(8.03, start) for start in np.linspace(0.0, 2.0 * math.pi / pace, 13)]
+    for torque, turning, moved in seen:
+        assert inside(torque, ends[2])
+        assert inside(turning, ends[4])
+        assert inside(moved, ends[6])
+    assert max(moved for *_, moved in seen) > 0.95 * ends[6][1] * 8.0 / (8.05 + 10.0 * 0.3)
+    slower = loop_numbers(falling, law, told=replace(law, slip_rate=Fraction(1, 40)))
+    assert not all(inside(moved, slower[6]) for *_, moved in seen)
+    assert not all(inside(torque, slower[2]) for torque, *_ in seen)
+
+
+def test_reference_with_worn_wheels_goes_by_the_speed_that_the_law_has(falling):
+    """The law takes a worn train to be faster, and holds less slip."""
+    law = law_of(falling.controller)
+    with ctx.workprec(128):
+        worn = held_in(law, (8.0, 8.0), (Fraction(1, 2), Fraction(1, 2)))
+        assert float(worn.slip.mid()) == pytest.approx(0.5 / math.sqrt(8.0 * 0.55 / 0.5))
+        assert float(worn.turning.mid()) == pytest.approx(1.0 - float(worn.slip.mid()) / 2.0)
+        wide = held_in(law, (8.0, 9.0), (Fraction(1, 2), Fraction(11, 20)))
+        assert wide.slip.contains(worn.slip)
+
+
+def test_what_is_asked_of_the_friction_is_about_the_slips_that_are_held():
+    problem = falling_problem(WET, 1.0)
+    low, high = slips_held(
+        law_of(problem.controller),
+        windows_of(problem)[-1],
+        tuple(map(Fraction, problem.span("wheel radius"))),
+    )
+    level = claims(problem)[key("level", len(windows_of(problem)) - 1, "<=")]
+    (sliding,) = (each for each in level.variables if each.name == "sliding speed")
+    assert float(sliding.low) <= low * windows_of(problem)[-1][0]
+    assert float(sliding.high) >= high * windows_of(problem)[-1][1]
+
+
+def test_reference_that_ends_its_fall_inside_the_range_is_not_spoken_about():
+    assert SLIP_BAND.speaks_about(falling_problem(WET, 0.0)) == ""
+    assert "ends its fall" in SLIP_BAND.speaks_about(falling_problem(WET, 0.0, slip=0.6))
+
+
+@pytest.mark.slow
+def test_band_around_a_falling_slip_is_proved_and_not_believed_of_another():
+    problem = falling_problem(wd.load_rail("low-adhesion"), 0.25)
+    found = certificate_of(problem)
+    assert found.status is Status.PROVED
+    assert "0.16/sqrt(v)" in found.claim
+    numbers = found.findings[CELLS].numbers
+    assert max(numbers["band 0 above"], numbers["band 0 below"]) < 0.005
+    other = replace(problem.controller, reference=replace(problem.controller.reference, slip=0.3))
+    with pytest.raises(Refused):
+        checker(problem, other)(found.findings[CELLS].stated.proof, Work(10**9))
