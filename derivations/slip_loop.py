@@ -103,7 +103,7 @@ part_residual = sp.simplify(sp.integrate(c * u ** (c - 1), (u, x, 1), conds="non
 
 # --- what a supply that rises by (8) adds to a pulse that fills: D' = (what the supply has risen by - D)/T_F, so that D
 # is at most as if the supply rose at its first rate and D did not hold it back; a pulse that begins late sees it later.
-# A pulse over T_F of x goes at least the part x - x^2/2 of the room; at least "room" times what the supply lacks --------------
+# A pulse over T_F of x goes at least the part x - x^2/2 of the room, a share "room" of what the supply lacks ----------
 _begun = brake.supply.subs(brake.t, brake.t0)
 _added = brake.filled - (_begun + (brake.P0 - _begun) * brake.fading)
 _risen = (brake.P_max - _begun) * (1 - sp.exp(-brake.rate * (brake.t - brake.t0)))
