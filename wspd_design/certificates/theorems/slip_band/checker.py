@@ -37,13 +37,14 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     windows_of,
 )
 from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.protocol import Law
 
 DIGITS = 128  # bits of the balls
 WORK = 150_000  # operations on intervals that an ellipsoid is worth
 PARTS = 4  # of a sample, for what happens within it
 
 
-def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
+def checker(problem: Problem, law: Law) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
     """Return what decides about a proof and tells its numbers."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
@@ -55,14 +56,16 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
     return check
 
 
-def _check(
-    problem: Problem, protection: Protection, proof: Mapping[str, Any], work: Work
-) -> dict[str, float]:
-    law, windows = law_of(protection), windows_of(problem)
+def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Work) -> dict[str, float]:
+    law, windows = law_of(controller), windows_of(problem)
     found = read(proof, len(windows))
     if found.delay < least_delay(problem, law):
         raise Refused("the valves of the vehicle begin later than the proof allows")
-    if not Fraction(protection.cut_out_speed) + found.noise <= Fraction(problem.speeds[0]):
+    if found.noise and not isinstance(controller, Protection):
+        raise Refused("the law was compared with what it declares for speeds without noise")
+    if isinstance(controller, Protection) and not (
+        Fraction(controller.cut_out_speed) + found.noise <= Fraction(problem.speeds[0])
+    ):
         raise Refused("with this noise the law may hold its valves inside the range of speed")
     waiting, cells = [box_of(problem, found.share)], iter(found.cells)
     bands: list[Pair | None] = [None] * len(windows)
