@@ -284,8 +284,8 @@ def _measured(problem: Problem) -> str:
         return "wheel speed, cylinder pressure and train speed are measured exactly and at once"
     return (
         "wheel speed and cylinder pressure are measured exactly and at once; the train speed that the law is told may "
-        f"be wrong, but so that the slip that it holds is within {float(law.slip_error):g} of what it declares and moves no "
-        f"faster than by {float(law.slip_rate):g} per second"
+        f"be wrong, but so that the slip that it holds is within {float(law.slip_error):g} of what it declares and "
+        f"moves no faster than by {float(law.slip_rate):g} per second"
     )
 
 
