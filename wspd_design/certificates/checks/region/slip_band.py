@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from typing import cast
 
 from wspd_design.certificates.checks.frame import Check
 from wspd_design.certificates.checks.region.slip_band_figures import figures
@@ -24,7 +23,6 @@ from wspd_design.certificates.theorems.band import (
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
 from wspd_design.certificates.theorems.slip_band.proof import write
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
-from wspd_design.controllers.protection import Protection
 
 TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
 CELLS_TRIED = 24  # for each share of the box, with an effort of 1
@@ -43,7 +41,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     friction = proved_friction(problem, {name: finding(wanted[name], each) for name, each in stated.items()})
     if friction is None:
         return stated | {CELLS: Stated(), DEPARTURE: _departure(problem)}
-    law = law_of(cast(Protection, problem.controller))
+    law = law_of(problem.controller)
     found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
     if isinstance(found, Failed):
         failed = Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))

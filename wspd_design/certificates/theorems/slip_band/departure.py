@@ -133,6 +133,10 @@ def lock(problem: Problem, place: Place) -> dict[str, float]:
     """When and at which speed a wheel first locks after a start at the reference; empty if none does in the range."""
     import numpy as np
 
+    if not isinstance(
+        problem.controller, Protection
+    ):  # how the observers of another law have settled is not known
+        return {}
     at = settled_stop(problem, place)
     scenario = Scenario(rail=at.rail, initial_speed=place["speed"], start=at.start)
     run = simulate(at.vehicle, at.law, scenario, plant="quarter")
@@ -169,7 +173,7 @@ class _Reference(NamedTuple):
 def _reference(problem: Problem, place: Place) -> _Reference:
     vehicle, rail = plant_with(problem, {name: place[name] for name in NAMES})
     braking = full_supply_time(vehicle.brake)
-    law, speed, radius = law_of(cast(Protection, problem.controller)), place["speed"], vehicle.wheel_radius
+    law, speed, radius = law_of(problem.controller), place["speed"], vehicle.wheel_radius
     slip, turning = slip_at(law, speed, radius), turning_at(law, speed, radius)
     holding = holding_torque(vehicle, rail, slip=slip, speed=speed, braking_time=braking)
     braked = float(slip_dynamics(vehicle, rail, slip, speed).deceleration)
