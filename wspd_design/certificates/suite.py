@@ -19,7 +19,7 @@ from wspd_design.certificates.checks.foundations import (
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.linear import margins, routh_lag, traced_loop
-from wspd_design.certificates.checks.region import lpv_lyapunov, sampled_invariance, slip_band
+from wspd_design.certificates.checks.region import fuzzy_sector, lpv_lyapunov, sampled_invariance, slip_band
 from wspd_design.certificates.checks.sliding import (
     boundary_layer,
     holding_torque,
@@ -67,6 +67,7 @@ CHECKS: Mapping[str, Check] = {
         lpv_lyapunov.CHECK,
         sampled_invariance.CHECK,
         slip_band.CHECK,
+        fuzzy_sector.CHECK,
         tracking.CHECK,
         overshoot.CHECK,
         conservation.CHECK,
@@ -93,7 +94,7 @@ def verify(
     problem : Problem
         Closed loop and domain.
     only : collection of str, optional
-        Names of the checks to run, from :data:`NAMES`; all by default.
+        Names of the checks to run, from ``NAMES``; all by default.
     progress : callable, optional
         Told the title of each check before it starts, and while it searches how far it has come.
     budget : Budget, optional
@@ -109,7 +110,7 @@ def verify(
     Returns
     -------
     Certificates
-        A tuple in the order of :data:`NAMES`.
+        A tuple in the order of ``NAMES``.
 
     Raises
     ------

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from typing import cast
 
 from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.kernel.finding import Finding, Place
@@ -17,7 +16,8 @@ from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import CONTACT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
-from wspd_design.certificates.setting.assumptions import BUILT_UP
+from wspd_design.certificates.setting.assumptions import BUILT_UP, Assumption
+from wspd_design.certificates.setting.declared_law import not_declared
 from wspd_design.certificates.setting.plant import place
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.slip_band.checker import checker
@@ -37,6 +37,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     windows_of,
 )
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
+from wspd_design.controllers.observer_form import TorqueObserver
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import FallingSlip
 from wspd_design.model.slip import slip_dynamics
@@ -63,7 +64,7 @@ def key(name: str, window: int, relation: Relation) -> str:
 def claims(problem: Problem) -> dict[str, Claim]:
     """Claims about the friction; whatever bound is proved counts."""
     found = {}
-    law, radius = law_of(cast(Protection, problem.controller)), _radii(problem)
+    law, radius = law_of(problem.controller), _radii(problem)
     for k, window in enumerate(windows_of(problem)):
         there = _held(replace(problem, speeds=window))
         held = slips_held(law, window, radius)
@@ -86,6 +87,11 @@ def proved_friction(problem: Problem, findings: Findings) -> tuple[Friction, ...
     return tuple(found)
 
 
+def varied(problem: Problem) -> tuple[str, ...]:
+    """Names of the numbers that vary in the box; the rate of the supply is one of a main pipe."""
+    return (*VARIED, *(("supply rate",) if problem.vehicle.brake.build_up == "main-pipe" else ()))
+
+
 def _radii(problem: Problem) -> Interval:
     low, high = problem.span("wheel radius")
     return Fraction(low), Fraction(high)
@@ -93,33 +99,36 @@ def _radii(problem: Problem) -> Interval:
 
 def _held(problem: Problem) -> Problem:
     """Hold the contact and the shape of the friction at their nominal values."""
-    kept = {name: ends for name, ends in problem.bounds.items() if name in VARIED}
+    kept = {name: ends for name, ends in problem.bounds.items() if name in varied(problem)}
     return replace(problem, bounds=type(problem.bounds).of(kept))
 
 
 def held_names(problem: Problem) -> tuple[str, ...]:
     """Names of the numbers with bounds that the claim depends on and holds."""
     return tuple(
-        name
-        for name in domain.uncertain(problem)
-        if name in (*CONTACT, *RAIL, "supply rate") and name not in VARIED
+        name for name in domain.uncertain(problem) if name in (*CONTACT, *RAIL) and name not in VARIED
     )
 
 
 def speaks_about(problem: Problem) -> str:
     """Say why the theorem does not speak about a law; empty if it does."""
     law = problem.controller
-    if not isinstance(law, Protection):
-        return "is not a law of a vehicle with an observer of the friction torque"
-    reason = not_written(law)
+    if isinstance(law, TorqueObserver):
+        reason = _declared_wrong(problem, law)
+    elif isinstance(law, Protection):
+        reason = not_written(law) or _made_for_another(problem, law)
+    else:
+        reason = "is not a law of a vehicle with an observer of the friction torque that it declares (observer_form)"
     if reason:
         return reason
-    brake, modeled = problem.vehicle.brake, law.valve.brake
-    if (brake.max_pressure, problem.vehicle.wheelsets) != (modeled.max_pressure, law.wheelsets):
-        return "was made for another vehicle"
     numbers = law_of(law)
     if not numbers.falls and numbers.slip != Fraction(problem.slip):
         return f"holds slip {float(numbers.slip):g}, not {problem.slip:g}"
+    dead_time = problem.vehicle.brake.dead_time
+    if dead_time >= law.sample_time:
+        return f"commands valves that have a dead time of {1e3 * dead_time:g} ms, a sample or more"
+    if not isinstance(law, Protection):
+        return ""
     if isinstance(law.reference, FallingSlip) and not _largest_slip(problem) < law.reference.largest:
         return f"holds no more than slip {law.reference.largest:g}, which ends its fall inside the range of speed"
     if law.cut_out_speed > problem.speeds[0]:
@@ -127,23 +136,40 @@ def speaks_about(problem: Problem) -> str:
     return ""
 
 
+def _made_for_another(problem: Problem, law: Protection) -> str:
+    brake, modeled = problem.vehicle.brake, law.valve.brake
+    same = (brake.max_pressure, problem.vehicle.wheelsets) == (modeled.max_pressure, law.wheelsets)
+    return "" if same else "was made for another vehicle"
+
+
+def _declared_wrong(problem: Problem, law: TorqueObserver) -> str:
+    """Say why a law of a user is not the one that it declares, or one that the theorem does not speak about."""
+    vehicle, form = problem.vehicle, law.observer_form
+    if form.full_pressure != vehicle.brake.max_pressure or law.wheelsets != vehicle.wheelsets:
+        return "was made for another vehicle"
+    if vehicle.brake.valve != "lag" or any(share != 1.0 for share in vehicle.brake_shares):
+        return "declares one valve with a lag and one full torque for all wheelsets, which the vehicle does not have"
+    if min(form.slip_error, form.slip_rate) < 0.0 or not form.slip_error < form.slip:
+        return "declares an error or a rate of its slip that cannot be"
+    return not_declared(law, problem, slips_held(law_of(law), problem.speeds, _radii(problem)))
+
+
 def _largest_slip(problem: Problem) -> float:
     """Largest slip of the reference, at the lowest speed that a sample may lead to [-]."""
-    law = law_of(cast(Protection, problem.controller))
+    law = law_of(problem.controller)
     return slips_held(law, windows_of(problem)[0], _radii(problem))[1]
 
 
 def _obligations(problem: Problem) -> tuple[Obligation, ...]:
-    domain.box(problem, VARIED)
+    domain.box(problem, varied(problem))
     if windows_of(problem)[0][0] <= 0.0:
         raise OutsideModel("a sample may end at standstill")
-    law = cast(Protection, problem.controller)
     return (
         *(Inequality(key=name, claim=claim) for name, claim in claims(problem).items()),
         Special(
             key=CELLS,
             text="for every cell of the box and every window of speed no sample leads out of an ellipsoid of the state",
-            check=checker(_held(problem), law),
+            check=checker(_held(problem), problem.controller),
         ),
         Special(
             key=DEPARTURE,
@@ -170,12 +196,13 @@ def _covered(problem: Problem, findings: Findings) -> Finding:
 def _tell(problem: Problem, findings: Findings) -> Certificate:
     cells, windows = _covered(problem, findings), windows_of(problem)
     friction = proved_friction(problem, findings)
-    held, reference = held_names(problem), reference_text(law_of(cast(Protection, problem.controller)))
-    within = domain.domain_of(_held(problem), VARIED, held)
+    held, reference = held_names(problem), reference_text(law_of(problem.controller))
+    within = domain.domain_of(_held(problem), varied(problem), held)
     low, high = (speed * KMH for speed in problem.speeds)
     claim = (
         f"Once the state of a wheelset is in its ellipsoid, its slip stays in a band around {reference} at every "
-        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit. On "
+        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit, "
+        f"while the supply has the share of the full pressure that is told. On "
         f"{within.text}, all of them constant; sampled every "
         f"{problem.sample_time * 1e3:g} ms, with any course of the friction whose slope stays within its proved range."
     )
@@ -187,7 +214,10 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         explanation = (
             f"{_bands(windows, cells)} {cells.numbers['cells']:g} cells of the box, each with an ellipsoid "
         )
-        explanation += "for each window of speed, that of a faster window inside that of the next slower one."
+        explanation += (
+            "for each window of speed, that of a faster window inside that of the next slower one. "
+        )
+        explanation += _supplies(windows, cells)
         if share < 1.0:
             status = Status.UNDECIDED
             part = f"{100.0 * share:.3g} % of each range about its nominal value"
@@ -222,21 +252,40 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             *((hypothesis(away.asked, away),) if away.status is Status.REFUTED else ()),
         ),
         assumptions=(
-            "the parameters do not change during the stop; the full pressure is demanded and there",
-            "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time; the "
-            "scale of the train speed was found while rolling",
+            "the parameters do not change during the stop; the full pressure is demanded, and the supply rises to it",
+            f"{_measured(problem)}; the scale of the train speed was found while rolling",
             "all axles at static load and within their bands; the deceleration of the train rises "
             f"{float(JERK_FACTORS[0]):g} to {float(JERK_FACTORS[1]):g} times as fast as with all wheels at the "
             "reference, and its filter has settled",
-            "pulses begin with the sample; the law computes with real numbers",
+            f"pulses begin {_beginning(problem)}; the law computes with real numbers{_compared(problem)}",
             "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
         ),
         domain=within,
-        varied=tuple(name for name in domain.uncertain(problem) if name in VARIED),
+        varied=tuple(name for name in domain.uncertain(problem) if name in varied(problem)),
         held=held,
         method="ellipsoids by linear matrix inequalities in doubles; LDL' in balls at the corners of the sampled loop, "
         "with the friction bounded by interval branch and bound, replayed by the independent checker",
         reference="docs/theory.md#band",
+    )
+
+
+def _compared(problem: Problem) -> str:
+    if isinstance(problem.controller, Protection):
+        return ""
+    return (
+        "; its traced start and step are those of the numbers that it declares, compared in a prime field and in "
+        "doubles for healthy sensors, speeds of the range and pulses within a sample, except where branches meet"
+    )
+
+
+def _measured(problem: Problem) -> str:
+    law = law_of(problem.controller)
+    if not law.slip_error:
+        return "wheel speed, cylinder pressure and train speed are measured exactly and at once"
+    return (
+        "wheel speed and cylinder pressure are measured exactly and at once; the train speed that the law is told may "
+        f"be wrong, but so that the slip that it holds is within {float(law.slip_error):g} of what it declares and "
+        f"moves no faster than by {float(law.slip_rate):g} per second"
     )
 
 
@@ -260,7 +309,7 @@ def _departure(problem: Problem, away: Finding) -> str:
 
 
 def _slip_there(problem: Problem, place: Place) -> float:
-    return slip_at(law_of(cast(Protection, problem.controller)), place["speed"], place["wheel radius"])
+    return slip_at(law_of(problem.controller), place["speed"], place["wheel radius"])
 
 
 def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
@@ -273,9 +322,24 @@ def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
     return f"The slip stays within {', '.join(told)} of its reference."
 
 
+def _supplies(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
+    """Say how much of the full pressure the supply must have."""
+    told = [100.0 * cells.numbers[f"supply {k}"] for k in range(len(windows))]
+    fastest = f"{windows[-1][0] * KMH:.0f} to {windows[-1][1] * KMH:.0f} km/h"
+    return (
+        f"Of the full pressure the supply must have {told[-1]:.3g} % at {fastest}, and {max(told):.3g} % where it "
+        "must have most."
+    )
+
+
+def _beginning(problem: Problem) -> str:
+    dead = problem.vehicle.brake.dead_time
+    return f"at most {1e3 * dead:.3g} ms after their sample and end in it" if dead else "with the sample"
+
+
 def _dead_band(problem: Problem) -> str:
     """Compare what the law leaves out with what a sample of venting can do."""
-    law = law_of(cast(Protection, problem.controller))
+    law = law_of(problem.controller)
     h, speed = float(law.sample_time), problem.speeds[0]
     slip = slip_at(law, speed, problem.vehicle.wheel_radius)
     held = (
@@ -301,5 +365,5 @@ SLIP_BAND = Theorem(
     speaks_about=speaks_about,
     obligations=_obligations,
     tell=_tell,
-    assumes=BUILT_UP,
+    assumes=BUILT_UP - {Assumption.NO_DEAD_TIME},
 )

@@ -33,25 +33,34 @@ LOCK = ("lock time", "lock speed")  # s from the start, m/s; numbers of a place 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Settled:
+class Settled:
     """A protection that begins as if it had held its reference for long."""
 
     law: Protection
     turning: float  # -, part of a change of the train speed that the rims at the reference take part in
     acceleration: float  # m/s2, of the train
     wheel_radius: float  # m, true
+    held: float  # N m, torque that holds the reference, by nominal pads
 
     @property
     def name(self) -> str:
+        """Name of the protection."""
         return self.law.name
 
     @property
     def sample_time(self) -> float:
+        """Sample time [s]."""
         return self.law.sample_time
 
     @property
     def wheelsets(self) -> int:
+        """Number of wheelsets that it acts on."""
         return self.law.wheelsets
+
+    @property
+    def memory(self) -> tuple[str, ...]:
+        """Names of the elements of the state."""
+        return self.law.memory
 
     def start(self, measurement: VehicleMeasurement) -> State:
         """Begin one sample back, with the scale of the speed that rolling wheels have shown."""
@@ -65,12 +74,14 @@ class _Settled:
             "speed_scale": scale,
         }
         for axle in range(1, law.wheelsets + 1):
-            speed, torque = measurement.wheel_speeds[axle - 1], known[f"torque_{axle}"]
-            settled[f"observed_speed_{axle}"] = speed - turning * back
-            settled[f"friction_torque_{axle}"] = torque + law.wheelset_inertia * turning
+            held = law.torque_shares[axle - 1] * self.held
+            settled[f"observed_speed_{axle}"] = measurement.wheel_speeds[axle - 1] - turning * back
+            settled[f"friction_torque_{axle}"] = held + law.wheelset_inertia * turning
+            settled[f"mean_torque_{axle}"] = held
         return tuple((known | settled).values())
 
     def step(self, state: State, measurement: VehicleMeasurement) -> tuple[State, tuple[Command, ...]]:
+        """Go on as the protection does."""
         return self.law.step(state, measurement)
 
 
@@ -93,21 +104,42 @@ def missing_torque(problem: Problem, place: Place) -> dict[str, float]:
     return dict(zip(LIMIT, (at.holding, full), strict=True)) if at.holding > full * (1.0 + BEYOND) else {}
 
 
+class SettledStop(NamedTuple):
+    """A stop that begins at the reference as if it had been held for long."""
+
+    vehicle: Vehicle
+    rail: Rail
+    law: Settled
+    start: Start
+    holding: float  # N m, torque that holds the reference, whether the brake has it or not
+
+
+def settled_stop(problem: Problem, place: Place) -> SettledStop:
+    """Return the stop that begins at the reference at a place."""
+    vehicle, rail, braking, slip, turning, holding = _reference(problem, place)
+    protection = cast(Protection, problem.controller)
+    law = Settled(
+        law=protection,
+        turning=turning,
+        acceleration=-float(slip_dynamics(vehicle, rail, slip, place["speed"]).deceleration),
+        wheel_radius=vehicle.wheel_radius,
+        held=holding * protection.valve.brake.max_torque / vehicle.brake.max_torque,
+    )
+    start = Start(slip=slip, torque=min(holding, vehicle.brake.max_torque), braking_time=braking)
+    return SettledStop(vehicle, rail, law, start, holding)
+
+
 def lock(problem: Problem, place: Place) -> dict[str, float]:
     """When and at which speed a wheel first locks after a start at the reference; empty if none does in the range."""
     import numpy as np
 
-    law, speed = cast(Protection, problem.controller), place["speed"]
-    vehicle, rail, braking, slip, turning, holding = _reference(problem, place)
-    settled = _Settled(
-        law=law,
-        turning=turning,
-        acceleration=-float(slip_dynamics(vehicle, rail, slip, speed).deceleration),
-        wheel_radius=vehicle.wheel_radius,
-    )
-    start = Start(slip=slip, torque=min(holding, vehicle.brake.max_torque), braking_time=braking)
-    scenario = Scenario(rail=rail, initial_speed=speed, start=start)
-    run = simulate(vehicle, settled, scenario, plant="quarter")
+    if not isinstance(
+        problem.controller, Protection
+    ):  # how the observers of another law have settled is not known
+        return {}
+    at = settled_stop(problem, place)
+    scenario = Scenario(rail=at.rail, initial_speed=place["speed"], start=at.start)
+    run = simulate(at.vehicle, at.law, scenario, plant="quarter")
     locked = np.flatnonzero((run.wheel_speed[:, 0] <= 0.0) & (run.speed >= problem.speeds[0]))
     if not locked.size:
         return {}
@@ -141,7 +173,7 @@ class _Reference(NamedTuple):
 def _reference(problem: Problem, place: Place) -> _Reference:
     vehicle, rail = plant_with(problem, {name: place[name] for name in NAMES})
     braking = full_supply_time(vehicle.brake)
-    law, speed, radius = law_of(cast(Protection, problem.controller)), place["speed"], vehicle.wheel_radius
+    law, speed, radius = law_of(problem.controller), place["speed"], vehicle.wheel_radius
     slip, turning = slip_at(law, speed, radius), turning_at(law, speed, radius)
     holding = holding_torque(vehicle, rail, slip=slip, speed=speed, braking_time=braking)
     braked = float(slip_dynamics(vehicle, rail, slip, speed).deceleration)
