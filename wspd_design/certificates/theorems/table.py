@@ -23,6 +23,7 @@ from wspd_design.certificates.theorems import (
     surface,
     traced_loop,
     valve,
+    way_in,
 )
 from wspd_design.certificates.theorems.fuzzy_sector.theorem import FUZZY_SECTOR
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import STOP_BOUND
@@ -54,6 +55,7 @@ THEOREMS: Mapping[str, Theorem] = {
         traced_loop.TRACED_LOOP,
         region.LPV_LYAPUNOV,
         region.SAMPLED_INVARIANCE,
+        way_in.SLIP_WAY_IN,
         band.SLIP_BAND,
         FUZZY_SECTOR,
         simulated_stop.TRACKING,

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal value
-WIDTHS = ((0.2, 0.02), (0.1, 0.01), (0.05, 0.006))
-"""Half width of a piece over half of the range of the friction, and width of a strip over its supply rate."""
+WIDTHS = ((0.025, 0.01), (0.0125, 0.006))  # relative half width of a piece of the friction, and width of a strip
 MOST = 320  # strips, with an effort of 1
 SETTLED, LATER = 0.004, 0.3  # slip beside the reference, and what is followed from there [-, s]
 STEPS = 8  # strips between two stops that tell how long they are followed
@@ -52,12 +51,11 @@ def plan(problem: Problem, law: Protection, effort: float) -> Plan | None:
 def _pieces(
     problem: Problem, law: Protection, share: float, half: float, width: float, most: float
 ) -> tuple[Piece, ...] | None:
-    """Divide a share of the friction into pieces with strips of a relative width, unless they are too many."""
+    """Divide a share of the friction into pieces with strips, unless they are too many."""
     (low, high), nominal = problem.span(FRICTION), problem.nominal(FRICTION)
     low, high = nominal + share * (low - nominal), nominal + share * (high - nominal)
-    whole = 0.5 * (problem.span(FRICTION)[1] - problem.span(FRICTION)[0])
-    count = max(1, math.ceil((high - low) / (2.0 * half * whole) - 1e-9)) if share else 1
-    edges = [low + (high - low) * k / count for k in range(count)] + [high]
+    count = max(1, math.ceil(math.log(high / low) / (2.0 * half)))
+    edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
     slowest, fastest = problem.span(SUPPLY)
     if count * math.log(fastest / slowest) / width > most:
         return None
@@ -127,8 +125,8 @@ def _corners_hold(problem: Problem, law: Protection, half: float, width: float) 
     """Follow a strip at each corner of both ranges."""
     low, high = problem.span(FRICTION)
     slowest, fastest = problem.span(SUPPLY)
-    reach, chosen = half * (high - low), []
-    for one, other in ((low, low + reach), (high - reach, high)):
+    chosen = []
+    for one, other in ((low, low * (1.0 + 2.0 * half)), (high / (1.0 + 2.0 * half), high)):
         slope = _slope(problem, law, 0.5 * (one + other))
         for borders in ((slowest, slowest * (1.0 + width)), (fastest / (1.0 + width), fastest)):
             alone = Piece(friction=(one, other), slope=slope, borders=borders, samples=(1,))

@@ -1,0 +1,119 @@
+"""The way in: what the slip does from rolling to the reference, while the brake builds up.
+
+See :mod:`wspd_design.certificates.theorems.slip_band` for motion, proof and checker.
+"""
+
+from typing import cast
+
+from wspd_design.certificates.kernel.obligation import Obligation, Special
+from wspd_design.certificates.outside import OutsideModel
+from wspd_design.certificates.quantities import CONTACT, RAIL
+from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
+from wspd_design.certificates.setting import domain
+from wspd_design.certificates.theorems import band
+from wspd_design.certificates.theorems.slip_band.statement import NAMES
+from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, SUPPLY, VARIED, checker
+from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
+from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.references import ConstantSlip
+from wspd_design.parameters.units import KMH
+
+STRIPS = "strips"
+RESISTANCE = tuple(f"resistance {part}" for part in ("constant", "linear", "quadratic"))
+
+
+def speaks_about(problem: Problem) -> str:
+    """Say why the theorem does not speak about a law; empty if it does."""
+    reason = band.speaks_about(problem)
+    if reason:
+        return reason
+    law = cast(Protection, problem.controller)
+    if not isinstance(law.reference, ConstantSlip):
+        return "holds no constant slip"
+    if law.wheel_radius != problem.vehicle.wheel_radius:
+        return "counts with another wheel radius than the nominal one"
+    return ""
+
+
+def held_names(problem: Problem) -> tuple[str, ...]:
+    """Names of the numbers with bounds that the way in depends on and the claim holds."""
+    used = {*NAMES, *CONTACT, *RAIL, *RESISTANCE} - {*VARIED}
+    return tuple(name for name in domain.uncertain(problem) if name in used)
+
+
+def _obligations(problem: Problem) -> tuple[Obligation, ...]:
+    domain.box(problem, (*NAMES, *VARIED))
+    if not problem.speeds[1] > 0.0:
+        raise OutsideModel("the train stands still")
+    law = cast(Protection, problem.controller)
+    return (
+        Special(
+            key=STRIPS,
+            text="strips of friction and supply rate cover both ranges, and of each the loop is enclosed from rolling "
+            "until the slip has reached its reference",
+            check=checker(problem, law),
+        ),
+    )
+
+
+def _tell(problem: Problem, findings: Findings) -> Certificate:
+    strips, held = findings[STRIPS], held_names(problem)
+    low, high = problem.span(FRICTION)
+    speed = problem.speeds[1] * KMH
+    claim = (
+        f"From rolling at {speed:.4g} km/h, the brake demanded and its cylinders empty, the slip of every wheelset comes "
+        f"to its reference {problem.slip:g} and goes beyond it no further than is told; for every supply rate and every "
+        f"mu0 in their ranges, all other numbers at their nominal values; sampled every {problem.sample_time * 1e3:g} ms."
+    )
+    status, margin, worst = all_of(strips), None, ()
+    explanation = "The enclosure of some strip is lost, or there is no budget for as many strips as would hold."
+    if strips.status is Status.PROVED:
+        found = strips.numbers
+        explanation = (
+            f"The slip is never above {found['largest slip']:.4g}, at no instant, for {found['time']:.3g} s at most; at "
+            f"the end of what is followed it is within {max(found['above'], 0.0):.2g} above and "
+            f"{max(found['below'], 0.0):.2g} below its reference, and the supply has {100.0 * found['supply']:.3g} % of "
+            "its full pressure or more."
+        )
+        if found["friction low"] <= low and high <= found["friction high"]:
+            margin = Range(low=1.0 - found["largest slip"], high=None, unit="-")
+            worst = (Point(name="slip", value=found["largest slip"], unit="-"),)
+        else:
+            status = Status.UNDECIDED
+            explanation = f"Shown for {_friction(found['friction low'], found['friction high'])}. {explanation}"
+    return Certificate(
+        claim=claim,
+        status=status,
+        explanation=explanation,
+        margin=margin,
+        worst_point=worst,
+        hypotheses=(hypothesis(strips.asked, strips),),
+        assumptions=(
+            "mass, inertia, radius, pads, valve times and resistance are the nominal ones, and so are contact and shape "
+            "of the friction; nothing changes on the way",
+            "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time",
+            "all axles at static load and alike; pulses begin with the sample; the law computes with real numbers",
+            "exp, log, arctan and square root of NumPy are within 8 units in the last place",
+            "says nothing about what comes later: from there slip_band speaks, once the supply is full",
+        ),
+        domain=domain.domain_of(problem, VARIED, held),
+        varied=VARIED,
+        held=held,
+        method="affine arithmetic in doubles with outward rounding, Picard's iteration between samples; the law that is "
+        "followed is compared with the one that runs at 96 points",
+        reference="docs/theory.md#way-in",
+    )
+
+
+def _friction(low: float, high: float) -> str:
+    return f"mu0 = {low:.4g} alone" if low == high else f"mu0 from {low:.4g} to {high:.4g}, not over all of its range"
+
+
+SLIP_WAY_IN = Theorem(
+    name="slip_way_in",
+    title="Slip on the way from rolling to the reference",
+    claim="From rolling, the slip comes to its reference and goes hardly beyond it.",
+    speaks_about=speaks_about,
+    obligations=_obligations,
+    tell=_tell,
+)
