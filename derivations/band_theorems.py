@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from derivations import slip_loop
+from derivations import adhesion, slip_loop
 from derivations.theorem import Identity, Theorem
 
 # --- a function of the state falls by alpha, and what disturbs it adds at most the shares -----------------------------
@@ -23,7 +23,65 @@ _centered = sp.expand(
     (_A * _X + _B * (_m + _r * _z) - _c) - (_A * (_X - _c) + (_A * _c - _c + _B * _m) + _B * _r * _z)
 )
 
+# --- the way in: a wheel in the sliding speed s = v - R w ------------------------------------------------------------
+_v, _s, _R, _l, _h, _theta, _tau, _T, _J, _r, _w1, _o = sp.symbols(
+    "v s R lambda h theta tau T J r w_1 o", real=True
+)
+_wheel = (_v - _s) / _R
+_error_residual = sp.expand(_R * (_wheel - (1 - _l) * _v / _R) - (_l * _v - _s))
+# The observer expected o: r = R (w - o). What it expects next is o + (1 - theta^2)(w - o) + h (tau - T)/J.
+_next_expected = _o + (1 - _theta**2) * (_wheel - _o) + _h * (_tau - _T) / _J
+_innovation = _R * _w1 - _R * _wheel + _theta**2 * _r - _R * _h * (_tau - _T) / _J
+_innovation_residual = sp.expand(_R * (_w1 - _next_expected) - _innovation.subs(_r, _R * (_wheel - _o)))
+# A change that goes as 1 - exp(-t/tau) and ends after x tau: the mean over the pulse lacks this part of it.
+_x, _t1 = sp.symbols("x t", positive=True)
+_lacks = 1 + 1 / _x - 1 / (1 - sp.exp(-_x))
+_mean = sp.integrate((1 - sp.exp(-_t1)) / (1 - sp.exp(-_x)), (_t1, 0, _x)) / _x
+_lacks_residual = sp.simplify(1 - _mean - _lacks)
+_lacks_at_zero = sp.limit(_lacks, _x, 0) - sp.Rational(1, 2)
+_lacks_slope = sp.limit((_lacks - sp.Rational(1, 2)) / _x, _x, 0) + sp.Rational(1, 12)
+# The force over the load and mu0 is that of a wheel with both 1 and the stiffness over their product.
+_scaled = adhesion.force_of_gradient.subs(adhesion.gradient, adhesion.gradient_of_slip)
+_unit = _scaled.subs(
+    {
+        adhesion.Q: 1,
+        adhesion.mu: adhesion.mu / adhesion.mu0,
+        adhesion.C: adhesion.C / (adhesion.Q * adhesion.mu0),
+    },
+    simultaneous=True,
+)
+_scaled_residual = sp.simplify(_scaled - adhesion.Q * adhesion.mu0 * _unit)
+
 THEOREMS = (
+    Theorem(
+        anchor="way-in",
+        title="Slip on the way from rolling to the reference",
+        statement="A train rolls, and the brake is demanded. Its loop has eight numbers at a sample: the speed v, the "
+        "sliding speed s = v - R w, the innovation r of the observer, its friction torque, the braking torque, the "
+        "filtered acceleration, the change of v over the last sample, and the supply. Each is enclosed by an affine "
+        "form in symbols between -1 and 1, of which two stand for the friction and the supply rate of a strip. What a "
+        "sample makes of the forms encloses what it makes of the numbers; if a form of the slip s/v stays below a "
+        "number, also between samples, for strips that cover both ranges, no wheel slips more on its way.",
+        hypotheses=(
+            "friction and supply rate as stated, everything else at its nominal value",
+            "the law that is followed is the one that runs, compared at points in doubles",
+            "IEEE 754, with exp, log, arctan and square root within 8 units in the last place",
+        ),
+        sketch="What is not affine is replaced by its secant and the largest distance from it. Within a part of a "
+        "sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in it, then the "
+        "rates there with the time as a symbol, whose mean counts. The torque goes from one sample to the next as the "
+        "valve does, evenly but for h^2/8 of its second derivative.",
+        not_said="Other masses, inertias, radii, pads and valve times; noise and dead time; what comes after.",
+        identities=(
+            Identity("R (w - w_r) = lambda v - s", _error_residual),
+            Identity("innovation of the next sample", _innovation_residual),
+            Identity("what the mean over a pulse lacks of an exponential change", _lacks_residual),
+            Identity("it is 1/2 for short pulses", _lacks_at_zero),
+            Identity("and falls with x/12", _lacks_slope),
+            Identity("the force over load and mu0", _scaled_residual),
+        ),
+        certificates=("slip_way_in",),
+    ),
     Theorem(
         anchor="band",
         title="Band of slip of a sampled law with friction-torque observer",

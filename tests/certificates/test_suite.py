@@ -59,6 +59,7 @@ def test_order(certificates):
         "traced_loop",
         "lpv_lyapunov",
         "sampled_invariance",
+        "slip_way_in",
         "slip_band",
         "fuzzy_sector",
         "tracking",

@@ -12,13 +12,14 @@ from wspd_design.certificates.records import Certificate, Point, Problem, Range,
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems import band
 from wspd_design.certificates.theorems.slip_band.statement import NAMES
-from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, SUPPLY, VARIED, checker
+from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, VARIED, checker
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import ConstantSlip
 from wspd_design.parameters.units import KMH
 
 STRIPS = "strips"
+ARRIVED = 0.01  # -, distance from the reference at which the slip has come to it
 RESISTANCE = tuple(f"resistance {part}" for part in ("constant", "linear", "quadratic"))
 
 
@@ -61,26 +62,34 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     low, high = problem.span(FRICTION)
     speed = problem.speeds[1] * KMH
     claim = (
-        f"From rolling at {speed:.4g} km/h, the brake demanded and its cylinders empty, the slip of every wheelset comes "
-        f"to its reference {problem.slip:g} and goes beyond it no further than is told; for every supply rate and every "
-        f"mu0 in their ranges, all other numbers at their nominal values; sampled every {problem.sample_time * 1e3:g} ms."
+        f"From rolling at {speed:.4g} km/h, the brake demanded and its cylinders empty, the slip of every wheelset "
+        f"comes to its reference {problem.slip:g} and goes beyond it no further than is told; for every supply rate "
+        f"and every mu0 in their ranges, all other numbers at their nominal values; sampled every {problem.sample_time * 1e3:g} ms."
     )
-    status, margin, worst = all_of(strips), None, ()
-    explanation = "The enclosure of some strip is lost, or there is no budget for as many strips as would hold."
+    status, margin = all_of(strips), None
+    worst: tuple[Point, ...] = ()
+    explanation = (
+        "The enclosure of some strip is lost, or there is no budget for as many strips as would hold."
+    )
     if strips.status is Status.PROVED:
         found = strips.numbers
         explanation = (
-            f"The slip is never above {found['largest slip']:.4g}, at no instant, for {found['time']:.3g} s at most; at "
-            f"the end of what is followed it is within {max(found['above'], 0.0):.2g} above and "
-            f"{max(found['below'], 0.0):.2g} below its reference, and the supply has {100.0 * found['supply']:.3g} % of "
-            "its full pressure or more."
+            f"The slip is never above {found['largest slip']:.4g}, at no instant, for {found['time']:.3g} s at most; "
+            f"at the end of what is followed it is within {max(found['above'], 0.0):.2g} above and "
+            f"{max(found['below'], 0.0):.2g} below its reference, and the supply has {100.0 * found['supply']:.3g} % "
+            "of its full pressure or more."
         )
-        if found["friction low"] <= low and high <= found["friction high"]:
+        if max(found["above"], found["below"]) > ARRIVED:
+            status = Status.UNDECIDED
+            explanation = f"What is followed ends where the slip has not come to its reference. {explanation}"
+        elif found["friction low"] > low or high > found["friction high"]:
+            status = Status.UNDECIDED
+            explanation = (
+                f"Shown for {_friction(found['friction low'], found['friction high'])}. {explanation}"
+            )
+        else:
             margin = Range(low=1.0 - found["largest slip"], high=None, unit="-")
             worst = (Point(name="slip", value=found["largest slip"], unit="-"),)
-        else:
-            status = Status.UNDECIDED
-            explanation = f"Shown for {_friction(found['friction low'], found['friction high'])}. {explanation}"
     return Certificate(
         claim=claim,
         status=status,
@@ -89,8 +98,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         worst_point=worst,
         hypotheses=(hypothesis(strips.asked, strips),),
         assumptions=(
-            "mass, inertia, radius, pads, valve times and resistance are the nominal ones, and so are contact and shape "
-            "of the friction; nothing changes on the way",
+            "mass, inertia, radius, pads, valve times and resistance are the nominal ones, and so are contact and "
+            "shape of the friction; nothing changes on the way",
             "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time",
             "all axles at static load and alike; pulses begin with the sample; the law computes with real numbers",
             "exp, log, arctan and square root of NumPy are within 8 units in the last place",
@@ -99,14 +108,18 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         domain=domain.domain_of(problem, VARIED, held),
         varied=VARIED,
         held=held,
-        method="affine arithmetic in doubles with outward rounding, Picard's iteration between samples; the law that is "
-        "followed is compared with the one that runs at 96 points",
+        method="affine arithmetic in doubles with outward rounding, Picard's iteration between samples; the law that "
+        "is followed is compared with the one that runs at 96 points",
         reference="docs/theory.md#way-in",
     )
 
 
 def _friction(low: float, high: float) -> str:
-    return f"mu0 = {low:.4g} alone" if low == high else f"mu0 from {low:.4g} to {high:.4g}, not over all of its range"
+    return (
+        f"mu0 = {low:.4g} alone"
+        if low == high
+        else f"mu0 from {low:.4g} to {high:.4g}, not over all of its range"
+    )
 
 
 SLIP_WAY_IN = Theorem(

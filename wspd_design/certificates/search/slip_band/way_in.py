@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.checker import Refused
@@ -18,7 +19,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal value
-WIDTHS = ((0.025, 0.01), (0.0125, 0.006))  # relative half width of a piece of the friction, and width of a strip
+WIDTHS = (
+    (0.025, 0.01),
+    (0.018, 0.008),
+    (0.0125, 0.006),
+)  # relative half width of a piece of the friction, and width of a strip
 MOST = 320  # strips, with an effort of 1
 SETTLED, LATER = 0.004, 0.3  # slip beside the reference, and what is followed from there [-, s]
 STEPS = 8  # strips between two stops that tell how long they are followed
@@ -60,7 +65,7 @@ def _pieces(
     if count * math.log(fastest / slowest) / width > most:
         return None
     found = []
-    for one, other in zip(edges, edges[1:], strict=False):
+    for one, other in pairwise(edges):
         slope = _slope(problem, law, 0.5 * (one + other)) if share else 0.0
         shift = abs(slope) * 0.5 * (other - one) * (1.0 + 1e-9) + 1e-9 * slowest
         first, last = slowest - shift, fastest + shift

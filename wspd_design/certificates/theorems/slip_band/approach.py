@@ -5,7 +5,7 @@ observer, so that what belongs together cancels. Between samples the motion is e
 parts of the sample; the torque in between lies on its way from one sample to the next.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple, TypeAlias
@@ -95,7 +95,10 @@ def plant_of(vehicle: Vehicle, rail: Rail, full: float, numbers: Mapping[str, Af
         First of the symbols that stand for the errors of combinations.
     """
     mass, inertia, radius, mu0, torque, fill, vent, supply = (numbers[name] for name in NUMBERS)
-    named = (combined.named(first + k) for k, combined in enumerate(_combined(vehicle, full, mass, inertia, radius, mu0, torque)))
+    named = (
+        combined.named(first + k)
+        for k, combined in enumerate(_combined(vehicle, full, mass, inertia, radius, mu0, torque))
+    )
     curvature, over_mass, over_inertia, turning, gradient, effect = named
     return Plant(
         vehicle=vehicle,
@@ -161,8 +164,12 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
     share = partial(_share, left_out=left_out, pulse=pulse)
     room = (available - state.torque).at_least(least)
     fill = fresh(share(up, room, valve.time_share * valve.brake.fill_time / h, least))
-    vent = fresh(share(down, state.torque.at_least(least), valve.time_share * valve.brake.vent_time / h, least))
-    rise, fall = _moved(available, state.torque, fill, vent, h / valve.brake.fill_time, h / valve.brake.vent_time)
+    vent = fresh(
+        share(down, state.torque.at_least(least), valve.time_share * valve.brake.vent_time / h, least)
+    )
+    rise, fall = _moved(
+        available, state.torque, fill, vent, h / valve.brake.fill_time, h / valve.brake.vent_time
+    )
     mean = state.torque + rise - _missed(rise, fill, h / valve.brake.fill_time)
     mean = mean - fall + _missed(fall, vent, h / valve.brake.vent_time)
     innovation = (
@@ -178,13 +185,18 @@ def _pull(error: Affine, rate: float, slew: float) -> Affine:
     """Pull to the reference, a concave function of the error."""
 
     def touching(slope: Array) -> tuple[Array, ...]:
-        return (np.where(slope > 0.0, (slew / np.maximum(slope, 1e-9)) ** 2, 0.0) / (2.0 * slew) + slew / (2.0 * rate**2),)
+        return (
+            np.where(slope > 0.0, (slew / np.maximum(slope, 1e-9)) ** 2, 0.0) / (2.0 * slew)
+            + slew / (2.0 * rate**2),
+        )
 
     return error.along(lambda e: np.asarray(approach(e, rate, slew)), touching)
 
 
-def _share(way: Affine, room: Affine, length: float, least: float, *, left_out: float, pulse: float) -> Affine:
-    """Share of the sample that goes a way in a room, at most all of it; dead band and shortest pulse may leave it out."""
+def _share(
+    way: Affine, room: Affine, length: float, least: float, *, left_out: float, pulse: float
+) -> Affine:
+    """Share of the sample that goes a way in a room, at most all of it; dead band and shortest pulse leave some out."""
     longest = float(-np.expm1(-1.0 / length))
     part = (way * room.inverse(least=least)).at_most(longest)
 
@@ -193,12 +205,19 @@ def _share(way: Affine, room: Affine, length: float, least: float, *, left_out: 
 
     # Beyond the longest part the logarithm is not asked, and below 0 there is nothing but the width of the form.
     share = part.along(lambda y: -length * np.log1p(-np.minimum(y, 0.999)), touching)
-    skipped = np.maximum(pulse, -length * np.log1p(-np.minimum(left_out / np.maximum(room.low, least), 0.999)))
+    skipped = np.maximum(
+        pulse, -length * np.log1p(-np.minimum(left_out / np.maximum(room.low, least), 0.999))
+    )
     return share.widened(np.minimum(skipped, 1.0) if left_out or pulse else 0.0, 0.0)
 
 
 def _moved(
-    supply: Affine, torque: Affine, fill: Affine, vent: Affine, filling: Affine | float, venting: Affine | float
+    supply: Affine,
+    torque: Affine,
+    fill: Affine,
+    vent: Affine,
+    filling: Affine | float,
+    venting: Affine | float,
 ) -> tuple[Affine, Affine]:
     """What filling adds and what venting then takes off; sample time over the times of the valve."""
     rise = (supply - torque) * (1.0 - (-(fill * filling)).exp())
@@ -223,7 +242,12 @@ class Moved(NamedTuple):
 
 
 def motion(
-    plant: Plant, law: Protection, state: State, decided: Decided, time: int, fresh: Callable[[Affine], Affine]
+    plant: Plant,
+    law: Protection,
+    state: State,
+    decided: Decided,
+    time: int,
+    fresh: Callable[[Affine], Affine],
 ) -> Moved:
     """Follow wheel and train through the sample; ``time`` is the symbol of the time within a part of it."""
     h, full, effect = law.sample_time, law.valve.brake.max_torque, plant.effect
@@ -243,18 +267,22 @@ def motion(
     bend = 0.125 * np.maximum(quick, (state.torque + rise).high * venting.high**2)
     speed, sliding = state.speed, state.sliding
     top = sliding.high / speed.low
-    rates = _with_brake(plant, speed, sliding, state.torque * effect)
+    rates = _with_brake(plant, (speed, sliding), state.torque * effect)
     for part in range(count):
         filled, vented = (_gone(each, part, count, time) for each in (decided.fill, decided.vent))
         pulled = (state.torque + rise * filled - fall * vented).widened(bend, bend) * effect
         rates = _enclosed(plant, (speed, sliding), rates, pulled, step)
-        at_any_time = (_over_time(x, rate, step, time) for x, rate in zip((speed, sliding), rates, strict=True))
-        rates = _with_brake(plant, *at_any_time, pulled)
+        at_any_time = (
+            _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), rates, strict=True)
+        )
+        rates = _with_brake(plant, at_any_time, pulled)
         highest = sliding.high + step * np.maximum(rates[1].high, 0.0)
-        at_any_time = (_over_time(x, rate, step, time) for x, rate in zip((speed, sliding), rates, strict=True))
+        at_any_time = (
+            _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), rates, strict=True)
+        )
         filled, vented = (_gone_in_the_mean(each, part, count) for each in (decided.fill, decided.vent))
         pulled = (state.torque + rise * filled - fall * vented).widened(bend, bend) * effect
-        means = [rate.without(time) for rate in _with_brake(plant, *at_any_time, pulled)]
+        means = [rate.without(time) for rate in _with_brake(plant, at_any_time, pulled)]
         speed, sliding = fresh(speed + means[0] * step), fresh(sliding + means[1] * step)
         top = np.maximum(top, np.maximum(highest, sliding.high) / speed.low)
     return Moved(speed, sliding, state.torque + rise - fall, after, top)
@@ -311,8 +339,8 @@ Rates: TypeAlias = tuple[Affine, Affine]
 """Of the speed of the train and of the sliding speed [m/s2]."""
 
 
-def _with_brake(plant: Plant, speed: Affine, sliding: Affine, pulled: Affine) -> Rates:
-    slowing, gliding = _rates(plant, speed, sliding)
+def _with_brake(plant: Plant, begin: Iterable[Affine], pulled: Affine) -> Rates:
+    slowing, gliding = _rates(plant, *begin)
     return slowing, gliding + pulled
 
 
@@ -321,12 +349,14 @@ def _enclosed(plant: Plant, begin: Rates, guess: Rates, pulled: Affine, step: fl
     ends, found = [(rate.low, rate.high) for rate in guess], guess
     inside = np.zeros(pulled.center.shape, dtype=bool)
     for _ in range(TRIALS):
-        wider = [(low - GROWTH * (1.0 + high - low), high + GROWTH * (1.0 + high - low)) for low, high in ends]
+        wider = [
+            (low - GROWTH * (1.0 + high - low), high + GROWTH * (1.0 + high - low)) for low, high in ends
+        ]
         reached = (
             x.widened(np.maximum(-low * step, 0.0), np.maximum(high * step, 0.0))
             for x, (low, high) in zip(begin, wider, strict=True)
         )
-        found = _with_brake(plant, *reached, pulled)
+        found = _with_brake(plant, reached, pulled)
         inside = np.ones(pulled.center.shape, dtype=bool)
         for rate, (low, high) in zip(found, wider, strict=True):
             inside &= (rate.low >= low) & (rate.high <= high)
@@ -470,7 +500,7 @@ def _fewer(state: State) -> Array:
     errors = np.zeros((*slopes.shape[:2], STATES))
     for k, each in enumerate(state):
         errors[:, k, k] = each.error
-    kept, rest = slopes[:, :, : PARAMETERS], slopes[:, :, PARAMETERS:]
+    kept, rest = slopes[:, :, :PARAMETERS], slopes[:, :, PARAMETERS:]
     rest = np.concatenate([rest, errors], axis=2)
     sizes = np.abs(rest) / SCALES[None, :, None]
     order = np.argsort(sizes.max(axis=1) - sizes.sum(axis=1), axis=1, kind="stable")

@@ -2,8 +2,8 @@
 
 from wspd_design.certificates.kernel.checker import PRIME, element
 from wspd_design.certificates.records import Problem
-from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.observers.protocol import TRAIN_ACCELERATION
+from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import TRAIN_SPEED, VehicleMeasurement
 
 POINTS, DIGITS = 96, 1e-9
@@ -40,9 +40,7 @@ def unlike(problem: Problem, law: Protection) -> str:
     def form(values: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Affine:
         return Affine(values, np.zeros((POINTS, 32)), np.zeros(POINTS))
 
-    state = State(
-        *map(form, (speed, sliding, innovation, friction, torque, acceleration, change, supply))
-    )
+    state = State(*map(form, (speed, sliding, innovation, friction, torque, acceleration, change, supply)))
     numbers = {name: form(np.full(POINTS, problem.nominal(name))) for name in NUMBERS}
     plant = plant_of(problem.vehicle, problem.rail, full, numbers, 16)
     decided = decide(law, plant, state, lambda each: each)
@@ -84,5 +82,6 @@ def unlike(problem: Problem, law: Protection) -> str:
             slack = DIGITS * (1.0 + abs(value))
             low, high = float(enclosure.low[k]), float(enclosure.high[k])
             if not low - slack <= value <= high + slack:
-                return f"the law that is followed computes another {name} than the one that runs: {low:.9g} to {high:.9g}, not {value:.9g}"
+                found = f"{low:.9g} to {high:.9g}, not {value:.9g}"
+                return f"the law that is followed computes another {name} than the one that runs: {found}"
     return ""

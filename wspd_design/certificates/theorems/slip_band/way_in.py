@@ -8,6 +8,7 @@ strips of a piece of the friction lie side by side and cover all supply rates.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from math import ceil, inf
 from typing import TYPE_CHECKING, Any
 
@@ -88,11 +89,9 @@ def _piece(written: object) -> Piece:
         raise Refused(f"a strip is followed for 1 to {MOST_SAMPLES} samples")
     low, high = (_double(end) for end in friction)
     edges = tuple(_double(each) for each in borders)
-    if not low <= high or any(one >= other for one, other in zip(edges, edges[1:], strict=False)):
+    if not low <= high or any(one >= other for one, other in pairwise(edges)):
         raise Refused("the ends of the friction or the borders of the strips do not rise")
-    return Piece(
-        friction=(low, high), slope=_double(written["slope"]), borders=edges, samples=tuple(samples)
-    )
+    return Piece(friction=(low, high), slope=_double(written["slope"]), borders=edges, samples=tuple(samples))
 
 
 def _double(written: object) -> float:
@@ -101,9 +100,7 @@ def _double(written: object) -> float:
     return float(number(written))
 
 
-def checker(
-    problem: Problem, law: Protection
-) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
+def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
     """Return what decides about a proof and tells its numbers."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
@@ -201,7 +198,7 @@ def _follow(
 
 
 def _boxes(problem: Problem, strips: Sequence[tuple[Piece, int]]) -> "tuple[Array, Array]":
-    """Centers of the numbers and what the symbols do to them, the first for the friction and the last for the supply."""
+    """Centers of the numbers, and what the symbols do to them: one for the friction, one for the supply."""
     import numpy as np
 
     from wspd_design.certificates.theorems.slip_band.approach import NUMBERS
@@ -217,5 +214,3 @@ def _boxes(problem: Problem, strips: Sequence[tuple[Piece, int]]) -> "tuple[Arra
         spread[k, column, row] = piece.slope * half
         spread[k, column, column] = 0.5 * (high - low) + OUTWARD * (high + abs(piece.slope) * half)
     return middle, spread
-
-

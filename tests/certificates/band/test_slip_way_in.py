@@ -1,0 +1,158 @@
+"""The way in: enclosed, accepted, compared with simulated stops, and refused where it would be false."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import wspd_design as wd
+from tests.certificates.band.conftest import problem_of
+from wspd_design.certificates import suite
+from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.kernel.file import certificate_text
+from wspd_design.certificates.kernel.finding import Finding
+from wspd_design.certificates.records import Status
+from wspd_design.certificates.replay import replay
+from wspd_design.certificates.search.slip_band import way_in as search
+from wspd_design.certificates.theorems.slip_band import approach, computed_law
+from wspd_design.certificates.theorems.slip_band.way_in import (
+    FRICTION,
+    SUPPLY,
+    Piece,
+    checker,
+    followed,
+    write,
+)
+from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN, STRIPS
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.stop import simulate
+
+pytestmark = pytest.mark.slow
+PLENTY = 10**9
+LOW = wd.load_rail("low-adhesion")
+
+
+@pytest.fixture(scope="module")
+def low():
+    """The rail on which wheels slide first; the range of the supply rate is a narrow one, for speed."""
+    problem = problem_of(1.0, rail=LOW)
+    ends = {name: problem.span(name) for name in (FRICTION,)} | {SUPPLY: (0.75, 0.756)}
+    return replace(problem, bounds=type(problem.bounds).of(ends))
+
+
+@pytest.fixture(scope="module")
+def piece(low):
+    mu0 = low.nominal(FRICTION)
+    alone = Piece(friction=(mu0, mu0), slope=0.0, borders=(0.75, 0.756), samples=(1,))
+    return replace(alone, samples=search._samples(low, low.controller, alone))
+
+
+@pytest.fixture(scope="module")
+def numbers(low, piece):
+    return followed(low, low.controller, [piece])
+
+
+def refused(problem, proof):
+    with pytest.raises(Refused) as reason:
+        checker(problem, problem.controller)(proof, Work(PLENTY))
+    return str(reason.value)
+
+
+def test_no_wheel_goes_beyond_the_reference(low, numbers):
+    assert numbers["largest slip"] < low.slip + 0.001
+    assert 0.0 <= numbers["below"] < 0.002
+    assert 0.5 < numbers["supply"] < 1.0
+
+
+def test_simulated_stops_are_enclosed(low, piece, numbers):
+    """Stops of the engine with supply rates in the strip, at the samples and in between."""
+    course = approach.follow(low.controller, low.vehicle, low.rail, _boxes(low, piece), low.speeds[1])
+    enclosed = []
+    for (top, state), _ in zip(course, range(piece.samples[0]), strict=False):
+        slip = state.sliding / state.speed
+        enclosed.append((slip.low[0], slip.high[0], state.torque.low[0], state.torque.high[0], top[0]))
+    for supply in (0.75, 0.753, 0.756):
+        vehicle = replace(low.vehicle, brake=replace(low.vehicle.brake, supply_rate=supply))
+        run = simulate(
+            vehicle, low.controller, Scenario(rail=low.rail, initial_speed=low.speeds[1]), plant="quarter"
+        )
+        slips = np.interp([low.sample_time * (k + 1) for k in range(len(enclosed))], run.time, run.slip[:, 0])
+        for slip, (least, most, *_) in zip(slips, enclosed, strict=True):
+            assert least - 2e-5 <= slip <= most + 2e-5  # traces are interpolated
+        before_end = run.time <= low.sample_time * len(enclosed)
+        assert run.slip[before_end].max() <= numbers["largest slip"]
+
+
+def _boxes(problem, *pieces):
+    from wspd_design.certificates.theorems.slip_band.way_in import _boxes
+
+    return _boxes(problem, [(each, 0) for each in pieces])
+
+
+SHORT = 20  # samples, after which no wheel slides yet
+
+
+def test_proof_is_accepted_and_told(low, piece):
+    proof = write([replace(piece, samples=(SHORT,))])
+    found = checker(low, low.controller)(json.loads(json.dumps(proof)), Work(PLENTY))
+    assert found["friction low"] == found["friction high"] == low.nominal(FRICTION)
+
+
+def test_file_of_a_narrow_domain_is_accepted(low, monkeypatch):
+    nominal = replace(low, bounds=type(low.bounds).of({SUPPLY: (0.75, 0.756)}))
+    monkeypatch.setattr(search, "WIDTHS", ((0.01, 0.01),))
+    monkeypatch.setattr(search, "_corners_hold", lambda *_: True)
+    (found,) = suite.verify(nominal, only=["slip_way_in"], figures=False)
+    assert found.status is Status.PROVED
+    assert "never above 0.1" in found.explanation
+    text = certificate_text(found)
+    assert replay(nominal, text).accepted
+
+
+def told(problem, numbers):
+    """Verdict on what a checker may show."""
+    finding = Finding(status=Status.PROVED, asked="strips", shown="strips", numbers=numbers)
+    return SLIP_WAY_IN.tell(problem, {STRIPS: finding})
+
+
+def test_verdict_says_what_was_shown(low, numbers):
+    whole = dict(zip(("friction low", "friction high"), low.span(FRICTION), strict=True))
+    assert told(low, numbers | whole).status is Status.PROVED
+    part = told(low, numbers | {"friction low": 0.08, "friction high": 0.08})
+    assert part.status is Status.UNDECIDED
+    assert part.explanation.startswith("Shown for mu0 = 0.08 alone.")
+    assert part.margin is None
+    early = told(low, numbers | whole | {"below": 0.05})
+    assert early.status is Status.UNDECIDED
+    assert "not come to its reference" in early.explanation
+
+
+def test_gaps_are_refused(low, piece):
+    narrow = write([replace(piece, borders=(0.751, 0.756))])
+    assert "do not cover" in refused(low, narrow)
+    tilted = write([replace(piece, friction=(0.079, 0.081), slope=1.0)])
+    assert "do not cover" in refused(low, tilted)
+    apart = write([replace(piece, friction=(0.06, 0.07)), replace(piece, friction=(0.0701, 0.1))])
+    assert "do not follow" in refused(low, apart)
+    falling = write([replace(piece, borders=(0.756, 0.75))])
+    assert "do not rise" in refused(low, falling)
+
+
+def test_too_wide_a_strip_is_lost(low, piece):
+    wide = replace(piece, friction=(0.06, 0.1), borders=(0.7, 0.8))
+    assert "lost" in refused(low, write([wide]))
+
+
+def test_end_before_the_reference_does_not_count_as_there(low, piece):
+    early = followed(low, low.controller, [replace(piece, samples=(30,))])
+    assert early["below"] > 0.05
+
+
+def test_another_law_is_noticed(low, monkeypatch):
+    assert computed_law.unlike(low, low.controller) == ""
+    original = approach._pull
+    monkeypatch.setattr(approach, "_pull", lambda error, rate, slew: original(error, rate, 1.001 * slew))
+    assert "computes another" in computed_law.unlike(low, low.controller)
+    proof = write([Piece(friction=(0.08, 0.08), slope=0.0, borders=(0.75, 0.756), samples=(5,))])
+    assert "computes another" in refused(low, proof)
