@@ -58,6 +58,7 @@ class Sets:
     cells: Any  # (cells, numbers, 2)
     matrices: Any  # (cells, windows, 4, 4)
     centers: Any  # (cells, windows, 4)
+    supplies: Any  # (cells, windows), least share of the full pressure [-]
     bands: Any  # (windows, 2): below and above the reference [-]
 
     def window(self, speed):
@@ -88,6 +89,7 @@ def sets_of(problem, proof, numbers):
         cells=np.array(cells, dtype=float),
         matrices=np.array([[each.matrix for each in cell] for cell in found.cells], dtype=float),
         centers=np.array([[each.center for each in cell] for cell in found.cells], dtype=float),
+        supplies=np.array([[each.supply for each in cell] for cell in found.cells], dtype=float),
         bands=np.array(
             [[numbers[f"band {k} {side}"] for side in ("below", "above")] for k in range(len(windows))]
         ),
@@ -296,7 +298,8 @@ def follow(law, sets, runs, *, samples, since):
         now, window = runs.number, sets.window(runs.speed)
         apart = deviations(law, runs) - sets.centers[cells[now], window].T
         size = np.einsum("ik,kij,jk->k", apart, sets.matrices[cells[now], window], apart)
-        inside = size <= 1.0 + 1e-9
+        supplied = 1.0 - np.exp(-runs.plant.supply_rate * (since + k * law.h))
+        inside = (size <= 1.0 + 1e-9) & (seen.entered[now] | (supplied >= sets.supplies[cells[now], window]))
         seen.left[now] |= seen.entered[now] & ~inside
         seen.entered[now] |= inside
         runs, lowest, highest = sampled(law, runs, since + k * law.h)
