@@ -23,7 +23,10 @@ def rows():
     """Cells of the table by check."""
     section = PAGE.read_text(encoding="utf-8").partition("## Which check speaks about the sampled loop")[2]
     table = [line for line in section.partition("\n## ")[0].splitlines() if line.startswith("| `")]
-    return {cells[0].strip("`"): cells[1:] for cells in ([c.strip() for c in line.strip("| ").split(" | ")] for line in table)}
+    return {
+        cells[0].strip("`"): cells[1:]
+        for cells in ([c.strip() for c in line.strip("| ").split(" | ")] for line in table)
+    }
 
 
 @pytest.fixture(scope="module")
@@ -46,31 +49,32 @@ def named(cell):
     return set(LAWS) if cell == "every law" else set(re.findall("`([^`]+)`", cell))
 
 
-def spoken_about(problems, name):
-    return {law for law, problem in problems.items() if not THEOREMS[name].speaks_about(problem)}
-
-
-def differences(table, problems):
-    """Checks whose row names other laws than those that the check speaks about, or that have no row."""
-    return [
-        name
+@pytest.fixture(scope="module")
+def spoken_about(problems):
+    """Laws that each check speaks about."""
+    return {
+        name: {law for law, problem in problems.items() if not THEOREMS[name].speaks_about(problem)}
         for name in SAMPLED
-        if name not in table or named(table[name][0]) != spoken_about(problems, name)
-    ]
+    }
 
 
-def test_each_check_of_the_sampled_loop_has_a_row_and_each_row_its_laws(problems):
+def differences(table, spoken_about):
+    """Checks whose row names other laws than those that the check speaks about, or that have no row."""
+    return [name for name in SAMPLED if name not in table or named(table[name][0]) != spoken_about[name]]
+
+
+def test_each_check_of_the_sampled_loop_has_a_row_and_each_row_its_laws(spoken_about):
     table = rows()
     assert list(table) == SAMPLED
-    assert differences(table, problems) == []
+    assert differences(table, spoken_about) == []
 
 
-def test_wrong_row_and_missing_row_are_seen(problems):
+def test_wrong_row_and_missing_row_are_seen(spoken_about):
     """Plant the fault: a law too many, and a check that the page forgets."""
     table = rows()
     wrong = table | {"margins": ["`smc`, `observer-smc`", *table["margins"][1:]]}
-    assert differences(wrong, problems) == ["margins"]
-    assert differences({k: v for k, v in table.items() if k != "slip_band"}, problems) == ["slip_band"]
+    assert differences(wrong, spoken_about) == ["margins"]
+    assert differences({k: v for k, v in table.items() if k != "slip_band"}, spoken_about) == ["slip_band"]
 
 
 def test_what_varies_is_what_the_claims_vary(problems):
@@ -78,7 +82,9 @@ def test_what_varies_is_what_the_claims_vary(problems):
         problem = problems[next(law for law in LAWS if law in named(cells[0]))]
         wanted = asked(THEOREMS[name], problem)
         assert isinstance(wanted, tuple)
-        varied = told(THEOREMS[name], problem, {each.key: each.decide(Stated(), Work()) for each in wanted}).varied
+        varied = told(
+            THEOREMS[name], problem, {each.key: each.decide(Stated(), Work()) for each in wanted}
+        ).varied
         if cells[2] == "nothing":
             assert varied == (), name
         elif cells[2] == BOX:
@@ -97,5 +103,7 @@ def test_a_check_that_says_again_what_another_says_tells_so(problems):
     for law in ("smc", "afsmc", "torque-feedback"):
         theorem = THEOREMS["traced_loop"]
         wanted = asked(theorem, problems[law])
-        claim = told(theorem, problems[law], {each.key: each.decide(Stated(), Work()) for each in wanted}).claim
+        claim = told(
+            theorem, problems[law], {each.key: each.decide(Stated(), Work()) for each in wanted}
+        ).claim
         assert "That is what margins says of the sampled linear form of this law" in claim

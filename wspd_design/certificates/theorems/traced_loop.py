@@ -156,7 +156,9 @@ def _said_before(problem: Problem) -> str:
     """Say what this adds to the margins of a law whose linear form is known."""
     if linear_law(problem):
         return ""
-    return " That is what margins says of the sampled linear form of this law, found again from the step alone."
+    return (
+        " That is what margins says of the sampled linear form of this law, found again from the step alone."
+    )
 
 
 def _kept(resting: list[Rest]) -> tuple[str, ...]:

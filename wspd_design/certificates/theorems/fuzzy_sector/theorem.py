@@ -95,7 +95,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         claim=f"Whatever the wheel does, {weights.asked}. Inside the layer, once the weights have faded and but for "
         f"the least pulse, small deviations from slip {problem.slip:g} die out with the numbers of the loop frozen at "
-        f"any speed from {high:.3g} down to {low:.3g} km/h, sampled every {problem.sample_time * 1e3:g} ms. On {within.text}.",
+        f"any speed from {high:.3g} down to {low:.3g} km/h, sampled every {problem.sample_time * 1e3:g} ms. "
+        f"On {within.text}.",
         status=status,
         explanation=f"{_weights(problem, weights)} {_deviations(courses, loop)}",
         margin=Range(low=1.0 - courses.numbers["contraction"], high=None, unit="per sample")
