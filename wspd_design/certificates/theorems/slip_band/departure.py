@@ -129,7 +129,9 @@ def lock(problem: Problem, place: Place) -> dict[str, float]:
     """When and at which speed a wheel first locks after a start at the reference; empty if none does in the range."""
     import numpy as np
 
-    if not isinstance(problem.controller, Protection):  # how the observers of another law have settled is not known
+    if not isinstance(
+        problem.controller, Protection
+    ):  # how the observers of another law have settled is not known
         return {}
     at = settled_stop(problem, place)
     scenario = Scenario(rail=at.rail, initial_speed=place["speed"], start=at.start)
