@@ -74,6 +74,6 @@ def reference_text(law: BandLaw) -> str:
     if not law.slip_error:
         return own
     return (
-        f"any reference slip that stays within {float(law.slip_error):g} of {own} and moves beside it no faster than by "
-        f"{float(law.slip_drift):g} m/s2 over the train speed"
+        f"any reference slip that stays within {float(law.slip_error):g} of {own} and moves beside it no faster than "
+        f"by {float(law.slip_drift):g} m/s2 over the train speed"
     )
