@@ -38,7 +38,8 @@ if TYPE_CHECKING:
     from wspd_design.simulation.draws import Choice, Draw, Normal, Uniform, within_bounds
     from wspd_design.simulation.ideal import ideal_stop
     from wspd_design.simulation.metrics import Metrics
-    from wspd_design.simulation.records import Ending, Fault, Patch, Run, Scenario, Sensing, Start
+    from wspd_design.simulation.records import Fault, Patch, Scenario, Sensing, Start
+    from wspd_design.simulation.runs import Ending, Run
     from wspd_design.simulation.stop import simulate
     from wspd_design.simulation.trace_table import Traces
     from wspd_design.studies.dossier import dossier
@@ -56,7 +57,7 @@ _HOME = {
     "Controller": "controllers.protocol",
     "Design": "design.records",
     "Draw": "simulation.draws",
-    "Ending": "simulation.records",
+    "Ending": "simulation.runs",
     "Fault": "simulation.records",
     "Gain": "design.records",
     "Linearization": "analysis.linearization",
@@ -66,7 +67,7 @@ _HOME = {
     "Patch": "simulation.records",
     "Problem": "certificates.records",
     "Rail": "parameters.records",
-    "Run": "simulation.records",
+    "Run": "simulation.runs",
     "Scenario": "simulation.records",
     "Sensing": "simulation.records",
     "Specification": "design.records",

@@ -18,7 +18,8 @@ from wspd_design.exchange.study_forms import LINEARIZATION
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.comparison import trial
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 
 SLOW = ("--speed", "20 km/h")
 

@@ -135,7 +135,7 @@ def own(tmp_path):
 @pytest.fixture
 def page_file(tmp_path):
     texts = [text for kind, text in BLOCKS if kind == "python"]
-    for name, text in zip(("slip_band.py", "fastest.py"), texts, strict=True):
+    for name, text in zip(("slip_band.py", "fastest.py", "pull.py"), texts, strict=True):
         (tmp_path / name).write_text(text)
 
 
@@ -148,7 +148,7 @@ def test_the_page_shows_what_comes_out(wspd):
         if kind == "console"
         for part in re.split(r"^\$ wspd ", text, flags=re.MULTILINE)[1:]
     ]
-    assert len(commands) == 6
+    assert len(commands) == 7
     for command, expected in commands:
         outcome = wspd(*shlex.split(command))
         assert (outcome.code, outcome.err) == (0, "")

@@ -15,7 +15,8 @@ from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.parameters.records import Rail
 from wspd_design.simulation.ideal import ideal_stop
-from wspd_design.simulation.records import Ending, Scenario, Sensing
+from wspd_design.simulation.records import Scenario, Sensing
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
 CONTROLLERS = ("afsmc", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")

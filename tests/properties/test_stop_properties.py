@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from wspd_design.parameters.loading import constants, load_rail
 from wspd_design.parameters.records import Rail
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
 CONTROLLERS = ("afsmc", "afsmc-repaired", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from wspd_design.exchange.forms import Form
 from wspd_design.exchange.vocabulary import WITH_SCHEMA
 from wspd_design.parameters.versions import OUTDATED
 
@@ -36,3 +37,22 @@ def test_everything_outdated_stands_on_the_page(outdated):
     ]
     said = [row for row in rows if outdated.instead.partition(" with")[0] in row]
     assert said
+
+
+def paths(form, prefix=""):
+    """Return the keys of a form and of the forms in it, as the page writes them."""
+    for key in form.keys:
+        yield prefix + key.name
+        if isinstance(key.kind, Form):
+            yield from paths(key.kind, f"{prefix}{key.name}{'[]' if key.many else ''}.")
+
+
+def test_keys_of_the_first_form_of_a_stop_are_led_to_those_of_the_present_one():
+    (stop,) = (form for form in WITH_SCHEMA if form.schema == "wspd-stop/2")
+    present = set(paths(stop))
+    _, _, table = PAGE.partition("| key of `wspd-stop/1` | in `wspd-stop/2` |")
+    rows = [line.split(" | ") for line in table.partition("\n\n")[0].splitlines() if line.startswith("| `")]
+    assert len(rows) == 5
+    for old, new in rows:
+        assert not present & set(re.findall(r"`([^`]+)`", old)), old
+        assert re.findall(r"`([^`]+)`", new)[0] in present, new

@@ -7,7 +7,8 @@ import pytest
 from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.parameters.loading import available, load_entries, load_rail, load_vehicle
 from wspd_design.simulation.comparison import trial
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.new_vehicle import RATED_SPEEDS, derived_entries, wanted_like
 
 PRESETS = ("co-co", "coach", "freight-wagon", "metro", "two-axle-wagon")

@@ -3,15 +3,21 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.fingerprint import model_hash
+from wspd_design.certificates.theorems.slip_band.departure import settled_stop
+from wspd_design.certificates.theorems.slip_band.statement import NAMES
 from wspd_design.certificates.witness import Witness, plant_at, read_witness, start_at
 from wspd_design.cli.console import console
+from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.protocol import Law
 from wspd_design.design.case import Case
 from wspd_design.design.certification import problem_of_case, read_certificate_file
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.units import KMH
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.start import leaving_time
 
 LEFT = 0.05
@@ -25,6 +31,8 @@ class WitnessStart:
     witness: Witness
     vehicle: Vehicle
     rail: Rail
+    controller: Law
+    settled: bool  # whether the controller begins as if it had held the slip for long
     scenario: Scenario
     holding_torque: float  # N m per wheelset, whether the brake has it or not
     same_problem: bool  # whether the certificate is about the same numbers as the case
@@ -71,6 +79,8 @@ def check_words(*, named: bool, speed: str | None, axle_rails: str | None, draws
 def witness_start(case: Case, stop: Scenario, witness: Witness) -> WitnessStart:
     """Put a case at a witness: the controller stays what it is, vehicle and rail take the numbers of the point.
 
+    What a band of slip fails at is a stop that begins with its observers settled: there the controller begins so, too.
+
     Parameters
     ----------
     case : Case
@@ -83,14 +93,27 @@ def witness_start(case: Case, stop: Scenario, witness: Witness) -> WitnessStart:
     problem = problem_of_case(case)
     vehicle, rail = plant_at(problem, witness)
     start, holding = start_at(witness, vehicle, rail, grade=stop.grade)
+    controller, same = case.controller, witness.model_hash == model_hash(problem)
+    settled = same and stop.grade == 0.0 and _begins_settled(problem, witness)
+    if settled:
+        at = settled_stop(problem, {**witness.numbers, "speed": witness.speed})
+        controller, start, holding = at.law, at.start, at.holding
     return WitnessStart(
         witness=witness,
         vehicle=vehicle,
         rail=rail,
+        controller=controller,
+        settled=settled,
         scenario=replace(stop, rail=rail, initial_speed=witness.speed, start=start),
         holding_torque=holding,
-        same_problem=witness.model_hash == model_hash(problem),
+        same_problem=same,
     )
+
+
+def _begins_settled(problem: Problem, witness: Witness) -> bool:
+    """Whether the witness is that of a band of slip, with all numbers that such a stop takes."""
+    named = witness.numbers.keys() >= set(NAMES)
+    return witness.check == "slip_band" and isinstance(problem.controller, Protection) and named
 
 
 def show_start(made: WitnessStart) -> None:
@@ -100,7 +123,8 @@ def show_start(made: WitnessStart) -> None:
         f"From the witness of {witness.check}, {witness.status.name}: slip {start.slip:.4g}, "
         f"{witness.speed * KMH:.4g} km/h, mass {made.vehicle.mass:.0f} kg, "
         f"wheelset inertia {made.vehicle.wheelset_inertia:.4g} kg m2, mu0 {made.rail.mu0:.4g}, full supply, and "
-        f"{start.torque / 1e3:.4g} kN m per wheelset{_reason(made)}.",
+        f"{start.torque / 1e3:.4g} kN m per wheelset{_reason(made)}."
+        + (" Observers and filters have settled there." if made.settled else ""),
         markup=False,
     )
     if not made.same_problem:

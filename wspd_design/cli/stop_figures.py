@@ -10,8 +10,9 @@ from wspd_design.reporting.stop_rows import stop_rows
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import disturbances_of, held_slip, rails_of
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.released import released_sentence
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.self_check import StepCheck
 
 SENSITIVE = "sensitive: a change of the initial speed that nobody can measure moves the result"

@@ -3,7 +3,7 @@
 from wspd_design.certificates.records import Status
 from wspd_design.exchange.forms import Key
 from wspd_design.plants.names import PLANTS
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 
 ANY, PAIR = (0, None), (2, 2)
 STATUSES = tuple(status.name for status in Status)

@@ -12,7 +12,7 @@ from wspd_design.design.records import Design, Specification
 from wspd_design.exchange.stop_forms import STOP
 from wspd_design.exchange.study_forms import BRAKE
 from wspd_design.exchange.version import program_version
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.law_memory import reference_range
 from wspd_design.simulation.records import Fault, Scenario

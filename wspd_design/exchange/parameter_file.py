@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.parameters.units import factor, to_si
 
 _DIGITS = 12  # that people read; a number that needs more gets all that it has

@@ -13,8 +13,8 @@ from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.metrics import Metrics
-from wspd_design.simulation.records import Ending, Run
 from wspd_design.simulation.released import released_sentence
+from wspd_design.simulation.runs import Ending, Run
 from wspd_design.simulation.trace_table import Traces
 
 _FIGURES: tuple[Column[FigureRow], ...] = (

@@ -5,7 +5,8 @@ from functools import cache
 
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries, uniform_rails
-from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
+from wspd_design.parameters.provenance import ParameterSet
+from wspd_design.parameters.records import Rail, Vehicle
 
 
 def check_heights(vehicle: Vehicle) -> None:

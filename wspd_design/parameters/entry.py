@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.parameters.schema import Quantity
 from wspd_design.parameters.units import dimension_of, nearest_unit, split_quantity, to_si, units_of
 from wspd_design.parameters.words import did_you_mean

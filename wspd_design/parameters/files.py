@@ -17,7 +17,7 @@ from typing import Any
 from wspd_design.parameters.entry import entry_of, quoted
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.laden import LADEN, laden
-from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.provenance import Entry, ParameterSet
 from wspd_design.parameters.schema import CONSTANTS_SCHEMAS, Kind, Schema, schema_of
 from wspd_design.parameters.units import units_of
 from wspd_design.parameters.words import did_you_mean, remedy_for

@@ -7,7 +7,8 @@ from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available, load_entries
 from wspd_design.parameters.laden import LADEN
-from wspd_design.parameters.records import Entry, ParameterSet, Rail, Vehicle
+from wspd_design.parameters.provenance import Entry, ParameterSet
+from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.schema import Kind, Quantity, schema_of
 from wspd_design.parameters.units import units_of
 

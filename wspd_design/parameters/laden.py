@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.provenance import Entry, ParameterSet
 
 LADEN = ":laden"
 """After the name or path of a vehicle."""

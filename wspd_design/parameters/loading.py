@@ -27,6 +27,7 @@ from wspd_design.parameters.files import (
 )
 from wspd_design.parameters.gear import contradiction, masses_contradict
 from wspd_design.parameters.laden import LADEN
+from wspd_design.parameters.provenance import ParameterSet, Source
 from wspd_design.parameters.records import (
     Brake,
     Constants,
@@ -36,10 +37,8 @@ from wspd_design.parameters.records import (
     MitsubishiTable,
     Pads,
     PaperGains,
-    ParameterSet,
     Rail,
     RailProfile,
-    Source,
     SpectrumCoefficients,
     Steel,
     TrackBrake,

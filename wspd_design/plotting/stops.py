@@ -25,13 +25,13 @@ from wspd_design.reporting.figures.stop import (
 )
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.law_memory import speed_estimate
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 _BAR = 1e5  # Pa
 _ROOM = 1.15  # above the largest slip

@@ -6,14 +6,14 @@ from datetime import datetime
 from pathlib import PurePath
 
 from wspd_design.parameters.files import available, data_text
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.parameters.schema import Kind
 from wspd_design.reporting.blocks import Attachment
 from wspd_design.reporting.record import report_record
 from wspd_design.reporting.sections.checks import certificate_files
 from wspd_design.reporting.sections.robustness import what_fails
 from wspd_design.reporting.template import BLANK, Template, template_text
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.traces import on_a_grid, trace_name, traces
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.uncertainty import Uncertainty

@@ -1,6 +1,6 @@
 """A brake in words, from the entries of its vehicle."""
 
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.reporting.text import Text
 
 

@@ -13,7 +13,7 @@ from wspd_design.reporting.requirement_words import against_limit, figure, margi
 from wspd_design.reporting.spreads import words_of
 from wspd_design.reporting.yardsticks import ideal_distance
 from wspd_design.simulation.description import disturbances_of, rails_of
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.judgment import Requirement
 from wspd_design.studies.next_step import Alternative, NextStep

@@ -1,6 +1,6 @@
 """Pads, electrodynamic brake and track brake of a vehicle file in words, where it has them."""
 
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.reporting import numbers
 
 

@@ -1,6 +1,6 @@
 """The running gear of a vehicle file in words."""
 
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.reporting import numbers
 
 

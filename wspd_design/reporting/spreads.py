@@ -2,7 +2,7 @@
 
 import math
 
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.reporting import numbers
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.key_figures import KEY_FIGURES, KeyFigure

@@ -8,7 +8,7 @@ from wspd_design.certificates.theorems.shortest_stop.stop_bound import DISTANCE,
 from wspd_design.reporting import numbers
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
 from wspd_design.simulation.metrics import Metrics
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -249,6 +249,19 @@ def simulate_many(
     )
 
 
+def whole(campaign: Campaign) -> Campaign:
+    """Return a campaign that has all its stops, for answers that a part of them does not give.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        The one that ended the campaign early, which it had kept to itself.
+    """
+    if not campaign.complete:
+        raise KeyboardInterrupt
+    return campaign
+
+
 def chunks(first: int, count: int) -> list[tuple[int, int]]:
     """Return first run and number of runs of every chunk: pieces between multiples of ``CHUNK``."""
     end = first + count

@@ -11,7 +11,8 @@ from wspd_design.parameters.later import later
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.metrics import Metrics, metrics
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.self_check import StepCheck, simulate_checked
 from wspd_design.simulation.taken import check_several, check_stop
 
@@ -51,28 +52,11 @@ class Trial:
         table: Table = later("notebook.stops", "trial_table")(self)
         return table
 
-    def plot(self, what: str = "slip", *, ax: "Axes | None" = None) -> "Axes":
-        """Plot a trace of every wheelset over time.
-
-        Parameters
-        ----------
-        what : {"slip", "speed", "torque", "pressure", "load", "valve", "estimate"}
-            Which trace; an estimate is the train speed that a law works out, beside the true one.
-        ax : Axes, optional
-            Where to draw; new axes by default.
-
-        Returns
-        -------
-        Axes
-            With units at both axes; nothing is shown or saved.
-
-        Raises
-        ------
-        UserError
-            If there is no such trace.
-        """
+    def plot(self, what: str = "slip", *, ax: "Axes | None" = None) -> "Axes":  # noqa: D102 - that of a run
         axes: Axes = later("plotting.stops", "plot_trial")(self, what, ax=ax)
         return axes
+
+    plot.__doc__ = Run.plot.__doc__
 
 
 class Comparison(tuple[Trial, ...]):

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from wspd_design.simulation.law_memory import reference_range
-from wspd_design.simulation.records import Fault, Run, Scenario
+from wspd_design.simulation.records import Fault, Scenario
+from wspd_design.simulation.runs import Run
 
 _FEW = 3  # changes of rail that are told one by one
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.gear import gear_of
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.parameters.schema import Kind, schema_of
 from wspd_design.parameters.taken import check_record
 from wspd_design.plants.protocol import PLANAR_NUMBERS, CoupledPlant, Plant, is_coupled

@@ -14,7 +14,8 @@ from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.ideal import ideal_run
 from wspd_design.simulation.law_memory import slip_references
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     import numpy as np

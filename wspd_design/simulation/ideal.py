@@ -22,8 +22,9 @@ from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.loop_input import loop_input
 from wspd_design.simulation.peak import best_slips, log_speeds
-from wspd_design.simulation.records import Ending, Run, Scenario, Start
+from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.runaway import runs_away
+from wspd_design.simulation.runs import Ending, Run
 from wspd_design.simulation.stop import run_loop, run_record, traced
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from wspd_design.codegen.loop_numbers import DISTANCE_TOLERANCE, ERROR_SPEED
 from wspd_design.controllers.protocol import TRAIN_SPEED, slip_reference_name
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 _RELEASED = "released_{}"  # 1 while a wheelset is vented so that its speed shows that of the train
 

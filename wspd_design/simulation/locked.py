@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     import numpy as np

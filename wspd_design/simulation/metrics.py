@@ -17,8 +17,9 @@ from wspd_design.simulation.held_slip import build_up, held_slip_of, perfect_hol
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.law_memory import rms_about_references
 from wspd_design.simulation.peak import peak_adhesion
-from wspd_design.simulation.records import Ending, Run, Scenario, Start
+from wspd_design.simulation.records import Scenario, Start
 from wspd_design.simulation.released import released_below
+from wspd_design.simulation.runs import Ending, Run
 
 if TYPE_CHECKING:
     from wspd_design.parameters.table import Table

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.peak import peak_adhesion
-from wspd_design.simulation.records import Ending, Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending, Run
 
 SHARE = 0.1  # of what brake and rail give, below which a brake is as good as released
 SHORTEST = 1.0  # s, to the end of the run

@@ -13,7 +13,8 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.stop import simulate_on
 
 DISTANCE_TOLERANCE = 1e-6  # relative

@@ -8,7 +8,7 @@ from wspd_design.model.generated import motion
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Brake, Rail, Vehicle
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 _FULL = 40.0  # time constants of the supply (8), after which it lacks less than the last digit of a float
 

@@ -25,15 +25,16 @@ from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT, plant_of
 from wspd_design.plants.protocol import Plant, is_coupled
 from wspd_design.simulation.loop_input import RECORD_INTERVAL, first_slip, loop_input, sample_rows
-from wspd_design.simulation.records import Ending, Run, Sample, Scenario, Totals
+from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.runaway import runs_away
+from wspd_design.simulation.runs import Ending, Run, Sample, Totals
 from wspd_design.simulation.taken import check_stop
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 
 def simulate(

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.controllers.protocol import TRAIN_SPEED
 from wspd_design.parameters.errors import UserError
-from wspd_design.simulation.records import Run, Sample
+from wspd_design.simulation.runs import Run, Sample
 from wspd_design.simulation.trace_table import Traces
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 MOST_ROWS = 10_000_000
 _SLACK = 1e-9  # s, by which a time on a grid may lie before its sample

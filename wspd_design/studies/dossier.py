@@ -30,13 +30,15 @@ from wspd_design.parameters.files import available, beside, load_entries
 from wspd_design.parameters.given import given_entries
 from wspd_design.parameters.laden import laden
 from wspd_design.parameters.loading import load_rail, load_vehicle, vehicle_of
-from wspd_design.parameters.records import ParameterSet, Rail, Vehicle
+from wspd_design.parameters.provenance import ParameterSet
+from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.schema import PRESETS, Kind
 from wspd_design.parameters.taken import check_record
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, compare
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.taken import check_law
 from wspd_design.studies.faults import Robustness, robustness
 from wspd_design.studies.inputs import design_input, law_inputs, parameter_inputs, python_input, side_by_side

@@ -14,7 +14,8 @@ from wspd_design.plants.quarter import Quarter
 from wspd_design.simulation.locked import locked
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.peak import peak_adhesion
-from wspd_design.simulation.records import FAULT_KINDS, Ending, Fault, Patch, Run, Scenario
+from wspd_design.simulation.records import FAULT_KINDS, Fault, Patch, Scenario
+from wspd_design.simulation.runs import Ending, Run
 from wspd_design.simulation.stop import simulate
 
 if TYPE_CHECKING:

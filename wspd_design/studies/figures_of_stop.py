@@ -5,7 +5,7 @@ import math
 from wspd_design.design.criteria import CRITERIA
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Ending, Run
+from wspd_design.simulation.runs import Ending, Run
 
 SHARE = 0.1  # of the torque that a wheelset holds, below which it hardly brakes
 

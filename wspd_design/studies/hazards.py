@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.simulation.comparison import Trial
 from wspd_design.studies.faults import FaultedStop, Robustness
 from wspd_design.studies.figures_of_stop import longest_release

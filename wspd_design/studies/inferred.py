@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.plants.multibody.records import Multibody
 
 INFERRED = ("derived", "calibrated", "assumed")

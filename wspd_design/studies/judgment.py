@@ -15,7 +15,7 @@ from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.figures_of_stop import figures_of_stop
 from wspd_design.studies.loop_growth import Growth, speaking
 

@@ -10,7 +10,7 @@ from wspd_design.controllers.protocol import Law
 from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE, Cases
 from wspd_design.simulation.campaign_rows import figures_of, ideal_distances
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 
 if TYPE_CHECKING:
     import numpy as np

@@ -10,7 +10,8 @@ from wspd_design.controllers.observers.wheel_filter import WheelFilter
 from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.records import Vehicle
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.stop import simulate
 
 _NEVER = 1e9  # of the slip speed: no train speed becomes so uncertain

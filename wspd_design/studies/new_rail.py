@@ -11,7 +11,8 @@ from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import uniform_rails
 from wspd_design.parameters.loading import load_rail
-from wspd_design.parameters.records import Contact, Entry, Rail, Vehicle
+from wspd_design.parameters.provenance import Entry
+from wspd_design.parameters.records import Contact, Rail, Vehicle
 from wspd_design.simulation.peak import peak_adhesion
 
 NUMBERS = ("mu0", "friction_ratio", "friction_decay", "adhesion_reduction", "slip_reduction")

@@ -12,7 +12,8 @@ from wspd_design.analysis.stopping import full_adhesion_stop
 from wspd_design.model.hertz import contact_from_radii
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants, load_entries, load_vehicle, steel, vehicle_of
-from wspd_design.parameters.records import Entry, ParameterSet, Vehicle
+from wspd_design.parameters.provenance import Entry, ParameterSet
+from wspd_design.parameters.records import Vehicle
 from wspd_design.parameters.schema import BuildUp
 from wspd_design.parameters.units import KMH
 from wspd_design.studies.new_vehicle_numbers import ANSWER, ruled, stated, taken

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.parameters.units import factor, to_si
 
 RULE, ANSWER = "wspd new vehicle", "own answer"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import Metrics
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 from wspd_design.studies.faults import longest_locks
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from wspd_design.controllers.protocol import Law
 from wspd_design.parameters.bounds import Ends
 from wspd_design.plants.protocol import Plant
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate_on
 from wspd_design.studies.rung import axle_figures
 

@@ -10,11 +10,12 @@ from wspd_design.controllers.offers import slip_reference_of
 from wspd_design.controllers.protocol import Law
 from wspd_design.design.judging import threads
 from wspd_design.parameters.bounds import Ends
-from wspd_design.parameters.records import ParameterSet, Vehicle
+from wspd_design.parameters.provenance import ParameterSet
+from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import plant_of
 from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.batch import STOPS_SIDE_BY_SIDE
-from wspd_design.simulation.campaign import simulate_many
+from wspd_design.simulation.campaign import simulate_many, whole
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.draws import Choice, Deck, Draw, within_bounds_of_stop
 from wspd_design.simulation.records import Scenario
@@ -172,9 +173,7 @@ def uncertainty(
         return None
     bounds = {f"{each.kind}.{name}": ends for each in parameters for name, ends in each.bounds.items()}
     progress(f"uncertainty: {sets} drawn sets")
-    campaign = simulate_many(vehicle, law, scenario, count=sets, draws=draws, plant=plant)
-    if not campaign.complete:  # a part of the sets is no answer
-        raise KeyboardInterrupt
+    campaign = whole(simulate_many(vehicle, law, scenario, count=sets, draws=draws, plant=plant))
     table = campaign.table
     checked = table["step_distance_change"][~np.isnan(table["step_distance_change"])]
     basis = _Basis(

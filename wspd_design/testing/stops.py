@@ -9,7 +9,7 @@ from wspd_design.design.records import Design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import load_entries
 from wspd_design.parameters.units import Dimension, parse_quantity
-from wspd_design.simulation.campaign import Campaign, simulate_many
+from wspd_design.simulation.campaign import Campaign, simulate_many, whole
 from wspd_design.simulation.draws import within_bounds_of_stop
 from wspd_design.simulation.records import Scenario
 from wspd_design.testing.running import located, record
@@ -118,9 +118,7 @@ def _simulated(
     files = load_entries("vehicle", case.vehicle_name), load_entries("rail", case.rail_name)
     draws = within_bounds_of_stop(scenario, files)
     campaign = simulate_many(case.vehicle, case.controller, scenario, count=runs, draws=draws)
-    if not campaign.complete:
-        raise KeyboardInterrupt
-    return limits, case, campaign
+    return limits, case, whole(campaign)
 
 
 def _missed(campaign: Campaign, locks: "NDArray[Any]", limits: _Limits) -> list[int]:

@@ -411,7 +411,9 @@ def told(seen, sets):
 
 def main(arguments):
     """Attack the certificate of a design; 1 if a run left what was proved."""
-    parser = argparse.ArgumentParser(prog="python -m tests.certificates.band.band_attack", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.certificates.band.band_attack", description=__doc__
+    )
     parser.add_argument("design", type=Path)
     parser.add_argument("certificate", type=Path)
     parser.add_argument("--starts", type=int, default=100_000, help="on the boundary of the ellipsoids")

@@ -12,6 +12,7 @@ from tests.certificates.band.conftest import LOCO, problem_of
 from tests.certificates.round_trip import keep, no_word_can_be_changed, refused
 from wspd_design.certificates.checks.region import slip_band
 from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search.slip_band.search import Failed
@@ -19,7 +20,10 @@ from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.band import CELLS, DEPARTURE, SLIP_BAND
 from wspd_design.certificates.theorems.slip_band import departure
 from wspd_design.certificates.theorems.slip_band.statement import NAMES
-from wspd_design.design.problem import stability_problem
+from wspd_design.certificates.witness import read_witness
+from wspd_design.cli import from_witness
+from wspd_design.design.case import Case
+from wspd_design.design.certification import problem_of_case
 from wspd_design.simulation.stop import simulate
 
 PLENTY = 10**9
@@ -32,15 +36,26 @@ def dry():
 
 
 @pytest.fixture(scope="module")
-def euro():
+def euro_case():
     """The shipped rules at 100 ms on a rail where the friction falls fast."""
     rail = wd.load_rail("eurosprinter127")
     specification = wd.Specification(sample_time=0.1, reference="constant", speeds=(10.0 / 3.6, 120.0 / 3.6))
     law = wd.design_controller(LOCO, rail, specification, law="observer-smc").build(LOCO, rail)
     tracking = replace(law.core.tracking, dead_band=0.0)
-    return stability_problem(
-        LOCO, rail, replace(law, core=replace(law.core, tracking=tracking)), specification
+    return Case(
+        vehicle=LOCO,
+        rail=rail,
+        controller=replace(law, core=replace(law.core, tracking=tracking)),
+        specification=specification,
+        design=None,
+        vehicle_name="er24pc",
+        rail_name="eurosprinter127",
     )
+
+
+@pytest.fixture(scope="module")
+def euro(euro_case):
+    return problem_of_case(euro_case)
 
 
 @pytest.fixture
@@ -95,7 +110,7 @@ def test_the_brake_is_the_limit_on_a_dry_rail(dry):
 
 
 @pytest.mark.usefixtures("no_ellipsoids")
-def test_wheels_lock_from_the_reference(euro, monkeypatch):
+def test_wheels_lock_from_the_reference(euro, euro_case, monkeypatch):
     every = list(departure.corners(euro))
     speed = math.sqrt(euro.speeds[0] * euro.speeds[1])
     # The nominal numbers and the first two corners that lock suffice here; the whole search takes some seconds.
@@ -107,6 +122,32 @@ def test_wheels_lock_from_the_reference(euro, monkeypatch):
     assert "has locked wheels" in found.explanation
     assert found.findings[DEPARTURE].stated.place == {**locking[0], "speed": speed}
     assert found.findings[DEPARTURE].numbers["lock speed"] >= euro.speeds[0]
+    assert first_lock(euro_case, found) == pytest.approx(
+        found.findings[DEPARTURE].numbers["lock time"], rel=1e-6
+    )
+    # A controller that has to find the state out first is another stop; so is one about other numbers.
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(from_witness, "_begins_settled", lambda *_: False)
+        assert first_lock(euro_case, found) != pytest.approx(
+            found.findings[DEPARTURE].numbers["lock time"], rel=1e-3
+        )
+    other = replace(euro_case, vehicle=replace(LOCO, wheelset_inertia=700.0))
+    assert not from_witness.witness_start(
+        other, wd.Scenario(rail=other.rail, initial_speed=20.0), witness_of(found)
+    ).settled
+
+
+def witness_of(certificate):
+    return read_witness(certificate_text(certificate), "w.json")
+
+
+def first_lock(case, certificate):
+    """When a wheel first locks in the stop that ``wspd simulate --from-witness`` shows [s]."""
+    made = from_witness.witness_start(
+        case, wd.Scenario(rail=case.rail, initial_speed=20.0), witness_of(certificate)
+    )
+    run = simulate(made.vehicle, made.controller, made.scenario, plant="quarter")
+    return run.time[np.flatnonzero(run.wheel_speed[:, 0] <= 0.0)[0]]
 
 
 def test_a_place_that_denies_nothing_is_refused(dry, euro):
@@ -138,14 +179,14 @@ def test_the_start_is_settled():
     )
     place = {**worn, "speed": 25.0}
     runs = []
-    original = departure._Settled
+    original = departure.Settled
 
     def unsettled(*, law, **_numbers):
         return law
 
     for kind in (original, unsettled):
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(departure, "_Settled", kind)
+            patch.setattr(departure, "Settled", kind)
             patch.setattr(departure, "simulate", lambda *a, **k: runs.append(simulate(*a, **k)) or runs[-1])
             assert departure.lock(problem, place) == {}
     vehicle, _ = plant_with(problem, {name: place[name] for name in NAMES})

@@ -7,7 +7,8 @@ import pytest
 from wspd_design.controllers.protocol import Measurement
 from wspd_design.controllers.torque_feedback import holding_torque
 from wspd_design.model.slip import slip_dynamics
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
 

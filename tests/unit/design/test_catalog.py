@@ -14,7 +14,8 @@ from wspd_design.design.selection import design_controller, named_design
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail, load_vehicle
 from wspd_design.simulation.metrics import energy_residual, momentum_residual
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
 DESIGNED = tuple(family.name for family in designed() if family.name != "afsmc")

@@ -19,7 +19,8 @@ from wspd_design.design.selection import RULES, GainRules, design_controller
 from wspd_design.model.number import clip
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_rail
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
 

@@ -15,6 +15,7 @@ from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.fingerprint import fingerprint
 from wspd_design.parameters.loading import constants, load_rail, load_vehicle
+from wspd_design.parameters.records import Brake, Contact, DynamicBrake, Pads, Rail, TrackBrake, Vehicle
 
 
 class Colour(Enum):
@@ -148,3 +149,8 @@ def test_a_vehicle_without_something_has_the_fingerprint_of_before_it_was_known(
     unlike = replace(er24pc, brake=replace(er24pc.brake, axle_shares=(1.0, 0.0, 1.0, 1.0)))
     assert fingerprint(unlike) != plain
     assert fingerprint(replace(er24pc, bounds=EXACT)) != plain  # bounds count always
+
+
+@pytest.mark.parametrize("kind", [Brake, Contact, DynamicBrake, Pads, Rail, TrackBrake, Vehicle])
+def test_records_in_hashes_of_designs_stay_where_they_are(kind):
+    assert kind.__module__ == "wspd_design.parameters.records"  # elsewhere every design of a user is outdated

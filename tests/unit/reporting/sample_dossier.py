@@ -17,7 +17,8 @@ from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.draws import Choice, Draw
 from wspd_design.simulation.metrics import Metrics
-from wspd_design.simulation.records import Ending, Fault, Run, Sample, Scenario, Totals
+from wspd_design.simulation.records import Fault, Scenario
+from wspd_design.simulation.runs import Ending, Run, Sample, Totals
 from wspd_design.simulation.self_check import StepCheck
 from wspd_design.studies.dossier import Dossier, PhasePlane
 from wspd_design.studies.faults import FaultedStop, Robustness

@@ -27,7 +27,8 @@ from wspd_design.reporting.record import report_record
 from wspd_design.reporting.report import report_document, write_report
 from wspd_design.reporting.sections.comparison import comparison
 from wspd_design.reporting.text import Link, plain
-from wspd_design.simulation.records import FAULT_KINDS, Ending
+from wspd_design.simulation.records import FAULT_KINDS
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.paper.published import load_table10
 
 pytestmark = pytest.mark.usefixtures("blank_figures")

@@ -26,7 +26,8 @@ from wspd_design.reporting.blocks import Cell, Definitions, KeyNumbers, Table
 from wspd_design.reporting.blocks import Status as Shown
 from wspd_design.reporting.sections.summary import summary, verdict
 from wspd_design.reporting.text import Link, plain
-from wspd_design.simulation.records import Ending, Sensing
+from wspd_design.simulation.records import Sensing
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.judgment import Outcome
 from wspd_design.studies.loop_growth import Growth
 from wspd_design.studies.next_step import Alternative, NextStep

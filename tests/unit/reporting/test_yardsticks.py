@@ -17,7 +17,8 @@ from wspd_design.reporting.sections.summary import summary
 from wspd_design.reporting.text import plain
 from wspd_design.reporting.yardsticks import proved_bound
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
-from wspd_design.simulation.records import Ending, Patch, Sensing
+from wspd_design.simulation.records import Patch, Sensing
+from wspd_design.simulation.runs import Ending
 
 pytestmark = pytest.mark.usefixtures("blank_figures")
 

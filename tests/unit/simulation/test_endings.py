@@ -15,8 +15,9 @@ from wspd_design.simulation import ideal
 from wspd_design.simulation import loop_input as module
 from wspd_design.simulation.campaign import simulate_many
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.runaway import runs_away
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.self_check import simulate_checked
 from wspd_design.simulation.stop import simulate
 

@@ -11,7 +11,8 @@ from wspd_design.model.brake import Valve, pressure_after
 from wspd_design.model.number import where
 from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.quarter import quarter
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
 INITIAL_SPEED = 120.0 / 3.6

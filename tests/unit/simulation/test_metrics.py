@@ -12,7 +12,8 @@ from wspd_design.model.number import where
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.comparison import compare
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Ending, Patch, Run, Sample, Scenario, Sensing, Totals
+from wspd_design.simulation.records import Patch, Scenario, Sensing
+from wspd_design.simulation.runs import Ending, Run, Sample, Totals
 from wspd_design.simulation.stop import simulate
 
 SCENARIO = Scenario(rail=load_rail("polach-wet"), initial_speed=30.0)

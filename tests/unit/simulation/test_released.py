@@ -10,8 +10,9 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.model.number import where
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.released import SHARE, SHORTEST, released_below, released_sentence
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
 START = 30.0 / 3.6

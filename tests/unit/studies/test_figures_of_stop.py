@@ -7,7 +7,7 @@ import pytest
 
 from tests.unit.reporting.sample_dossier import faults, sample_dossier, trial
 from wspd_design.reporting.sections.hazards import hazards as section
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.figures_of_stop import figures_of_stop, longest_release
 from wspd_design.studies.hazards import hazards
 

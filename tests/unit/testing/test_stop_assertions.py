@@ -1,6 +1,7 @@
 """Limits on drawn stops: kept, missed and wrongly asked for; the stops are those of the command."""
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from wspd_design.cli.app import run
 from wspd_design.design.case import CaseOptions, load_case
 from wspd_design.parameters.errors import UserError
+from wspd_design.simulation.campaign import simulate_many
 from wspd_design.testing import assert_stops
 from wspd_design.testing.stops import longest_locks
 
@@ -78,3 +80,12 @@ def test_the_default_speed_is_the_top_of_the_range_of_the_design():
     assert load_case("none", CaseOptions()).specification.speeds[1] == pytest.approx(120 / 3.6)
     found = assert_stops(Path("none"), within="10 km", runs=1)
     assert found.table["distance_m"][0] > 300.0
+
+
+def test_interrupted_stops_keep_no_limit(monkeypatch):
+    def interrupted(*arguments, **options):
+        return replace(simulate_many(*arguments, **options), complete=False)
+
+    monkeypatch.setattr("wspd_design.testing.stops.simulate_many", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        assert_stops("trenitalia", within="9 km", runs=1, speed="20 km/h")

@@ -44,7 +44,7 @@ def values(function: Any, inputs: Sequence[Sequence[int]]) -> list[list[int]]:
     UndecidedError
         If the graph has no value there.
     """
-    names = _names()
+    names = operation_names()
     work = [0] * function.sz_w()
     boolean = [False] * function.sz_w()
     outputs = [[0] * function.nnz_out(k) for k in range(function.n_out())]
@@ -56,15 +56,15 @@ def values(function: Any, inputs: Sequence[Sequence[int]]) -> list[list[int]]:
         elif name == "OP_INPUT":
             work[written[0]], boolean[written[0]] = inputs[read[0]][read[1]], False
         elif name == "OP_CONST":
-            work[written[0]], boolean[written[0]] = _residue(function.instruction_constant(k)), False
+            work[written[0]], boolean[written[0]] = residue(function.instruction_constant(k)), False
         else:
             x, truths = [work[i] for i in read], [boolean[i] for i in read]
-            work[written[0]], boolean[written[0]] = _apply(name, x, truths)
+            work[written[0]], boolean[written[0]] = applied(name, x, truths)
     return outputs
 
 
-def _apply(name: str, x: list[int], boolean: list[bool]) -> tuple[int, bool]:
-    """Value of an operation, and whether it stands for 0 or 1."""
+def applied(name: str, x: list[int], boolean: list[bool]) -> tuple[int, bool]:
+    """Return the value of an operation, and whether it stands for 0 or 1."""
     if name in _RATIONAL:
         return _RATIONAL[name](*x) % PRIME, False
     if name in ("OP_DIV", "OP_INV"):
@@ -120,7 +120,8 @@ def _inverse(value: int) -> int:
     return pow(value, -1, PRIME)
 
 
-def _residue(number: float) -> int:
+def residue(number: float) -> int:
+    """Return a double as an element of the field."""
     if not isfinite(number):
         raise UndecidedError(f"{number} is not a finite number")
     exact = Fraction(number)
@@ -128,7 +129,8 @@ def _residue(number: float) -> int:
 
 
 @cache
-def _names() -> dict[int, str]:
+def operation_names() -> dict[int, str]:
+    """Return the names of the operations of a graph by their numbers."""
     import casadi as ca
 
     return {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}

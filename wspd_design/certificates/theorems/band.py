@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from typing import cast
 
 from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.kernel.finding import Finding, Place
@@ -18,6 +17,7 @@ from wspd_design.certificates.quantities import CONTACT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
 from wspd_design.certificates.setting.assumptions import BUILT_UP
+from wspd_design.certificates.setting.declared_law import not_declared
 from wspd_design.certificates.setting.plant import place
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.slip_band.checker import checker
@@ -37,6 +37,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     windows_of,
 )
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
+from wspd_design.controllers.observer_form import TorqueObserver
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import FallingSlip
 from wspd_design.model.slip import slip_dynamics
@@ -63,7 +64,7 @@ def key(name: str, window: int, relation: Relation) -> str:
 def claims(problem: Problem) -> dict[str, Claim]:
     """Claims about the friction; whatever bound is proved counts."""
     found = {}
-    law, radius = law_of(cast(Protection, problem.controller)), _radii(problem)
+    law, radius = law_of(problem.controller), _radii(problem)
     for k, window in enumerate(windows_of(problem)):
         there = _held(replace(problem, speeds=window))
         held = slips_held(law, window, radius)
@@ -109,17 +110,19 @@ def held_names(problem: Problem) -> tuple[str, ...]:
 def speaks_about(problem: Problem) -> str:
     """Say why the theorem does not speak about a law; empty if it does."""
     law = problem.controller
-    if not isinstance(law, Protection):
-        return "is not a law of a vehicle with an observer of the friction torque"
-    reason = not_written(law)
+    if isinstance(law, TorqueObserver):
+        reason = _declared_wrong(problem, law)
+    elif isinstance(law, Protection):
+        reason = not_written(law) or _made_for_another(problem, law)
+    else:
+        reason = "is not a law of a vehicle with an observer of the friction torque that it declares (observer_form)"
     if reason:
         return reason
-    brake, modeled = problem.vehicle.brake, law.valve.brake
-    if (brake.max_pressure, problem.vehicle.wheelsets) != (modeled.max_pressure, law.wheelsets):
-        return "was made for another vehicle"
     numbers = law_of(law)
     if not numbers.falls and numbers.slip != Fraction(problem.slip):
         return f"holds slip {float(numbers.slip):g}, not {problem.slip:g}"
+    if not isinstance(law, Protection):
+        return ""
     if isinstance(law.reference, FallingSlip) and not _largest_slip(problem) < law.reference.largest:
         return f"holds no more than slip {law.reference.largest:g}, which ends its fall inside the range of speed"
     if law.cut_out_speed > problem.speeds[0]:
@@ -127,9 +130,27 @@ def speaks_about(problem: Problem) -> str:
     return ""
 
 
+def _made_for_another(problem: Problem, law: Protection) -> str:
+    brake, modeled = problem.vehicle.brake, law.valve.brake
+    same = (brake.max_pressure, problem.vehicle.wheelsets) == (modeled.max_pressure, law.wheelsets)
+    return "" if same else "was made for another vehicle"
+
+
+def _declared_wrong(problem: Problem, law: TorqueObserver) -> str:
+    """Say why a law of a user is not the one that it declares, or one that the theorem does not speak about."""
+    vehicle, form = problem.vehicle, law.observer_form
+    if form.full_pressure != vehicle.brake.max_pressure or law.wheelsets != vehicle.wheelsets:
+        return "was made for another vehicle"
+    if vehicle.brake.valve != "lag" or any(share != 1.0 for share in vehicle.brake_shares):
+        return "declares one valve with a lag and one full torque for all wheelsets, which the vehicle does not have"
+    if min(form.slip_error, form.slip_rate) < 0.0 or not form.slip_error < form.slip:
+        return "declares an error or a rate of its slip that cannot be"
+    return not_declared(law, problem, slips_held(law_of(law), problem.speeds, _radii(problem)))
+
+
 def _largest_slip(problem: Problem) -> float:
     """Largest slip of the reference, at the lowest speed that a sample may lead to [-]."""
-    law = law_of(cast(Protection, problem.controller))
+    law = law_of(problem.controller)
     return slips_held(law, windows_of(problem)[0], _radii(problem))[1]
 
 
@@ -137,13 +158,12 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
     domain.box(problem, VARIED)
     if windows_of(problem)[0][0] <= 0.0:
         raise OutsideModel("a sample may end at standstill")
-    law = cast(Protection, problem.controller)
     return (
         *(Inequality(key=name, claim=claim) for name, claim in claims(problem).items()),
         Special(
             key=CELLS,
             text="for every cell of the box and every window of speed no sample leads out of an ellipsoid of the state",
-            check=checker(_held(problem), law),
+            check=checker(_held(problem), problem.controller),
         ),
         Special(
             key=DEPARTURE,
@@ -170,7 +190,7 @@ def _covered(problem: Problem, findings: Findings) -> Finding:
 def _tell(problem: Problem, findings: Findings) -> Certificate:
     cells, windows = _covered(problem, findings), windows_of(problem)
     friction = proved_friction(problem, findings)
-    held, reference = held_names(problem), reference_text(law_of(cast(Protection, problem.controller)))
+    held, reference = held_names(problem), reference_text(law_of(problem.controller))
     within = domain.domain_of(_held(problem), VARIED, held)
     low, high = (speed * KMH for speed in problem.speeds)
     claim = (
@@ -223,12 +243,11 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         ),
         assumptions=(
             "the parameters do not change during the stop; the full pressure is demanded and there",
-            "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time; the "
-            "scale of the train speed was found while rolling",
+            f"{_measured(problem)}, without noise and dead time; the scale of the train speed was found while rolling",
             "all axles at static load and within their bands; the deceleration of the train rises "
             f"{float(JERK_FACTORS[0]):g} to {float(JERK_FACTORS[1]):g} times as fast as with all wheels at the "
             "reference, and its filter has settled",
-            "pulses begin with the sample; the law computes with real numbers",
+            f"pulses begin with the sample; the law computes with real numbers{_compared(problem)}",
             "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
         ),
         domain=within,
@@ -237,6 +256,26 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         method="ellipsoids by linear matrix inequalities in doubles; LDL' in balls at the corners of the sampled loop, "
         "with the friction bounded by interval branch and bound, replayed by the independent checker",
         reference="docs/theory.md#band",
+    )
+
+
+def _compared(problem: Problem) -> str:
+    if isinstance(problem.controller, Protection):
+        return ""
+    return (
+        "; its traced start and step are those of the numbers that it declares, compared in a prime field and in "
+        "doubles for healthy sensors, speeds of the range and pulses within a sample, except where branches meet"
+    )
+
+
+def _measured(problem: Problem) -> str:
+    law = law_of(problem.controller)
+    if not law.slip_error:
+        return "wheel speed, cylinder pressure and train speed are measured exactly"
+    return (
+        "wheel speed and cylinder pressure are measured exactly; the train speed that the law is told may be wrong, "
+        f"but so that the slip that it holds is within {float(law.slip_error):g} of what it declares and moves no "
+        f"faster than by {float(law.slip_rate):g} per second"
     )
 
 
@@ -261,7 +300,7 @@ def _departure(problem: Problem, away: Finding) -> str:
 
 
 def _slip_there(problem: Problem, place: Place) -> float:
-    return slip_at(law_of(cast(Protection, problem.controller)), place["speed"], place["wheel radius"])
+    return slip_at(law_of(problem.controller), place["speed"], place["wheel radius"])
 
 
 def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
@@ -276,7 +315,7 @@ def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
 
 def _dead_band(problem: Problem) -> str:
     """Compare what the law leaves out with what a sample of venting can do."""
-    law = law_of(cast(Protection, problem.controller))
+    law = law_of(problem.controller)
     h, speed = float(law.sample_time), problem.speeds[0]
     slip = slip_at(law, speed, problem.vehicle.wheel_radius)
     held = (

@@ -26,7 +26,7 @@ from wspd_design.parameters.units import KMH
 from wspd_design.plants.quarter import Quarter
 from wspd_design.simulation.held_slip import REACHED, HeldSlip, held_slip_of
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Ending, Run
+from wspd_design.simulation.runs import Ending, Run
 from wspd_design.simulation.stop import simulate
 
 NUMBERS = ("reached", "wheelsets", "overshoot", "undershoot", "rms", "stopped")

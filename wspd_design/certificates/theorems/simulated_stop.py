@@ -25,7 +25,8 @@ from wspd_design.plants.planar import Planar
 from wspd_design.plants.quarter import Quarter
 from wspd_design.simulation.loop_input import JUDGING_SPEED
 from wspd_design.simulation.metrics import energy_residual, metrics, momentum_residual
-from wspd_design.simulation.records import Ending, Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending, Run
 from wspd_design.simulation.stop import simulate
 
 STOP_WORK = 2_000_000  # of a budget of operations: what a stop takes

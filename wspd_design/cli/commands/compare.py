@@ -21,8 +21,9 @@ from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.description import disturbances_of, held_slip, rails_of
 from wspd_design.simulation.ideal import NO_IDEAL_STOP
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.released import released_sentence
+from wspd_design.simulation.runs import Ending
 
 _ALL_COLUMNS = 78
 """Columns of a terminal from which on the table shows everything."""

@@ -15,7 +15,7 @@ from wspd_design.cli.wizard.session import answer_option, answered_for_file, giv
 from wspd_design.cli.wizard.vehicle_answers import NONE, wanted_vehicle
 from wspd_design.cli.wizard.vehicle_steps import vehicle_steps
 from wspd_design.exchange.parameter_file import parameter_file
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.parameters.units import format_quantity
 from wspd_design.studies.new_vehicle import ELECTRIC, PIPE, Wanted, derived_entries, derived_vehicle
 

@@ -149,7 +149,8 @@ def simulate(
     start = None
     if witness is not None:
         start = witness_start(case, stop, witness)
-        case, stop = replace(case, vehicle=start.vehicle, rail=start.rail), start.scenario
+        case = replace(case, vehicle=start.vehicle, rail=start.rail, controller=start.controller)
+        stop = start.scenario
         if not as_json:
             show_start(start)
     if runs is not None:

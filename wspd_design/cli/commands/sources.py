@@ -14,7 +14,7 @@ from wspd_design.parameters.files import read_toml
 from wspd_design.parameters.laden import LADEN
 from wspd_design.parameters.loading import available, load_entries
 from wspd_design.parameters.loading import sources as known_sources
-from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.provenance import Entry, ParameterSet
 from wspd_design.parameters.schema import Kind, schema_of
 from wspd_design.parameters.units import format_quantity
 from wspd_design.parameters.words import did_you_mean

@@ -9,7 +9,8 @@ from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.entry import number_of
 from wspd_design.parameters.files import uniform_rails
 from wspd_design.parameters.loading import load_entries, load_rail, load_vehicle
-from wspd_design.parameters.records import Entry, Rail, Vehicle
+from wspd_design.parameters.provenance import Entry
+from wspd_design.parameters.records import Rail, Vehicle
 from wspd_design.parameters.schema import Quantity, schema_of
 from wspd_design.parameters.units import KMH, format_quantity, split_quantity
 from wspd_design.studies.new_rail import Fit, fit_rail, rail_entries, rail_with_peak, read_curve

@@ -10,7 +10,7 @@ from typing import Any, Final
 from wspd_design.parameters.entry import entry_of, quoted
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import data_file, read_toml
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.parameters.units import units_of
 from wspd_design.parameters.words import did_you_mean
 from wspd_design.plants.multibody import schema

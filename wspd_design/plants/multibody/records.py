@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 from wspd_design.model.number import Number
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.errors import UserError
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.parameters.words import did_you_mean
 
 Joint: TypeAlias = Literal["free", "wheelset", "revolute", "rotor"]

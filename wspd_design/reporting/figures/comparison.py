@@ -13,7 +13,7 @@ from wspd_design.reporting.figures.stop import named, slip_panel
 from wspd_design.reporting.yardsticks import ideal_distance
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.paper.published import PublishedStop
 
 MOST = 320

@@ -8,7 +8,7 @@ from wspd_design.reporting.figure_style import INK, MUTED, SERIES
 from wspd_design.reporting.figures.drawing import KMH, curve, look, note, thinned
 from wspd_design.reporting.figures.stop import intervals, line_of
 from wspd_design.simulation.law_memory import SpeedEstimate, released, releases
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.reporting.figure_style import INK
 from wspd_design.reporting.figures.drawing import KILO, curve
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 _MOST = 900  # points of the curve of one wheelset
 

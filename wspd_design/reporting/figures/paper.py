@@ -11,7 +11,7 @@ from wspd_design.reporting.figure_style import INK, SERIES
 from wspd_design.reporting.figures.drawing import KILO, KMH, curve, note
 from wspd_design.reporting.figures.stop import TRAIN, name
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 from wspd_design.studies.paper.evidence import CONSTANT_RAILS, FALLING_RAILS, RAILS
 from wspd_design.studies.paper.reproduction import FrictionCurve
 

@@ -7,14 +7,14 @@ from wspd_design.reporting.figure_style import INK, SERIES
 from wspd_design.reporting.figures.drawing import KILO, curve
 from wspd_design.simulation.law_memory import reference_range
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 from wspd_design.studies.dossier import PhasePlane
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 
 def phase_planes(

@@ -10,7 +10,7 @@ from wspd_design.simulation.description import held_slip
 from wspd_design.simulation.law_memory import reference_range, slip_references
 from wspd_design.simulation.locked import locked
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 TRAIN = len(SERIES) - 1
 """Color and line style of the train speed; the wheelsets take the others, front to rear."""

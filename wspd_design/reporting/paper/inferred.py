@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.plants.multibody.records import Multibody
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph, Table

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from wspd_design.parameters.entry import STATUSES
-from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.provenance import Entry, ParameterSet
 from wspd_design.plants.multibody.records import Body, Multibody
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Figure, Heading, Paragraph, Table

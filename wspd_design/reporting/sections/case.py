@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from wspd_design.controllers.observers.sensors import TOLD, Sensors
-from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.provenance import Entry, ParameterSet
 from wspd_design.parameters.units import format_quantity
 from wspd_design.plants.locomotive import LinearLocomotive, Locomotive
 from wspd_design.plants.planar import Planar
@@ -20,7 +20,7 @@ from wspd_design.reporting.running_gear import running_gear
 from wspd_design.reporting.text import Text, rich
 from wspd_design.simulation.description import disturbances_of, every_rail_of
 from wspd_design.simulation.law_memory import reference_range
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 from wspd_design.studies.dossier import Dossier
 
 

@@ -23,8 +23,9 @@ from wspd_design.reporting.tables import ColumnOf, Uncertain, build
 from wspd_design.reporting.text import CodeSpan, Inline, Link, Text, spans
 from wspd_design.reporting.yardsticks import ideal_distance, ideal_sentence, proved_bound
 from wspd_design.simulation.comparison import Trial
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.released import released_sentence
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.paper.published import PublishedStop, load_table10
 

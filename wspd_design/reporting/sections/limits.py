@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from wspd_design.parameters.records import ParameterSet
+from wspd_design.parameters.provenance import ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Bullets, Heading
 from wspd_design.reporting.formula_text import readable
@@ -11,7 +11,8 @@ from wspd_design.reporting.sections.robustness import FAULTS
 from wspd_design.reporting.text import Link, Text
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import disturbances_of, rails_of
-from wspd_design.simulation.records import Run, Sensing
+from wspd_design.simulation.records import Sensing
+from wspd_design.simulation.runs import Run
 from wspd_design.studies.dossier import Dossier
 
 EVERYWHERE: tuple[str, ...] = (

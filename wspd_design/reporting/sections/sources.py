@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from wspd_design.certificates.quantities import outside_claims, quantity_of
 from wspd_design.parameters.loading import sources as known_sources
-from wspd_design.parameters.records import Entry, ParameterSet
+from wspd_design.parameters.provenance import Entry, ParameterSet
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Definition, Definitions, Heading, Paragraph, Table
 from wspd_design.reporting.sections.design import gain_table

@@ -19,7 +19,7 @@ from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.description import held_slip, rails_of
 from wspd_design.simulation.law_memory import reference_range, releases, speed_estimate
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.traces import trace_name
 from wspd_design.studies.dossier import Dossier
 

@@ -48,7 +48,7 @@ from wspd_design.reporting.tables import ColumnOf, build
 from wspd_design.reporting.text import Inline, Link, Text
 from wspd_design.reporting.yardsticks import ideal_distance, proved_bound
 from wspd_design.simulation.description import rails_of
-from wspd_design.simulation.records import Ending
+from wspd_design.simulation.runs import Ending
 from wspd_design.studies.dossier import Dossier
 from wspd_design.studies.judgment import Judgment, Requirement
 

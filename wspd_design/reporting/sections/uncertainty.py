@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from functools import partial
 
-from wspd_design.parameters.records import Entry
+from wspd_design.parameters.provenance import Entry
 from wspd_design.reporting import numbers
 from wspd_design.reporting.blocks import Block, Code, Figure, Heading, Paragraph, Table
 from wspd_design.reporting.figures.drawing import picture

@@ -5,7 +5,8 @@ from dataclasses import replace
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.simulation.stop import simulate
 from wspd_design.studies.paper.evidence import Ablation
 from wspd_design.studies.paper.slip_history import slip_history

@@ -16,7 +16,8 @@ from wspd_design.plants.protocol import Plant
 from wspd_design.simulation.comparison import Trial
 from wspd_design.simulation.held_slip import build_up
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Ending, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.self_check import (
     StepCheck,
     distance_difference,

@@ -12,7 +12,8 @@ from wspd_design.parameters.records import Vehicle
 from wspd_design.plants.names import DEFAULT_PLANT
 from wspd_design.simulation.comparison import Trial, trial
 from wspd_design.simulation.ideal import ideal_stop
-from wspd_design.simulation.records import Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Run
 from wspd_design.studies.paper.ablation import IDEAL_FILL_TIME, IDEAL_SAMPLE_TIME, ablation
 from wspd_design.studies.paper.conclusions import conclusions
 from wspd_design.studies.paper.conclusions.records import Conclusion

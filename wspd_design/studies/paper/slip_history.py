@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from wspd_design.simulation.loop_input import JUDGING_SPEED
-from wspd_design.simulation.records import Run
+from wspd_design.simulation.runs import Run
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from wspd_design.simulation.records import Trace
+    from wspd_design.simulation.runs import Trace
 
 STANDSTILL_SPEED = 1.0 / 3.6  # m/s, below it the slip of any wheel is arbitrary
 TORQUE_SWING = 0.1  # of the maximum torque: a smaller movement is no cycle

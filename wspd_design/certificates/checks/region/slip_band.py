@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import Check, Figures, series
 from wspd_design.certificates.kernel.finding import Effort, Place, Stated
@@ -24,7 +24,6 @@ from wspd_design.certificates.theorems.slip_band.departure import corners, lock,
 from wspd_design.certificates.theorems.slip_band.proof import write
 from wspd_design.certificates.theorems.slip_band.reference import slip_at
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, law_of, windows_of
-from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -48,7 +47,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     friction = proved_friction(problem, {name: finding(wanted[name], each) for name, each in stated.items()})
     if friction is None:
         return stated | {CELLS: Stated(), DEPARTURE: _departure(problem)}
-    law = law_of(cast(Protection, problem.controller))
+    law = law_of(problem.controller)
     found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
     if isinstance(found, Failed):
         failed = Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))
@@ -79,7 +78,7 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     import numpy as np
 
     axes = ("speed [km/h]", "slip [-]")
-    law, radius = law_of(cast(Protection, problem.controller)), problem.vehicle.wheel_radius
+    law, radius = law_of(problem.controller), problem.vehicle.wheel_radius
     shown = np.linspace(*problem.speeds, SHOWN if law.falls else 2)
     reference = series("reference", *axes, shown * KMH, _held(law, radius, shown))
     finding = certificate.findings[CELLS]

@@ -13,7 +13,8 @@ from wspd_design.certificates.theorems.shortest_stop.stop_bound import BOUNDS, N
 from wspd_design.parameters.units import KMH
 from wspd_design.simulation.ideal import ideal_stop
 from wspd_design.simulation.peak import peak_adhesion
-from wspd_design.simulation.records import Ending, Run, Scenario
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.runs import Ending, Run
 from wspd_design.simulation.stop import simulate
 
 WIDE = 100  # intervals of the speed, where the parameters are wide

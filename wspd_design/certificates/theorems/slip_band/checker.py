@@ -28,14 +28,14 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     law_of,
     windows_of,
 )
-from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.protocol import Law
 
 DIGITS = 128  # bits of the balls
 WORK = 150_000  # operations on intervals that an ellipsoid is worth
 PARTS = 4  # of a sample, for what happens within it
 
 
-def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
+def checker(problem: Problem, law: Law) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
     """Return what decides about a proof and tells its numbers."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:

@@ -33,7 +33,7 @@ LOCK = ("lock time", "lock speed")  # s from the start, m/s; numbers of a place 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Settled:
+class Settled:
     """A protection that begins as if it had held its reference for long."""
 
     law: Protection
@@ -43,15 +43,23 @@ class _Settled:
 
     @property
     def name(self) -> str:
+        """Name of the protection."""
         return self.law.name
 
     @property
     def sample_time(self) -> float:
+        """Sample time [s]."""
         return self.law.sample_time
 
     @property
     def wheelsets(self) -> int:
+        """Number of wheelsets that it acts on."""
         return self.law.wheelsets
+
+    @property
+    def memory(self) -> tuple[str, ...]:
+        """Names of the elements of the state."""
+        return self.law.memory
 
     def start(self, measurement: VehicleMeasurement) -> State:
         """Begin one sample back, with the scale of the speed that rolling wheels have shown."""
@@ -71,6 +79,7 @@ class _Settled:
         return tuple((known | settled).values())
 
     def step(self, state: State, measurement: VehicleMeasurement) -> tuple[State, tuple[Command, ...]]:
+        """Go on as the protection does."""
         return self.law.step(state, measurement)
 
 
@@ -93,21 +102,38 @@ def missing_torque(problem: Problem, place: Place) -> dict[str, float]:
     return dict(zip(LIMIT, (at.holding, full), strict=True)) if at.holding > full * (1.0 + BEYOND) else {}
 
 
+class SettledStop(NamedTuple):
+    """A stop that begins at the reference as if it had been held for long."""
+
+    vehicle: Vehicle
+    rail: Rail
+    law: Settled
+    start: Start
+    holding: float  # N m, torque that holds the reference, whether the brake has it or not
+
+
+def settled_stop(problem: Problem, place: Place) -> SettledStop:
+    """Return the stop that begins at the reference at a place."""
+    vehicle, rail, braking, slip, turning, holding = _reference(problem, place)
+    law = Settled(
+        law=cast(Protection, problem.controller),
+        turning=turning,
+        acceleration=-float(slip_dynamics(vehicle, rail, slip, place["speed"]).deceleration),
+        wheel_radius=vehicle.wheel_radius,
+    )
+    start = Start(slip=slip, torque=min(holding, vehicle.brake.max_torque), braking_time=braking)
+    return SettledStop(vehicle, rail, law, start, holding)
+
+
 def lock(problem: Problem, place: Place) -> dict[str, float]:
     """When and at which speed a wheel first locks after a start at the reference; empty if none does in the range."""
     import numpy as np
 
-    law, speed = cast(Protection, problem.controller), place["speed"]
-    vehicle, rail, braking, slip, turning, holding = _reference(problem, place)
-    settled = _Settled(
-        law=law,
-        turning=turning,
-        acceleration=-float(slip_dynamics(vehicle, rail, slip, speed).deceleration),
-        wheel_radius=vehicle.wheel_radius,
-    )
-    start = Start(slip=slip, torque=min(holding, vehicle.brake.max_torque), braking_time=braking)
-    scenario = Scenario(rail=rail, initial_speed=speed, start=start)
-    run = simulate(vehicle, settled, scenario, plant="quarter")
+    if not isinstance(problem.controller, Protection):  # how the observers of another law have settled is not known
+        return {}
+    at = settled_stop(problem, place)
+    scenario = Scenario(rail=at.rail, initial_speed=place["speed"], start=at.start)
+    run = simulate(at.vehicle, at.law, scenario, plant="quarter")
     locked = np.flatnonzero((run.wheel_speed[:, 0] <= 0.0) & (run.speed >= problem.speeds[0]))
     if not locked.size:
         return {}
@@ -141,7 +167,7 @@ class _Reference(NamedTuple):
 def _reference(problem: Problem, place: Place) -> _Reference:
     vehicle, rail = plant_with(problem, {name: place[name] for name in NAMES})
     braking = full_supply_time(vehicle.brake)
-    law, speed, radius = law_of(cast(Protection, problem.controller)), place["speed"], vehicle.wheel_radius
+    law, speed, radius = law_of(problem.controller), place["speed"], vehicle.wheel_radius
     slip, turning = slip_at(law, speed, radius), turning_at(law, speed, radius)
     holding = holding_torque(vehicle, rail, slip=slip, speed=speed, braking_time=braking)
     braked = float(slip_dynamics(vehicle, rail, slip, speed).deceleration)

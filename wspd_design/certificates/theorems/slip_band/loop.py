@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeAlias
 from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.declared_law import LEAST
 from wspd_design.certificates.setting.slip_loop import LoopLaw, LoopRanges, Pair, parts_of, wanted
 from wspd_design.certificates.theorems.slip_band.reference import held_in
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -28,7 +29,6 @@ from wspd_design.parameters.loading import constants
 Row: TypeAlias = tuple[Ball, ...]
 
 RADIUS = NAMES.index("wheel radius")
-LEAST = Fraction(2, 1000)  # of the full torque, of which the law takes a logarithm as it is
 
 
 class Friction(NamedTuple):
@@ -166,8 +166,7 @@ def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Bal
     lowest, highest = _ends(asked[4] * known)
     venting, filling = (-h * point(pulse) / point(each) for each in (law.vent_time, law.fill_time))
     vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one pulse
-    ahead, zero = point(law.ahead), point(0)
-    slew = point(law.torque_slew) / inertia / point(law.approach_rate) ** 2
+    zero = point(0)
     return (
         Limit(
             what="what venting takes off in its longest pulse",
@@ -179,11 +178,7 @@ def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Bal
             row=(*asked[:3], asked[3] - 1 + fill),
             bound=fill * (full - most_held) - highest,
         ),
-        Limit(
-            what="the beginning of the braking curve",
-            row=(point(1), zero, ahead, -ahead),
-            bound=slew - _upper(ahead * known),
-        ),
+        *_below_the_curve(law, known),
         Limit(
             what="the observed friction above 0",
             row=(zero, zero, point(-1), zero),
@@ -198,6 +193,23 @@ def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Bal
             what="the torque that the brake can add",
             row=(zero, zero, zero, point(1)),
             bound=full - most_held - least / filling.exp(),
+        ),
+    )
+
+
+def _below_the_curve(law: BandLaw, known: Ball) -> tuple[Limit, ...]:
+    """Keep the predicted error where the pull is k e."""
+    if law.torque_slew is None:
+        return ()
+    slew, ahead = (
+        point(law.torque_slew) / point(law.inertia) / point(law.approach_rate) ** 2,
+        point(law.ahead),
+    )
+    return (
+        Limit(
+            what="the beginning of the braking curve",
+            row=(point(1), point(0), ahead, -ahead),
+            bound=slew - _upper(ahead * known),
         ),
     )
 

@@ -7,9 +7,11 @@ from math import ceil, log
 from typing import TypeAlias
 
 from wspd_design.certificates.records import Problem
+from wspd_design.controllers.observer_form import ObserverForm, TorqueObserver
 from wspd_design.controllers.observer_smc import ObserverSmc
 from wspd_design.controllers.observers.told import ToldSpeed
 from wspd_design.controllers.protection import Protection
+from wspd_design.controllers.protocol import Law
 from wspd_design.controllers.references import ConstantSlip, FallingSlip
 
 Interval: TypeAlias = tuple[Fraction, Fraction]
@@ -52,12 +54,15 @@ class BandLaw:
     least_pulse: Fraction  # s
     dead_band: Fraction  # N m
     dead_band_share: Fraction  # -, of the desired slip
-    torque_slew: Fraction  # N m/s, of the braking curve
+    torque_slew: Fraction | None  # N m/s, of the braking curve; None without one
     acceleration_time: Fraction  # s, of the filter of the train's acceleration
 
 
-def law_of(law: Protection) -> BandLaw:
-    """Exact numbers of a protection with sliding mode of relative degree two; the reference is constant or falls."""
+def law_of(law: Law) -> BandLaw:
+    """Exact numbers of a protection with sliding mode of relative degree two, or of a law that declares its own."""
+    if isinstance(law, TorqueObserver):
+        return _declared(law.observer_form, law.sample_time)
+    assert isinstance(law, Protection)
     core, reference, source = law.core, law.reference, law.source
     assert isinstance(core, ObserverSmc)
     assert isinstance(reference, ConstantSlip | FallingSlip)
@@ -84,6 +89,31 @@ def law_of(law: Protection) -> BandLaw:
         dead_band_share=Fraction(tracking.dead_band_share),
         torque_slew=Fraction(core.torque_slew),
         acceleration_time=Fraction(source.acceleration_time),
+    )
+
+
+def _declared(form: ObserverForm, sample_time: float) -> BandLaw:
+    share = Fraction(form.time_share)
+    return BandLaw(
+        slip=Fraction(form.slip),
+        falls=form.falls,
+        slip_error=Fraction(form.slip_error),
+        slip_rate=Fraction(form.slip_rate),
+        sample_time=Fraction(sample_time),
+        approach_rate=Fraction(form.approach_rate),
+        ahead=Fraction(form.ahead),
+        observer_rate=Fraction(form.observer_rate),
+        inertia=Fraction(form.wheelset_inertia),
+        radius=Fraction(form.wheel_radius),
+        full_torque=Fraction(form.full_torque),
+        fill_time=share * Fraction(form.fill_time),
+        vent_time=share * Fraction(form.vent_time),
+        time_share=share,
+        least_pulse=Fraction(0),
+        dead_band=Fraction(0),
+        dead_band_share=Fraction(0),
+        torque_slew=None if form.torque_slew is None else Fraction(form.torque_slew),
+        acceleration_time=Fraction(form.acceleration_time),
     )
 
 
