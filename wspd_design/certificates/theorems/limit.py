@@ -125,8 +125,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     return Certificate(
         claim=f"A slip from {problem.slip:g} to {most:g} that takes more torque than full pressure gives is not "
         f"exceeded again: a wheelset that slips at most s where the torque that holds s is at least T_max slips at "
-        f"most s down to {low:.3g} km/h, whatever the law, the valves and the sensors do. It is claimed {said.text}, all of "
-        "them constant.",
+        f"most s down to {low:.3g} km/h, whatever the law, the valves and the sensors do. It is claimed {said.text}, "
+        "all of them constant.",
         status=status,
         explanation=explanation,
         worst_point=place(where.values, known) if where is not None else (),
