@@ -42,7 +42,8 @@ THEOREMS = (
             "the band reaches",
             "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
             "and torque above zero: there the law is the written one",
-            "wheel speed, pressure and train speed measured exactly, without dead time; full supply pressure",
+            "pressure measured exactly, wheel and train speed within a bound; pulses begin within a bound after the "
+            "sample and end in it; the supply has at least a share of the full pressure, and rises by eq. (8)",
             "the slip that is held is constant or c/sqrt(v); beside that it may move within stated bounds, at most at "
             "a stated rate, of which the law knows nothing",
             "drift of torque and reference, and the error of the filtered acceleration, between their bounds: while "
@@ -53,7 +54,8 @@ THEOREMS = (
         "times goes the part rho of the wanted way. The map is affine in each of (phi, psi), g, rho, the late share "
         "and the share in the mean torque, so that a convex function of its values is largest at corners. Between "
         "samples e has the same form with a part of the change of the torque.",
-        not_said="How a wheel gets into the set; what happens with noise, dead time or a brake that is the limit.",
+        not_said="How a wheel gets into the set; what happens where a pulse goes on into the next sample, or with a "
+        "brake that is the limit.",
         identities=(
             Identity("phi e - g psi y solves e' = q e - g y", slip_loop.between_residual),
             Identity("a steady change of the slip adds delta psi", slip_loop.moving_residual),
@@ -68,6 +70,14 @@ THEOREMS = (
             Identity("N+ = N + (1 - theta)^2 r - drift", slip_loop.friction_residual),
             Identity("1 - x^c is the integral of c u^(c - 1) from x to 1", slip_loop.part_residual),
             Identity("late share of a rise over the longest pulse", slip_loop.lateness_residual),
+            Identity("rate of what a rising supply adds to a pulse that fills", slip_loop.added_residual),
+            Identity("what it adds at most", slip_loop.added_bound_residual),
+            Identity("late share if what it adds comes last", slip_loop.latest_residual),
+            Identity("an error of the measured speeds moves Y* by k h times it", slip_loop.misread_residual),
+            Identity(
+                "earlier errors of the train speed in its filtered slope count less than the last one",
+                slip_loop.earlier_residual,
+            ),
             Identity(
                 "share of a steady drift in its mean with the same weight", slip_loop.seen_of_drift_residual
             ),

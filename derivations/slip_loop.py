@@ -10,20 +10,23 @@ in a convex set whose edges are courses that change once between the bounds; its
 below, so that tangents enclose it. The observer takes (e, p, N) to (p+, N+) as below, whatever the wheel did. A valve
 that is inverted with wrong times goes the part rho of the wanted way, rho between c = (assumed over true time) and
 its value at the longest pulse. The share of the sample that sees the old torque is at most that of a steady rise over
-the longest pulse.
+the longest pulse, as late as pulses begin. While the supply rises by (8) a pulse that fills gets more than from the
+supply at the sample, by no more than below. An error of a measured speed moves the wanted torque by k times itself, and
+the filter of the acceleration shows errors of the train speed at most twice, its first step over h times them.
 """
 
 import sympy as sp
 
+from derivations import brake_actuator as brake
 from derivations.notation import Generated, time
 
 h, g, rho, late, seen, phi, psi = sp.symbols("h g rho late seen phi psi", positive=True)
 e, p, N, Y, k, a, theta = sp.symbols(
     "error observer_error friction torque gain ahead observer_pole", real=True
 )
-accel, asked, rise, held, turn, turned, moved, bent = sp.symbols(
+accel, asked, rise, held, turn, turned, moved, bent, misread = sp.symbols(
     "acceleration_error command_error torque_drift mean_torque_drift reference_drift mean_reference_drift "
-    "slip_drift uneven_slip_drift",
+    "slip_drift uneven_slip_drift speed_error",
     real=True,
 )
 
@@ -69,19 +72,21 @@ _ahead = e + a * h * ((_friction - _torque) / J - _known_rate)
 _wanted = _friction - J * (_known_rate - k / h * _ahead)
 wanted = N + k * (e + a * (N - Y + accel)) + accel  # Y*
 wanted_residual = sp.expand(h * (_wanted / J - _t0) - wanted)
+_misread_by = sp.Symbol("misread_by", real=True)  # of w - w_r, as it is measured
+misread_residual = sp.expand(wanted.subs(e, e + _misread_by) - wanted - k * _misread_by)
 
 way = sp.Symbol("way", real=True)  # Y* - Y
-went = way + asked  # what dead band and shortest pulse leave of it
+went = way + asked  # what dead band, shortest pulse and errors of measured speeds make of it
 _mean = J * ((Y + seen * went) / h + _t0)  # of the torque over the sample, as the law works it out
 _expected = _observed + h / J * (_friction - _mean)
-_measured = w_r1 + _e1
-_r = _measured - _expected
-innovation = _e1 - e - p - N + Y + seen * went + turned - moved
+_true = w_r1 + _e1
+_r = _true + misread - _expected
+innovation = _e1 + misread - e - p - N + Y + seen * went + turned - moved
 _reference = {w_r1: w_r + h * rate + turned - moved}
 innovation_residual = sp.expand((_r - innovation).subs(_reference))
-_observer_next = _expected + (1 - theta**2) * _r - _measured
+_observer_next = _expected + (1 - theta**2) * _r - _true
 _friction_next = h * ((_friction + (1 - theta) ** 2 * J / h * _r) / J - (_t0 + rise / h) - (rate + turn / h))
-observer_next = -(theta**2) * innovation
+observer_next = -(theta**2) * innovation + misread
 friction_next = N + (1 - theta) ** 2 * innovation - rise - turn
 observer_residual = sp.expand((_observer_next - observer_next).subs(_reference))
 friction_residual = sp.expand((_friction_next - friction_next).subs(_reference))
@@ -96,15 +101,43 @@ longest = sp.Symbol("longest", positive=True)
 part_of_pulse = part.subs(x, sp.exp(-longest))  # x at the end of a pulse, its length over the assumed time
 part_residual = sp.simplify(sp.integrate(c * u ** (c - 1), (u, x, 1), conds="none") - part * (1 - x))
 
+# --- what a supply that rises by (8) adds to a pulse that fills: D' = (what the supply has risen by - D)/T_F, so that D
+# is at most as if the supply rose at its first rate and D did not hold it back; a pulse that begins late sees it later.
+# A pulse over T_F of x goes at least the part x - x^2/2 of the room, a share "room" of what the supply lacks ----------
+_begun = brake.supply.subs(brake.t, brake.t0)
+_added = brake.filled - (_begun + (brake.P0 - _begun) * brake.fading)
+_risen = (brake.P_max - _begun) * (1 - sp.exp(-brake.rate * (brake.t - brake.t0)))
+added_residual = sp.simplify(sp.diff(_added, brake.t) - (_risen - _added) / brake.T_F)
+pulse = sp.Symbol("pulse", positive=True)  # its length over h
+delay = sp.Symbol("delay", nonnegative=True)  # until it begins, over h
+rising, filling = sp.symbols("supply_rate fill_time", positive=True)
+room = sp.Symbol("room", positive=True)
+_gained = sp.integrate(rising * (u + delay * h) / filling, (u, 0, pulse * h))  # over what the supply lacks
+_x = pulse * h / filling
+added = rising * h * (delay + pulse / 2) / (room * (1 - _x / 2))
+added_bound_residual = sp.simplify(_gained / (room * (_x - _x**2 / 2)) - added)
+_more = sp.Symbol("more", positive=True)  # what is added, at worst when the sample is over
+latest_residual = sp.simplify((1 - (late + _more) / (1 + _more)) * (1 + _more) - (1 - late))
+
+# --- errors of the measured train speed in its filtered slope, a <- a + (1 - kept) ((v - v before)/h - a): the last one
+# counts (1 - kept)/h, those of up to count samples ago sum up to less, whatever their signs ---------------------------
+_kept = sp.Symbol("kept", positive=True)  # below 1
+_count, _j = sp.symbols("count j", integer=True, positive=True)
+_earlier = sp.summation((1 - _kept) * (_kept ** (_j - 1) - _kept**_j), (_j, 1, _count))
+earlier_residual = sp.simplify(_earlier - (1 - _kept) * (1 - _kept**_count))
+
 # --- the share of a rise that is still to come, weighted by exp(q (h - t)); it is steady and ends with the pulse ------
 m = sp.Symbol("m", real=True, nonzero=True)  # q h
-pulse = sp.Symbol("pulse", positive=True)  # its length over h
 _weight = sp.exp(m * (1 - u))
-lateness = (1 - (1 - sp.exp(-pulse * m)) / (pulse * m)) / (1 - sp.exp(-m))
+lateness = (1 - sp.exp(-delay * m) * (1 - sp.exp(-pulse * m)) / (pulse * m)) / (1 - sp.exp(-m))
 lateness_residual = sp.simplify(
-    sp.integrate((1 - u / pulse) * _weight, (u, 0, pulse)) - lateness * sp.integrate(_weight, (u, 0, 1))
+    sp.integrate(_weight, (u, 0, delay))
+    + sp.integrate((1 - (u - delay) / pulse) * _weight, (u, delay, delay + pulse))
+    - lateness * sp.integrate(_weight, (u, 0, 1))
 )
-seen_of_drift = 1 - lateness.subs(pulse, 1)  # share of a steady drift in its mean with the same weight
+seen_of_drift = 1 - lateness.subs(
+    {pulse: 1, delay: 0}
+)  # share of a steady drift in its mean with the same weight
 seen_of_drift_residual = sp.simplify(
     sp.integrate(u * _weight, (u, 0, 1)) - seen_of_drift * sp.integrate(_weight, (u, 0, 1))
 )
@@ -125,7 +158,8 @@ _STATE = {
     "seen": "Share of the wanted way in the mean torque that the law works out [-]",
     "observer_pole": "Pole theta of the observer [-]",
     "way": "Y* - Y, the change of the torque that is wanted [rad/s]",
-    "command_error": "What dead band and shortest pulse add to the wanted change [rad/s]",
+    "command_error": "What dead band, shortest pulse and errors of measured speeds add to the wanted change [rad/s]",
+    "speed_error": "Measured wheel speed at the end of the sample minus the true one [rad/s]",
     "torque_drift": "Change of h t0 over the sample [rad/s]",
     "mean_torque_drift": "Its weighted mean over the sample [rad/s]",
     "reference_drift": "Change of h w_r' over the sample [rad/s]",
@@ -140,6 +174,10 @@ _STATE = {
     "longest": "Longest pulse over the assumed time of the valve [-]",
     "m": "Secant times sample time, not 0 [-]",
     "pulse": "Longest pulse over the sample time [-]",
+    "delay": "Time from the sample to the latest beginning of a pulse, over the sample time [-]",
+    "supply_rate": "Rate of the supply, eq. (8) [1/s]",
+    "fill_time": "Time constant of filling [s]",
+    "room": "Least room above the cylinder over what the supply lacks of its final value [-]",
 }
 
 
@@ -171,7 +209,10 @@ FUNCTIONS = (
     ),
     _function(
         "next_sample",
-        (e, p, N, Y, way, phi, psi, g, rho, late, seen, theta, asked, rise, held, turn, turned, moved, bent),
+        (
+            *(e, p, N, Y, way, phi, psi, g, rho, late, seen, theta),
+            *(asked, rise, held, turn, turned, moved, bent, misread),
+        ),
         (
             error_next,
             observer_next.subs(_e1, error_next),
@@ -197,9 +238,16 @@ FUNCTIONS = (
     ),
     _function(
         "lateness",
-        (m, pulse),
+        (m, pulse, delay),
         lateness,
         "Largest share of the sample that can see the torque before the pulse",
+        "Share [-]",
+    ),
+    _function(
+        "added_by_supply",
+        (rising, filling, h, pulse, delay, room),
+        added,
+        "Largest way that a rising supply adds to a pulse that fills, over the way that it goes without",
         "Share [-]",
     ),
 )

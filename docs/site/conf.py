@@ -29,6 +29,11 @@ nb_execution_timeout = 300
 nb_merge_streams = True
 nb_mime_priority_overrides = [("html", "image/svg+xml", 0)]
 
+# What a docstring points at has to be on the page. Types are another matter: those of other packages, and records of
+# ours that no public name leads to, have no page here.
+nitpicky = True
+nitpick_ignore_regex = [("py:class", ".*")]
+
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"

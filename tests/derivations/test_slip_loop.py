@@ -18,7 +18,7 @@ def test_every_identity_holds(name):
 
 
 def test_there_are_identities():
-    assert len(RESIDUALS) == 12
+    assert len(RESIDUALS) == 17
 
 
 def test_bend_says_which_way_the_edges_curve():
@@ -40,8 +40,13 @@ def reference(t, rate):
     return (1.0 - slip) * v / RADIUS, (1.0 - slip) * (BRAKING + JERK * t) / RADIUS
 
 
-@pytest.mark.parametrize("slip_rate", [0.0, SLIP_RATE, -SLIP_RATE])
-def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant(slip_rate):
+@pytest.mark.parametrize(
+    ("slip_rate", "delay", "misread"),
+    [(0.0, 0.0, (0.0, 0.0)), (SLIP_RATE, 0.3, (0.01, -0.02)), (-SLIP_RATE, 0.7, (-0.01, 0.02))],
+)
+def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant(slip_rate, delay, misread):
+    """With a pulse that begins late, over the sample time, and errors of the wheel speed at both samples [rad/s]."""
+
     def reference_at(t):
         return reference(t, slip_rate)
 
@@ -56,23 +61,26 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant(slip_rate):
     e, p, observed_friction, torque = 0.03, -0.004, FRICTION * 1.02, 22.9e3
     w0, rate0 = reference_at(0.0)
     known_rate, theta = rate0 - 0.05, math.exp(-OBSERVER * H)
-    ahead = e + AHEAD * H * ((observed_friction - torque) / INERTIA - known_rate)
+    ahead = e + misread[0] + AHEAD * H * ((observed_friction - torque) / INERTIA - known_rate)
     target = observed_friction - INERTIA * (known_rate - RATE * ahead)
     assert target > torque
     pulse = SHARE * math.log((FULL - torque) / (FULL - target))
-    assert pulse < H
+    assert pulse + delay * H < H
+
+    def assumed_torque(t):
+        return FULL - (FULL - torque) * math.exp(-min(t, pulse) / FILL_TIME)
 
     def seen_torque(t):
-        return FULL - (FULL - torque) * math.exp(-min(t, pulse) / FILL_TIME)
+        return assumed_torque(max(t - delay * H, 0.0))
 
     def motion(t, state):
         return [(friction(t, state[0]) - PADS * seen_torque(t)) / TRUE_INERTIA]
 
     run = solve_ivp(motion, (0.0, H), [w0 + e], rtol=1e-12, atol=1e-12, max_step=1e-3)
     w1 = float(run.y[0, -1])
-    mean = quad(seen_torque, 0.0, H, epsabs=1e-9)[0] / H  # what a law with a good model works out
+    mean = quad(assumed_torque, 0.0, H, epsabs=1e-9)[0] / H  # what a law with a good model works out
     expected = w0 + e + p + H / INERTIA * (observed_friction - mean)
-    r = w1 - expected
+    r = w1 + misread[1] - expected
     after = (
         w1 - reference_at(H)[0],
         expected + (1 - theta**2) * r - w1,
@@ -85,7 +93,8 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant(slip_rate):
     accel = H * (rate0 - known_rate)
     wanted = generated.wanted_torque(e, state[2], state[3], RATE * H, AHEAD, accel)
     way = wanted - state[3]
-    assert way == pytest.approx(H / INERTIA * (target - torque), rel=1e-12)
+    asked = RATE * H * misread[0]
+    assert way + asked == pytest.approx(H / INERTIA * (target - torque), rel=1e-12)
     phi, psi, _ = generated.switched_slide(SECANT, SECANT, 1.0, H)
     rho = (seen_torque(H) - torque) / (target - torque)
 
@@ -111,18 +120,20 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant(slip_rate):
         late,
         (mean - torque) / (target - torque),
         theta,
-        0.0,
+        asked,
         H * (held(H) - held(0.0)),
         H * weighted(lambda t: held(t) - held(0.0)),
         H * (reference_at(H)[1] - rate0),
         reference_at(H)[0] - w0 - H * rate0 + moved,
         moved,
         quad(lambda t: (math.exp(SECANT * (H - t)) - 1.0) * sliding(t), 0.0, H)[0],
+        misread[1],
     )
     np.testing.assert_allclose(found, after, rtol=1e-7, atol=1e-10)
     assert generated.part_of_way(SHARE / FILL_TIME, H / SHARE) >= rho >= SHARE / FILL_TIME
-    latest = generated.lateness(SECANT * H, pulse / H)
-    assert 0.0 <= late <= latest <= generated.lateness(SECANT * H, 1.0)
+    latest = generated.lateness(SECANT * H, pulse / H, delay)
+    assert 0.0 <= late <= latest <= generated.lateness(SECANT * H, 1.0, delay)
+    assert (late > generated.lateness(SECANT * H, pulse / H, 0.0)) is (delay > 0.0)
     assert rho >= (mean - torque) / (target - torque) >= rho * (1.0 - pulse / H / 2.0)
-    steady = 1.0 - generated.lateness(SECANT * H, 1.0)  # of a steady drift in its weighted mean
+    steady = 1.0 - generated.lateness(SECANT * H, 1.0, 0.0)  # of a steady drift in its weighted mean
     assert weighted(lambda t: t / H) == pytest.approx(steady, rel=1e-9)

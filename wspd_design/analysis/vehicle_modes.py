@@ -76,7 +76,7 @@ def vehicle_modes(
         That brakes hold at all wheelsets; 0: they roll [-].
     rail : str, optional
         Whose factors reduce the slope of longitudinal creep forces; by default that of Kalker's theory where the
-        wheels roll, and :data:`CLEAN_RAIL` where they are braked.
+        wheels roll, and ``polach-dry`` where they are braked.
     conicities : sequence of float
         The modes are those on the first; for each the critical speed is found. By default that of the vehicle.
     lateral_slope : float

@@ -266,7 +266,7 @@ class Certificate:
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
-        """What was proved, each with what it holds on: of the numbers with bounds, as its own statement has them."""
+        """What was proved, each with what it holds on, of the numbers with bounds, as its own statement has them."""
         return tuple(
             Proof(statement=each.shown, domain=self._domain_of(each.ranges), boxes=each.leaves)
             for each in self.proved.values()
@@ -337,7 +337,7 @@ class Problem:
     """The closed loop and the domain that all checks speak about.
 
     ``bounds`` are the ranges of the numbers of vehicle and rail by their names in the table of
-    :mod:`wspd_design.certificates.quantities`; a number without bounds is known. ``contact_grows_with_load`` says
+    ``wspd_design.certificates.quantities``; a number without bounds is known. ``contact_grows_with_load`` says
     whether Hertz's ellipse follows the wheel load when the mass varies.
 
     Attributes

@@ -94,7 +94,7 @@ def verify(
     problem : Problem
         Closed loop and domain.
     only : collection of str, optional
-        Names of the checks to run, from :data:`NAMES`; all by default.
+        Names of the checks to run, from ``NAMES``; all by default.
     progress : callable, optional
         Told the title of each check before it starts, and while it searches how far it has come.
     budget : Budget, optional
@@ -110,7 +110,7 @@ def verify(
     Returns
     -------
     Certificates
-        A tuple in the order of :data:`NAMES`.
+        A tuple in the order of ``NAMES``.
 
     Raises
     ------

@@ -68,11 +68,11 @@ def write_report(dossier: Dossier, *paths: str | Path, template: Template = BLAN
     Parameters
     ----------
     dossier : Dossier
-        What :func:`wspd_design.studies.dossier.dossier` returned.
+        What :func:`wspd_design.dossier` returned.
     *paths : str or Path
         One file for each format wanted.
     template : Template, optional
-        Logo, names and numbers of a company, of :func:`wspd_design.reporting.template.read_template`.
+        Logo, names and numbers of a company, of ``wspd_design.reporting.template.read_template``.
 
     Raises
     ------

@@ -172,7 +172,7 @@ def simulate_many(
     first : int
         Number of the first one.
     draws : sequence of Draw
-        Numbers that each stop draws anew; :func:`~wspd_design.simulation.draws.within_bounds` makes them from
+        Numbers that each stop draws anew; :func:`~wspd_design.within_bounds` makes them from
         parameter files.
     plant : {"planar", "quarter", "locomotive", "locomotive-linear"}
         With load transfer, without, or with all degrees of freedom.

@@ -254,6 +254,7 @@ def dossier(
             plant=plant,
             certificates=certificates,
             full_adhesion=full_adhesion,
+            compared=list(zip(controllers, trials, strict=True)),
             progress=progress,
         ),
         robustness=robustness(of_vehicle, own, scenario, plant=plant, progress=progress),

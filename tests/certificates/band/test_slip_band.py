@@ -47,7 +47,7 @@ def test_checker_alone_accepts_it(half, proof):
     assert checker(half, half.controller)(proof, Work(PLENTY))["cells"] >= 1
 
 
-P, CENTER, ALPHA, SHARES = slice(1, 11), 11, 15, 17  # places in an ellipsoid
+SUPPLY, P, CENTER, ALPHA, SHARES = 1, slice(2, 12), 12, 16, 18  # places in an ellipsoid
 
 
 def test_ellipsoid_that_is_too_small_is_refused(half, proof):
@@ -73,6 +73,45 @@ def test_center_that_the_loop_leaves_is_refused(half, proof):
 def test_shorter_pulse_than_the_state_asks_for_is_refused(half, proof):
     proof["ellipsoids"][0][0] = "0.05"
     assert "in its longest pulse" in refused(half, proof)
+
+
+def test_less_supply_than_the_states_have_room_in_is_refused(half, proof):
+    each = proof["ellipsoids"][-1]
+    assert float(each[SUPPLY]) < 0.7
+    each[SUPPLY] = repr(float(each[SUPPLY]) - 1 / 64)
+    assert "may go beyond" in refused(half, proof)
+    each[SUPPLY] = "1.01"
+    assert "from 0 to 1" in refused(half, proof)
+
+
+def test_supply_that_rises_fast_is_refused(half, proof):
+    """A pulse goes further while the supply rises: a bound that leaves that out does not hold."""
+    fast = replace(half, bounds=half.bounds | {"supply rate": (20.0, 30.0)})
+    assert "may" in refused(fast, proof)
+
+
+def test_valves_with_a_dead_time_need_a_proof_about_them(half, proof, document):
+    brake = replace(half.vehicle.brake, dead_time=0.005)
+    late = replace(half, vehicle=replace(half.vehicle, brake=brake))
+    assert SLIP_BAND.speaks_about(late) == ""
+    assert "begin later" in refused(late, proof)
+    assert not replay(late, json.dumps(document)).accepted
+    proof["delay"] = "0.25"
+    assert "into the next sample" in refused(late, proof)
+    for each in proof["ellipsoids"]:
+        each[0] = "0.5"
+    assert "may" in refused(late, proof)
+    later = replace(late, vehicle=replace(half.vehicle, brake=replace(brake, dead_time=0.02)))
+    assert "dead time of 20 ms, a sample or more" in SLIP_BAND.speaks_about(later)
+
+
+def test_noise_that_the_sets_leave_no_room_for_is_refused(half, proof):
+    proof["noise"] = "0.001"
+    assert "no share" in refused(half, proof)
+    proof["noise"] = "2.5"
+    assert "hold its valves" in refused(half, proof)
+    proof["noise"] = "-0.001"
+    assert "below 0" in refused(half, proof)
 
 
 def test_shares_above_one_are_refused(half, proof):

@@ -16,7 +16,7 @@ from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
 from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.loop import Friction, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, loop_of
 from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held, turning_at
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, law_of, windows_of
 from wspd_design.design.problem import stability_problem
@@ -24,6 +24,7 @@ from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
 
 WINDOW = (8.0, 8.05)
+EXACT = Conditions(supply=Fraction(1), delay=Fraction(0), noise=Fraction(0))
 LAW_SPEEDS = (10.0 / 3.6, 120.0 / 3.6)
 
 
@@ -111,7 +112,7 @@ def loop_numbers(problem, law, *, told=None):
         cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
         slips = slips_held(law, WINDOW, cell[2])
         friction = friction_at(problem, WINDOW, (slips[0] - 1e-3, slips[1] + 1e-3))
-        found = loop_of(problem, law, cell, WINDOW, friction, Fraction(1, 2)).disturbances
+        found = loop_of(problem, law, cell, WINDOW, friction, Fraction(1, 2), EXACT).disturbances
         return [tuple(float(end.mid()) for end in each) for each in found]
 
 

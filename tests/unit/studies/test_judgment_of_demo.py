@@ -8,7 +8,7 @@ import pytest
 from tests.unit.reporting.sample_dossier import SOUND
 from wspd_design.certificates.suite import verify
 from wspd_design.controllers.family import FAMILIES
-from wspd_design.design.catalog import controller_of
+from wspd_design.design.catalog import controller, controller_of
 from wspd_design.design.file import read_design
 from wspd_design.design.problem import stability_problem
 from wspd_design.design.stop_requirements import LOOPS, MODEL, paper_requirements
@@ -56,21 +56,24 @@ def test_the_papers_law_is_rejected_for_its_loop_first(paper):
     assert judged.rows[0].checks == MODEL
 
 
+def of(design, vehicle):
+    return {
+        "law": design.law,
+        "vehicle": vehicle,
+        "vehicle_name": "er24pc",
+        "rail": RAIL,
+        "asked": design.specification,
+        "scenario": STOP,
+        "plant": "planar",
+        "certificates": SOUND,
+        "full_adhesion": 173.0,
+    }
+
+
 def test_what_is_said_to_clear_it_does(paper, er24pc, monkeypatch):
     design, judged = paper
     monkeypatch.setattr(studied, "RULES", dict.fromkeys(("super-twisting", "integral-smc")))
-    found = next_step(
-        judged,
-        law=design.law,
-        vehicle=er24pc,
-        vehicle_name="er24pc",
-        rail=RAIL,
-        asked=design.specification,
-        scenario=STOP,
-        plant="planar",
-        certificates=SOUND,
-        full_adhesion=173.0,
-    )
+    found = next_step(judged, **of(design, er24pc))
     assert len(found.tried) == 2
     for each in found.tried:
         specification = replace(design.specification, sample_time=each.sample_time)
@@ -80,3 +83,24 @@ def test_what_is_said_to_clear_it_does(paper, er24pc, monkeypatch):
     best = found.clears[0]
     assert (best.law, best.silent) == ("super-twisting", ("loop",))
     assert FAMILIES[best.law].reference is not None  # a law of the vehicle, of which no check judges the loop
+
+
+def test_a_stop_that_a_comparison_has_is_not_simulated_again(paper, er24pc, monkeypatch):
+    design, judged = paper
+    monkeypatch.setattr(studied, "RULES", dict.fromkeys(("integral-smc",)))
+    law = controller("integral-smc", er24pc, RAIL, design.specification)
+    other = replace(law, sample_time=0.05)
+    stop = trial(er24pc, law, STOP, slip_reference=design.specification.slip)
+    simulated = []
+
+    def counted(*arguments, **options):
+        simulated.append(arguments[1])
+        return trial(*arguments, **options)
+
+    monkeypatch.setattr(studied, "trial", counted)
+    monkeypatch.setattr(studied, "verify", lambda *_arguments, **_options: ())
+    alone = next_step(judged, **of(design, er24pc))
+    assert len(simulated) == len(alone.tried) == 1
+    compared = [(other, "another stop"), (law, stop)]
+    assert next_step(judged, **of(design, er24pc), compared=compared) == alone
+    assert len(simulated) == 1

@@ -29,6 +29,7 @@ DISTURBANCES = (
     "mean reference drift",
     "slip drift",
     "uneven slip drift",
+    "speed error",
 )
 """Beside the state; each is bounded [rad/s]."""
 
@@ -54,6 +55,8 @@ class LoopRanges:
     parts: Pair  # -, rho
     seen: Pair  # -, share of the wanted way in the mean torque of the law
     pulse: Number  # -, longest pulse over the sample time
+    delay: Number  # -, latest beginning of a pulse over the sample time
+    added: Number  # -, what a rising supply adds to a way at most, over the way
 
 
 def polygon(secants: Pair, sample_time: Number) -> tuple[Pair, ...]:
@@ -90,7 +93,8 @@ def parts_of(speedups: Pair, longest: Number) -> Pair:
 
 def corners(law: LoopLaw, ranges: LoopRanges) -> Iterator[Matrix]:
     """Return [A B] of X+ = A X + B d at all corners, d in the order of :data:`DISTURBANCES`."""
-    latest = generated.lateness(ranges.secants[1] * law.sample_time, ranges.pulse)
+    latest = generated.lateness(ranges.secants[1] * law.sample_time, ranges.pulse, ranges.delay)
+    latest = (latest + ranges.added) / (1.0 + ranges.added)  # what the supply adds may come last
     for (phi, psi), g, rho, late, seen in product(
         polygon(ranges.secants, law.sample_time),
         dict.fromkeys(ranges.effects),

@@ -16,7 +16,7 @@ from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import CONTACT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import creep_slope, domain
-from wspd_design.certificates.setting.assumptions import BUILT_UP
+from wspd_design.certificates.setting.assumptions import BUILT_UP, Assumption
 from wspd_design.certificates.setting.declared_law import not_declared
 from wspd_design.certificates.setting.plant import place
 from wspd_design.certificates.setting.written_protection import not_written
@@ -87,6 +87,11 @@ def proved_friction(problem: Problem, findings: Findings) -> tuple[Friction, ...
     return tuple(found)
 
 
+def varied(problem: Problem) -> tuple[str, ...]:
+    """Names of the numbers that vary in the box; the rate of the supply is one of a main pipe."""
+    return (*VARIED, *(("supply rate",) if problem.vehicle.brake.build_up == "main-pipe" else ()))
+
+
 def _radii(problem: Problem) -> Interval:
     low, high = problem.span("wheel radius")
     return Fraction(low), Fraction(high)
@@ -94,16 +99,14 @@ def _radii(problem: Problem) -> Interval:
 
 def _held(problem: Problem) -> Problem:
     """Hold the contact and the shape of the friction at their nominal values."""
-    kept = {name: ends for name, ends in problem.bounds.items() if name in VARIED}
+    kept = {name: ends for name, ends in problem.bounds.items() if name in varied(problem)}
     return replace(problem, bounds=type(problem.bounds).of(kept))
 
 
 def held_names(problem: Problem) -> tuple[str, ...]:
     """Names of the numbers with bounds that the claim depends on and holds."""
     return tuple(
-        name
-        for name in domain.uncertain(problem)
-        if name in (*CONTACT, *RAIL, "supply rate") and name not in VARIED
+        name for name in domain.uncertain(problem) if name in (*CONTACT, *RAIL) and name not in VARIED
     )
 
 
@@ -121,6 +124,9 @@ def speaks_about(problem: Problem) -> str:
     numbers = law_of(law)
     if not numbers.falls and numbers.slip != Fraction(problem.slip):
         return f"holds slip {float(numbers.slip):g}, not {problem.slip:g}"
+    dead_time = problem.vehicle.brake.dead_time
+    if dead_time >= law.sample_time:
+        return f"commands valves that have a dead time of {1e3 * dead_time:g} ms, a sample or more"
     if not isinstance(law, Protection):
         return ""
     if isinstance(law.reference, FallingSlip) and not _largest_slip(problem) < law.reference.largest:
@@ -155,7 +161,7 @@ def _largest_slip(problem: Problem) -> float:
 
 
 def _obligations(problem: Problem) -> tuple[Obligation, ...]:
-    domain.box(problem, VARIED)
+    domain.box(problem, varied(problem))
     if windows_of(problem)[0][0] <= 0.0:
         raise OutsideModel("a sample may end at standstill")
     return (
@@ -191,11 +197,12 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     cells, windows = _covered(problem, findings), windows_of(problem)
     friction = proved_friction(problem, findings)
     held, reference = held_names(problem), reference_text(law_of(problem.controller))
-    within = domain.domain_of(_held(problem), VARIED, held)
+    within = domain.domain_of(_held(problem), varied(problem), held)
     low, high = (speed * KMH for speed in problem.speeds)
     claim = (
         f"Once the state of a wheelset is in its ellipsoid, its slip stays in a band around {reference} at every "
-        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit. On "
+        f"instant, also between samples, from {high:.3g} down to {low:.3g} km/h, and the brake is not the limit, "
+        f"while the supply has the share of the full pressure that is told. On "
         f"{within.text}, all of them constant; sampled every "
         f"{problem.sample_time * 1e3:g} ms, with any course of the friction whose slope stays within its proved range."
     )
@@ -207,7 +214,10 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         explanation = (
             f"{_bands(windows, cells)} {cells.numbers['cells']:g} cells of the box, each with an ellipsoid "
         )
-        explanation += "for each window of speed, that of a faster window inside that of the next slower one."
+        explanation += (
+            "for each window of speed, that of a faster window inside that of the next slower one. "
+        )
+        explanation += _supplies(windows, cells)
         if share < 1.0:
             status = Status.UNDECIDED
             part = f"{100.0 * share:.3g} % of each range about its nominal value"
@@ -242,16 +252,16 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             *((hypothesis(away.asked, away),) if away.status is Status.REFUTED else ()),
         ),
         assumptions=(
-            "the parameters do not change during the stop; the full pressure is demanded and there",
-            f"{_measured(problem)}, without noise and dead time; the scale of the train speed was found while rolling",
+            "the parameters do not change during the stop; the full pressure is demanded, and the supply rises to it",
+            f"{_measured(problem)}; the scale of the train speed was found while rolling",
             "all axles at static load and within their bands; the deceleration of the train rises "
             f"{float(JERK_FACTORS[0]):g} to {float(JERK_FACTORS[1]):g} times as fast as with all wheels at the "
             "reference, and its filter has settled",
-            f"pulses begin with the sample; the law computes with real numbers{_compared(problem)}",
+            f"pulses begin {_beginning(problem)}; the law computes with real numbers{_compared(problem)}",
             "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
         ),
         domain=within,
-        varied=tuple(name for name in domain.uncertain(problem) if name in VARIED),
+        varied=tuple(name for name in domain.uncertain(problem) if name in varied(problem)),
         held=held,
         method="ellipsoids by linear matrix inequalities in doubles; LDL' in balls at the corners of the sampled loop, "
         "with the friction bounded by interval branch and bound, replayed by the independent checker",
@@ -271,11 +281,11 @@ def _compared(problem: Problem) -> str:
 def _measured(problem: Problem) -> str:
     law = law_of(problem.controller)
     if not law.slip_error:
-        return "wheel speed, cylinder pressure and train speed are measured exactly"
+        return "wheel speed, cylinder pressure and train speed are measured exactly and at once"
     return (
-        "wheel speed and cylinder pressure are measured exactly; the train speed that the law is told may be wrong, "
-        f"but so that the slip that it holds is within {float(law.slip_error):g} of what it declares and moves no "
-        f"faster than by {float(law.slip_rate):g} per second"
+        "wheel speed and cylinder pressure are measured exactly and at once; the train speed that the law is told may "
+        f"be wrong, but so that the slip that it holds is within {float(law.slip_error):g} of what it declares and "
+        f"moves no faster than by {float(law.slip_rate):g} per second"
     )
 
 
@@ -313,6 +323,21 @@ def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
     return f"The slip stays within {', '.join(told)} of its reference."
 
 
+def _supplies(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
+    """Say how much of the full pressure the supply must have."""
+    told = [100.0 * cells.numbers[f"supply {k}"] for k in range(len(windows))]
+    fastest = f"{windows[-1][0] * KMH:.0f} to {windows[-1][1] * KMH:.0f} km/h"
+    return (
+        f"Of the full pressure the supply must have {told[-1]:.3g} % at {fastest}, and {max(told):.3g} % where it "
+        "must have most."
+    )
+
+
+def _beginning(problem: Problem) -> str:
+    dead = problem.vehicle.brake.dead_time
+    return f"at most {1e3 * dead:.3g} ms after their sample and end in it" if dead else "with the sample"
+
+
 def _dead_band(problem: Problem) -> str:
     """Compare what the law leaves out with what a sample of venting can do."""
     law = law_of(problem.controller)
@@ -341,5 +366,5 @@ SLIP_BAND = Theorem(
     speaks_about=speaks_about,
     obligations=_obligations,
     tell=_tell,
-    assumes=BUILT_UP,
+    assumes=BUILT_UP - {Assumption.NO_DEAD_TIME},
 )

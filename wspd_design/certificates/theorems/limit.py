@@ -139,8 +139,10 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             ),
         ),
         assumptions=(
+            "the numbers do not change during the stop, and the wheel carries its static load",
             "the train slows down, at least as this wheelset alone slows it down; the torque never exceeds T_max",
-            "says nothing about higher speeds, nor that the wheelset brakes: it is no band about the reference",
+            "a slip below the reference costs distance, and nothing is said about it: this is no band about the "
+            "reference; nor is anything said about higher speeds",
         ),
         domain=said.domain,
         varied=said.varied,

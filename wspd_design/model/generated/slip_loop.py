@@ -52,6 +52,7 @@ def next_sample(
     mean_reference_drift: Number,
     slip_drift: Number,
     uneven_slip_drift: Number,
+    speed_error: Number,
 ) -> tuple[Number, Number, Number, Number]:
     """State of the loop one sample later, docs/theory.md#band.
 
@@ -82,7 +83,7 @@ def next_sample(
     observer_pole : Number
         Pole theta of the observer [-].
     command_error : Number
-        What dead band and shortest pulse add to the wanted change [rad/s].
+        What dead band, shortest pulse and errors of measured speeds add to the wanted change [rad/s].
     torque_drift : Number
         Change of h t0 over the sample [rad/s].
     mean_torque_drift : Number
@@ -95,6 +96,8 @@ def next_sample(
         What the change of the slip takes off w_r over the sample, D [rad/s].
     uneven_slip_drift : Number
         What more it adds to the error, because an error grows or fades within the sample [rad/s].
+    speed_error : Number
+        Measured wheel speed at the end of the sample minus the true one [rad/s].
 
     Returns
     -------
@@ -104,11 +107,11 @@ def next_sample(
     x0 = command_error + way
     x1 = rho * x0
     x2 = error * phi - g * psi * (-mean_torque_drift + torque + x1 * (1.0 - late)) + uneven_slip_drift
-    x3 = -error - friction + mean_reference_drift - observer_error + seen * x0 + torque + x2
+    x3 = -error - friction + mean_reference_drift - observer_error + seen * x0 + speed_error + torque + x2
     x4 = -torque_drift
     return (
         slip_drift + x2,
-        -(observer_pole**2) * x3,
+        -(observer_pole**2) * x3 + speed_error,
         friction - reference_drift + x3 * (1.0 - observer_pole) ** 2 + x4,
         torque + x1 + x4,
     )
@@ -165,7 +168,7 @@ def part_of_way(c: Number, longest: Number) -> Number:
     return (1.0 - exp(-c * longest)) / (1.0 - exp(-longest))
 
 
-def lateness(m: Number, pulse: Number) -> Number:
+def lateness(m: Number, pulse: Number, delay: Number) -> Number:
     """Largest share of the sample that can see the torque before the pulse, docs/theory.md#band.
 
     Parameters
@@ -174,10 +177,41 @@ def lateness(m: Number, pulse: Number) -> Number:
         Secant times sample time, not 0 [-].
     pulse : Number
         Longest pulse over the sample time [-].
+    delay : Number
+        Time from the sample to the latest beginning of a pulse, over the sample time [-].
 
     Returns
     -------
     Number
         Share [-].
     """
-    return (1.0 - (1.0 - exp(-m * pulse)) / (m * pulse)) / (1.0 - exp(-m))
+    return (1.0 - (1.0 - exp(-m * pulse)) * exp(-delay * m) / (m * pulse)) / (1.0 - exp(-m))
+
+
+def added_by_supply(
+    supply_rate: Number, fill_time: Number, h: Number, pulse: Number, delay: Number, room: Number
+) -> Number:
+    """Largest way that a rising supply adds to a pulse that fills, over the way that it goes without, docs/theory.md#band.
+
+    Parameters
+    ----------
+    supply_rate : Number
+        Rate of the supply, eq. (8) [1/s].
+    fill_time : Number
+        Time constant of filling [s].
+    h : Number
+        Sample time [s].
+    pulse : Number
+        Longest pulse over the sample time [-].
+    delay : Number
+        Time from the sample to the latest beginning of a pulse, over the sample time [-].
+    room : Number
+        Least room above the cylinder over what the supply lacks of its final value [-].
+
+    Returns
+    -------
+    Number
+        Share [-].
+    """
+    x0 = 0.5 * pulse
+    return h * supply_rate * (delay + x0) / (room * (1.0 - h * x0 / fill_time))

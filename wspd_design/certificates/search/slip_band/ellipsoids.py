@@ -1,15 +1,16 @@
 """Search for the ellipsoid of one cell and one window, in doubles; the checker decides about it."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.search.common_quadratic import unit_matrices
 from wspd_design.certificates.search.matrix_inequalities import Inequalities
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, corners
-from wspd_design.certificates.theorems.slip_band.checker import errors, lies_in
+from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in
 from wspd_design.certificates.theorems.slip_band.loop import Loop, loop_law
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
@@ -36,18 +37,28 @@ class _Task:
 
 
 def ellipsoid(
-    law: BandLaw, loop: Loop, pulse: Fraction, faster: Ellipsoid | None, hints: Sequence[int]
+    law: BandLaw,
+    loops: Callable[[Fraction], Loop],
+    pulse: Fraction,
+    supply: Fraction,
+    faster: Ellipsoid | None,
+    hints: Sequence[int],
 ) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Find an ellipsoid with a small band around that of the next faster window, or none.
+
+    It is sought with the room that this share of the full pressure leaves; then the least share is found in which its
+    states have room.
 
     Parameters
     ----------
     law : BandLaw
         Numbers of the law.
-    loop : Loop
-        Numbers of cell and window with this longest pulse.
+    loops : callable
+        Returns the numbers of cell and window with this longest pulse for the least share of the full pressure.
     pulse : Fraction
         Longest pulse over the sample time.
+    supply : Fraction
+        Share of the full pressure that the search may ask for.
     faster : Ellipsoid or None
         Of the next faster window.
     hints : sequence of int
@@ -58,20 +69,42 @@ def ellipsoid(
     tuple of Ellipsoid and corners, or None
         The ellipsoid, and the corners that mattered.
     """
+    loop = loops(supply)
     for kept in KEPT:
         task = _task(law, loop, kept)
         if task is None:
             return None
-        found = _solve(task, pulse, kept, faster, hints)
-        if found is None:
+        solved = _solve(task, pulse, supply, kept, faster, hints)
+        if solved is None:
             continue
+        found, corners_that_matter = solved
+        found = replace(found, supply=_least_supply(loops, supply, found))
         try:
-            errors(law, loop, found[0])
+            errors(law, loops(found.supply), found)
         except Refused:
             continue
-        if faster is None or lies_in(faster, found[0]):
-            return found
+        if faster is None or lies_in(faster, found):
+            return found, corners_that_matter
     return None
+
+
+def _least_supply(loops: Callable[[Fraction], Loop], supply: Fraction, found: Ellipsoid) -> Fraction:
+    """Return the least share of the full pressure, in steps of what this one lacks, that the states have room in."""
+    if supply == 1:
+        return supply
+    p, center = (
+        [[point(each) for each in row] for row in found.matrix],
+        [point(each) for each in found.center],
+    )
+    step = 1 - supply
+    low, high = 1, int(supply / step)
+    while low < high:
+        middle = (low + high) // 2
+        if beyond_limit(loops(middle * step), p, center):
+            low = middle + 1
+        else:
+            high = middle
+    return high * step
 
 
 def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
@@ -113,7 +146,12 @@ def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
 
 
 def _solve(
-    task: _Task, pulse: Fraction, kept: float, faster: Ellipsoid | None, hints: Sequence[int]
+    task: _Task,
+    pulse: Fraction,
+    supply: Fraction,
+    kept: float,
+    faster: Ellipsoid | None,
+    hints: Sequence[int],
 ) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Solve for some corners, and add those that are not met."""
     import numpy as np
@@ -129,7 +167,7 @@ def _solve(
         worst = [int(k) for k in np.argsort(left)[:MORE_CORNERS] if left[k] < 0.0 and int(k) not in chosen]
         if not worst:
             matter = tuple(int(k) for k in np.argsort(left)[: 2 * FIRST_CORNERS])
-            return _rounded(task, pulse, p, shares, kept, inside), matter
+            return _rounded(task, pulse, supply, p, shares, kept, inside), matter
         chosen += worst
     return None
 
@@ -167,7 +205,7 @@ def _inequalities(
     if faster is not None:
         _around(asked, task, faster, band + 1)
     found = asked.minimize(np.eye(band + 2)[band], rough=True)
-    if found is None:
+    if found is None or not sum(found[first:band]) > 0.0:
         return None
     return np.tensordot(found[:first], units, 1), found[first:band], float(found[band + 1])
 
@@ -219,7 +257,13 @@ def _left(p: "Array", shares: "Array", kept: float, maps: "Array") -> "Array":
 
 
 def _rounded(
-    task: _Task, pulse: Fraction, p: "Array", shares: "Array", kept: float, inside: float
+    task: _Task,
+    pulse: Fraction,
+    supply: Fraction,
+    p: "Array",
+    shares: "Array",
+    kept: float,
+    inside: float,
 ) -> Ellipsoid:
     import numpy as np
 
@@ -230,6 +274,7 @@ def _rounded(
         every[k] = _short(float(share))
     return Ellipsoid(
         pulse=pulse,
+        supply=supply,
         matrix=tuple(tuple(_short(float(each)) for each in row) for row in back.T @ p @ back),
         center=tuple(_short(float(each)) for each in task.center),
         alpha=Fraction(kept),

@@ -8,7 +8,8 @@ from itertools import product
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import ellipsoid
-from wspd_design.certificates.theorems.slip_band.loop import Friction, loop_of
+from wspd_design.certificates.theorems.slip_band.checker import least_delay
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
@@ -58,11 +59,12 @@ def largest_share(
     most_cells : int
         That may be tried for each share.
     """
-    whole = _all_windows(problem, law, box_of(problem, SHARES[-1]), friction)
+    exact = exactly(problem, law)
+    whole = _all_windows(problem, law, box_of(problem, SHARES[-1]), friction, exact)
     if not isinstance(whole, int):
-        return Proof(share=SHARES[-1], friction=tuple(friction), steps=".", cells=(whole,))
+        return _proof(SHARES[-1], exact, friction, ".", (whole,))
     middle = _middle(box_of(problem, SHARES[-1]))
-    alone = _all_windows(problem, law, middle, friction)
+    alone = _all_windows(problem, law, middle, friction, exact)
     if isinstance(alone, int):  # no box around it can do better
         return Failed(share=SHARES[-1], cell=middle, window=alone, tried=2, cut=False)
     low, high = 0, len(SHARES)  # numbers of shares: one that is covered, and one that may be
@@ -81,14 +83,40 @@ def largest_share(
     return best
 
 
+def exactly(problem: Problem, law: BandLaw) -> Conditions:
+    """Return a stop with the vehicle's dead time and exact speeds.
+
+    The pressure of a main pipe comes close to the full one and never reaches it.
+    """
+    supply = Fraction(63, 64) if problem.vehicle.brake.build_up == "main-pipe" else Fraction(1)
+    return Conditions(supply=supply, delay=least_delay(problem, law), noise=Fraction(0))
+
+
+def _proof(
+    share: Fraction,
+    conditions: Conditions,
+    friction: Sequence[Friction],
+    steps: str,
+    cells: Sequence[tuple[Ellipsoid, ...]],
+) -> Proof:
+    return Proof(
+        share=share,
+        delay=conditions.delay,
+        noise=conditions.noise,
+        friction=tuple(friction),
+        steps=steps,
+        cells=tuple(cells),
+    )
+
+
 def _failing_corner(
     problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction
 ) -> Failed | None:
     """Look for a corner of the box that has no ellipsoid at the lowest speed, where it is hardest."""
-    box, window = box_of(problem, share), windows_of(problem)[0]
+    box, window, exact = box_of(problem, share), windows_of(problem)[0], exactly(problem, law)
     for tried, sides in enumerate(CORNERS, start=1):
         corner = tuple((ends[side], ends[side]) for ends, side in zip(box, sides, strict=True))
-        if _one_window(problem, law, corner, window, friction[0], None, ()) is None:
+        if _one_window(problem, law, corner, window, friction[0], exact, None, ()) is None:
             return Failed(share=share, cell=corner, window=0, tried=tried, cut=False)
     return None
 
@@ -111,11 +139,12 @@ def cover(
     most_cells : int
         That may be tried.
     """
+    exact = exactly(problem, law)
     waiting, steps, tried = [box_of(problem, share)], "", 0
     cells: list[tuple[Ellipsoid, ...]] = []
     while waiting:
         cell = waiting.pop()
-        found = _all_windows(problem, law, cell, friction)
+        found = _all_windows(problem, law, cell, friction, exact)
         tried += 1
         if not isinstance(found, int):
             steps, cells = f"{steps}.", [*cells, found]
@@ -124,7 +153,7 @@ def cover(
         if letter is None:
             return Failed(share=share, cell=cell, window=found, tried=tried, cut=False)
         middle = _middle(cell)
-        alone = _all_windows(problem, law, middle, friction)
+        alone = _all_windows(problem, law, middle, friction, exact)
         tried += 1
         if isinstance(alone, int):  # no cell around it can do better
             return Failed(share=share, cell=middle, window=alone, tried=tried, cut=False)
@@ -132,11 +161,11 @@ def cover(
             return Failed(share=share, cell=cell, window=found, tried=tried, cut=True)
         steps += letter
         waiting += halved(cell, letter)[::-1]
-    return Proof(share=share, friction=tuple(friction), steps=steps, cells=tuple(cells))
+    return _proof(share, exact, friction, steps, cells)
 
 
 def _all_windows(
-    problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction]
+    problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction], conditions: Conditions
 ) -> tuple[Ellipsoid, ...] | int:
     """Return the ellipsoids of a cell, or the window in which none was found."""
     windows = windows_of(problem)
@@ -144,7 +173,7 @@ def _all_windows(
     hints: tuple[int, ...] = ()
     for k in reversed(range(len(windows))):  # with the speed the train loses the room that venting has
         faster = found[-1] if found else None
-        each = _one_window(problem, law, cell, windows[k], friction[k], faster, hints)
+        each = _one_window(problem, law, cell, windows[k], friction[k], conditions, faster, hints)
         if each is None:
             return k
         found.append(each[0])
@@ -158,13 +187,18 @@ def _one_window(
     cell: Cell,
     window: tuple[float, float],
     friction: Friction,
+    conditions: Conditions,
     faster: Ellipsoid | None,
     hints: Sequence[int],
 ) -> tuple[Ellipsoid, tuple[int, ...]] | None:
     """Find an ellipsoid for one of the longest pulses; shorter ones leave less room and less to be uncertain about."""
-    for pulse in PULSES:
-        loop = loop_of(problem, law, cell, window, friction, pulse)
-        found = ellipsoid(law, loop, pulse, faster, hints)
+    # A pulse ends in its sample, however late it begins.
+    for pulse in dict.fromkeys(min(each, 1 - conditions.delay) for each in PULSES):
+
+        def loops(supply: Fraction, pulse: Fraction = pulse) -> Loop:
+            return loop_of(problem, law, cell, window, friction, pulse, conditions._replace(supply=supply))
+
+        found = ellipsoid(law, loops, pulse, conditions.supply, faster, hints)
         if found is not None:
             return found
     return None

@@ -11,6 +11,7 @@ faster one lies in that of the next. Between samples the error is bounded by the
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 from itertools import product
 from typing import Any
 
@@ -18,7 +19,14 @@ from wspd_design.certificates.kernel.arb import Ball, above, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Matrix, Pair, corners, wanted
-from wspd_design.certificates.theorems.slip_band.loop import Loop, least_of, loop_law, loop_of, most_of
+from wspd_design.certificates.theorems.slip_band.loop import (
+    Conditions,
+    Loop,
+    least_of,
+    loop_law,
+    loop_of,
+    most_of,
+)
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, read
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
@@ -28,6 +36,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     law_of,
     windows_of,
 )
+from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import Law
 
 DIGITS = 128  # bits of the balls
@@ -42,16 +51,25 @@ def checker(problem: Problem, law: Law) -> Callable[[Mapping[str, Any], Work], d
         from flint import ctx
 
         with ctx.workprec(DIGITS):
-            return _check(problem, law_of(law), proof, work)
+            return _check(problem, law, proof, work)
 
     return check
 
 
-def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work) -> dict[str, float]:
-    windows = windows_of(problem)
+def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Work) -> dict[str, float]:
+    law, windows = law_of(controller), windows_of(problem)
     found = read(proof, len(windows))
+    if found.delay < least_delay(problem, law):
+        raise Refused("the valves of the vehicle begin later than the proof allows")
+    if found.noise and not isinstance(controller, Protection):
+        raise Refused("the law was compared with what it declares for speeds without noise")
+    if isinstance(controller, Protection) and not (
+        Fraction(controller.cut_out_speed) + found.noise <= Fraction(problem.speeds[0])
+    ):
+        raise Refused("with this noise the law may hold its valves inside the range of speed")
     waiting, cells = [box_of(problem, found.share)], iter(found.cells)
     bands: list[Pair | None] = [None] * len(windows)
+    supplies = [Fraction(0)] * len(windows)
     for step in found.steps:
         if not waiting:
             raise Refused("the steps go on after the last cell")
@@ -65,8 +83,10 @@ def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work)
         slower = None
         for k, (window, friction, each) in enumerate(zip(windows, found.friction, ellipsoids, strict=True)):
             work.spend(WORK)
-            loop = loop_of(problem, law, cell, window, friction, each.pulse)
+            conditions = Conditions(each.supply, found.delay, found.noise)
+            loop = loop_of(problem, law, cell, window, friction, each.pulse, conditions)
             bands[k] = _joined(bands[k], errors(law, loop, each))
+            supplies[k] = max(supplies[k], each.supply)
             if slower is not None and not lies_in(each, slower):
                 raise Refused(
                     f"an ellipsoid at {window[1] * 3.6:.0f} km/h does not lie in the next slower one"
@@ -78,6 +98,9 @@ def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work)
     return {
         "share": float(found.share),
         "cells": float(len(found.cells)),
+        "delay": float(found.delay * law.sample_time),
+        "noise": float(found.noise),
+        **{f"supply {k}": above(point(each)) for k, each in enumerate(supplies)},
         **{
             f"band {k} {side}": above(radius * largest / point(window[0]))
             for k, (band, window) in enumerate(zip(bands, windows, strict=True))
@@ -91,6 +114,11 @@ def _check(problem: Problem, law: BandLaw, proof: Mapping[str, Any], work: Work)
             for end, value in zip(("low", "high"), ends, strict=True)
         },
     }
+
+
+def least_delay(problem: Problem, law: BandLaw) -> Fraction:
+    """Dead time of the vehicle's valves, over the sample time."""
+    return Fraction(problem.vehicle.brake.dead_time) / law.sample_time
 
 
 def _joined(one: Pair | None, other: Pair) -> Pair:
@@ -119,14 +147,22 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
         columns = _about(matrix, loop, center, spread, used)
         if not is_positive(_left_over(p, point(found.alpha), kept, columns)):
             raise Refused("a sample may lead out of an ellipsoid")
-    for limit in loop.limits:
-        there = sum((a * c for a, c in zip(limit.row, center, strict=True)), point(0))
-        if not there + reaches(p, limit.row) < limit.bound:
-            raise Refused(f"the state may go beyond {limit.what}")
+    beyond = beyond_limit(loop, p, center)
+    if beyond:
+        raise Refused(f"the state may go beyond {beyond}")
     lowest, highest = _within(loop_law(law), loop, p, center)
     if not highest < loop.widest or not -loop.widest < lowest:
         raise Refused("the error may leave the range in which the slope of the friction is bounded")
     return lowest, highest
+
+
+def beyond_limit(loop: Loop, p: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> str:
+    """Return which limit a state of the ellipsoid may exceed, or nothing."""
+    for limit in loop.limits:
+        there = sum((a * c for a, c in zip(limit.row, center, strict=True)), point(0))
+        if not there + reaches(p, limit.row) < limit.bound:
+            return limit.what
+    return ""
 
 
 def reaches(p: Sequence[Sequence[Ball]], row: Sequence[Ball]) -> Ball:
@@ -158,7 +194,7 @@ def _within(law: LoopLaw, loop: Loop, p: Sequence[Sequence[Ball]], center: Seque
     """Bound the error at every instant of a sample, by parts of it in which phi and psi are enclosed."""
     h, (low, high) = law.sample_time, loop.ranges.secants
     asked, lowest, highest = wanted(law), center[0], center[0]
-    known, command, _, mean, _, _, moved, uneven = (a.union(b) for a, b in loop.disturbances)
+    known, command, _, mean, _, _, moved, uneven, _ = (a.union(b) for a, b in loop.disturbances)
     for part in range(PARTS):
         begin, end = h * part / PARTS, h * (part + 1) / PARTS
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]

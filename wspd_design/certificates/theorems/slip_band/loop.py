@@ -22,13 +22,14 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     BandLaw,
     Cell,
 )
-from wspd_design.model.generated.slip_loop import lateness
+from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
 from wspd_design.parameters.loading import constants
 
 Row: TypeAlias = tuple[Ball, ...]
 
 RADIUS = NAMES.index("wheel radius")
+ROOM = Fraction(1, 4)  # of what the supply lacks, that the cylinder lacks of the supply at least
 
 
 class Friction(NamedTuple):
@@ -37,6 +38,14 @@ class Friction(NamedTuple):
     slope: tuple[float, float]  # s/m
     level: tuple[float, float]  # -
     fading: tuple[float, float]  # s/m
+
+
+class Conditions(NamedTuple):
+    """What a stop has beside friction and parameters."""
+
+    supply: Fraction  # -, of the full pressure, at least
+    delay: Fraction  # -, of the sample, until a pulse begins at the latest
+    noise: Fraction  # m/s, by which measured speeds of rims and train differ from the true ones at most
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,8 +85,13 @@ def loop_of(
     window: tuple[float, float],
     friction: Friction,
     pulse: Fraction,
+    conditions: Conditions,
 ) -> Loop:
     """Work out the loop of a cell in a window of speed, with pulses of at most this share of the sample."""
+    if pulse + conditions.delay > 1:
+        raise Refused("a pulse may go on into the next sample")
+    if 2 * conditions.noise > window[0]:
+        raise Refused("the noise is more than half of a speed")
     mass, inertia, radius, mu0, torque, fill, vent = (ball(*each) for each in cell)
     speed, h, reference = ball(*window), point(law.sample_time), held_in(law, window, cell[RADIUS])
     slip = reference.slip
@@ -106,8 +120,14 @@ def loop_of(
     jerk = ball(*JERK_FACTORS) * (braking * rising + wheels(vehicle) * moving / (2 * radius * mass))
     bending = reference.bend / radius * braking**2 + reference.rate / radius * braking
     turning = h * h * (bending - turned * jerk)
-    # How fast the slip moves the wheel speed at the reference; the filter saw it at higher speeds, too.
+    # By how much a wheel and its reference seem to turn faster or slower. The filter shows an error of the train speed
+    # at most twice, its first step over the sample time; a wrong speed also asks for another share of the deceleration.
+    turns = point(conditions.noise) / radius * ball(Fraction(-1), Fraction(1))
+    rolls = turns * (1 + point(law.slip_error))
+    misread = turns + rolls
     share = -(-h / point(law.acceleration_time)).expm1()
+    misread_rate = 2 * share * rolls + 3 * reference.bend * point(FASTEST_LOSS) * h * turns
+    # How fast the slip moves the wheel speed at the reference; the filter saw it at higher speeds, too.
     sliding = (
         h
         * reference.rate
@@ -119,30 +139,45 @@ def loop_of(
     ) / seen_inertia
     # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2.
     slowly = h * h * (reference.rate / radius * braking - turned * jerk)
-    known = slowly * (1 / share - point(Fraction(1, 2))) + sliding
+    known = slowly * (1 / share - point(Fraction(1, 2))) + sliding + misread_rate
     left_out = (
-        h / point(law.inertia) * _dead_band(law, slip * speed / radius) * ball(Fraction(-1), Fraction(1))
+        h
+        / point(law.inertia)
+        * _dead_band(law, slip * (speed + point(conditions.noise)) / radius)
+        * ball(Fraction(-1), Fraction(1))
     )
     low, high = _ends(secants)
     uneven = sliding * most_of([(high * h).exp() - 1, 1 - (low * h).exp(), point(0)])
     # The share of a steady drift that a sample has seen; a later weight sees more of it.
-    half_way = (1 - lateness(high * h, 1)).union(1 - lateness(low * h, 1))
-    disturbed = (known, left_out, drift, drift * half_way, turning, turning / 2, sliding, uneven)
+    half_way = (1 - lateness(high * h, 1, 0)).union(1 - lateness(low * h, 1, 0))
+    added = _added(problem, law, fill, pulse, conditions)
+    left_out += loop_law(law).gain * misread
+    disturbed = (known, left_out, drift, drift * half_way, turning, turning / 2, sliding, uneven, turns)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
             effects=_ends(seen_inertia / inertia),
-            parts=_parts(law, fill, vent, pulse),
+            parts=_parts(law, fill, vent, pulse, added),
             seen=_seen(law, pulse),
             pulse=point(pulse),
+            delay=point(conditions.delay),
+            added=added,
         ),
         disturbances=tuple(map(_ends, disturbed)),
-        limits=_limits(law, pulse, held, turned * slowing, known),
+        limits=_limits(law, pulse, conditions.supply, held, turned * slowing, known, misread),
         widest=point(SLIP_AROUND) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
     )
 
 
-def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Ball) -> tuple[Limit, ...]:
+def _limits(
+    law: BandLaw,
+    pulse: Fraction,
+    supply: Fraction,
+    held: Ball,
+    falling: Ball,
+    known: Ball,
+    misread: Ball,
+) -> tuple[Limit, ...]:
     """Return what keeps the state where the law is the written one and the valve is not saturated.
 
     Parameters
@@ -151,19 +186,23 @@ def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Bal
         Its numbers.
     pulse : Fraction
         Longest pulse over the sample time.
+    supply : Fraction
+        Least share of the full pressure.
     held : ball
         Torque that holds the reference, over the inertia of the law [rad/s2].
     falling : ball
         Deceleration of the reference [rad/s2].
     known : ball
         Error of that acceleration in the law, times h [rad/s].
+    misread : ball
+        Error of the error of the wheel speed in the law [rad/s].
     """
     h, inertia = point(law.sample_time), point(law.inertia)
     least_held, most_held = _ends(h * held)
     full = h * point(law.full_torque) / inertia
-    least = point(LEAST) * full
+    least, there = point(LEAST) * full, point(supply) * full
     asked = wanted(loop_law(law))
-    lowest, highest = _ends(asked[4] * known)
+    lowest, highest = _ends(asked[4] * known + asked[0] * misread)
     venting, filling = (-h * point(pulse) / point(each) for each in (law.vent_time, law.fill_time))
     vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one pulse
     zero = point(0)
@@ -176,9 +215,9 @@ def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Bal
         Limit(
             what="what filling adds in its longest pulse",
             row=(*asked[:3], asked[3] - 1 + fill),
-            bound=fill * (full - most_held) - highest,
+            bound=fill * (there - most_held) - highest,
         ),
-        *_below_the_curve(law, known),
+        *_below_the_curve(law, known, misread),
         Limit(
             what="the observed friction above 0",
             row=(zero, zero, point(-1), zero),
@@ -192,12 +231,28 @@ def _limits(law: BandLaw, pulse: Fraction, held: Ball, falling: Ball, known: Bal
         Limit(
             what="the torque that the brake can add",
             row=(zero, zero, zero, point(1)),
-            bound=full - most_held - least / filling.exp(),
+            bound=there - most_held - least / filling.exp(),
+        ),
+        Limit(
+            what="the room that a rising supply asks for",
+            row=(zero, zero, zero, point(1)),
+            bound=there - most_held - point(ROOM) * (full - there),
         ),
     )
 
 
-def _below_the_curve(law: BandLaw, known: Ball) -> tuple[Limit, ...]:
+def _added(problem: Problem, law: BandLaw, fill: Ball, pulse: Fraction, conditions: Conditions) -> Ball:
+    """Return what a rising supply adds to a way that fills, over the way."""
+    if conditions.supply == 1:
+        return point(0)
+    if problem.vehicle.brake.build_up != "main-pipe":
+        raise Refused("the supply is that of the full pressure alone")
+    rate = point(problem.span("supply rate")[1])
+    fastest, h = _ends(fill)[0], point(law.sample_time)
+    return _upper(added_by_supply(rate, fastest, h, point(pulse), point(conditions.delay), point(ROOM)))
+
+
+def _below_the_curve(law: BandLaw, known: Ball, misread: Ball) -> tuple[Limit, ...]:
     """Keep the predicted error where the pull is k e."""
     if law.torque_slew is None:
         return ()
@@ -209,18 +264,19 @@ def _below_the_curve(law: BandLaw, known: Ball) -> tuple[Limit, ...]:
         Limit(
             what="the beginning of the braking curve",
             row=(point(1), point(0), ahead, -ahead),
-            bound=slew - _upper(ahead * known),
+            bound=slew - _upper(misread + ahead * known),
         ),
     )
 
 
-def _parts(law: BandLaw, fill: Ball, vent: Ball, pulse: Fraction) -> Pair:
+def _parts(law: BandLaw, fill: Ball, vent: Ball, pulse: Fraction, added: Ball) -> Pair:
     """Part of the wanted way that the true valve goes."""
     longest = point(pulse * law.sample_time) / point(min(law.fill_time, law.vent_time))
-    speedups = [
-        end for ratio in (point(law.fill_time) / fill, point(law.vent_time) / vent) for end in _ends(ratio)
-    ]
-    return _ends(_hull(parts_of((least_of(speedups), most_of(speedups)), longest)))
+    filling, venting = (
+        _hull(parts_of(_ends(point(assumed) / true), longest))
+        for assumed, true in ((law.fill_time, fill), (law.vent_time, vent))
+    )
+    return _ends(filling.union(filling * (1 + added)).union(venting))
 
 
 def _seen(law: BandLaw, pulse: Fraction) -> Pair:

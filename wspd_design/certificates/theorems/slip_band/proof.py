@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 
-FORMAT = "wspd-slip-band/3"
+FORMAT = "wspd-slip-band/4"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -22,6 +22,7 @@ class Ellipsoid:
     """(X - c)'P(X - c) <= 1, and the numbers that show that no sample leads out of it."""
 
     pulse: Fraction  # -, longest pulse over the sample time that a state in it asks for
+    supply: Fraction  # -, least share of the full pressure
     matrix: Square  # P [s2/rad2]
     center: tuple[Fraction, ...]  # c [rad/s]
     alpha: Fraction  # of the function that is left after a sample
@@ -38,6 +39,8 @@ class Proof:
     """
 
     share: Fraction
+    delay: Fraction  # -, of the sample, until a pulse begins at the latest
+    noise: Fraction  # m/s, by which measured speeds of rims and train differ from the true ones at most
     friction: tuple[Friction, ...]
     steps: str
     cells: tuple[tuple[Ellipsoid, ...], ...]  # for each cell one for each window
@@ -50,6 +53,8 @@ def write(found: Proof) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "share": text(found.share),
+        "delay": text(found.delay),
+        "noise": text(found.noise),
         "friction": [[text(Fraction(end)) for ends in each for end in ends] for each in found.friction],
         "steps": found.steps,
         "ellipsoids": [_written(each) for each in ellipsoids],
@@ -60,6 +65,7 @@ def write(found: Proof) -> dict[str, Any]:
 def _written(each: Ellipsoid) -> list[str]:
     numbers = (
         each.pulse,
+        each.supply,
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
         each.alpha,
@@ -71,9 +77,8 @@ def _written(each: Ellipsoid) -> list[str]:
 
 def read(proof: Mapping[str, Any], windows: int) -> Proof:
     """Read a proof about a number of windows, or refuse it."""
-    if proof.keys() != {"format", "share", "friction", "steps", "ellipsoids", "cells"} or (
-        proof["format"] != FORMAT
-    ):
+    names = {"format", "share", "delay", "noise", "friction", "steps", "ellipsoids", "cells"}
+    if proof.keys() != names or proof["format"] != FORMAT:
         raise Refused(f"the proof does not have the format {FORMAT}")
     steps, cells, ellipsoids = proof["steps"], proof["cells"], proof["ellipsoids"]
     if not isinstance(steps, str) or not isinstance(cells, list) or not 0 < len(cells) <= MOST_CELLS:
@@ -82,14 +87,18 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
         raise Refused("steps and cells do not match")
     if not isinstance(ellipsoids, list) or len(ellipsoids) > windows * len(cells):
         raise Refused("the proof has no ellipsoids, or too many")
-    (share,) = _numbers([proof["share"]], 1)
+    share, delay, noise = _numbers([proof[name] for name in ("share", "delay", "noise")], 3)
     if not 0 < share <= 1:
         raise Refused("the share of the box must be above 0, and 1 at most")
+    if delay < 0 or noise < 0:
+        raise Refused("a delay or a noise is below 0")
     known = [
-        _ellipsoid(_numbers(each, 1 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
+        _ellipsoid(_numbers(each, 2 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
     ]
     return Proof(
         share=share,
+        delay=delay,
+        noise=noise,
         friction=tuple(_friction(_numbers(each, 6)) for each in _list(proof["friction"], windows)),
         steps=steps,
         cells=tuple(tuple(_one_of(known, each) for each in _list(cell, windows)) for cell in cells),
@@ -113,14 +122,17 @@ def _friction(numbers: Sequence[Fraction]) -> Friction:
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
-    pulse, *numbers = written
+    pulse, supply, *numbers = written
     if not 0 < pulse <= 1:
         raise Refused("the longest pulse must be above 0, and the sample at most")
+    if not 0 <= supply <= 1:
+        raise Refused("the share of the full pressure must be from 0 to 1")
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, rest = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
     return Ellipsoid(
         pulse=pulse,
+        supply=supply,
         matrix=rows,
         center=tuple(center),
         alpha=rest[0],
