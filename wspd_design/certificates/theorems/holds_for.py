@@ -45,6 +45,7 @@ HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "sampled_invariance": HoldsFor.SAMPLED,
     "slip_band": HoldsFor.SAMPLED,
     "slip_limit": HoldsFor.SAMPLED,
+    "fuzzy_sector": HoldsFor.SAMPLED,
     "tracking": HoldsFor.STOP,
     "overshoot": HoldsFor.STOP,
     "conservation": HoldsFor.STOP,
