@@ -105,6 +105,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
             "exact measurement",
             "measured exactly",
             "measured without error",
+            "scale of the train speed was found",
             "no computing time",
             "scale of the train speed",
             "without dead time",
