@@ -24,6 +24,7 @@ from wspd_design.certificates.checks.region import (
     lpv_lyapunov,
     sampled_invariance,
     slip_band,
+    slip_limit,
     slip_way_in,
 )
 from wspd_design.certificates.checks.sliding import (
@@ -74,6 +75,7 @@ CHECKS: Mapping[str, Check] = {
         sampled_invariance.CHECK,
         slip_way_in.CHECK,
         slip_band.CHECK,
+        slip_limit.CHECK,
         fuzzy_sector.CHECK,
         tracking.CHECK,
         overshoot.CHECK,

@@ -64,7 +64,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     claim = (
         f"From rolling at {speed:.4g} km/h, the brake demanded and its cylinders empty, the slip of every wheelset "
         f"comes to its reference {problem.slip:g} and goes beyond it no further than is told; for every supply rate "
-        f"and every mu0 in their ranges, all other numbers at their nominal values; sampled every {problem.sample_time * 1e3:g} ms."
+        f"and every mu0 in their ranges, all other numbers at their nominal values; sampled every "
+        f"{problem.sample_time * 1e3:g} ms."
     )
     status, margin = all_of(strips), None
     worst: tuple[Point, ...] = ()
