@@ -188,6 +188,7 @@ def test_printed_law_on_dry_rail(printed):
         "traced_loop": Status.REFUTED,
         "lpv_lyapunov": Status.NOT_APPLICABLE,
         "sampled_invariance": Status.NOT_APPLICABLE,
+        "slip_way_in": Status.NOT_APPLICABLE,
         "slip_band": Status.NOT_APPLICABLE,
         "slip_limit": Status.PROVED,
         "fuzzy_sector": Status.NOT_APPLICABLE,

@@ -43,6 +43,7 @@ HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "traced_loop": HoldsFor.SAMPLED,
     "lpv_lyapunov": HoldsFor.SAMPLED,
     "sampled_invariance": HoldsFor.SAMPLED,
+    "slip_way_in": HoldsFor.SAMPLED,
     "slip_band": HoldsFor.SAMPLED,
     "slip_limit": HoldsFor.SAMPLED,
     "fuzzy_sector": HoldsFor.SAMPLED,
