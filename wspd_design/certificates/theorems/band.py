@@ -297,7 +297,8 @@ def _departure(problem: Problem, away: Finding) -> str:
         slip = _slip_there(problem, away.stated.place) if away.stated is not None else math.nan
         return (
             f"The brake is the limit in a corner of the box: there holding slip {slip:.3g} takes {holding:.3g} "
-            f"kN m, and full pressure gives {full:.3g}."
+            f"kN m, and full pressure gives {full:.3g}. That denies the lower side of a band alone: what keeps the "
+            "slip down there, the check slip_limit tells."
         )
     speed = away.stated.place["speed"] if away.stated is not None else math.nan
     return (
