@@ -248,8 +248,8 @@ def not_written(law: Protection) -> str:
         return "searches for the peak, so that its reference jumps, which no bound on its rate covers"
     if not isinstance(law.source, ToldSpeed):
         return (
-            "estimates the train speed, and no bound on the error of the estimate is proved; a law of one's own that is "
-            "told a speed may state one (slip_error and slip_drift of observer_form)"
+            "estimates the train speed, and no bound on the error of the estimate is proved; a law of one's own that "
+            "is told a speed may state one (slip_error and slip_drift of observer_form)"
         )
     if wanted is None:
         return (
