@@ -422,9 +422,10 @@ def told(seen, sets):
     lines = [f"{len(seen.left)} runs, {seen.entered.sum()} entered, {seen.left.sum()} left what was proved"]
     for k, (band, used) in enumerate(zip(sets.bands, seen.used, strict=True)):
         low = sets.lowest if k == 0 else sets.speeds[k - 1]
+        wider = band.sum() / max(used.sum(), 1e-12)
         lines.append(
             f"  {low * 3.6:5.1f} to {sets.speeds[k] * 3.6:5.1f} km/h: proved -{band[0]:.4f} +{band[1]:.4f}, "
-            f"seen -{used[0]:.4f} +{used[1]:.4f}, width over that of the worst runs {band.sum() / max(used.sum(), 1e-12):.2f}"
+            f"seen -{used[0]:.4f} +{used[1]:.4f}, width over that of the worst runs {wider:.2f}"
         )
     return "\n".join(lines)
 
