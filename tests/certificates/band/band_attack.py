@@ -45,7 +45,7 @@ SUBSTEP = 2e-3  # s, at most
 CHUNK = 5000  # runs at once
 SETTLED = 50  # samples that starts on the boundary are followed
 LONGEST = 200.0  # s, that a stop is followed
-GENERATIONS = 10  # of the evolution of the worst stops
+GENERATIONS, FEWEST = 10, 5  # of the evolution of the worst stops, and stops in each at least
 SLOWEST_START = 2.0  # times the lowest speed, from which stops may begin
 
 
@@ -392,7 +392,7 @@ def attack_stops(problem, sets, *, stops, seed=7):
     seen = joined([followed(drawn[:, k : k + CHUNK]) for k in range(0, drawn.shape[1], CHUNK)])
     worst = {}
     for aim, name in (("largest slip on the way", "way_in"), ("largest share of the band", "share")):
-        best = np.argsort(-getattr(seen, name))[: stops // (4 * GENERATIONS)]
+        best = np.argsort(-getattr(seen, name))[: max(stops // (4 * GENERATIONS), FEWEST)]
         evolved = differential_evolution(
             lambda unit, name=name: -getattr(followed(unit), name),
             [(0.0, 1.0)] * len(ends),
@@ -422,9 +422,10 @@ def told(seen, sets):
     lines = [f"{len(seen.left)} runs, {seen.entered.sum()} entered, {seen.left.sum()} left what was proved"]
     for k, (band, used) in enumerate(zip(sets.bands, seen.used, strict=True)):
         low = sets.lowest if k == 0 else sets.speeds[k - 1]
+        wider = band.sum() / max(used.sum(), 1e-12)
         lines.append(
             f"  {low * 3.6:5.1f} to {sets.speeds[k] * 3.6:5.1f} km/h: proved -{band[0]:.4f} +{band[1]:.4f}, "
-            f"seen -{used[0]:.4f} +{used[1]:.4f}, width over that of the worst runs {band.sum() / used.sum():.2f}"
+            f"seen -{used[0]:.4f} +{used[1]:.4f}, width over that of the worst runs {wider:.2f}"
         )
     return "\n".join(lines)
 
