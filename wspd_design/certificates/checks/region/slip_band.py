@@ -10,12 +10,15 @@ from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Certificate, Problem, Status
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
+from wspd_design.certificates.search.slip_band.disturbed import latest, noisiest
 from wspd_design.certificates.search.slip_band.search import Failed, largest_share
 from wspd_design.certificates.theorems.band import (
     BOUNDED,
     CELLS,
     DEPARTURE,
     DIRECTIONS,
+    LATE,
+    NOISY,
     SLIP_BAND,
     key,
     proved_friction,
@@ -24,6 +27,7 @@ from wspd_design.certificates.theorems.slip_band.departure import corners, lock,
 from wspd_design.certificates.theorems.slip_band.proof import write
 from wspd_design.certificates.theorems.slip_band.reference import slip_at
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, law_of, windows_of
+from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
@@ -46,15 +50,19 @@ def search(problem: Problem) -> Mapping[str, Stated]:
                 stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name])
     friction = proved_friction(problem, {name: finding(wanted[name], each) for name, each in stated.items()})
     if friction is None:
-        return stated | {CELLS: Stated(), DEPARTURE: _departure(problem)}
+        return stated | {CELLS: Stated(), LATE: Stated(), NOISY: Stated(), DEPARTURE: _departure(problem)}
     law = law_of(problem.controller)
     found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
     if isinstance(found, Failed):
         failed = Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))
-        return stated | {CELLS: failed, DEPARTURE: _departure(problem)}
+        return stated | {CELLS: failed, LATE: Stated(), NOISY: Stated(), DEPARTURE: _departure(problem)}
     # What is shown on the whole box needs no look for what would deny it.
     away = Stated() if found.share == 1 else _departure(problem)
-    return stated | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
+    borne = {LATE: latest(problem, law, found)}
+    # A law of a user is compared with what it declares for speeds without noise.
+    borne[NOISY] = noisiest(problem, law, found) if isinstance(problem.controller, Protection) else None
+    disturbed = {name: Stated(proof=write(each) if each else None) for name, each in borne.items()}
+    return stated | disturbed | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
 
 
 def _departure(problem: Problem) -> Stated:
