@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 
 from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.closed_loop import load_closed_loop
-from wspd_design.codegen.kernels import RAIL, plant_kernels
+from wspd_design.codegen.kernels import plant_kernels
+from wspd_design.codegen.plant_numbers import RAIL
 from wspd_design.controllers.protocol import Command
 from wspd_design.parameters.loading import load_rail, load_track_spectrum
 from wspd_design.plants.locomotive import LinearLocomotive

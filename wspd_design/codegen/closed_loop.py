@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.compiler import load_library
 from wspd_design.codegen.emitter import emit
-from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, kinds_of, plant_kernels
+from wspd_design.codegen.kernels import WINDOW, Kernels, kinds_of, plant_kernels
 from wspd_design.codegen.law_library import LoadedLaw, load_law, pointer
 from wspd_design.codegen.loop_numbers import (
     DISTANCE_TOLERANCE,
@@ -26,6 +26,7 @@ from wspd_design.codegen.loop_numbers import (
     LoopOutput,
 )
 from wspd_design.codegen.memory import Memory
+from wspd_design.codegen.plant_numbers import PARAMETERS
 from wspd_design.codegen.prebuilt import prebuilt_library
 from wspd_design.codegen.sampled import drive, measurement_of
 from wspd_design.controllers.protocol import Command, Law, VehicleMeasurement

@@ -4,18 +4,13 @@ The numbers of vehicle and rail are inputs of the kernels, so that one compiled 
 axles, every rail and every sample of parameters.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
-from wspd_design.codegen.further_numbers import (
-    FURTHER_PARAMETERS,
-    PART_NAMES,
-    blank_parts,
-    further_values,
-    symbolic_parts,
-)
+from wspd_design.codegen.further_numbers import blank_parts, symbolic_parts
 from wspd_design.codegen.hoisting import hoist
 from wspd_design.codegen.memory import Memory
+from wspd_design.codegen.plant_numbers import KINDS, PARAMETERS, RAIL, RECORDS, Surroundings
 from wspd_design.model import adhesion
 from wspd_design.model import brake as brake_model
 from wspd_design.model import slip as slip_model
@@ -32,83 +27,11 @@ from wspd_design.plants.protocol import (
     is_split,
 )
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Surroundings:
-    """What a scenario adds to vehicle and rail, as numbers of one wheelset."""
-
-    grade_force: float = 0.0  # N, positive uphill
-    axle_offset: float = 0.0  # m, behind the first axle
-    braking_time: float = 0.0  # s, from the application of the brake to the start of the stop
-    reservoir_drain: float = 0.0  # -, by which a pressure filled into the cylinders lowers the reservoir
-    creep_growth: float = 1.0  # -, fastest rate of the creep of a coupled plant over that of rigid wheelsets
-
-
-_RECORDS: tuple[tuple[str, type], ...] = (
-    ("vehicle", Vehicle),
-    ("brake", Brake),
-    ("contact", Contact),
-    ("rail", Rail),
-    ("surroundings", Surroundings),
-)
-KINDS = ("build_up", "valve")
-"""Words of a brake: another word is another kernel, and so is a reservoir that can run low."""
-_NOT_NUMBERS = (
-    "name",
-    "wheelsets",
-    "axles_per_bogie",
-    "bodies",
-    "brake",
-    "contact",
-    "axle_shares",
-    *PART_NAMES,
-    "bounds",
-    *KINDS,
-    "multibody",
-    "dead_time",  # the numbers of a stop hold these, as its disturbances
-    "shortest_pulse",
-    "longest_release",
-    "cylinder_volume",
-    "reservoir_volume",
-    "reservoir_pressure",
-)
-
-PARAMETERS: tuple[tuple[str, str], ...] = (
-    *(
-        (record, field.name)
-        for record, kind in _RECORDS
-        for field in fields(kind)
-        if field.name not in _NOT_NUMBERS
-    ),
-    *FURTHER_PARAMETERS,
-)
-"""Record and field of every element of the parameter vector."""
-
-
-_KNOWN = PARAMETERS[: -len(FURTHER_PARAMETERS)]
-
-
-def parameter_values(vehicle: Vehicle, rail: Rail, surroundings: Surroundings) -> list[float]:
-    """Parameter vector of one wheelset: the vehicle, the rail below it and what the scenario adds."""
-    records = {
-        "vehicle": vehicle,
-        "brake": vehicle.brake,
-        "contact": vehicle.contact,
-        "rail": rail,
-        "surroundings": surroundings,
-    }
-    return [*(getattr(records[record], field) for record, field in _KNOWN), *further_values(vehicle)]
-
-
 _LEAST_SLIDING = 1e-9  # m/s, below which the secant of the creep curve is not asked for
 
 WINDOW = ("start", "start_pressure", "fill_end", "vent_end", "reservoir", "share", "start_level", "goal")
 """What holds from one command of the valves to the next: times [s], pressures [Pa], share of the pressure that is asked
 of the friction brake, and the level of the electrodynamic brake, there and where it goes to."""
-
-
-RAIL = tuple(field for record, field in PARAMETERS if record == "rail")
-"""Numbers of a rail."""
 
 
 class Kernels(NamedTuple):
@@ -246,7 +169,7 @@ def plant_kernels(plant: Plant, *, disturbed: bool) -> Kernels:
 
 def kinds_of(plant: Plant) -> tuple[type, ...]:
     """Classes whose methods and properties make the kernels of a plant."""
-    return type(plant), *(kind for _, kind in _RECORDS)
+    return type(plant), *(kind for _, kind in RECORDS)
 
 
 _memory: "Memory[Kernels]" = Memory(16)

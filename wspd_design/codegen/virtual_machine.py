@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.codegen.bound import Bound
 from wspd_design.codegen.emitter import UntraceableError
-from wspd_design.codegen.kernels import PARAMETERS, WINDOW, Kernels, plant_kernels
+from wspd_design.codegen.kernels import WINDOW, Kernels, plant_kernels
 from wspd_design.codegen.law_library import virtual_law
 from wspd_design.codegen.laws import law_kernels
 from wspd_design.codegen.loop_numbers import LANE_TOTALS, RAIL_NUMBERS, STOP_TOTALS, LoopInput, LoopOutput
+from wspd_design.codegen.plant_numbers import PARAMETERS
 from wspd_design.codegen.sampled import BAD_COMMAND, BUFFER_FULL, GOOD, drive, flat
 from wspd_design.codegen.virtual_coupled import TrackTable
 from wspd_design.codegen.virtual_functions import StepFunctions, step_functions

@@ -7,7 +7,8 @@ needed.
 
 from typing import Any
 
-from wspd_design.codegen.kernels import PARAMETERS, Kernels
+from wspd_design.codegen.kernels import Kernels
+from wspd_design.codegen.plant_numbers import PARAMETERS
 from wspd_design.codegen.virtual_adhering import STEADY, Adhering, Stage, settling_rates, weighted_sum
 from wspd_design.codegen.virtual_layout import INTEGRATED, Layout
 from wspd_design.model.number import maximum, minimum, where

@@ -3,8 +3,8 @@
 import math
 from typing import TYPE_CHECKING
 
-from wspd_design.codegen.kernels import PARAMETERS
 from wspd_design.codegen.loop_numbers import STUCK_VALVES, LoopInput
+from wspd_design.codegen.plant_numbers import PARAMETERS
 from wspd_design.codegen.valves import CLOSED, followed
 from wspd_design.controllers.protocol import Command
 

@@ -32,8 +32,8 @@ def closes(law: Any, vehicle: Vehicle, rail: Rail, *, speeds: Ends, share: float
     """Look for quadratic functions that fall along the sampled loop, whatever the friction does within its secants.
 
     One function for each corner of valve times, pads, inertia and friction, at the lowest speed and at the geometric
-    mean of both; the valve is not saturated, pressures are measured. The functions are found in doubles on sampled
-    friction: a constraint for a search, not a proof.
+    mean of both; the valve is not saturated and opens without dead time, the supply is full, pressures are measured.
+    The functions are found in doubles on sampled friction: a constraint for a search, not a proof.
 
     Parameters
     ----------
@@ -136,6 +136,8 @@ def _corners(
                 parts=parts_of((speedups[0], speedups[1]), longest),
                 seen=(0.5 * seen[0], seen[1]),
                 pulse=1.0,
+                delay=0.0,
+                added=0.0,
             )
             for mass, mu0 in zip(box["mass"], box["mu0"], strict=True)
         ]

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from wspd_design.codegen.kernels import Surroundings, parameter_values
 from wspd_design.codegen.loop_numbers import (
     DISTURBANCES,
     FAULTS,
@@ -14,6 +13,7 @@ from wspd_design.codegen.loop_numbers import (
     LoopInput,
     Settings,
 )
+from wspd_design.codegen.plant_numbers import Surroundings, parameter_values
 from wspd_design.controllers.protocol import Law, acts_on_vehicle
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import constants, load_track_spectrum

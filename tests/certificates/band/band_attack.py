@@ -194,7 +194,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Disturbance:
-    """What differs from sample to sample, at most: both are drawn again for each sample, half of the time at their ends."""
+    """Largest disturbances: drawn again for each sample, half of them at their ends."""
 
     late: float = 0.0  # s, beginning of pulses
     noise: float = 0.0  # m/s, of the measured speeds of rims and train

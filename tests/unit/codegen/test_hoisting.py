@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from wspd_design.codegen.hoisting import hoist
-from wspd_design.codegen.kernels import PARAMETERS, Surroundings, parameter_values, plant_kernels
+from wspd_design.codegen.kernels import plant_kernels
+from wspd_design.codegen.plant_numbers import PARAMETERS, Surroundings, parameter_values
 from wspd_design.model import adhesion
 from wspd_design.parameters.loading import load_rail
 from wspd_design.plants.planar import Planar

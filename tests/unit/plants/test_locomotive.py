@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wspd_design.codegen.kernels import RAIL, Surroundings, parameter_values, plant_kernels
+from wspd_design.codegen.kernels import plant_kernels
+from wspd_design.codegen.plant_numbers import RAIL, Surroundings, parameter_values
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import data_file
 from wspd_design.parameters.loading import load_rail, load_vehicle

@@ -3,6 +3,7 @@
 import re
 import textwrap
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -70,7 +71,7 @@ def certificate_curves(figure: "Figure", series: Sequence[Series]) -> "Figure":
         axes.set_ylabel(textwrap.fill(axis_label(y_label), LABEL_WIDTH))
         if axes is rows[-1] or not stacked:
             axes.set_xlabel(axis_label(x_label))
-        names = [each.name for each in group]
+        names = list(dict.fromkeys(each.name for each in group))
         if len(names) > 1 or not y_label.startswith(f"{names[0]} ["):
             axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.98), ncols=_columns(names), borderpad=0.2)
     figure.align_ylabels()
@@ -79,7 +80,19 @@ def certificate_curves(figure: "Figure", series: Sequence[Series]) -> "Figure":
 
 def series_alt(series: Sequence[Series]) -> str:
     """Say in words what the curves show: where each begins, ends, and its extremes."""
-    return "; ".join(map(_words, series)) + "."
+    alike: dict[tuple[str, Role], list[Series]] = {}
+    for each in series:
+        alike.setdefault((each.name, each.role), []).append(each)
+    return "; ".join(map(_all_words, alike.values())) + "."
+
+
+def _all_words(alike: Sequence[Series]) -> str:
+    """Say in words what curves of one name show: all of them as if they were one."""
+    first = alike[0]
+    if len(alike) == 1:
+        return _words(first)
+    x, y = (tuple(value for each in alike for value in getattr(each, axis)) for axis in "xy")
+    return f"{_words(replace(first, x=x, y=y))}, {len(alike)} of them"
 
 
 def series_caption(title: str, series: Sequence[Series]) -> str:
@@ -136,9 +149,12 @@ def _stacked(groups: dict[tuple[str, str], list[Series]]) -> bool:
 def _panel(axes: "Axes", group: Sequence[Series]) -> None:
     import numpy as np
 
-    for index, each in enumerate(group):
+    indices: dict[str, int] = {}
+    for each in group:
         x, y = np.array(each.x), np.array(each.y)
-        name = plain_symbols(each.name)
+        # Curves of one name look alike, and stand in the legend once.
+        name = "_nolegend_" if each.name in indices else plain_symbols(each.name)
+        index = indices.setdefault(each.name, len(indices))
         if each.role is Role.LIMIT:
             axes.plot(x, y, color=INK, linestyle=LINE_STYLES[index], linewidth=1.0, label=name)
             continue

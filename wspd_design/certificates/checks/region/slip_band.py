@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from wspd_design.certificates.checks.frame import Check, Figures, series
+from wspd_design.certificates.checks.frame import Check
+from wspd_design.certificates.checks.region.slip_band_figures import figures
 from wspd_design.certificates.kernel.finding import Effort, Place, Stated
 from wspd_design.certificates.kernel.obligation import Inequality
-from wspd_design.certificates.records import Certificate, Problem, Status
+from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
 from wspd_design.certificates.search.slip_band.disturbed import latest, noisiest
@@ -25,16 +25,10 @@ from wspd_design.certificates.theorems.band import (
 )
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
 from wspd_design.certificates.theorems.slip_band.proof import write
-from wspd_design.certificates.theorems.slip_band.reference import slip_at
-from wspd_design.certificates.theorems.slip_band.statement import BandLaw, law_of, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.controllers.protection import Protection
-from wspd_design.parameters.units import KMH
-
-if TYPE_CHECKING:
-    from wspd_design.certificates.search.matrix_inequalities import Array
 
 TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
-SHOWN = 33  # points of a reference that falls
 CELLS_TRIED = 24  # for each share of the box, with an effort of 1
 
 
@@ -79,39 +73,6 @@ def _departure(problem: Problem) -> Stated:
         if lock(problem, middle):
             return Stated(place=middle)
     return Stated(effort=Effort(boxes=len(tried), undecided=1.0, cut=len(tried) < len(places)))
-
-
-def figures(problem: Problem, certificate: Certificate) -> Figures:
-    """Proved band over speed."""
-    import numpy as np
-
-    axes = ("speed [km/h]", "slip [-]")
-    law, radius = law_of(problem.controller), problem.vehicle.wheel_radius
-    shown = np.linspace(*problem.speeds, SHOWN if law.falls else 2)
-    reference = series("reference", *axes, shown * KMH, _held(law, radius, shown))
-    finding = certificate.findings[CELLS]
-    if finding.status is not Status.PROVED:
-        return Figures(series=(reference,))
-    windows, numbers = windows_of(problem), finding.numbers
-    x = np.array([speed for window in windows for speed in window])
-    held = _held(law, radius, x)
-    above, below = (
-        np.array([numbers[f"band {k} {side}"] for k in range(len(windows)) for _ in range(2)])
-        for side in ("above", "below")
-    )
-    return Figures(
-        series=(
-            series("largest slip", *axes, x * KMH, held + above),
-            series("smallest slip", *axes, x * KMH, held - below),
-            reference,
-        )
-    )
-
-
-def _held(law: BandLaw, radius: float, speeds: "Array") -> "Array":
-    import numpy as np
-
-    return np.array([slip_at(law, float(speed), radius) for speed in speeds])
 
 
 CHECK = Check(theorem=SLIP_BAND, search=search, figures=figures)

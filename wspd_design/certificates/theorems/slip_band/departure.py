@@ -40,6 +40,7 @@ class Settled:
     turning: float  # -, part of a change of the train speed that the rims at the reference take part in
     acceleration: float  # m/s2, of the train
     wheel_radius: float  # m, true
+    held: float  # N m, torque that holds the reference, by nominal pads
 
     @property
     def name(self) -> str:
@@ -73,9 +74,10 @@ class Settled:
             "speed_scale": scale,
         }
         for axle in range(1, law.wheelsets + 1):
-            speed, torque = measurement.wheel_speeds[axle - 1], known[f"torque_{axle}"]
-            settled[f"observed_speed_{axle}"] = speed - turning * back
-            settled[f"friction_torque_{axle}"] = torque + law.wheelset_inertia * turning
+            held = law.torque_shares[axle - 1] * self.held
+            settled[f"observed_speed_{axle}"] = measurement.wheel_speeds[axle - 1] - turning * back
+            settled[f"friction_torque_{axle}"] = held + law.wheelset_inertia * turning
+            settled[f"mean_torque_{axle}"] = held
         return tuple((known | settled).values())
 
     def step(self, state: State, measurement: VehicleMeasurement) -> tuple[State, tuple[Command, ...]]:
@@ -115,11 +117,13 @@ class SettledStop(NamedTuple):
 def settled_stop(problem: Problem, place: Place) -> SettledStop:
     """Return the stop that begins at the reference at a place."""
     vehicle, rail, braking, slip, turning, holding = _reference(problem, place)
+    protection = cast(Protection, problem.controller)
     law = Settled(
-        law=cast(Protection, problem.controller),
+        law=protection,
         turning=turning,
         acceleration=-float(slip_dynamics(vehicle, rail, slip, place["speed"]).deceleration),
         wheel_radius=vehicle.wheel_radius,
+        held=holding * protection.valve.brake.max_torque / vehicle.brake.max_torque,
     )
     start = Start(slip=slip, torque=min(holding, vehicle.brake.max_torque), braking_time=braking)
     return SettledStop(vehicle, rail, law, start, holding)

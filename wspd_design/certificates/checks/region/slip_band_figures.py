@@ -1,0 +1,209 @@
+"""What a report shows beside a band of slip: band over speed, basin with runs inside it, and the cells of the proof."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from wspd_design.certificates.checks.frame import Figures, series
+from wspd_design.certificates.records import Certificate, Problem, Role, Series, Status
+from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.theorems.slip_band.departure import SettledStop, settled_stop
+from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read
+from wspd_design.certificates.theorems.slip_band.reference import slip_at
+from wspd_design.certificates.theorems.slip_band.statement import (
+    LETTERS,
+    NAMES,
+    BandLaw,
+    Cell,
+    Interval,
+    box_of,
+    halved,
+    law_of,
+    windows_of,
+)
+from wspd_design.controllers.protection import Protection
+from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.units import KMH
+from wspd_design.simulation.records import Scenario
+from wspd_design.simulation.start import holding_torque
+from wspd_design.simulation.stop import simulate
+
+if TYPE_CHECKING:
+    from wspd_design.certificates.search.matrix_inequalities import Array
+
+SHOWN = 33  # points of a reference that falls
+AROUND = 97  # of an outline
+SEEN = (0, 3)  # error and torque among the numbers of the state
+STARTS = 4  # runs in an ellipsoid
+ALONG = 121  # points of a run
+BASIN = ("sliding speed above that of the reference [m/s]", "torque above the holding one [kN m]")
+CELL = (
+    "mu0",
+    "max torque",
+)  # numbers over which cells are shown: friction and pads decide how much room there is
+CELL_AXES = ("mu0 [-]", "torque at full pressure [kN m]")
+
+
+def figures(problem: Problem, certificate: Certificate) -> Figures:
+    """Band over speed; where there are proofs, ellipsoids of the nominal numbers with runs, and the cells."""
+    finding = certificate.findings[CELLS]
+    if finding.status is not Status.PROVED or finding.stated is None or finding.stated.proof is None:
+        return Figures(series=(_reference(problem),))
+    proof = read(finding.stated.proof, len(windows_of(problem)))
+    cells = tuple(leaves(box_of(problem, proof.share), proof.steps))
+    nominal = tuple(Fraction(problem.nominal(name)) for name in NAMES)
+    inside = (all(low <= x <= high for x, (low, high) in zip(nominal, cell, strict=True)) for cell in cells)
+    ellipsoids = next(each for each, holds in zip(proof.cells, inside, strict=True) if holds)
+    return Figures(
+        series=(
+            *_band(problem, finding.numbers),
+            *_basin(problem, ellipsoids),
+            *_cells(problem, cells, proof),
+        )
+    )
+
+
+def leaves(box: Cell, steps: str) -> Iterator[Cell]:
+    """Yield the cells of a box, in the order of the proof."""
+    waiting = [box]
+    for step in steps:
+        cell = waiting.pop()
+        if step in LETTERS:
+            waiting += halved(cell, step)[::-1]
+        else:
+            yield cell
+
+
+def _law(problem: Problem) -> BandLaw:
+    return law_of(problem.controller)
+
+
+def _held(problem: Problem, speeds: "Array") -> "Array":
+    import numpy as np
+
+    law, radius = _law(problem), problem.vehicle.wheel_radius
+    return np.array([slip_at(law, float(speed), radius) for speed in speeds])
+
+
+_SLIP = ("speed [km/h]", "slip [-]")
+
+
+def _reference(problem: Problem) -> Series:
+    import numpy as np
+
+    speeds = np.linspace(*problem.speeds, SHOWN if _law(problem).falls else 2)
+    return series("reference", *_SLIP, speeds * KMH, _held(problem, speeds))
+
+
+def _band(problem: Problem, numbers: Mapping[str, float]) -> tuple[Series, ...]:
+    """Largest and smallest slip that are proved."""
+    import numpy as np
+
+    windows = windows_of(problem)
+    speeds = np.array([speed for window in windows for speed in window])
+    above, below = (
+        np.array([numbers[f"band {k} {side}"] for k in range(len(windows)) for _ in range(2)])
+        for side in ("above", "below")
+    )
+    held = _held(problem, speeds)
+    return (
+        series("largest slip", *_SLIP, speeds * KMH, held + above),
+        series("smallest slip", *_SLIP, speeds * KMH, held - below),
+        _reference(problem),
+    )
+
+
+def _basin(problem: Problem, ellipsoids: Sequence[Ellipsoid]) -> Iterator[Series]:
+    """Yield the ellipsoids of the slowest and of a middle window as error and torque see them, and runs in them."""
+    windows = windows_of(problem)
+    for k in sorted({0, len(windows) // 2}):
+        low, high = (speed * KMH for speed in windows[k])
+        name = f"{low:.0f} to {high:.0f} km/h"
+        yield _outline(problem, f"ellipsoid, {name}", ellipsoids[k])
+        if isinstance(
+            problem.controller, Protection
+        ):  # how the observers of another law have settled is not known
+            yield from _runs(problem, f"runs, {name}", ellipsoids[k], windows[k])
+
+
+def _scales(problem: Problem) -> tuple[float, float]:
+    """What errors and torques of the state are multiplied by for the plot [m, kN m s]."""
+    law = _law(problem)
+    return -problem.vehicle.wheel_radius, float(law.inertia / law.sample_time) / 1e3
+
+
+def _outline(problem: Problem, name: str, each: Ellipsoid) -> Series:
+    """Shadow of an ellipsoid on error and torque."""
+    import numpy as np
+
+    spread = np.linalg.inv(np.array(each.matrix, dtype=float))[np.ix_(SEEN, SEEN)]
+    center = np.array(each.center, dtype=float)[list(SEEN)]
+    turn = np.linspace(0.0, 2.0 * math.pi, AROUND)
+    edge = np.linalg.cholesky(spread) @ np.array([np.cos(turn), np.sin(turn)])
+    slide, torque = _scales(problem)
+    return series(name, *BASIN, slide * (center[0] + edge[0]), torque * (center[1] + edge[1]), Role.OUTLINE)
+
+
+def _runs(problem: Problem, name: str, each: Ellipsoid, window: Ends) -> Iterator[Series]:
+    """Yield simulated runs that begin on the ellipsoid, with observers that have settled, down to its lowest speed."""
+    import numpy as np
+
+    nominal = {number: problem.nominal(number) for number in NAMES}
+    at = settled_stop(problem, {**nominal, "speed": window[1]})
+    slide, torque = _scales(problem)
+    pads = at.vehicle.brake.max_torque / float(_law(problem).full_torque)
+    for error, step in _starts(each):
+        start = replace(
+            at.start,
+            slip=at.start.slip + slide * error / window[1],
+            torque=at.start.torque + 1e3 * torque * pads * step,
+        )
+        scenario = Scenario(rail=at.rail, initial_speed=window[1], start=start)
+        run = simulate(at.vehicle, at.law, scenario, plant="quarter")
+        shown = np.flatnonzero(run.speed >= window[0])
+        shown = shown[:: max(1, len(shown) // ALONG)]
+        speeds = run.speed[shown]
+        holding = [_holding(problem, at, float(speed)) for speed in speeds]
+        x = (run.slip[shown, 0] - _held(problem, speeds)) * speeds
+        yield series(name, *BASIN, x, (run.torque[shown, 0] / pads - np.array(holding) / pads) / 1e3)
+
+
+def _starts(each: Ellipsoid) -> "Array":
+    """Errors and torques at the edge of the ellipsoid where the observer has settled [rad/s]."""
+    import numpy as np
+
+    p, center = np.array(each.matrix, dtype=float), np.array(each.center, dtype=float)
+    seen = np.ix_(SEEN, SEEN)
+    pull = (p @ center)[list(SEEN)]
+    middle = np.linalg.solve(p[seen], pull)
+    left = 1.0 - center @ p @ center + pull @ middle
+    turn = (np.arange(STARTS) + 0.5) * 2.0 * math.pi / STARTS
+    edge = np.linalg.solve(np.linalg.cholesky(p[seen]).T, np.array([np.cos(turn), np.sin(turn)]))
+    starts: Array = (middle[:, None] + max(left, 0.0) ** 0.5 * edge).T
+    return starts
+
+
+def _holding(problem: Problem, at: SettledStop, speed: float) -> float:
+    slip = slip_at(_law(problem), speed, at.vehicle.wheel_radius)
+    return holding_torque(at.vehicle, at.rail, slip=slip, speed=speed, braking_time=at.start.braking_time)
+
+
+def _cells(problem: Problem, cells: Sequence[Cell], proof: Proof) -> Iterator[Series]:
+    """Yield the stated ranges of friction and pads, and the cells of the proof as seen along all other numbers."""
+    if len(cells) == 1 and proof.share == 1:
+        return  # the box itself
+    places = [NAMES.index(name) for name in CELL]
+    yield _rectangle("stated ranges", [box_of(problem, Fraction(1))[place] for place in places])
+    seen = dict.fromkeys(tuple(cell[place] for place in places) for cell in cells)
+    for each in seen:
+        yield _rectangle("cells with ellipsoids", each)
+
+
+def _rectangle(name: str, sides: Sequence[Interval]) -> Series:
+    import numpy as np
+
+    (left, right), (low, high) = (map(float, ends) for ends in sides)
+    x, y = np.array([left, right, right, left, left]), np.array([low, low, high, high, low])
+    return series(name, *CELL_AXES, x, y / 1e3, Role.OUTLINE)
