@@ -1,7 +1,6 @@
 """Starts on the boundary of the proved ellipsoids and stops from rolling, with a plant and a law of their own."""
 
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -10,7 +9,6 @@ import wspd_design as wd
 from tests.certificates.band.band_attack import (
     BESIDE,
     BOX,
-    Disturbance,
     Law,
     attack_boundary,
     box,
@@ -19,16 +17,8 @@ from tests.certificates.band.band_attack import (
     sampled,
     sets_of,
 )
-from tests.certificates.band.conftest import problem_of
-from wspd_design.certificates.kernel.checker import Work
-from wspd_design.certificates.search.slip_band.disturbed import alone
-from wspd_design.certificates.search.slip_band.search import exactly
 from wspd_design.certificates.setting.plant import plant_with
-from wspd_design.certificates.theorems.band import CELLS, proved_friction
-from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.loop import Friction
-from wspd_design.certificates.theorems.slip_band.proof import write
-from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
+from wspd_design.certificates.theorems.band import CELLS
 
 pytestmark = pytest.mark.slow
 STARTS, STOPS = 2000, 100
@@ -69,46 +59,6 @@ def test_stops_from_rolling_enter_and_stay(half, sets, stops):
     assert seen.entered.all()
     assert not seen.left.any()
     assert 0.14 < seen.way_in.max() < 0.17
-
-
-DELAY, NOISE = Fraction(1, 4), Fraction(1, 500)  # samples, m/s
-
-
-@pytest.fixture(scope="module")
-def late():
-    """Fast part of a stop with a dead time and proved with it and with noise, on a part of the box."""
-    problem = problem_of(0.25, speeds=(15.0, 120.0 / 3.6))
-    brake = replace(problem.vehicle.brake, dead_time=float(DELAY) * problem.sample_time)
-    return replace(problem, vehicle=replace(problem.vehicle, brake=brake))
-
-
-@pytest.fixture(scope="module")
-def late_sets(late, half, proved):
-    """The fastest windows; the friction is bounded there by what is proved for the whole stop."""
-    law, count = law_of(late.controller), len(windows_of(late))
-    bounds = proved_friction(half, proved.findings)[-count - 1 :]
-    lows, highs = ([[ends[end] for ends in each] for each in bounds] for end in (0, 1))
-    friction = Friction(*zip(np.min(lows, axis=0).tolist(), np.max(highs, axis=0).tolist(), strict=True))
-    found = alone(late, law, [friction] * count, Fraction(1), exactly(late, law)._replace(noise=NOISE))
-    proof = write(found)
-    return sets_of(late, proof, checker(late, late.controller)(proof, Work(10**9)))
-
-
-def test_late_pulses_and_noise_do_not_lead_out(late, late_sets):
-    disturbance = Disturbance(late=float(DELAY) * late.sample_time, noise=float(NOISE))
-    seen = attack_boundary(late, late_sets, starts=STARTS, disturbance=disturbance)
-    assert seen.entered.all()
-    assert not seen.left.any()
-
-
-def test_more_noise_later_pulses_and_less_supply_lead_out(late, late_sets):
-    """The attack can tell bounds that are too small."""
-    noisy = Disturbance(noise=8.0 * float(NOISE))
-    assert attack_boundary(late, late_sets, starts=200, disturbance=noisy).left.any()
-    later = Disturbance(late=3.0 * late.sample_time)
-    assert attack_boundary(late, late_sets, starts=200, disturbance=later).left.any()
-    hungry = replace(late_sets, supplies=late_sets.supplies - 0.3)
-    assert attack_boundary(late, hungry, starts=200).left.any()
 
 
 def test_sets_that_are_too_small_are_left(half, sets):

@@ -10,7 +10,9 @@ from wspd_design.certificates.theorems.slip_band.proof import Proof
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, box_of, windows_of
 
 DELAYS = tuple(map(Fraction, ("1/16", "1/8", "1/4", "1/2", "3/4")))  # of the sample
-NOISES = tuple(map(Fraction, ("0.0002", "0.0005", "0.001", "0.002", "0.005", "0.01", "0.02")))  # m/s
+NOISES = tuple(
+    map(Fraction, ("0.00005", "0.0001", "0.0002", "0.0005", "0.001", "0.002", "0.005", "0.01", "0.02"))
+)  # m/s
 ALONE = Fraction(1, 4)  # of the box, where more than one cell was needed
 
 
