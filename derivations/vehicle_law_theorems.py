@@ -1,6 +1,6 @@
 """What the laws of a vehicle rest on: valve, observer, surface and adaptation."""
 
-from derivations import friction_observer, fuzzy_surface, slip_tracking, valve_inversion
+from derivations import friction_observer, fuzzy_loop, fuzzy_surface, slip_tracking, valve_inversion
 from derivations.theorem import Identity, Theorem
 
 THEOREMS = (
@@ -106,7 +106,7 @@ THEOREMS = (
         sketch="The terms of sigma_D and the weight errors cancel by the adaptation law. -b (b - b*) is at most "
         "b*^2/4.",
         not_said="That the surface is reached: with leakage an error stays. g changes with the torque, and the law is "
-        "sampled. No certificate of the package speaks about this law.",
+        "sampled: for that see the theorem below.",
         identities=(
             Identity(
                 "the command moves sigma' with the factor -R (T_in - T)/(J T_F)",
@@ -118,5 +118,49 @@ THEOREMS = (
             Identity("-b (b - b*) = -(b - b*/2)^2 + b*^2/4", fuzzy_surface.leak_residual),
         ),
         certificates=(),
+    ),
+    Theorem(
+        anchor="fuzzy-sector",
+        title="What the mended adaptive fuzzy law keeps, and the sector of its valve",
+        statement="Weights: if they adapt by at most the part h alpha leakage <= 1 of the way in a sample, a weight "
+        "stays in every interval that holds its first value, 0 and all values of sigma_D w/leakage. With "
+        "memberships of one width the weight of a rule takes the sign opposite to its center by no more than "
+        "exp(-kappa (Phi - m) - 1)/(kappa leakage), and psi does not fall below its first value. Inside the layer "
+        "the weights fade, and with a whole sample at its edge the command is sigma/Phi. Sector: there one sample "
+        "makes x+ = A x of x = (e, e before, filtered e', W), with one A for all deviations while the valve fills "
+        "and another while it vents. If some P > 0 has c^2 P - A'PA positive definite at the corners of all numbers "
+        "of a sample, small deviations fall by c < 1 a sample, however filling and venting follow each other. If "
+        "the product of the A of some course of filling and venting has an eigenvalue outside of the unit circle, "
+        "no function falls along all courses; and if it is real, above 1, and the surface has along its eigenvector "
+        "the sign that each step of the course asks for, the loop itself takes that course and leaves its "
+        "reference.",
+        hypotheses=(
+            "weights that have faded, as they do inside the layer with the time constant 1/(alpha leakage)",
+            "the train speed frozen, deviations small: the pulse is short and lies at the begin of the sample",
+            "no least pulse: what is shorter is not commanded, and leaves deviations that it would answer",
+            "wheel speed and train speed measured exactly, without dead time; full supply pressure",
+        ),
+        sketch="A weight moves to a mean of itself and sigma_D w/leakage. The surface has relative degree one in the "
+        "valve, whose authority is (T_in - T)/T_F or T/T_V: a sector that is as wide as the brake is far from half of "
+        "its torque. On a poor rail it fills many times faster than it vents. What falls along every course in the "
+        "sector falls along that of the loop, not the other way round.",
+        not_said="A band of slip: deviations that leave the layer, where the weights come in, are not followed. That "
+        "the loop leaves its reference where only the sector fails: the sign of the surface decides which course it "
+        "takes.",
+        identities=(
+            Identity(
+                "a sample of adaptation is a mean of b and sigma_D w/leakage", fuzzy_loop.mixed_residual
+            ),
+            Identity(
+                "ratio of two memberships of one width: -kappa (sigma - m) in the exponent",
+                fuzzy_loop.ratio_residual,
+            ),
+            Identity("x exp(-kappa x) is largest at x = 1/kappa", fuzzy_loop.turning_residual),
+            Identity("what it is there, from the layer on", fuzzy_loop.bound_residual),
+            Identity("phi e - psi W solves e' = q e - W", fuzzy_loop.between_residual),
+            Identity("a short filling moves T by h (T_in - T)/T_F for u = 1", fuzzy_loop.fill_residual),
+            Identity("a short venting by -h T/T_V", fuzzy_loop.vent_residual),
+        ),
+        certificates=("fuzzy_sector",),
     ),
 )

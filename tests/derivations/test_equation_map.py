@@ -182,6 +182,7 @@ def test_files_functions_and_tests_exist():
 
 BESIDE_THE_PAPER = {
     "friction_observer",
+    "fuzzy_loop",
     "fuzzy_surface",
     "slip_loop",
     "slip_tracking",

@@ -255,12 +255,12 @@ def not_written(law: Protection) -> str:
         pair = law_constants(law), law_constants(wanted)
     except UntraceableError as reason:
         return f"cannot be traced ({reason})"
-    if not _same(*pair):
+    if not same_step(*pair):
         return "has a step that is not shown to be the sliding mode of relative degree two"
     return ""
 
 
-def _same(one: LawKernels, other: LawKernels) -> bool:
+def same_step(one: LawKernels, other: LawKernels) -> bool:
     """Whether two laws are the same function, in the prime field and in doubles."""
     if one.states != other.states:
         return False

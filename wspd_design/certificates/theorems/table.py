@@ -24,6 +24,7 @@ from wspd_design.certificates.theorems import (
     traced_loop,
     valve,
 )
+from wspd_design.certificates.theorems.fuzzy_sector.theorem import FUZZY_SECTOR
 from wspd_design.certificates.theorems.shortest_stop.stop_bound import STOP_BOUND
 from wspd_design.certificates.theorems.theorem import Theorem
 
@@ -54,6 +55,7 @@ THEOREMS: Mapping[str, Theorem] = {
         region.LPV_LYAPUNOV,
         region.SAMPLED_INVARIANCE,
         band.SLIP_BAND,
+        FUZZY_SECTOR,
         simulated_stop.TRACKING,
         overshoot.OVERSHOOT,
         simulated_stop.CONSERVATION,
