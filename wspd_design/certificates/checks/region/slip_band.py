@@ -55,7 +55,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     return stated | _disturbed(problem, law, found) | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
 
 
-def _disturbed(problem: Problem, law: BandLaw, found: Proof) -> Mapping[str, Stated]:
+def _disturbed(problem: Problem, law: BandLaw, found: Proof) -> dict[str, Stated]:
     """Look for what else the band bears, unless less than the usual effort is wanted."""
     if budget().effort < 1.0:
         return {LATE: Stated(), NOISY: Stated()}
