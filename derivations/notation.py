@@ -424,3 +424,11 @@ class Generated:
         for name, expression in self.steps:
             known[name] = expression.xreplace(known)
         return tuple(sp.sympify(value).xreplace(known) for value in values)
+
+
+def numerator(fraction: sp.Expr) -> sp.Expr:
+    """Return the expanded numerator of a fraction of polynomials or of powers of e, which is 0 exactly where it is 0.
+
+    It shows that a residual vanishes without the search for a short form that ``simplify`` is.
+    """
+    return sp.expand(sp.numer(sp.together(fraction)))

@@ -7,6 +7,7 @@ for numbers; here stands why they are true for symbols. `make derive` writes the
 from derivations import (
     band_theorems,
     brake_theorems,
+    limit_theorems,
     stop_theorems,
     surface_theorems,
     valve_theorems,
@@ -16,6 +17,7 @@ from derivations import (
 THEOREMS = (
     *valve_theorems.THEOREMS,
     *band_theorems.THEOREMS,
+    *limit_theorems.THEOREMS,
     *surface_theorems.THEOREMS,
     *stop_theorems.THEOREMS,
     *brake_theorems.THEOREMS,

@@ -7,7 +7,7 @@ remembers of a measurement reaches its next command by the product of two slopes
 
 import sympy as sp
 
-from derivations.notation import symbols, time
+from derivations.notation import numerator, symbols, time
 from derivations.valve_map import T_F, T_V, T, T_in, h
 
 p, G = symbols("pole gain")
@@ -25,7 +25,7 @@ def _slip(pulled: sp.Expr) -> sp.Expr:
 
 
 def _residual(slip: sp.Expr, torque: sp.Expr) -> sp.Expr:
-    return sp.simplify(sp.diff(slip, time) - F - p * (slip - s_k) - G * torque)
+    return numerator(sp.diff(slip, time) - F - p * (slip - s_k) - G * torque)
 
 
 def _filled(span: sp.Expr) -> sp.Expr:

@@ -15,7 +15,7 @@ tracked with the double pole theta.
 
 import sympy as sp
 
-from derivations.notation import Generated, symbols
+from derivations.notation import Generated, numerator, symbols
 
 m, R, C, k_AS, h, f_d = symbols("mass wheel_radius contact_stiffness creep_factor sample_time resistance")
 kappa, tau, torques, theta, rim, rate, shown = symbols(
@@ -48,11 +48,11 @@ _joseph = _A * _P * _A.T + _K * _V * _K.T - _A * _c * _K.T - _K * _c.T * _A.T
 _S = (_H * _P * _H.T + 2 * _H * _c)[0] + _V
 _gain = (_P * _H.T + _c) / _S
 _best = {_K[0]: _gain[0], _K[1]: _gain[1]}
-gain_residual = sum(sp.cancel(sp.diff(_joseph.trace(), each).subs(_best)) ** 2 for each in _K)
+gain_residual = sum(numerator(sp.diff(_joseph.trace(), each).subs(_best)) ** 2 for each in _K)
 _short = _P - _gain * (_P * _H.T + _c).T
-short_form_residual = sum((sp.cancel(entry) ** 2 for entry in _joseph.subs(_best) - _short), sp.S.Zero)
+short_form_residual = sum((numerator(entry) ** 2 for entry in _joseph.subs(_best) - _short), sp.S.Zero)
 _without = {_c[0]: 0, _c[1]: 0}
-positive_residual = sp.cancel((_short.det() - _P.det() * _V / _S).subs(_without))
+positive_residual = numerator((_short.det() - _P.det() * _V / _S).subs(_without))
 
 # --- tracking of a rim --------------------------------------------------------------------------------------------
 expected = rim + h * rate

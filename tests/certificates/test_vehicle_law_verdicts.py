@@ -13,7 +13,7 @@ from wspd_design.parameters.loading import load_rail
 
 ABOUT_PLANT_AND_RAIL = ("derivation", "gain_positive", "hard_limits")
 OTHERS = ("well_posed", "holding_torque", "conservation", "stop_bound")  # that take longer, or simulate
-OF_EVERY_LAW = ("feedback", "traced_loop", "overshoot")  # with tests of their own
+OF_EVERY_LAW = ("feedback", "traced_loop", "overshoot", "slip_limit")  # with tests of their own
 ABOUT_A_LAW = tuple(name for name in NAMES if name not in (*ABOUT_PLANT_AND_RAIL, *OTHERS, *OF_EVERY_LAW))
 
 

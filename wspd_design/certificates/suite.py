@@ -19,7 +19,13 @@ from wspd_design.certificates.checks.foundations import (
 )
 from wspd_design.certificates.checks.frame import Check, illustrated
 from wspd_design.certificates.checks.linear import margins, routh_lag, traced_loop
-from wspd_design.certificates.checks.region import fuzzy_sector, lpv_lyapunov, sampled_invariance, slip_band
+from wspd_design.certificates.checks.region import (
+    fuzzy_sector,
+    lpv_lyapunov,
+    sampled_invariance,
+    slip_band,
+    slip_limit,
+)
 from wspd_design.certificates.checks.sliding import (
     boundary_layer,
     holding_torque,
@@ -67,6 +73,7 @@ CHECKS: Mapping[str, Check] = {
         lpv_lyapunov.CHECK,
         sampled_invariance.CHECK,
         slip_band.CHECK,
+        slip_limit.CHECK,
         fuzzy_sector.CHECK,
         tracking.CHECK,
         overshoot.CHECK,

@@ -54,7 +54,7 @@ class ObserverForm:
     slip_error: float = (
         0.0  # -, by which the slip may differ from the reference, where the train speed is told wrong
     )
-    slip_rate: float = 0.0  # 1/s, how fast it may do so
+    slip_drift: float = 0.0  # m/s2, most of the rate of that difference times the train speed
 
 
 @runtime_checkable

@@ -9,14 +9,10 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
+from wspd_design.reporting.formula_symbols import accented, symbol_of
 from wspd_design.reporting.numbers import scientific
 from wspd_design.reporting.text import Inline, Math, Text, spoken
 
-GREEK = re.compile(
-    "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|kappa|lambda|mu|nu|xi|pi|rho|sigma|tau|phi|chi|psi|omega"
-    "|Gamma|Delta|Theta|Lambda|Xi|Pi|Sigma|Phi|Psi|Omega"
-)
-DIFFERENTIAL = re.compile(f"d([tvTuFsV]|{GREEK.pattern})")
 FUNCTIONS = {
     **{
         name: name
@@ -279,7 +275,7 @@ class _Parser:
             return self.depth == 0 or self.sentence[self.at : self.at + 1] == " "
         if found.text in FUNCTIONS:
             return self.sentence[found.end : found.end + 1] == "(" or found.text in ("sup", "inf")
-        if found.kind == "number" or _symbol(found.text) is None:
+        if found.kind == "number" or symbol_of(found.text) is None:
             return False
         if self.depth == 0:
             unit = UNITS.match(self.sentence, found.start)
@@ -333,7 +329,7 @@ class _Parser:
         if name in FUNCTIONS:
             return self._call(found)
         rate = name == "slip" and self.sentence[found.end : found.end + 1] == "'"
-        symbol = _symbol("lambda" if rate else name)
+        symbol = symbol_of("lambda" if rate else name)
         if symbol is None:
             if divisor and self.depth == 0 and len(name) > 3 and name.isalpha():
                 self.at = found.end
@@ -382,13 +378,13 @@ class _Parser:
         if self._next_is("~"):
             self.at += 1
             self.marked += 1
-            source = _accented("tilde", source)
+            source = accented("tilde", source)
         if self.sentence[self.at : self.at + 1] == "^" and not re.match(
             r"\^[\w(*-]", self.sentence[self.at :]
         ):
             self.at += 1
             self.marked += 1
-            source = _accented("hat", source)
+            source = accented("hat", source)
         star = re.match(r"\^?\*(?![\w(|])", self.sentence[self.at :])
         if star:
             self.at += star.end()
@@ -399,54 +395,9 @@ class _Parser:
             self.marked += 1
             if transposed:
                 return f"{source}^({'* ' if star else ''}top) "  # of vectors, as in b*'w
-            source = _accented("dot", source)
+            source = accented("dot", source)
         if star:
             source = f"{source}^*"
         if self.sentence[self.at : self.at + 1] == "(" and not source.startswith("dif"):
             return f"{source}{self._parenthesis()}"
         return source
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Symbol:
-    source: str
-    marked: bool  # whether it is a symbol even alone in a sentence
-
-
-@lru_cache(maxsize=1024)
-def _symbol(name: str) -> _Symbol | None:
-    """Return a letter, a Greek name or a differential with its subscripts as Typst, or nothing for a word."""
-    hat = name.endswith("_hat") or "_hat_" in name
-    base, _, below = name.replace("_hat", "", 1).partition("_")
-    letters = base.rstrip("0123456789")
-    digits = base[len(letters) :]
-    if letters == "sbar":
-        source = "overline(s)"
-    elif name == "int":
-        source = "integral"
-    elif len(digits) > 2:
-        return None
-    elif len(letters) == 2 and letters[0] == "Δ":
-        source = f"Delta {letters[1]}"
-    elif GREEK.fullmatch(letters) or len(letters) == 1:
-        source = letters
-    elif not digits and (differential := DIFFERENTIAL.fullmatch(letters)):
-        source = f"dif {differential[1]}"
-    elif letters == "d\u03bb":
-        source = "dif lambda"
-    else:
-        return None
-    if hat:
-        source = f"hat({source})"
-    if digits and below:
-        return None
-    index = digits or below
-    if index:
-        source += f"_{index}" if len(index) == 1 or index.isdigit() else f'_"{index.replace("_", ",")}"'
-    return _Symbol(source=source, marked=bool(hat or index) or len(letters) > 1 or not letters.isascii())
-
-
-def _accented(accent: str, source: str) -> str:
-    """Put an accent over the letter of a symbol, not over its subscript."""
-    letter, below, index = source.partition("_")
-    return f"{accent}({letter}){below}{index}"

@@ -63,7 +63,7 @@ FAULTS = {
     "rounded before": (("forget = exp(-h * self.observer)", "forget = 0.5488116360940264"), ROUNDED),
     "fails": (("def observed(self, state: State)", "def observed(self, wrong: State)"), "NameError"),
     "other vehicle": (("full_pressure=brake.max_pressure", "full_pressure=3e5"), "another vehicle"),
-    "negative rate": (("time_share=self.share", "time_share=self.share, slip_rate=-0.1"), "cannot be"),
+    "negative drift": (("time_share=self.share", "time_share=self.share, slip_drift=-0.1"), "cannot be"),
 }
 
 # Laws that are the declared one where it counts

@@ -91,6 +91,7 @@ def test_the_brake_is_the_limit_on_a_dry_rail(dry):
     found = kept.certificate
     assert found.status is Status.REFUTED
     assert "the limit in a corner of the box" in found.explanation
+    assert "denies the lower side of a band alone" in found.explanation
     place, numbers = found.findings[DEPARTURE].stated.place, found.findings[DEPARTURE].numbers
     load = place["mass"] * 9.80665 / 8.0
     force = polach(DRY, LOCO, place["mu0"], 0.14, place["speed"], load)

@@ -27,6 +27,7 @@ LEAST = Fraction(2, 1000)
 """Of the full torque: above it a law may take a logarithm as it is."""
 SETTLED = 2.0  # s, after which observer and filter have settled
 SLOWING, NUDGE, WOBBLE = 0.4, 0.02, 1e-3  # m/s2, -, rad/s: of the states that signs are looked at
+MISTOLD = 0.01  # -, more than the noise that a band bears makes of the lowest speed
 DIGITS = 1e-9  # relative, what rounding may make of a number
 FILL, VENT = 1, -1
 
@@ -208,14 +209,12 @@ def _range(name: str, form: ObserverForm, problem: Problem, slips: Range, ways: 
     """Range of what is known in a sample."""
     kind, _, rest = name.partition(" ")
     full, least = float(form.full_torque), float(LEAST * Fraction(form.full_torque))
-    worn = problem.span("wheel radius")
+    worn, told = problem.span("wheel radius"), _told(form, problem)
     match kind:
         case "told":
-            return problem.speeds
+            return told
         case "speed":
-            return problem.speeds[0] * form.wheel_radius / worn[1], problem.speeds[
-                1
-            ] * form.wheel_radius / worn[0]
+            return told[0] * form.wheel_radius / worn[1], told[1] * form.wheel_radius / worn[0]
         case "slip":
             return slips
         case "demand":
@@ -288,8 +287,8 @@ def _in_start(traced: _Traced, law: Any, problem: Problem) -> str:
             measured[k] = measured[law.wheelsets]  # all roll alike
         measured[-2] = Value.of(0.0)
         (known,) = values(graphs.known, inputs, ())
-        ends = {"told": problem.speeds, "scale": (low, high)}
-        ends["speed"] = low * problem.speeds[0], high * problem.speeds[1]
+        told = _told(form, problem)
+        ends = {"told": told, "scale": (low, high), "speed": (low * told[0], high * told[1])}
         facts = [Known(value, *ends[name]) for name, value in zip(graphs.known_names, known, strict=True)]
         found = _difference(graphs, FILL, inputs, facts, None)
         if found:
@@ -356,6 +355,12 @@ def _difference(
             )
         return f"gives {apart[0]:.6g} for the {name}, and the law that it declares {apart[1]:.6g}"
     return ""
+
+
+def _told(form: ObserverForm, problem: Problem) -> Range:
+    """Train speeds that may be told in the range of the claim [m/s]."""
+    wrong = MISTOLD + form.slip_error / (1.0 - form.slip)
+    return (1.0 - wrong) * problem.speeds[0], (1.0 + wrong) * problem.speeds[1]
 
 
 def _speed(problem: Problem, number: int) -> float:

@@ -155,8 +155,8 @@ def _declared_wrong(problem: Problem, law: TorqueObserver) -> str:
         return "was made for another vehicle"
     if vehicle.brake.valve != "lag" or any(share != 1.0 for share in vehicle.brake_shares):
         return "declares one valve with a lag and one full torque for all wheelsets, which the vehicle does not have"
-    if min(form.slip_error, form.slip_rate) < 0.0 or not form.slip_error < form.slip:
-        return "declares an error or a rate of its slip that cannot be"
+    if min(form.slip_error, form.slip_drift) < 0.0 or not form.slip_error < form.slip:
+        return "declares an error or a drift of its slip that cannot be"
     return not_declared(law, problem, slips_held(law_of(law), problem.speeds, _radii(problem)))
 
 
@@ -304,7 +304,7 @@ def _measured(problem: Problem) -> str:
     return (
         "wheel speed and cylinder pressure are measured exactly and at once; the train speed that the law is told may "
         f"be wrong, but so that the slip that it holds is within {float(law.slip_error):g} of what it declares and "
-        f"moves no faster than by {float(law.slip_rate):g} per second"
+        f"moves no faster than by {float(law.slip_drift):g} m/s2 over the train speed"
     )
 
 
@@ -316,7 +316,8 @@ def _departure(problem: Problem, away: Finding) -> str:
         slip = _slip_there(problem, away.stated.place) if away.stated is not None else math.nan
         return (
             f"The brake is the limit in a corner of the box: there holding slip {slip:.3g} takes {holding:.3g} "
-            f"kN m, and full pressure gives {full:.3g}."
+            f"kN m, and full pressure gives {full:.3g}. That denies the lower side of a band alone: what keeps the "
+            "slip down there, the check slip_limit tells."
         )
     speed = away.stated.place["speed"] if away.stated is not None else math.nan
     return (

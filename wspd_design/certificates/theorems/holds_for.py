@@ -44,6 +44,7 @@ HOLDS_FOR: Final[Mapping[str, HoldsFor]] = {
     "lpv_lyapunov": HoldsFor.SAMPLED,
     "sampled_invariance": HoldsFor.SAMPLED,
     "slip_band": HoldsFor.SAMPLED,
+    "slip_limit": HoldsFor.SAMPLED,
     "fuzzy_sector": HoldsFor.SAMPLED,
     "tracking": HoldsFor.STOP,
     "overshoot": HoldsFor.STOP,

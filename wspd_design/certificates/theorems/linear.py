@@ -350,7 +350,8 @@ def _tell_margins(problem: Problem, findings: Findings) -> Certificate:
         claim=f"With the nominal parameters{included} the loop near "
         f"slip {problem.slip:g} is stable at every frozen speed from {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h, continuous with the averaged valve and sampled every "
-        f"{problem.sample_time * 1e3:g} ms with its pulses, and bears changes of gain and phase at the valve.",
+        f"{problem.sample_time * 1e3:g} ms with its pulses, and bears changes of gain and phase at the valve. That the "
+        "continuous loop is stable is what routh_lag says for the whole domain; how much both bear is said here alone.",
         status=status,
         explanation=meaning,
         margin=Range(low=None, high=numbers["disk"], unit="-") if numbers else None,

@@ -16,7 +16,7 @@ from wspd_design.certificates.records import Certificate, Point, Problem, Range,
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.assumptions import BUILT_UP
 from wspd_design.certificates.setting.fingerprint import model_hash
-from wspd_design.certificates.setting.linear_loop import BRAKE
+from wspd_design.certificates.setting.linear_loop import BRAKE, linear_law
 from wspd_design.certificates.setting.traced_law import trace
 from wspd_design.certificates.setting.traced_loop import NoRest, Rest, TracedLoop
 from wspd_design.certificates.theorems.evidence import supported
@@ -126,7 +126,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         claim=f"At those of {len(found)} sampled frozen speeds from {problem.speeds[0] * KMH:.3g} to "
         f"{problem.speeds[1] * KMH:.3g} km/h at which the loop rests near slip {problem.slip:g}, small deviations die "
         f"out: the step of {problem.controller.name} as it runs, sampled every {problem.sample_time * 1e3:g} ms, with "
-        "the nominal parameters and the pulses of its valves.",
+        f"the nominal parameters and the pulses of its valves.{_said_before(problem)}",
         status=status,
         explanation=_said(findings, resting, len(found)),
         margin=Range(low=None, high=1.0 - shown["radius"], unit="-") if shown else None,
@@ -149,6 +149,15 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         method="the graph of the step, differentiated by CasADi where Newton's method finds the loop at rest; slopes "
         "compared with small moves to both sides; poles in doubles",
         reference="eqs. (9), (19); docs/theory.md#traced-loop",
+    )
+
+
+def _said_before(problem: Problem) -> str:
+    """Say what this adds to the margins of a law whose linear form is known."""
+    if linear_law(problem):
+        return ""
+    return (
+        " That is what margins says of the sampled linear form of this law, found again from the step alone."
     )
 
 

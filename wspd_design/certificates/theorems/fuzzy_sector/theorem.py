@@ -94,8 +94,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     worst = _place(problem, loop if loop.status is Status.REFUTED else courses)
     return Certificate(
         claim=f"Whatever the wheel does, {weights.asked}. Inside the layer, once the weights have faded and but for "
-        f"the least pulse, small deviations from slip {problem.slip:g} die out at every frozen speed from {high:.3g} "
-        f"down to {low:.3g} km/h, sampled every {problem.sample_time * 1e3:g} ms. On {within.text}.",
+        f"the least pulse, small deviations from slip {problem.slip:g} die out with the numbers of the loop frozen at "
+        f"any speed from {high:.3g} down to {low:.3g} km/h, sampled every {problem.sample_time * 1e3:g} ms. "
+        f"On {within.text}.",
         status=status,
         explanation=f"{_weights(problem, weights)} {_deviations(courses, loop)}",
         margin=Range(low=1.0 - courses.numbers["contraction"], high=None, unit="per sample")
@@ -108,7 +109,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             for each in (weights, courses, *((loop,) if loop.status is Status.REFUTED else ()))
         ),
         assumptions=(
-            "frozen train speed",
+            "frozen train speed: the numbers of the loop are those of one speed; that it falls counts in p - a/v alone",
             "the parameters do not change during the stop; the full pressure is demanded and there",
             "axle at static load, all axles alike",
             "wheel speed and train speed are measured exactly, without noise and dead time; the wheels have the "

@@ -110,7 +110,7 @@ def loop_of(
     friction_torque = 2 * radius * normal * ball(*friction.level) - damping * rolling * speed
     fading = -2 * radius * normal * slip * ball(*friction.fading)
     # Torque that a wheel at the reference gains in time because the slip of the reference changes.
-    moving = -2 * radius * normal * slope * speed * (reference.fall * braking + reference.rate)
+    moving = -2 * radius * normal * slope * (speed * reference.fall * braking + reference.drift)
     secants = (2 * radius * radius * normal * slope - damping) / inertia
     pads = torque / point(law.full_torque)
     seen_inertia = pads * point(law.inertia)  # true torque over the number Y h counts it in
@@ -118,7 +118,7 @@ def loop_of(
     # While the train slows down the friction at the reference rises, and with it the deceleration.
     rising = wheels(vehicle) * fading / (2 * radius * mass) - _resistance(problem, speed, 1) / mass
     jerk = ball(*JERK_FACTORS) * (braking * rising + wheels(vehicle) * moving / (2 * radius * mass))
-    bending = reference.bend / radius * braking**2 + reference.rate / radius * braking
+    bending = reference.bend / radius * braking**2 + reference.drift / speed / radius * braking
     turning = h * h * (bending - turned * jerk)
     # By how much a wheel and its reference seem to turn faster or slower. The filter shows an error of the train speed
     # at most twice, its first step over the sample time; a wrong speed also asks for another share of the deceleration.
@@ -127,18 +127,12 @@ def loop_of(
     misread = turns + rolls
     share = -(-h / point(law.acceleration_time)).expm1()
     misread_rate = 2 * share * rolls + 3 * reference.bend * point(FASTEST_LOSS) * h * turns
-    # How fast the slip moves the wheel speed at the reference; the filter saw it at higher speeds, too.
-    sliding = (
-        h
-        * reference.rate
-        * (speed + point(FASTEST_LOSS) * h / share * ball(Fraction(0), Fraction(1)))
-        / radius
-    )
+    sliding = h * reference.drift / radius
     drift = (
         h * h * ((fading + damping * turned) * braking + moving) + h * damping * sliding - inertia * turning
     ) / seen_inertia
     # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2.
-    slowly = h * h * (reference.rate / radius * braking - turned * jerk)
+    slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
     known = slowly * (1 / share - point(Fraction(1, 2))) + sliding + misread_rate
     left_out = (
         h

@@ -22,23 +22,23 @@ class Held:
     fall: Ball  # s/m, -d slip/dv, as far as the law knows it
     turning: Ball  # -, R dw_r/dv
     bend: Ball  # s/m, R d2w_r/dv2
-    rate: Ball  # 1/s, of what the law does not know
+    drift: Ball  # m/s2, slip' v of what the law does not know
 
 
 def held_in(law: BandLaw, window: Ends, radius: Interval) -> Held:
     """Return what a law holds in a window of speed with wheels of a range of radii."""
     speed, aside = ball(*window), ball(-law.slip_error, law.slip_error)
-    rate = ball(-law.slip_rate, law.slip_rate)
+    drift = ball(-law.slip_drift, law.slip_drift)
     if not law.falls:
         slip = point(law.slip) + aside
-        return Held(slip=slip, fall=point(0), turning=1 - slip, bend=point(0), rate=rate)
+        return Held(slip=slip, fall=point(0), turning=1 - slip, bend=point(0), drift=drift)
     slowest, fastest = (
         point(law.slip) / (point(law.radius) / point(worn) * point(end)).sqrt()
         for end, worn in zip(window, radius[::-1], strict=True)
     )
     own = slowest.union(fastest)
     fall = own / speed / 2
-    return Held(slip=own + aside, fall=fall, turning=1 - own / 2 - aside, bend=fall / 2, rate=rate)
+    return Held(slip=own + aside, fall=fall, turning=1 - own / 2 - aside, bend=fall / 2, drift=drift)
 
 
 def slips_held(law: BandLaw, window: Ends, radius: Interval) -> Ends:
@@ -74,6 +74,6 @@ def reference_text(law: BandLaw) -> str:
     if not law.slip_error:
         return own
     return (
-        f"any reference that stays within {float(law.slip_error):g} of {own}, and moves from it no faster than by "
-        f"{float(law.slip_rate):g} per second"
+        f"any reference slip that stays within {float(law.slip_error):g} of {own} and moves beside it no faster than "
+        f"by {float(law.slip_drift):g} m/s2 over the train speed"
     )

@@ -40,7 +40,7 @@ class BandLaw:
     slip: Fraction  # -, reference; at 1 m/s where it falls
     falls: bool  # as 1/sqrt(v)
     slip_error: Fraction  # -, by which the slip that is held may differ from that
-    slip_rate: Fraction  # 1/s, how fast it may do so
+    slip_drift: Fraction  # m/s2, most of its rate times the train speed
     sample_time: Fraction  # s, h
     approach_rate: Fraction  # 1/s, k
     ahead: Fraction  # -
@@ -73,7 +73,7 @@ def law_of(law: Law) -> BandLaw:
         slip=Fraction(reference.slip),
         falls=isinstance(reference, FallingSlip),
         slip_error=Fraction(0),
-        slip_rate=Fraction(0),
+        slip_drift=Fraction(0),
         sample_time=Fraction(law.sample_time),
         approach_rate=Fraction(tracking.approach_rate),
         ahead=Fraction(tracking.ahead),
@@ -98,7 +98,7 @@ def _declared(form: ObserverForm, sample_time: float) -> BandLaw:
         slip=Fraction(form.slip),
         falls=form.falls,
         slip_error=Fraction(form.slip_error),
-        slip_rate=Fraction(form.slip_rate),
+        slip_drift=Fraction(form.slip_drift),
         sample_time=Fraction(sample_time),
         approach_rate=Fraction(form.approach_rate),
         ahead=Fraction(form.ahead),
