@@ -6,7 +6,7 @@ width W a rule of center c has w <= exp(-kappa (sigma - m)) for every other rule
 c)/W^2, m = (c + c_o)/2, so that (sigma - Phi) w has a bound on sigma > Phi: what drives a rule the other way.
 
 Inside the layer sigma_D = 0: the weights fade, and the command is u = psi sigma/Phi. Near the torque T_0 that holds the
-reference a short pulse at the begin of the sample moves the torque by u h (T_in - T_0)/T_F or u h T_0/T_V. With
+reference a short pulse at the start of the sample moves the torque by u h (T_in - T_0)/T_F or u h T_0/T_V. With
 e' = q e - W, W = R (T - T_0)/J, that is linear but for the authority A, the change of W for u = 1, which is one number
 while the valve fills and another one while it vents.
 

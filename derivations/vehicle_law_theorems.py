@@ -137,7 +137,7 @@ THEOREMS = (
         hypotheses=(
             "weights that have faded, as they do inside the layer with the time constant 1/(alpha leakage)",
             "the numbers of the loop frozen at one speed, the fall of which counts in q = p - a/v alone; small "
-            "deviations: the pulse is short and lies at the begin of the sample",
+            "deviations: the pulse is short and lies at the start of the sample",
             "no least pulse: what is shorter is not commanded, and leaves deviations that it would answer",
             "wheel speed and train speed measured exactly, without dead time; full supply pressure",
         ),

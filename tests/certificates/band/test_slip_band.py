@@ -15,6 +15,7 @@ from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND
 from wspd_design.certificates.theorems.slip_band.checker import checker
 from wspd_design.certificates.theorems.slip_band.statement import windows_of
+from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.controllers.valve_inversion import ValveInversion
 
 pytestmark = pytest.mark.slow
@@ -212,6 +213,9 @@ def test_other_laws_are_not_spoken_about(half):
     seeking = replace(wd.Specification(), sample_time=0.02, reference="seeking", speeds=half.speeds)
     searching = wd.design_controller(half.vehicle, half.rail, seeking, law="observer-smc")
     assert "searches for the peak" in reason(controller=searching.build(half.vehicle, half.rail))
+    wheels = wd.Specification(sample_time=0.02, sensors=Sensors(speed="wheels"), speeds=half.speeds)
+    estimating = wd.design_controller(half.vehicle, half.rail, wheels, law="observer-smc")
+    assert "estimates the train speed" in reason(controller=estimating.build(half.vehicle, half.rail))
     assert "holds its valves" in reason(controller=replace(law, cut_out_speed=5.0))
 
 

@@ -34,9 +34,7 @@ def sets(half, proved):
 def stops(half, sets):
     """Stops from rolling, half of the numbers at their ends."""
     random = np.random.default_rng(11)
-    ends = box(half, sets) | {
-        "speed": (12.0, 20.0)
-    }  # slower ones end before the supply is what their windows ask for
+    ends = box(half, sets) | {"speed": (20.0, half.speeds[1])}
     even = random.random((len(ends), STOPS))
     unit = np.where(random.random(even.shape) < 0.5, np.round(even), even)
     return {name: low + (high - low) * u for (name, (low, high)), u in zip(ends.items(), unit, strict=True)}
@@ -72,6 +70,8 @@ def test_sets_that_are_too_small_are_left(half, sets):
 def test_a_state_outside_is_seen_outside(half, sets):
     seen = attack_boundary(half, sets, starts=200, larger=2.0, samples=1)
     assert not seen.entered.any()
+    starved = replace(sets, supplies=sets.supplies + 1.0)  # more than there is: nothing is said there
+    assert not attack_boundary(half, starved, starts=200, samples=1).entered.any()
 
 
 def test_a_law_that_drives_the_valve_too_far_leaves(half, sets):

@@ -94,6 +94,18 @@ def test_weights_fade_inside_the_layer(known):
     assert state[3:] == pytest.approx([0.5 / math.e] * 5, rel=0.02)
 
 
+def test_designed_adaptation_is_held_beyond_the_layer_after_one_sample(known):
+    """psi_hat fills the whole sample at the edge: what the weights add saturates the command, which holds them."""
+    core = core_of(known)
+    error = 2.0 * core.gains.layer / core.gains.surface_rate
+    state, weights = core.start(view(core, error)), []
+    for _ in range(50):
+        state, _ = core.step(state, view(core, error))
+        weights.append(state[3:])
+    assert max(weights[0]) > 0.0
+    assert weights[-1] == weights[0]
+
+
 # --- functions --------------------------------------------------------------------------------------------------------
 
 

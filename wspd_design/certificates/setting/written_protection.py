@@ -246,6 +246,11 @@ def not_written(law: Protection) -> str:
     wanted = written(law)
     if law.seeking is not None:
         return "searches for the peak, so that its reference jumps, which no bound on its rate covers"
+    if not isinstance(law.source, ToldSpeed):
+        return (
+            "estimates the train speed, and no bound on the error of the estimate is proved; a law of one's own that "
+            "is told a speed may state one (slip_error and slip_drift of observer_form)"
+        )
     if wanted is None:
         return (
             "is not the sliding mode of relative degree two with told speed, a slip that is constant or falls as "

@@ -107,7 +107,6 @@ REGISTER: Final[tuple[Registered, ...]] = (
             "measured without error",
             "scale of the train speed was found",
             "no computing time",
-            "scale of the train speed",
             "without dead time",
             "real numbers",
         ),

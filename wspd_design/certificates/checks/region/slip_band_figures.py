@@ -43,6 +43,11 @@ CELL = (
     "mu0",
     "max torque",
 )  # numbers over which cells are shown: friction and pads decide how much room there is
+REMARK = (
+    "The ellipsoids are those of the nominal numbers, as error and torque see them; the runs are simulated stops of "
+    "the quarter model that begin on them with settled observers. Cells of the proof are seen along all other "
+    "numbers; where there are none, nothing is shown."
+)
 CELL_AXES = ("mu0 [-]", "torque at full pressure [kN m]")
 
 
@@ -61,7 +66,8 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
             *_band(problem, finding.numbers),
             *_basin(problem, ellipsoids),
             *_cells(problem, cells, proof),
-        )
+        ),
+        remark=REMARK,
     )
 
 
