@@ -194,11 +194,27 @@ class Law:
 
 
 @dataclass(frozen=True)
+class Disturbance:
+    """Largest disturbances: drawn again for each sample, half of them at their ends."""
+
+    late: float = 0.0  # s, beginning of pulses
+    noise: float = 0.0  # m/s, of the measured speeds of rims and train
+
+    def draw(self, random, count):
+        """Lateness, and errors of the speeds of rims and train."""
+        drawn = random.random((3, count))
+        drawn = np.where(random.random(drawn.shape) < 0.5, np.round(drawn), drawn)
+        return self.late * drawn[0], self.noise * (2.0 * drawn[1] - 1.0), self.noise * (2.0 * drawn[2] - 1.0)
+
+
+@dataclass(frozen=True)
 class Runs:
     """States of many runs at a sample, after the measurement."""
 
     plant: Plant
     memory: Memory
+    since: Any  # s, the demand
+    measured: Any  # rad/s, wheel speed
     speed: Any  # m/s
     wheel: Any  # rad/s
     torque: Any  # N m, of the brake
@@ -218,17 +234,22 @@ def motion(plant, speed, wheel, torque):
     return -slowing, (friction - torque) / plant.wheelset_inertia
 
 
-def sampled(law, runs, since):
-    """One sample later, with the smallest and the largest slip in between; ``since`` the demand [s]."""
+def supplied(runs):
+    """Share of the full pressure that the supply has."""
+    return 1.0 - np.exp(-runs.plant.supply_rate * runs.since)
+
+
+def sampled(law, runs, drawn=(0.0, 0.0, 0.0)):
+    """One sample later, with the smallest and the largest slip in between; ``drawn`` by a disturbance."""
     plant, h = runs.plant, law.h
+    late, of_rim, of_train = drawn
     pads = plant.max_torque / law.full
-    available = law.full * (1.0 - np.exp(-plant.supply_rate * since))
-    fill, vent, mean = law.pulses(runs.memory, runs.wheel, runs.torque / pads, available)
+    fill, vent, mean = law.pulses(runs.memory, runs.measured, runs.torque / pads, law.full * supplied(runs))
 
     def torque(t):
-        return vented(
-            plant, filled(plant, runs.torque, np.minimum(t, fill), since=since), np.clip(t - fill, 0.0, vent)
-        )
+        t = np.maximum(t - late, 0.0)
+        full = filled(plant, runs.torque, np.minimum(t, fill), since=runs.since + late)
+        return vented(plant, full, np.clip(t - fill, 0.0, vent))
 
     speed, wheel, count = runs.speed, runs.wheel, int(np.ceil(h / SUBSTEP))
     slips, dt = [], h / count
@@ -238,9 +259,12 @@ def sampled(law, runs, since):
         v, w = motion(plant, speed + dt / 2 * v, wheel + dt / 2 * w, braked)
         speed, wheel = speed + dt * v, np.maximum(wheel + dt * w, 0.0)
         slips.append(1.0 - plant.wheel_radius * wheel / speed)
+    measured = wheel + of_rim / plant.wheel_radius
     after = replace(
         runs,
-        memory=law.measured(runs.memory, mean, speed, wheel),
+        memory=law.measured(runs.memory, mean, speed + of_train, measured),
+        since=runs.since + h,
+        measured=measured,
         speed=speed,
         wheel=wheel,
         torque=torque(h),
@@ -251,7 +275,7 @@ def sampled(law, runs, since):
 def deviations(law, runs):
     """State of the theorem: errors of wheel speed and observer, and of friction and torque over what holds [rad/s]."""
     plant, h = runs.plant, law.h
-    wanted, _ = law.desired(runs.memory)
+    wanted = (1.0 - law.slip) * runs.speed / plant.wheel_radius
     slip = 1.0 - plant.wheel_radius * runs.wheel / runs.speed
     held, rate = holds(law, plant, runs.speed, slip)
     friction = h * (runs.memory.friction / law.inertia - held - rate)
@@ -273,16 +297,17 @@ def holds(law, plant, speed, slip):
 class Seen:
     """What runs have done."""
 
-    entered: Any  # whether the state has been in its ellipsoid
+    entered: Any  # whether the state has been in its ellipsoid, and the supply has been what that asks for
     left: Any  # whether state or slip have left it, or the band, afterwards
     way_in: Any  # largest slip before
     used: Any  # (windows, 2): largest deviation below and above the reference afterwards, over all runs [-]
     share: Any  # largest of them over the band, for each run
 
 
-def follow(law, sets, runs, *, samples, since):
-    """Follow runs down to the lowest speed, or for a number of samples; ``since`` is inf where the supply is full."""
-    count = len(runs.speed)
+def follow(law, sets, runs, *, samples, disturbance=None, seed=3):
+    """Follow runs down to the lowest speed, or for a number of samples."""
+    count, random = len(runs.speed), np.random.default_rng(seed)
+    disturbance = disturbance or Disturbance()
     seen = Seen(
         entered=np.zeros(count, bool),
         left=np.zeros(count, bool),
@@ -290,21 +315,25 @@ def follow(law, sets, runs, *, samples, since):
         used=np.zeros_like(sets.bands),
         share=np.zeros(count),
     )
-    cells = sets.cell(runs.plant)
-    for k in range(samples):
+    cells, bound = sets.cell(runs.plant), np.zeros(count, bool)
+    for _ in range(samples):
         runs = runs.some(runs.speed > sets.lowest)
         if not len(runs.speed):
             break
         now, window = runs.number, sets.window(runs.speed)
         apart = deviations(law, runs) - sets.centers[cells[now], window].T
         size = np.einsum("ik,kij,jk->k", apart, sets.matrices[cells[now], window], apart)
-        supplied = 1.0 - np.exp(-runs.plant.supply_rate * (since + k * law.h))
-        inside = (size <= 1.0 + 1e-9) & (seen.entered[now] | (supplied >= sets.supplies[cells[now], window]))
-        seen.left[now] |= seen.entered[now] & ~inside
-        seen.entered[now] |= inside
-        runs, lowest, highest = sampled(law, runs, since + k * law.h)
-        entered = seen.entered[now]
-        seen.way_in[now] = np.where(entered, seen.way_in[now], np.maximum(seen.way_in[now], highest))
+        inside = size <= 1.0 + 1e-9
+        # As long as the supply is below what a slower window asks for, nothing is claimed.
+        enough = supplied(runs) >= sets.supplies[cells[now], window] - 1e-9
+        seen.left[now] |= bound[now] & enough & ~inside
+        bound[now] = enough & (bound[now] | inside)
+        seen.entered[now] |= bound[now]
+        runs, lowest, highest = sampled(law, runs, disturbance.draw(random, len(runs.speed)))
+        entered = bound[now]
+        seen.way_in[now] = np.where(
+            seen.entered[now], seen.way_in[now], np.maximum(seen.way_in[now], highest)
+        )
         strayed = np.where(entered, np.array([law.slip - lowest, highest - law.slip]), 0.0)
         for side in range(2):
             np.maximum.at(seen.used[:, side], window, strayed[side])
@@ -339,7 +368,16 @@ def boundary(problem, law, sets, random, count, larger=1.0):
         friction=law.inertia * (n / law.h + held + rate),
     )
     torque = law.inertia * (y / law.h + held) * plant.max_torque / law.full
-    return Runs(plant=plant, memory=memory, speed=speed, wheel=wheel, torque=torque, number=np.arange(count))
+    return Runs(
+        plant=plant,
+        memory=memory,
+        since=-np.log1p(-sets.supplies[cell, window]) / plant.supply_rate,
+        measured=wheel,
+        speed=speed,
+        wheel=wheel,
+        torque=torque,
+        number=np.arange(count),
+    )
 
 
 def rolling(problem, law, points):
@@ -349,6 +387,8 @@ def rolling(problem, law, points):
     return Runs(
         plant=plant,
         memory=memory,
+        since=0.0 * speed,
+        measured=speed / plant.wheel_radius,
         speed=speed,
         wheel=speed / plant.wheel_radius,
         torque=0.0 * speed,
@@ -357,13 +397,13 @@ def rolling(problem, law, points):
 
 
 @np.errstate(all="ignore")  # wheels that lock, and pulses from nothing
-def attack_boundary(problem, sets, *, starts, seed=7, larger=1.0, samples=SETTLED):
-    """Follow starts on the boundary, and tell how they went."""
+def attack_boundary(problem, sets, *, starts, seed=7, larger=1.0, samples=SETTLED, disturbance=None):
+    """Follow starts on the boundary with as little supply as is asked for, and tell how they went."""
     law, random = Law(problem.controller, problem.slip), np.random.default_rng(seed)
     found = []
     for begin in range(0, starts, CHUNK):
         runs = boundary(problem, law, sets, random, min(CHUNK, starts - begin), larger)
-        found.append(follow(law, sets, runs, samples=samples, since=np.inf))
+        found.append(follow(law, sets, runs, samples=samples, disturbance=disturbance))
     return joined(found)
 
 
@@ -382,9 +422,7 @@ def attack_stops(problem, sets, *, stops, seed=7):
 
     def followed(unit):
         points = dict(zip(ends, low + (high - low) * unit, strict=True))
-        found.append(
-            follow(law, sets, rolling(problem, law, points), samples=int(LONGEST / law.h), since=0.0)
-        )
+        found.append(follow(law, sets, rolling(problem, law, points), samples=int(LONGEST / law.h)))
         return found[-1]
 
     even = random.random((len(ends), stops // 2))

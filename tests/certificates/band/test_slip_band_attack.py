@@ -43,7 +43,7 @@ def stops(half, sets):
 def stopped(problem, sets, points):
     law = Law(problem.controller, problem.slip)
     with np.errstate(all="ignore"):
-        return follow(law, sets, rolling(problem, law, points), samples=5000, since=0.0)
+        return follow(law, sets, rolling(problem, law, points), samples=5000)
 
 
 def test_no_start_on_the_boundary_leaves(half, sets):
@@ -89,8 +89,8 @@ def test_stops_agree_with_the_package(half):
         numbers = {name: half.span(name)[end] for name in (*BOX, *BESIDE)}
         points = {name: np.array([number]) for name, number in (numbers | {"speed": 30.0}).items()}
         runs, slips = rolling(half, law, points), []
-        for k in range(round(3.0 / law.h)):
-            runs, _, _ = sampled(law, runs, k * law.h)
+        for _ in range(round(3.0 / law.h)):
+            runs, _, _ = sampled(law, runs)
             slips.append(float((1.0 - runs.plant.wheel_radius * runs.wheel / runs.speed)[0]))
         vehicle, rail = plant_with(half, numbers)
         run = wd.simulate(

@@ -45,6 +45,8 @@ from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH
 
 CELLS = "ellipsoids"
+LATE = "ellipsoids with late pulses"
+NOISY = "ellipsoids with noise"
 DEPARTURE = "start at the reference"
 VARIED = (*NAMES, "resistance constant", "resistance linear", "resistance quadratic")
 DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
@@ -54,6 +56,10 @@ BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
     "fading": creep_slope.fading_claim,
 }
 """What of the friction is bounded in each window: the fields of :class:`Friction`."""
+DISTURBED = {
+    LATE: "even if pulses begin late",
+    NOISY: "even if speeds are measured with noise",
+}
 
 
 def key(name: str, window: int, relation: Relation) -> str:
@@ -171,6 +177,14 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
             text="for every cell of the box and every window of speed no sample leads out of an ellipsoid of the state",
             check=checker(_held(problem), problem.controller),
         ),
+        *(
+            Special(
+                key=name,
+                text=f"for a share of the box no sample leads out of an ellipsoid of the state, {what}",
+                check=checker(_held(problem), problem.controller),
+            )
+            for name, what in DISTURBED.items()
+        ),
         Special(
             key=DEPARTURE,
             text="the brake can hold the reference, and no wheel locks in a simulated stop that starts there, settled",
@@ -180,9 +194,9 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
     )
 
 
-def _covered(problem: Problem, findings: Findings) -> Finding:
-    """Return the finding on the ellipsoids; it counts only for friction within the bounds that it was made for."""
-    found, proved = findings[CELLS], proved_friction(problem, findings)
+def _covered(problem: Problem, findings: Findings, name: str) -> Finding:
+    """Return a finding on ellipsoids; it counts only for friction within the bounds that it was made for."""
+    found, proved = findings[name], proved_friction(problem, findings)
     if found.status is not Status.PROVED:
         return found
     within = proved is not None and all(
@@ -194,7 +208,7 @@ def _covered(problem: Problem, findings: Findings) -> Finding:
 
 
 def _tell(problem: Problem, findings: Findings) -> Certificate:
-    cells, windows = _covered(problem, findings), windows_of(problem)
+    cells, windows = _covered(problem, findings, CELLS), windows_of(problem)
     friction = proved_friction(problem, findings)
     held, reference = held_names(problem), reference_text(law_of(problem.controller))
     within = domain.domain_of(_held(problem), varied(problem), held)
@@ -218,6 +232,11 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "for each window of speed, that of a faster window inside that of the next slower one. "
         )
         explanation += _supplies(windows, cells)
+        explanation += "".join(
+            _borne(windows, each)
+            for name in DISTURBED
+            if (each := _covered(problem, findings, name)).status is Status.PROVED
+        )
         if share < 1.0:
             status = Status.UNDECIDED
             part = f"{100.0 * share:.3g} % of each range about its nominal value"
@@ -330,6 +349,24 @@ def _supplies(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
     return (
         f"Of the full pressure the supply must have {told[-1]:.3g} % at {fastest}, and {max(told):.3g} % where it "
         "must have most."
+    )
+
+
+def _borne(windows: Sequence[tuple[float, float]], found: Finding) -> str:
+    """Say what else the band bears, and how wide it is then."""
+    numbers, told = found.numbers, []
+    if numbers["delay"]:
+        told.append(
+            f"with pulses that begin up to {1e3 * numbers['delay']:.3g} ms late and end in their sample"
+        )
+    if numbers["noise"]:
+        told.append(f"with speeds of wheels and train measured within {numbers['noise']:.3g} m/s")
+    below, above = (
+        max(numbers[f"band {k} {side}"] for k in range(len(windows))) for side in ("below", "above")
+    )
+    return (
+        f" On {100.0 * numbers['share']:.3g} % of each range the slip also stays in a band {' and '.join(told)}: "
+        f"within +{above:.2g} and -{below:.2g} at all speeds."
     )
 
 

@@ -10,19 +10,23 @@ from wspd_design.certificates.kernel.obligation import Inequality
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
+from wspd_design.certificates.search.slip_band.disturbed import latest, noisiest
 from wspd_design.certificates.search.slip_band.search import Failed, largest_share
 from wspd_design.certificates.theorems.band import (
     BOUNDED,
     CELLS,
     DEPARTURE,
     DIRECTIONS,
+    LATE,
+    NOISY,
     SLIP_BAND,
     key,
     proved_friction,
 )
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
-from wspd_design.certificates.theorems.slip_band.proof import write
-from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
+from wspd_design.certificates.theorems.slip_band.proof import Proof, write
+from wspd_design.certificates.theorems.slip_band.statement import BandLaw, law_of, windows_of
+from wspd_design.controllers.protection import Protection
 
 TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
 CELLS_TRIED = 24  # for each share of the box, with an effort of 1
@@ -40,15 +44,25 @@ def search(problem: Problem) -> Mapping[str, Stated]:
                 stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name])
     friction = proved_friction(problem, {name: finding(wanted[name], each) for name, each in stated.items()})
     if friction is None:
-        return stated | {CELLS: Stated(), DEPARTURE: _departure(problem)}
+        return stated | {CELLS: Stated(), LATE: Stated(), NOISY: Stated(), DEPARTURE: _departure(problem)}
     law = law_of(problem.controller)
     found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
     if isinstance(found, Failed):
         failed = Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))
-        return stated | {CELLS: failed, DEPARTURE: _departure(problem)}
+        return stated | {CELLS: failed, LATE: Stated(), NOISY: Stated(), DEPARTURE: _departure(problem)}
     # What is shown on the whole box needs no look for what would deny it.
     away = Stated() if found.share == 1 else _departure(problem)
-    return stated | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
+    return stated | _disturbed(problem, law, found) | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
+
+
+def _disturbed(problem: Problem, law: BandLaw, found: Proof) -> dict[str, Stated]:
+    """Look for what else the band bears, unless less than the usual effort is wanted."""
+    if budget().effort < 1.0:
+        return {LATE: Stated(), NOISY: Stated()}
+    # A law of a user is compared with what it declares for speeds without noise.
+    noisy = noisiest(problem, law, found) if isinstance(problem.controller, Protection) else None
+    borne = {LATE: latest(problem, law, found), NOISY: noisy}
+    return {name: Stated(proof=write(each) if each else None) for name, each in borne.items()}
 
 
 def _departure(problem: Problem) -> Stated:

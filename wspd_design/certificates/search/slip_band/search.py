@@ -60,11 +60,11 @@ def largest_share(
         That may be tried for each share.
     """
     exact = exactly(problem, law)
-    whole = _all_windows(problem, law, box_of(problem, SHARES[-1]), friction, exact)
+    whole = all_windows(problem, law, box_of(problem, SHARES[-1]), friction, exact)
     if not isinstance(whole, int):
-        return _proof(SHARES[-1], exact, friction, ".", (whole,))
+        return proof_of(SHARES[-1], exact, friction, ".", (whole,))
     middle = _middle(box_of(problem, SHARES[-1]))
-    alone = _all_windows(problem, law, middle, friction, exact)
+    alone = all_windows(problem, law, middle, friction, exact)
     if isinstance(alone, int):  # no box around it can do better
         return Failed(share=SHARES[-1], cell=middle, window=alone, tried=2, cut=False)
     low, high = 0, len(SHARES)  # numbers of shares: one that is covered, and one that may be
@@ -92,13 +92,14 @@ def exactly(problem: Problem, law: BandLaw) -> Conditions:
     return Conditions(supply=supply, delay=least_delay(problem, law), noise=Fraction(0))
 
 
-def _proof(
+def proof_of(
     share: Fraction,
     conditions: Conditions,
     friction: Sequence[Friction],
     steps: str,
     cells: Sequence[tuple[Ellipsoid, ...]],
 ) -> Proof:
+    """Put a proof together."""
     return Proof(
         share=share,
         delay=conditions.delay,
@@ -116,7 +117,7 @@ def _failing_corner(
     box, window, exact = box_of(problem, share), windows_of(problem)[0], exactly(problem, law)
     for tried, sides in enumerate(CORNERS, start=1):
         corner = tuple((ends[side], ends[side]) for ends, side in zip(box, sides, strict=True))
-        if _one_window(problem, law, corner, window, friction[0], exact, None, ()) is None:
+        if one_window(problem, law, corner, window, friction[0], exact, None, ()) is None:
             return Failed(share=share, cell=corner, window=0, tried=tried, cut=False)
     return None
 
@@ -144,7 +145,7 @@ def cover(
     cells: list[tuple[Ellipsoid, ...]] = []
     while waiting:
         cell = waiting.pop()
-        found = _all_windows(problem, law, cell, friction, exact)
+        found = all_windows(problem, law, cell, friction, exact)
         tried += 1
         if not isinstance(found, int):
             steps, cells = f"{steps}.", [*cells, found]
@@ -153,7 +154,7 @@ def cover(
         if letter is None:
             return Failed(share=share, cell=cell, window=found, tried=tried, cut=False)
         middle = _middle(cell)
-        alone = _all_windows(problem, law, middle, friction, exact)
+        alone = all_windows(problem, law, middle, friction, exact)
         tried += 1
         if isinstance(alone, int):  # no cell around it can do better
             return Failed(share=share, cell=middle, window=alone, tried=tried, cut=False)
@@ -161,10 +162,10 @@ def cover(
             return Failed(share=share, cell=cell, window=found, tried=tried, cut=True)
         steps += letter
         waiting += halved(cell, letter)[::-1]
-    return _proof(share, exact, friction, steps, cells)
+    return proof_of(share, exact, friction, steps, cells)
 
 
-def _all_windows(
+def all_windows(
     problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction], conditions: Conditions
 ) -> tuple[Ellipsoid, ...] | int:
     """Return the ellipsoids of a cell, or the window in which none was found."""
@@ -173,7 +174,7 @@ def _all_windows(
     hints: tuple[int, ...] = ()
     for k in reversed(range(len(windows))):  # with the speed the train loses the room that venting has
         faster = found[-1] if found else None
-        each = _one_window(problem, law, cell, windows[k], friction[k], conditions, faster, hints)
+        each = one_window(problem, law, cell, windows[k], friction[k], conditions, faster, hints)
         if each is None:
             return k
         found.append(each[0])
@@ -181,7 +182,7 @@ def _all_windows(
     return tuple(found[::-1])
 
 
-def _one_window(
+def one_window(
     problem: Problem,
     law: BandLaw,
     cell: Cell,
