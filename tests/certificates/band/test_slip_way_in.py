@@ -69,7 +69,7 @@ def test_simulated_stops_are_enclosed(low, piece, numbers):
     """Stops of the engine with supply rates in the strip, at the samples and in between."""
     course = approach.follow(low.controller, low.vehicle, low.rail, _boxes(low, piece), low.speeds[1])
     enclosed = []
-    for (top, state), _ in zip(course, range(piece.samples[0]), strict=False):
+    for (top, state, _), _ in zip(course, range(piece.samples[0]), strict=False):
         slip = state.sliding / state.speed
         enclosed.append((slip.low[0], slip.high[0], state.torque.low[0], state.torque.high[0], top[0]))
     for supply in (0.75, 0.753, 0.756):

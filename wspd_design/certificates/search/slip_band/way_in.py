@@ -1,6 +1,7 @@
 """Search for strips of friction and supply rate that cover the way from rolling; nothing here is trusted."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,12 +20,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal value
-WIDTHS = (
-    (0.025, 0.01),
-    (0.018, 0.008),
-    (0.0125, 0.006),
-)  # relative half width of a piece of the friction, and width of a strip
-MOST = 320  # strips, with an effort of 1
+WIDTHS = ((0.025, 0.01), (0.018, 0.008), (0.0125, 0.006), (0.006, 0.003))
+"""Relative half width of a piece of the friction, and width of a strip over its supply rate."""
+MOST = 400  # strips, with an effort of 1
 SETTLED, LATER = 0.004, 0.3  # slip beside the reference, and what is followed from there [-, s]
 STEPS = 8  # strips between two stops that tell how long they are followed
 SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
@@ -41,14 +39,12 @@ class Plan(NamedTuple):
 def plan(problem: Problem, law: Protection, effort: float) -> Plan | None:
     """Choose pieces and strips that the budget can follow, for the largest share of the friction; None if none can.
 
-    Strips at the corners of both ranges are tried; the checker follows all.
+    The outer strips are tried; the checker follows all.
     """
-    for half, width in WIDTHS:
-        if not _corners_hold(problem, law, half, width):
-            continue
-        for share in SHARES:
+    for share in SHARES:
+        for half, width in WIDTHS:
             pieces = _pieces(problem, law, share, half, width, MOST * effort)
-            if pieces is not None:
+            if pieces is not None and _corners_hold(problem, law, pieces):
                 return Plan(share, pieces)
     return None
 
@@ -126,16 +122,13 @@ def _samples(problem: Problem, law: Protection, piece: Piece) -> tuple[int, ...]
     return tuple(found)
 
 
-def _corners_hold(problem: Problem, law: Protection, half: float, width: float) -> bool:
-    """Follow a strip at each corner of both ranges."""
-    low, high = problem.span(FRICTION)
-    slowest, fastest = problem.span(SUPPLY)
-    chosen = []
-    for one, other in ((low, low * (1.0 + 2.0 * half)), (high / (1.0 + 2.0 * half), high)):
-        slope = _slope(problem, law, 0.5 * (one + other))
-        for borders in ((slowest, slowest * (1.0 + width)), (fastest / (1.0 + width), fastest)):
-            alone = Piece(friction=(one, other), slope=slope, borders=borders, samples=(1,))
-            chosen.append(replace(alone, samples=_samples(problem, law, alone)))
+def _corners_hold(problem: Problem, law: Protection, pieces: Sequence[Piece]) -> bool:
+    """Follow the slowest and the fastest strip of the outer pieces."""
+    chosen = [
+        replace(each, borders=each.borders[k : k + 2], samples=each.samples[k : k + 1])
+        for each in {0: pieces[0], len(pieces) - 1: pieces[-1]}.values()
+        for k in sorted({0, len(each.samples) - 1})
+    ]
     try:
         followed(problem, law, chosen)
     except Refused:

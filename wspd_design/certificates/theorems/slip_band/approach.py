@@ -141,8 +141,7 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
     pole, full = float(np.exp(-law.observer_rate * h)), valve.brake.max_torque
     new = float(-np.expm1(-h / source.acceleration_time))  # type: ignore[attr-defined]
     acceleration = state.acceleration + (state.change * (1.0 / h) - state.acceleration) * new
-    corrected = state.friction + state.innovation * over_radius * (inertia * (1.0 - pole) ** 2 / h)
-    friction = fresh(corrected.positive_part())
+    friction = fresh(observed_friction(law, plant, state).positive_part())
     rate = acceleration * over_radius * (1.0 - slip)
     error = slip_tracking.predicted_error(
         (state.speed * slip - state.sliding) * over_radius,
@@ -179,6 +178,13 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
         - (friction - mean) * plant.radius * (h / inertia)
     )
     return Decided(fill, vent, friction, acceleration, innovation)
+
+
+def observed_friction(law: Protection, plant: Plant, state: State) -> Affine:
+    """Friction torque that the observer has after a measurement [N m]; the law takes none below 0."""
+    h, pole = law.sample_time, float(np.exp(-law.observer_rate * law.sample_time))
+    learned = law.wheelset_inertia * (1.0 - pole) ** 2 / h
+    return state.friction + state.innovation * plant.curvature * learned
 
 
 def _pull(error: Affine, rate: float, slew: float) -> Affine:
@@ -267,18 +273,18 @@ def motion(
     bend = 0.125 * np.maximum(quick, (state.torque + rise).high * venting.high**2)
     speed, sliding = state.speed, state.sliding
     top = sliding.high / speed.low
-    rates = _with_brake(plant, (speed, sliding), state.torque * effect)
+    ahead = _with_brake(plant, (speed, sliding), state.torque * effect)
     for part in range(count):
         filled, vented = (_gone(each, part, count, time) for each in (decided.fill, decided.vent))
         pulled = (state.torque + rise * filled - fall * vented).widened(bend, bend) * effect
-        rates = _enclosed(plant, (speed, sliding), rates, pulled, step)
+        ahead = _enclosed(plant, (speed, sliding), ahead, pulled, step)
         at_any_time = (
-            _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), rates, strict=True)
+            _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), ahead, strict=True)
         )
-        rates = _with_brake(plant, at_any_time, pulled)
-        highest = sliding.high + step * np.maximum(rates[1].high, 0.0)
+        ahead = _with_brake(plant, at_any_time, pulled)
+        highest = sliding.high + step * np.maximum(ahead[1].high, 0.0)
         at_any_time = (
-            _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), rates, strict=True)
+            _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), ahead, strict=True)
         )
         filled, vented = (_gone_in_the_mean(each, part, count) for each in (decided.fill, decided.vent))
         pulled = (state.torque + rise * filled - fall * vented).widened(bend, bend) * effect
@@ -288,7 +294,7 @@ def motion(
     return Moved(speed, sliding, state.torque + rise - fall, after, top)
 
 
-def _rates(plant: Plant, speed: Affine, sliding: Affine) -> tuple[Affine, Affine]:
+def rates(plant: Plant, speed: Affine, sliding: Affine) -> tuple[Affine, Affine]:
     """Acceleration of the train, and the rate of the sliding speed without brake [m/s2]."""
     rail = plant.rail
     # The force over mu0 times the load is that of a wheel with both 1, and falls with the sliding as the friction does.
@@ -340,7 +346,7 @@ Rates: TypeAlias = tuple[Affine, Affine]
 
 
 def _with_brake(plant: Plant, begin: Iterable[Affine], pulled: Affine) -> Rates:
-    slowing, gliding = _rates(plant, *begin)
+    slowing, gliding = rates(plant, *begin)
     return slowing, gliding + pulled
 
 
@@ -439,7 +445,7 @@ def follow(
     rail: Rail,
     boxes: tuple[Array, Array],
     speed: float,
-) -> Iterator[tuple[Array, State]]:
+) -> Iterator[tuple[Array, State, Plant]]:
     """Follow the loop from rolling, sample by sample, for many boxes.
 
     Parameters
@@ -456,8 +462,8 @@ def follow(
 
     Yields
     ------
-    tuple of ndarray and State
-        Largest slip within the sample, and the state at its end.
+    tuple of ndarray, State and Plant
+        Largest slip within the sample, the state at its end, and the plant in the same symbols.
     """
     middle, spread = boxes
     count = len(middle)
@@ -489,7 +495,7 @@ def follow(
             change=moved.speed - state.speed,
             supply=moved.supply,
         )
-        yield moved.top, following
+        yield moved.top, following, plant
         centers = np.stack([each.center for each in following], axis=1)
         symbols = _fewer(following)
 

@@ -180,7 +180,7 @@ def _follow(
     last, told = int(ends.max()), max(1, ceil(AT_END / law.sample_time))
     with np.errstate(all="ignore"):
         course = follow(law, problem.vehicle, problem.rail, boxes, problem.speeds[1])
-        for sample, (top, state) in enumerate(course, start=1):
+        for sample, (top, state, _) in enumerate(course, start=1):
             going = ends >= sample
             if not np.all(np.isfinite(top[going])):
                 raise Refused("the enclosure of a strip is lost")

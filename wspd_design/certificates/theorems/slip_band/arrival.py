@@ -1,0 +1,78 @@
+"""Whether wheels that come from rolling are in the ellipsoid of a band: the state of the way in, in its coordinates."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from wspd_design.certificates.kernel.affine import Affine, Array
+from wspd_design.certificates.theorems.slip_band.approach import Plant, State, observed_friction, rates
+from wspd_design.controllers.protection import Protection
+
+INWARD = 1e-6  # by which an ellipsoid is made smaller, so that rounding of its root does not count
+
+
+class Asked(NamedTuple):
+    """What a band asks of a wheel at its beginning."""
+
+    speeds: tuple[float, float]  # m/s, of the window
+    matrix: Sequence[Sequence[float]]  # P of (X - c)'P(X - c) <= 1 [s2/rad2]
+    center: Sequence[float]  # c [rad/s]
+    misjudged: tuple[
+        float, float
+    ]  # rad/s, error of the acceleration of the reference that the law has, times h
+    supply: float  # -, of the full pressure, at least
+
+
+def arrived(law: Protection, plant: Plant, state: State, asked: Asked) -> Array:
+    """Tell for each box whether all of its wheels have what a band asks for.
+
+    Parameters
+    ----------
+    law : Protection
+        Sliding mode of relative degree two.
+    plant, state : Plant, State
+        At a sample, before the law computes.
+    asked : Asked
+        Of the band.
+    """
+    deviations, misjudged = in_band(law, plant, state)
+    root = np.linalg.cholesky(np.asarray(asked.matrix, dtype=float)).T
+    apart = [x - float(c) for x, c in zip(deviations, asked.center, strict=True)]
+    # The length of a sum is at most the sum of the lengths: of the center, of each symbol, and of the errors.
+    centers, errors = (np.stack([getattr(x, name) for x in apart], axis=1) for name in ("center", "error"))
+    symbols = np.stack([x.slopes for x in apart], axis=1)
+    length = np.linalg.norm(centers @ root.T, axis=1)
+    length = length + np.linalg.norm(np.einsum("ij,bjs->bis", root, symbols), axis=1).sum(axis=1)
+    length = length + np.linalg.norm(errors @ np.abs(root).T, axis=1)
+    (slow, fast), (least, most) = asked.speeds, asked.misjudged
+    inside: Array = (
+        (length < 1.0 - INWARD)
+        & (state.speed.low >= slow)
+        & (state.speed.high <= fast)
+        & (misjudged.low >= least)
+        & (misjudged.high <= most)
+        & (state.supply.low >= asked.supply)
+    )
+    return inside
+
+
+def in_band(law: Protection, plant: Plant, state: State) -> tuple[tuple[Affine, ...], Affine]:
+    """Return e, p, N and Y of the band [rad/s], and the error of the acceleration times h, once the law has observed."""
+    h, inertia = law.sample_time, law.wheelset_inertia
+    slip, pole = law.reference.slip, float(np.exp(-law.observer_rate * h))  # type: ignore[attr-defined]
+    new = float(-np.expm1(-h / law.source.acceleration_time))  # type: ignore[attr-defined]
+    held = state.speed * slip
+    slowing, _ = rates(plant, state.speed, state.sliding)
+    slowing_there, gliding_there = rates(plant, state.speed, held)
+    turning = slowing * (1.0 - slip)  # of the rim at the reference [m/s2]
+    holding = (slowing_there - gliding_there - turning) / plant.effect  # N m, as the law sees it
+    known = state.acceleration + (state.change * (1.0 / h) - state.acceleration) * new
+    friction = observed_friction(law, plant, state)
+    deviations = (
+        (held - state.sliding) * plant.curvature,
+        state.innovation * plant.curvature * -(pole**2),
+        (friction - holding) * (h / inertia) - turning * plant.curvature * h,
+        (state.torque - holding) * (h / inertia),
+    )
+    return deviations, (slowing - known) * plant.curvature * ((1.0 - slip) * h)
