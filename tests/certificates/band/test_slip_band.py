@@ -233,3 +233,10 @@ def test_step_that_runs_is_what_counts(half):
     gentle = Gentle(**{name: getattr(law, name) for name in law.__dataclass_fields__})
     assert "is not shown" in not_written(gentle)
     assert "is not shown" in SLIP_BAND.speaks_about(replace(half, controller=gentle))
+
+
+def test_worn_wheels_of_which_the_law_takes_no_scale_are_refused(half, proof):
+    """A law that does not take the scale from them holds another slip: with 5 %, .2 in place of .14 at 510 mm."""
+    law = half.controller
+    careless = replace(half, controller=replace(law, source=replace(law.source, largest_scale_error=0.03)))
+    assert "does not take its scale" in refused(careless, proof)

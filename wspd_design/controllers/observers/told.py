@@ -12,6 +12,9 @@ from wspd_design.controllers.protocol import TRAIN_SPEED, State, VehicleMeasurem
 from wspd_design.model.number import Number, exp, maximum, where
 from wspd_design.parameters.loading import constants
 
+SOURCE_ERROR = 0.05
+"""Of a told speed, for wheels of nominal radius; that of worn wheels comes on top [-]."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToldSpeed:
@@ -20,7 +23,9 @@ class ToldSpeed:
     sample_time: float  # s
     wheel_radius: float  # m, nominal
     wheelsets: int
-    largest_scale_error: float = 0.05  # -, beyond it the wheels do not roll: they slide, and say nothing
+    largest_scale_error: float = (
+        SOURCE_ERROR  # -, beyond it the wheels do not roll: they slide, and say nothing
+    )
     acceleration_time: float = 0.3  # s, of the filter: noise of .05 m/s becomes some .15 m/s2
 
     @property

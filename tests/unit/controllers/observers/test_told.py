@@ -1,8 +1,14 @@
 """A told speed: calibrated while the wheels roll, and only then; its acceleration."""
 
+from dataclasses import replace
+
 import pytest
 
-from wspd_design.controllers.observers.told import ToldSpeed
+import wspd_design as wd
+from wspd_design.controllers.observers.selection import speed_source
+from wspd_design.controllers.observers.sensors import Sensors
+from wspd_design.controllers.observers.told import SOURCE_ERROR, ToldSpeed
+from wspd_design.parameters.bounds import EXACT
 
 RADIUS, PERIOD, NONE = 0.55, 0.02, (0.0,) * 4
 SOURCE = ToldSpeed(sample_time=PERIOD, wheel_radius=RADIUS, wheelsets=4)
@@ -50,3 +56,15 @@ def test_acceleration_is_that_of_the_calibrated_speed_after_the_filter(seen, fol
 def test_nobody_is_released(seen):
     estimate = first(seen([30.0] * 4, speed=30.0))
     assert estimate.release == estimate.hold == NONE
+
+
+def test_worn_wheels_roll_as_well(seen):
+    """A wheel of 510 mm turns 7.8 % faster than one of 550, which a source that expects new wheels calls sliding."""
+    worn = seen([30.0 * 550.0 / 510.0] * 4, speed=30.0)
+    assert first(worn).speed == 30.0
+    vehicle = wd.load_vehicle("er24pc")
+    source = speed_source(Sensors(), vehicle, PERIOD)
+    assert source.largest_scale_error == pytest.approx(SOURCE_ERROR + 40.0 / 510.0)
+    assert source.start(worn)[0] == pytest.approx(30.0 * 550.0 / 510.0)
+    known = speed_source(Sensors(), replace(vehicle, bounds=EXACT), PERIOD)
+    assert known.largest_scale_error == SOURCE_ERROR

@@ -93,6 +93,12 @@ def loop_of(
     if 2 * conditions.noise > window[0]:
         raise Refused("the noise is more than half of a speed")
     mass, inertia, radius, mu0, torque, fill, vent = (ball(*each) for each in cell)
+    if law.largest_scale_error is not None and not (
+        abs(point(law.radius) / radius - 1) < point(law.largest_scale_error)
+    ):
+        raise Refused(
+            "wheels of this radius roll so fast or slowly that the law does not take its scale from them"
+        )
     speed, h, reference = ball(*window), point(law.sample_time), held_in(law, window, cell[RADIUS])
     slip = reference.slip
     vehicle = problem.vehicle

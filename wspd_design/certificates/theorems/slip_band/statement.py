@@ -56,6 +56,9 @@ class BandLaw:
     dead_band_share: Fraction  # -, of the desired slip
     torque_slew: Fraction | None  # N m/s, of the braking curve; None without one
     acceleration_time: Fraction  # s, of the filter of the train's acceleration
+    largest_scale_error: (
+        Fraction | None
+    )  # -, of the train speed, that it takes from rolling wheels; None: any
 
 
 def law_of(law: Law) -> BandLaw:
@@ -89,6 +92,7 @@ def law_of(law: Law) -> BandLaw:
         dead_band_share=Fraction(tracking.dead_band_share),
         torque_slew=Fraction(core.torque_slew),
         acceleration_time=Fraction(source.acceleration_time),
+        largest_scale_error=Fraction(source.largest_scale_error),
     )
 
 
@@ -114,6 +118,7 @@ def _declared(form: ObserverForm, sample_time: float) -> BandLaw:
         dead_band_share=Fraction(0),
         torque_slew=None if form.torque_slew is None else Fraction(form.torque_slew),
         acceleration_time=Fraction(form.acceleration_time),
+        largest_scale_error=None,
     )
 
 
