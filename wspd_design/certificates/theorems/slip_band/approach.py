@@ -268,9 +268,11 @@ def motion(
     supply = (state.supply * full + growth * (decided.fill * 0.5)).widened(unsure, unsure)
     way = supply, state.torque, decided.fill, decided.vent
     rise, fall = (fresh(each) for each in _moved(*way, filling, venting))
-    # A change within the sample is even but for what the rate changes: h^2/8 of the largest second derivative.
+    # A change within a pulse is even but for what the rate changes: 1/8 of the largest second derivative and its square.
     quick = np.maximum(most, (supply - state.torque).high * filling.high) * filling.high
-    bend = 0.125 * np.maximum(quick, (state.torque + rise).high * venting.high**2)
+    bend = quick * np.clip(decided.fill.high, 0.0, 1.0) ** 2
+    bend = bend + (state.torque + rise).high * (venting.high * np.clip(decided.vent.high, 0.0, 1.0)) ** 2
+    bend = 0.125 * np.maximum(bend, 0.0)
     speed, sliding = state.speed, state.sliding
     top = sliding.high / speed.low
     ahead = _with_brake(plant, (speed, sliding), state.torque * effect)
