@@ -45,7 +45,7 @@ def low():
 def piece(low):
     mu0 = low.nominal(FRICTION)
     alone = Piece(friction=(mu0, mu0), slope=0.0, borders=(0.75, 0.756), samples=(1,))
-    return replace(alone, samples=search._samples(low, low.controller, alone))
+    return replace(alone, samples=search._samples(low, low.controller, alone, 0.3))
 
 
 @pytest.fixture(scope="module")

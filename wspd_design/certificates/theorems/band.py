@@ -194,7 +194,7 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
     )
 
 
-def _covered(problem: Problem, findings: Findings, name: str) -> Finding:
+def covered(problem: Problem, findings: Findings, name: str) -> Finding:
     """Return a finding on ellipsoids; it counts only for friction within the bounds that it was made for."""
     found, proved = findings[name], proved_friction(problem, findings)
     if found.status is not Status.PROVED:
@@ -208,7 +208,7 @@ def _covered(problem: Problem, findings: Findings, name: str) -> Finding:
 
 
 def _tell(problem: Problem, findings: Findings) -> Certificate:
-    cells, windows = _covered(problem, findings, CELLS), windows_of(problem)
+    cells, windows = covered(problem, findings, CELLS), windows_of(problem)
     friction = proved_friction(problem, findings)
     held, reference = held_names(problem), reference_text(law_of(problem.controller))
     within = domain.domain_of(_held(problem), varied(problem), held)
@@ -226,7 +226,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     if cells.status is Status.PROVED:
         share = cells.numbers["share"]
         explanation = (
-            f"{_bands(windows, cells)} {cells.numbers['cells']:g} cells of the box, each with an ellipsoid "
+            f"{bands(windows, cells)} {cells.numbers['cells']:g} cells of the box, each with an ellipsoid "
         )
         explanation += (
             "for each window of speed, that of a faster window inside that of the next slower one. "
@@ -235,7 +235,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         explanation += "".join(
             _borne(windows, each)
             for name in DISTURBED
-            if (each := _covered(problem, findings, name)).status is Status.PROVED
+            if (each := covered(problem, findings, name)).status is Status.PROVED
         )
         if share < 1.0:
             status = Status.UNDECIDED
@@ -332,7 +332,7 @@ def _slip_there(problem: Problem, place: Place) -> float:
     return slip_at(law_of(problem.controller), place["speed"], place["wheel radius"])
 
 
-def _bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
+def bands(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
     """Say how far the slip strays at the lowest, a middle and the highest speeds."""
     told = [
         f"+{cells.numbers[f'band {k} above']:.2g} and -{cells.numbers[f'band {k} below']:.2g} at "

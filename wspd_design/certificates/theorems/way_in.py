@@ -5,20 +5,22 @@ See :mod:`wspd_design.certificates.theorems.slip_band` for motion, proof and che
 
 from typing import cast
 
-from wspd_design.certificates.kernel.obligation import Obligation, Special
+from wspd_design.certificates.kernel.finding import Finding
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.quantities import CONTACT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems import band
-from wspd_design.certificates.theorems.slip_band.statement import NAMES
-from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, VARIED, checker
+from wspd_design.certificates.theorems.slip_band.statement import NAMES, windows_of
+from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, VARIED, around, checker
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import ConstantSlip
 from wspd_design.parameters.units import KMH
 
 STRIPS = "strips"
+BAND = "band 0 above"  # among the numbers if there is a band
 ARRIVED = 0.01  # -, distance from the reference at which the slip has come to it
 RESISTANCE = tuple(f"resistance {part}" for part in ("constant", "linear", "quadratic"))
 
@@ -48,17 +50,19 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
         raise OutsideModel("the train stands still")
     law = cast(Protection, problem.controller)
     return (
+        *(Inequality(key=name, claim=claim) for name, claim in band.claims(around(problem)).items()),
         Special(
             key=STRIPS,
             text="strips of friction and supply rate cover both ranges, and of each the loop is enclosed from rolling "
-            "until the slip has reached its reference",
+            "until the slip has reached its reference, "
+            "and the wheels are in the ellipsoid of a band where one is given",
             check=checker(problem, law),
         ),
     )
 
 
 def _tell(problem: Problem, findings: Findings) -> Certificate:
-    strips, held = findings[STRIPS], held_names(problem)
+    strips, held = _after(problem, findings), held_names(problem)
     low, high = problem.span(FRICTION)
     speed = problem.speeds[1] * KMH
     claim = (
@@ -78,7 +82,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             f"The slip is never above {found['largest slip']:.4g}, at no instant, for {found['time']:.3g} s at most; "
             f"at the end of what is followed it is within {max(found['above'], 0.0):.2g} above and "
             f"{max(found['below'], 0.0):.2g} below its reference, and the supply has {100.0 * found['supply']:.3g} % "
-            "of its full pressure or more."
+            "of its full pressure or more. "
+            f"{_rest_of_the_stop(problem, strips)}"
         )
         if max(found["above"], found["below"]) > ARRIVED:
             status = Status.UNDECIDED
@@ -112,6 +117,26 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         method="affine arithmetic in doubles with outward rounding, Picard's iteration between samples; the law that "
         "is followed is compared with the one that runs at 96 points",
         reference="docs/theory.md#way-in",
+    )
+
+
+def _after(problem: Problem, findings: Findings) -> Finding:
+    """Return the finding on the strips; its band counts only for friction within the bounds that it was made for."""
+    found = findings[STRIPS]
+    if found.status is Status.PROVED and BAND in found.numbers:
+        return band.covered(around(problem), findings, STRIPS)
+    return found
+
+
+def _rest_of_the_stop(problem: Problem, strips: Finding) -> str:
+    """Say what comes after."""
+    low, high = (speed * KMH for speed in problem.speeds)
+    if BAND not in strips.numbers:
+        return "What comes after is not shown."
+    windows = windows_of(around(problem))
+    return (
+        f"The wheels are then in the ellipsoid of a band, with filters settled and supply enough: from there down to "
+        f"{low:.3g} km/h, the rest of the stop from {high:.4g} km/h, {band.bands(windows, strips)}"
     )
 
 

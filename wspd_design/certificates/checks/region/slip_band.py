@@ -1,12 +1,12 @@
 """A sampled law with observer keeps its slip in a band: ellipsoids that no sample leads out of."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from wspd_design.certificates.checks.frame import Check
 from wspd_design.certificates.checks.region.slip_band_figures import figures
 from wspd_design.certificates.kernel.finding import Effort, Place, Stated
-from wspd_design.certificates.kernel.obligation import Inequality
+from wspd_design.certificates.kernel.obligation import Inequality, Obligation
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
@@ -24,6 +24,7 @@ from wspd_design.certificates.theorems.band import (
     proved_friction,
 )
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
+from wspd_design.certificates.theorems.slip_band.loop import Friction
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, law_of, windows_of
 from wspd_design.controllers.protection import Protection
@@ -34,15 +35,7 @@ CELLS_TRIED = 24  # for each share of the box, with an effort of 1
 
 def search(problem: Problem) -> Mapping[str, Stated]:
     """Bound the friction in each window, then cover the box with cells that have ellipsoids."""
-    wanted = {each.key: each for each in SLIP_BAND.obligations(problem)}
-    stated = {}
-    for k in range(len(windows_of(problem))):
-        for name in BOUNDED:
-            for relation in DIRECTIONS:
-                obligation = wanted[key(name, k, relation)]
-                assert isinstance(obligation, Inequality)
-                stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name])
-    friction = proved_friction(problem, {name: finding(wanted[name], each) for name, each in stated.items()})
+    stated, friction = bounded_friction(problem, SLIP_BAND.obligations(problem))
     if friction is None:
         return stated | {CELLS: Stated(), LATE: Stated(), NOISY: Stated(), DEPARTURE: _departure(problem)}
     law = law_of(problem.controller)
@@ -53,6 +46,22 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     # What is shown on the whole box needs no look for what would deny it.
     away = Stated() if found.share == 1 else _departure(problem)
     return stated | _disturbed(problem, law, found) | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
+
+
+def bounded_friction(
+    problem: Problem, obligations: Sequence[Obligation]
+) -> tuple[dict[str, Stated], tuple[Friction, ...] | None]:
+    """Bound the friction in each window; none if one is open."""
+    wanted = {each.key: each for each in obligations}
+    stated = {}
+    for k in range(len(windows_of(problem))):
+        for name in BOUNDED:
+            for relation in DIRECTIONS:
+                obligation = wanted[key(name, k, relation)]
+                assert isinstance(obligation, Inequality)
+                stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name])
+    found = {name: finding(wanted[name], each) for name, each in stated.items()}
+    return stated, proved_friction(problem, found)
 
 
 def _disturbed(problem: Problem, law: BandLaw, found: Proof) -> dict[str, Stated]:

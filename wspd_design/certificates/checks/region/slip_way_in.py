@@ -1,24 +1,34 @@
 """From rolling the slip comes to its reference: the loop enclosed sample by sample, over friction and supply rate."""
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import cast
 
 from wspd_design.certificates.checks.frame import Check
+from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
+from wspd_design.certificates.search.slip_band.search import cover
 from wspd_design.certificates.search.slip_band.way_in import plan
-from wspd_design.certificates.theorems.slip_band.way_in import write
+from wspd_design.certificates.theorems.slip_band.proof import Proof
+from wspd_design.certificates.theorems.slip_band.proof import write as write_band
+from wspd_design.certificates.theorems.slip_band.statement import law_of
+from wspd_design.certificates.theorems.slip_band.way_in import around, write
 from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN, STRIPS
 from wspd_design.controllers.protection import Protection
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:
-    """Choose strips that hold at the corners of both ranges; the checker follows all of them."""
-    found = plan(problem, cast(Protection, problem.controller), budget().effort)
+    """Choose strips whose outer ones hold and get into a band; the checker follows all of them."""
+    law, near = cast(Protection, problem.controller), around(problem)
+    stated, friction = bounded_friction(near, SLIP_WAY_IN.obligations(problem))
+    cells = None if friction is None else cover(near, law_of(law), friction, Fraction(1), 1)
+    band = write_band(cells) if isinstance(cells, Proof) else None
+    found = plan(problem, law, budget().effort, settled=band is not None)
     if found is None:
-        return {STRIPS: Stated(effort=Effort(undecided=1.0, cut=True))}
-    return {STRIPS: Stated(proof=write(found.pieces))}
+        return stated | {STRIPS: Stated(effort=Effort(undecided=1.0, cut=True))}
+    return stated | {STRIPS: Stated(proof=write(found.pieces, band))}
 
 
 CHECK = Check(theorem=SLIP_WAY_IN, search=search)

@@ -23,7 +23,8 @@ SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal
 WIDTHS = ((0.025, 0.01), (0.018, 0.008), (0.0125, 0.006), (0.006, 0.003))
 """Relative half width of a piece of the friction, and width of a strip over its supply rate."""
 MOST = 400  # strips, with an effort of 1
-SETTLED, LATER = 0.004, 0.3  # slip beside the reference, and what is followed from there [-, s]
+SETTLED = 0.004  # slip beside the reference
+LATER = {False: 0.3, True: 1.3}  # s, what is followed from there, and until the filters have settled as well
 STEPS = 8  # strips between two stops that tell how long they are followed
 SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does
@@ -36,24 +37,30 @@ class Plan(NamedTuple):
     pieces: tuple[Piece, ...]
 
 
-def plan(problem: Problem, law: Protection, effort: float) -> Plan | None:
+def plan(problem: Problem, law: Protection, effort: float, *, settled: bool) -> Plan | None:
     """Choose pieces and strips that the budget can follow, for the largest share of the friction; None if none can.
 
     The outer strips are tried; the checker follows all.
     """
     for share in SHARES:
         for half, width in WIDTHS:
-            pieces = _pieces(problem, law, share, half, width, MOST * effort)
+            pieces = _pieces(problem, law, share, (half, width), MOST * effort, LATER[settled])
             if pieces is not None and _corners_hold(problem, law, pieces):
                 return Plan(share, pieces)
     return None
 
 
 def _pieces(
-    problem: Problem, law: Protection, share: float, half: float, width: float, most: float
+    problem: Problem,
+    law: Protection,
+    share: float,
+    widths: tuple[float, float],
+    most: float,
+    later: float,
 ) -> tuple[Piece, ...] | None:
     """Divide a share of the friction into pieces with strips, unless they are too many."""
-    (low, high), nominal = problem.span(FRICTION), problem.nominal(FRICTION)
+    (half, width), nominal = widths, problem.nominal(FRICTION)
+    low, high = problem.span(FRICTION)
     low, high = nominal + share * (low - nominal), nominal + share * (high - nominal)
     count = max(1, math.ceil(math.log(high / low) / (2.0 * half)))
     edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
@@ -68,7 +75,7 @@ def _pieces(
         number = max(1, math.ceil(math.log(last / first) / width))
         borders = tuple(first * (last / first) ** (k / number) for k in range(number + 1))
         piece = Piece(friction=(one, other), slope=slope, borders=borders, samples=(1,) * number)
-        found.append(replace(piece, samples=_samples(problem, law, piece)))
+        found.append(replace(piece, samples=_samples(problem, law, piece, later)))
     return tuple(found) if sum(len(each.samples) for each in found) <= most else None
 
 
@@ -109,7 +116,7 @@ def _slope(problem: Problem, law: Protection, friction: float) -> float:
     return -(by_friction / friction) / (by_supply / supply)
 
 
-def _samples(problem: Problem, law: Protection, piece: Piece) -> tuple[int, ...]:
+def _samples(problem: Problem, law: Protection, piece: Piece, later: float) -> tuple[int, ...]:
     """How long each strip is followed: until a stop at its slower end, or that of one before, has settled."""
     import numpy as np
 
@@ -118,7 +125,7 @@ def _samples(problem: Problem, law: Protection, piece: Piece) -> tuple[int, ...]
         time, slip = _stop(problem, law, piece.friction[1], piece.borders[first])
         reached = np.flatnonzero(slip >= problem.slip - SETTLED)
         settled = float(time[reached[0]]) if reached.size else float(time[-1])
-        found += [math.ceil((settled + LATER) / law.sample_time)] * min(STEPS, len(piece.samples) - first)
+        found += [math.ceil((settled + later) / law.sample_time)] * min(STEPS, len(piece.samples) - first)
     return tuple(found)
 
 

@@ -268,7 +268,7 @@ def motion(
     supply = (state.supply * full + growth * (decided.fill * 0.5)).widened(unsure, unsure)
     way = supply, state.torque, decided.fill, decided.vent
     rise, fall = (fresh(each) for each in _moved(*way, filling, venting))
-    # A change within a pulse is even but for what the rate changes: 1/8 of the largest second derivative and its square.
+    # A change within a pulse is even but for 1/8 of the largest second derivative, times the square of its length.
     quick = np.maximum(most, (supply - state.torque).high * filling.high) * filling.high
     bend = quick * np.clip(decided.fill.high, 0.0, 1.0) ** 2
     bend = bend + (state.torque + rise).high * (venting.high * np.clip(decided.vent.high, 0.0, 1.0)) ** 2

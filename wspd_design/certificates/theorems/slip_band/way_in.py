@@ -6,24 +6,34 @@ strips of a piece of the friction lie side by side and cover all supply rates.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, inf
 from typing import TYPE_CHECKING, Any
 
+from wspd_design.certificates.kernel.arb import above, below
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.slip_loop import DISTURBANCES
+from wspd_design.certificates.theorems.slip_band.checker import DIGITS
+from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import read as read_band
+from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 from wspd_design.controllers.protection import Protection
+from wspd_design.parameters.bounds import Bounds
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from wspd_design.certificates.theorems.slip_band.arrival import Asked
+
     Array = NDArray[np.float64]
 
-FORMAT = "wspd-way-in/1"
+FORMAT = "wspd-way-in/2"
 FRICTION, SUPPLY = "mu0", "supply rate"
 VARIED = (FRICTION, SUPPLY)
 MOST_STRIPS, MOST_SAMPLES, MOST_LETTERS = 20_000, 2_000, 60  # of a proof, of a strip, of a number
@@ -48,10 +58,11 @@ class Piece:
         return 0.5 * (self.friction[0] + self.friction[1])
 
 
-def write(pieces: Sequence[Piece]) -> dict[str, Any]:
-    """Write a proof as JSON."""
+def write(pieces: Sequence[Piece], band: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Write a proof as JSON, with that of the band that the wheels get into, if there is one."""
     return {
         "format": FORMAT,
+        "band": band,
         "pieces": [
             {
                 "friction": [text(Fraction(end)) for end in each.friction],
@@ -66,7 +77,7 @@ def write(pieces: Sequence[Piece]) -> dict[str, Any]:
 
 def read(proof: Mapping[str, Any]) -> tuple[Piece, ...]:
     """Read a proof, or refuse it."""
-    if proof.keys() != {"format", "pieces"} or proof["format"] != FORMAT:
+    if proof.keys() != {"format", "band", "pieces"} or proof["format"] != FORMAT:
         raise Refused(f"the proof does not have the format {FORMAT}")
     pieces = proof["pieces"]
     if not isinstance(pieces, list) or not pieces:
@@ -101,7 +112,7 @@ def _double(written: object) -> float:
 
 
 def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
-    """Return what decides about a proof and tells its numbers."""
+    """Return what decides about a proof and tells its numbers, those of the band among them."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
         pieces = read(proof)
@@ -112,9 +123,55 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
         difference = unlike(problem, law)
         if difference:
             raise Refused(difference)
-        return {"friction low": low, "friction high": high} | followed(problem, law, pieces)
+        band: dict[str, float] = {}
+        asked: Asked | None = None
+        if proof["band"] is not None:
+            band, asked = _band(around(problem), law, proof["band"], work)
+        found = followed(problem, law, pieces, asked)
+        return {**band, "friction low": low, "friction high": high, **found}
 
     return check
+
+
+def around(problem: Problem) -> Problem:
+    """Return the problem with nothing but friction and supply rate uncertain."""
+    return replace(problem, bounds=Bounds.of({name: problem.span(name) for name in VARIED}))
+
+
+def _band(problem: Problem, law: Protection, proof: object, work: Work) -> "tuple[dict[str, float], Asked]":
+    """Decide about the band, and return its numbers and what it asks for at the highest speeds."""
+    from flint import ctx
+
+    from wspd_design.certificates.theorems.slip_band.arrival import Asked
+
+    if not isinstance(proof, dict):
+        raise Refused("the proof of the band is no object")
+    numbers = checker_of_band(problem, law)(proof, work)
+    windows = windows_of(problem)
+    found = read_band(proof, len(windows))
+    if found.share != 1 or len(found.cells) != 1:
+        raise Refused("the band must be that of one cell, which is the whole box")
+    begin = found.cells[0][-1]
+    conditions = Conditions(begin.supply, found.delay, found.noise)
+    with ctx.workprec(DIGITS):
+        loop = loop_of(
+            problem,
+            law_of(law),
+            box_of(problem, found.share),
+            windows[-1],
+            found.friction[-1],
+            begin.pulse,
+            conditions,
+        )
+        misjudged = loop.disturbances[DISTURBANCES.index("acceleration error")]
+        asked = Asked(
+            speeds=windows[-1],
+            matrix=[[float(each) for each in row] for row in begin.matrix],
+            center=[float(each) for each in begin.center],
+            misjudged=(above(misjudged[0]), below(misjudged[1])),
+            supply=float(begin.supply),
+        )
+    return numbers, asked
 
 
 def _covered(problem: Problem, pieces: Sequence[Piece]) -> tuple[float, float]:
@@ -137,7 +194,9 @@ def _covered(problem: Problem, pieces: Sequence[Piece]) -> tuple[float, float]:
     return low, end
 
 
-def followed(problem: Problem, law: Protection, pieces: Sequence[Piece]) -> dict[str, float]:
+def followed(
+    problem: Problem, law: Protection, pieces: Sequence[Piece], asked: "Asked | None" = None
+) -> dict[str, float]:
     """Follow all strips, and return the largest slip, when they end and how near to the reference they are then.
 
     Parameters
@@ -148,11 +207,13 @@ def followed(problem: Problem, law: Protection, pieces: Sequence[Piece]) -> dict
         Sliding mode of relative degree two.
     pieces : sequence of Piece
         Strips.
+    asked : Asked, optional
+        What the wheels must have at the end of what is followed.
 
     Raises
     ------
     Refused
-        If the enclosure of a strip is lost.
+        If the enclosure of a strip is lost, or its wheels lack what is asked.
     """
     strips = sorted(
         ((count, k, strip) for k, each in enumerate(pieces) for strip, count in enumerate(each.samples)),
@@ -160,7 +221,7 @@ def followed(problem: Problem, law: Protection, pieces: Sequence[Piece]) -> dict
     )
     found = {"largest slip": 0.0, "time": 0.0, "above": -inf, "below": -inf, "supply": inf}
     for first in range(0, len(strips), AT_ONCE):
-        _follow(problem, law, pieces, strips[first : first + AT_ONCE], found)
+        _follow(problem, law, pieces, strips[first : first + AT_ONCE], found, asked)
     return found
 
 
@@ -170,17 +231,19 @@ def _follow(
     pieces: Sequence[Piece],
     strips: Sequence[tuple[int, int, int]],
     found: dict[str, float],
+    asked: "Asked | None",
 ) -> None:
     import numpy as np
 
     from wspd_design.certificates.theorems.slip_band.approach import follow
+    from wspd_design.certificates.theorems.slip_band.arrival import arrived
 
     ends = np.array([count for count, _, _ in strips])
     boxes = _boxes(problem, [(pieces[k], strip) for _, k, strip in strips])
     last, told = int(ends.max()), max(1, ceil(AT_END / law.sample_time))
     with np.errstate(all="ignore"):
         course = follow(law, problem.vehicle, problem.rail, boxes, problem.speeds[1])
-        for sample, (top, state, _) in enumerate(course, start=1):
+        for sample, (top, state, plant) in enumerate(course, start=1):
             going = ends >= sample
             if not np.all(np.isfinite(top[going])):
                 raise Refused("the enclosure of a strip is lost")
@@ -192,6 +255,8 @@ def _follow(
                 found["above"] = max(found["above"], float(above.max()))
                 found["below"] = max(found["below"], float(below.max()))
                 found["supply"] = min(found["supply"], float(state.supply.low[ending].min()))
+            if asked is not None and not np.all(arrived(law, plant, state, asked)[ends == sample]):
+                raise Refused("wheels of a strip are not in the ellipsoid of the band at its end")
             if sample == last:
                 break
     found["time"] = max(found["time"], last * law.sample_time)
