@@ -9,22 +9,26 @@ import pytest
 import wspd_design as wd
 from tests.certificates.band.conftest import problem_of
 from wspd_design.certificates import suite
+from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import certificate_text
-from wspd_design.certificates.kernel.finding import Finding
+from wspd_design.certificates.kernel.finding import Finding, Stated
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.slip_band import way_in as search
-from wspd_design.certificates.theorems.slip_band import approach, computed_law
+from wspd_design.certificates.theorems.slip_band import approach, arrival, computed_law
 from wspd_design.certificates.theorems.slip_band.way_in import (
     FRICTION,
     SUPPLY,
     Piece,
+    _supply_rises,
+    around,
     checker,
     followed,
     write,
 )
 from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN, STRIPS
+from wspd_design.model.slip import slip_dynamics
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
@@ -99,21 +103,94 @@ def test_proof_is_accepted_and_told(low, piece):
     assert found["friction low"] == found["friction high"] == low.nominal(FRICTION)
 
 
-def test_file_of_a_narrow_domain_is_accepted(low, monkeypatch):
+@pytest.fixture(scope="module")
+def stop(low):
+    """The whole stop at the nominal friction."""
     nominal = replace(low, bounds=type(low.bounds).of({SUPPLY: (0.75, 0.756)}))
-    monkeypatch.setattr(search, "WIDTHS", ((0.01, 0.01),))
-    monkeypatch.setattr(search, "_corners_hold", lambda *_: True)
-    (found,) = suite.verify(nominal, only=["slip_way_in"], figures=False)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(search, "WIDTHS", ((0.01, 0.01),))
+        patch.setattr(search, "_corners_hold", lambda *_: True)
+        (found,) = suite.verify(nominal, only=["slip_way_in"], figures=False)
+    return nominal, found
+
+
+def test_whole_stop_is_shown(stop):
+    nominal, found = stop
     assert found.status is Status.PROVED
     assert "never above 0.1" in found.explanation
-    text = certificate_text(found)
-    assert replay(nominal, text).accepted
+    assert "down to 10 km/h: The slip stays within" in found.explanation
+    assert "stays in a band around it down to 10 km/h" in found.claim
+    numbers = found.findings[STRIPS].numbers
+    assert numbers["band 0 below"] < 0.002
+    assert replay(nominal, certificate_text(found)).accepted
+
+
+def test_end_before_the_filters_have_settled_is_refused(stop):
+    nominal, found = stop
+    proof = json.loads(json.dumps(found.findings[STRIPS].stated.proof))
+    proof["pieces"][0]["samples"] = [count - 45 for count in proof["pieces"][0]["samples"]]
+    assert "not in the ellipsoid" in refused(nominal, proof)
+
+
+def test_forged_band_is_refused(stop):
+    nominal, found = stop
+    proof = json.loads(json.dumps(found.findings[STRIPS].stated.proof))
+    proof["pieces"][0]["samples"] = [2]
+    each = proof["band"]["ellipsoids"][-1]
+    each[2:12] = [repr(100.0 * float(number)) for number in each[2:12]]
+    assert "may" in refused(nominal, proof)
+
+
+def test_supply_that_lags_behind_the_train_is_refused(stop):
+    nominal, found = stop
+    band = found.findings[STRIPS].stated.proof["band"]
+    _supply_rises(around(nominal), band, 0.7, 32.0)
+    slow = around(replace(nominal, bounds=type(nominal.bounds).of({SUPPLY: (0.001, 0.002)})))
+    with pytest.raises(Refused, match="the supply may have"):
+        _supply_rises(slow, band, 0.1, 32.0)
+
+
+def test_state_in_the_coordinates_of_the_band(low):
+    """Against the definitions of the band, written once more, at one state."""
+    law, vehicle, rail = low.controller, low.vehicle, low.rail
+    speed, sliding, innovation, friction, torque = 30.0, 4.0, 0.003, 7600.0, 7500.0
+    acceleration, change = -0.7, -0.0145
+
+    def form(value):
+        return Affine(np.array([value]), np.zeros((1, 32)), np.zeros(1))
+
+    numbers = {name: form(low.nominal(name)) for name in approach.NUMBERS}
+    plant = approach.plant_of(vehicle, rail, law.valve.brake.max_torque, numbers, 16)
+    state = approach.State(
+        *map(form, (speed, sliding, innovation, friction, torque, acceleration, change, 0.9))
+    )
+    found, misjudged = arrival.in_band(law, plant, state)
+    radius, inertia, h = vehicle.wheel_radius, 2.0 * vehicle.wheel_inertia, law.sample_time
+    here, there = (slip_dynamics(vehicle, rail, slip, speed) for slip in (sliding / speed, low.slip))
+    rate = -0.86 * here.deceleration / radius
+    damping = 2.0 * vehicle.wheel_damping * 0.86 * speed / radius
+    t0 = (2.0 * radius * there.creep_force - damping - inertia * rate) / law.wheelset_inertia
+    pole, wheel = np.exp(-law.observer_rate * h), (speed - sliding) / radius
+    expected = wheel - innovation / radius
+    observed = expected + (1.0 - pole**2) * (wheel - expected)
+    learned = friction + law.wheelset_inertia / h * (1.0 - pole) ** 2 * (wheel - expected)
+    wanted = (
+        wheel - 0.86 * speed / radius,
+        observed - wheel,
+        h * (learned / law.wheelset_inertia - t0 - rate),
+        h * (torque / law.wheelset_inertia - t0),
+    )
+    np.testing.assert_allclose([x.center[0] for x in found], wanted, rtol=1e-6, atol=1e-9)
+    new = -np.expm1(-h / law.source.acceleration_time)
+    known = 0.86 / radius * (acceleration + new * (change / h - acceleration))
+    assert misjudged.center[0] == pytest.approx(h * (rate - known), rel=1e-6)
 
 
 def told(problem, numbers):
     """Verdict on what a checker may show."""
     finding = Finding(status=Status.PROVED, asked="strips", shown="strips", numbers=numbers)
-    return SLIP_WAY_IN.tell(problem, {STRIPS: finding})
+    open_ones = {each.key: each.decide(Stated(), Work()) for each in SLIP_WAY_IN.obligations(problem)}
+    return SLIP_WAY_IN.tell(problem, open_ones | {STRIPS: finding})
 
 
 def test_verdict_says_what_was_shown(low, numbers):

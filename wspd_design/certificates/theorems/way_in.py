@@ -71,6 +71,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         f"and every mu0 in their ranges, all other numbers at their nominal values; sampled every "
         f"{problem.sample_time * 1e3:g} ms."
     )
+    if BAND in strips.numbers:
+        claim += f" From there it stays in a band around it down to {problem.speeds[0] * KMH:.3g} km/h."
     status, margin = all_of(strips), None
     worst: tuple[Point, ...] = ()
     explanation = (
@@ -109,7 +111,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time",
             "all axles at static load and alike; pulses begin with the sample; the law computes with real numbers",
             "exp, log, arctan and square root of NumPy are within 8 units in the last place",
-            "says nothing about what comes later: from there slip_band speaks, once the supply is full",
+            "for the band: while the train slows down the deceleration rises as slip_band assumes",
         ),
         domain=domain.domain_of(problem, VARIED, held),
         varied=VARIED,
@@ -130,13 +132,12 @@ def _after(problem: Problem, findings: Findings) -> Finding:
 
 def _rest_of_the_stop(problem: Problem, strips: Finding) -> str:
     """Say what comes after."""
-    low, high = (speed * KMH for speed in problem.speeds)
     if BAND not in strips.numbers:
         return "What comes after is not shown."
-    windows = windows_of(around(problem))
+    low, told = problem.speeds[0] * KMH, band.bands(windows_of(around(problem)), strips)
     return (
-        f"The wheels are then in the ellipsoid of a band, with filters settled and supply enough: from there down to "
-        f"{low:.3g} km/h, the rest of the stop from {high:.4g} km/h, {band.bands(windows, strips)}"
+        "The wheels are then in the ellipsoid of a band, the filter of the acceleration has settled, and the supply "
+        f"has what the band asks for. From there down to {low:.3g} km/h: {told}"
     )
 
 

@@ -58,7 +58,7 @@ def arrived(law: Protection, plant: Plant, state: State, asked: Asked) -> Array:
 
 
 def in_band(law: Protection, plant: Plant, state: State) -> tuple[tuple[Affine, ...], Affine]:
-    """Return e, p, N and Y of the band, and h times the error of the acceleration, once the law has observed [rad/s]."""
+    """Return e, p, N and Y of the band and h times the error of the acceleration, once the law has observed [rad/s]."""
     h, inertia = law.sample_time, law.wheelset_inertia
     slip, pole = law.reference.slip, float(np.exp(-law.observer_rate * h))  # type: ignore[attr-defined]
     new = float(-np.expm1(-h / law.source.acceleration_time))  # type: ignore[attr-defined]

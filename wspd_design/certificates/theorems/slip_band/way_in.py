@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, inf
+from math import ceil, exp, inf
 from typing import TYPE_CHECKING, Any
 
 from wspd_design.certificates.kernel.arb import above, below
@@ -21,9 +21,12 @@ from wspd_design.certificates.theorems.slip_band.checker import DIGITS
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
-from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import SLIP_AROUND, box_of, law_of, windows_of
 from wspd_design.controllers.protection import Protection
+from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.loading import constants
+from wspd_design.parameters.units import KMH
 
 if TYPE_CHECKING:
     import numpy as np
@@ -128,6 +131,8 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
         if proof["band"] is not None:
             band, asked = _band(around(problem), law, proof["band"], work)
         found = followed(problem, law, pieces, asked)
+        if asked is not None:
+            _supply_rises(around(problem), proof["band"], found["supply"], found["speed"])
         return {**band, "friction low": low, "friction high": high, **found}
 
     return check
@@ -172,6 +177,36 @@ def _band(problem: Problem, law: Protection, proof: object, work: Work) -> "tupl
             supply=float(begin.supply),
         )
     return numbers, asked
+
+
+def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, speed: float) -> None:
+    """Refuse a band that asks for more supply in a slower window than there is when the train gets there.
+
+    Parameters
+    ----------
+    problem : Problem
+        With nothing but friction and supply rate uncertain.
+    proof : mapping
+        Of the band.
+    supply, speed : float
+        At the end of what is followed, at least [-, m/s].
+    """
+    windows = windows_of(problem)
+    found, vehicle = read_band(proof, len(windows)), problem.vehicle
+    mu0, slowest = problem.span(FRICTION)[1], problem.span(SUPPLY)[0]
+    lacking = 1.0 - supply
+    for k in reversed(range(len(windows) - 1)):  # from the next slower window on
+        friction, (_, top) = found.friction[k + 1], windows[k]
+        used = friction.level[1] + max(map(abs, friction.slope)) * float(SLIP_AROUND) * problem.speeds[0]
+        drag = float(resistance(vehicle, windows[k + 1][1])) / vehicle.mass
+        loss = (constants().gravity * mu0 * used + drag) * (1.0 + OUTWARD)
+        lacking *= exp(-slowest * max(speed - top, 0.0) / loss) * (1.0 + OUTWARD)
+        speed = min(speed, top)
+        if not 1.0 - lacking >= found.cells[0][k].supply:
+            raise Refused(
+                f"the supply may have {1.0 - lacking:.3g} of its pressure at {top * KMH:.0f} km/h, and the band asks "
+                f"for {float(found.cells[0][k].supply):.3g}"
+            )
 
 
 def _covered(problem: Problem, pieces: Sequence[Piece]) -> tuple[float, float]:
@@ -219,7 +254,7 @@ def followed(
         ((count, k, strip) for k, each in enumerate(pieces) for strip, count in enumerate(each.samples)),
         key=lambda each: each[0],
     )
-    found = {"largest slip": 0.0, "time": 0.0, "above": -inf, "below": -inf, "supply": inf}
+    found = {"largest slip": 0.0, "time": 0.0, "above": -inf, "below": -inf, "supply": inf, "speed": inf}
     for first in range(0, len(strips), AT_ONCE):
         _follow(problem, law, pieces, strips[first : first + AT_ONCE], found, asked)
     return found
@@ -255,6 +290,7 @@ def _follow(
                 found["above"] = max(found["above"], float(above.max()))
                 found["below"] = max(found["below"], float(below.max()))
                 found["supply"] = min(found["supply"], float(state.supply.low[ending].min()))
+                found["speed"] = min(found["speed"], float(state.speed.low[ending].min()))
             if asked is not None and not np.all(arrived(law, plant, state, asked)[ends == sample]):
                 raise Refused("wheels of a strip are not in the ellipsoid of the band at its end")
             if sample == last:
