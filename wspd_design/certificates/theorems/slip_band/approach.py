@@ -214,7 +214,10 @@ def _share(
     skipped = np.maximum(
         pulse, -length * np.log1p(-np.minimum(left_out / np.maximum(room.low, least), 0.999))
     )
-    return share.widened(np.minimum(skipped, 1.0) if left_out or pulse else 0.0, 0.0)
+    below = np.minimum(skipped, 1.0) if left_out or pulse else np.zeros_like(share.center)
+    # In so little room the law takes its logarithm of another ratio, and may command less.
+    below = np.where(room.low < least * np.exp(1.0 / length), np.maximum(share.high, below), below)
+    return share.widened(below, 0.0)
 
 
 def _moved(
@@ -269,7 +272,8 @@ def motion(
     way = supply, state.torque, decided.fill, decided.vent
     rise, fall = (fresh(each) for each in _moved(*way, filling, venting))
     # A change within a pulse is even but for 1/8 of the largest second derivative, times the square of its length.
-    quick = np.maximum(most, (supply - state.torque).high * filling.high) * filling.high
+    steepest = most * (1.0 + plant.supply_rate.high * h)
+    quick = np.maximum(steepest, ((supply - state.torque).high + most) * filling.high) * filling.high
     bend = quick * np.clip(decided.fill.high, 0.0, 1.0) ** 2
     bend = bend + (state.torque + rise).high * (venting.high * np.clip(decided.vent.high, 0.0, 1.0)) ** 2
     bend = 0.125 * np.maximum(bend, 0.0)
