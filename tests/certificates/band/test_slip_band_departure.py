@@ -165,6 +165,7 @@ def test_nothing_is_sought_where_the_whole_box_is_shown(dry, monkeypatch):
 
     monkeypatch.setattr(slip_band, "largest_share", lambda *_: Whole())
     monkeypatch.setattr(slip_band, "write", lambda _: {})
+    monkeypatch.setattr(slip_band, "_disturbed", lambda *_: {})
     stated = slip_band.search(dry)
     assert stated[DEPARTURE] == Stated()
     assert stated[CELLS].proof == {}
