@@ -61,7 +61,10 @@ THEOREMS = (
         "filtered acceleration, the change of v over the last sample, and the supply. Each is enclosed by an affine "
         "form in symbols between -1 and 1, of which two stand for the friction and the supply rate of a strip. What a "
         "sample makes of the forms encloses what it makes of the numbers; if a form of the slip s/v stays below a "
-        "number, also between samples, for strips that cover both ranges, no wheel slips more on its way.",
+        "number, also between samples, for strips that cover both ranges, no wheel slips more on its way. If the forms "
+        "of e, p, N and Y lie in the ellipsoid of a band at the end, the error of the filtered acceleration within "
+        "its bounds, and the supply has what the band asks for then and when the train gets to each slower window, "
+        "the wheels stay in the band down to the lowest speed.",
         hypotheses=(
             "friction and supply rate as stated, everything else at its nominal value",
             "the law that is followed is the one that runs, compared at points in doubles",
@@ -70,8 +73,10 @@ THEOREMS = (
         sketch="What is not affine is replaced by its secant and the largest distance from it. Within a part of a "
         "sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in it, then the "
         "rates there with the time as a symbol, whose mean counts. The torque goes from one sample to the next as the "
-        "valve does, evenly but for h^2/8 of its second derivative.",
-        not_said="Other masses, inertias, radii, pads and valve times; noise and dead time; what comes after.",
+        "valve does, evenly but for h^2/8 of its second derivative. A sum of symbols lies in an ellipsoid if the "
+        "lengths of center and symbols, in its coordinates, add up to less than 1. The supply lacks at most exp(-r t) "
+        "of what it lacked, and t is at least the speed that is lost over the largest deceleration.",
+        not_said="Other masses, inertias, radii, pads and valve times; noise and dead time.",
         identities=(
             Identity("R (w - w_r) = lambda v - s", _error_residual),
             Identity("innovation of the next sample", _innovation_residual),

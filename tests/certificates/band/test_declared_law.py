@@ -11,6 +11,7 @@ from tests.certificates.band.conftest import LOCO
 from wspd_design.certificates.theorems.band import SLIP_BAND
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock
 from wspd_design.certificates.theorems.slip_band.statement import law_of
+from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN
 from wspd_design.design.own_controller import load_controller
 from wspd_design.design.problem import stability_problem
 
@@ -91,7 +92,9 @@ def problem_with(tmp_path, change=("", ""), *, slip=0.14):
 
 @pytest.mark.parametrize("change", SAME)
 def test_law_that_is_the_declared_one(change, tmp_path):
-    assert SLIP_BAND.speaks_about(problem_with(tmp_path, SAME[change])) == ""
+    problem = problem_with(tmp_path, SAME[change])
+    assert SLIP_BAND.speaks_about(problem) == ""
+    assert "no code but its own" in SLIP_WAY_IN.speaks_about(problem)
 
 
 @pytest.mark.parametrize("fault", FAULTS)

@@ -28,6 +28,7 @@ from wspd_design.certificates.theorems.slip_band.way_in import (
     write,
 )
 from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN, STRIPS
+from wspd_design.controllers.references import FallingSlip
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
@@ -233,3 +234,15 @@ def test_another_law_is_noticed(low, monkeypatch):
     assert "computes another" in computed_law.unlike(low, low.controller)
     proof = write([Piece(friction=(0.08, 0.08), slope=0.0, borders=(0.75, 0.756), samples=(5,))])
     assert "computes another" in refused(low, proof)
+
+
+def test_laws_that_are_not_followed(low):
+    law = low.controller
+
+    def reason(changed):
+        return SLIP_WAY_IN.speaks_about(replace(low, controller=changed))
+
+    assert reason(law) == ""
+    assert "constant" in reason(replace(law, pressure_sensors=False))
+    falling = FallingSlip(slip=0.16, largest=0.35)
+    assert "holds no constant slip" in reason(replace(law, reference=falling))

@@ -30,7 +30,9 @@ def speaks_about(problem: Problem) -> str:
     reason = band.speaks_about(problem)
     if reason:
         return reason
-    law = cast(Protection, problem.controller)
+    law = problem.controller
+    if not isinstance(law, Protection):
+        return "is followed from rolling by no code but its own"
     if not isinstance(law.reference, ConstantSlip):
         return "holds no constant slip"
     if law.wheel_radius != problem.vehicle.wheel_radius:
