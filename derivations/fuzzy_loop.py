@@ -125,6 +125,6 @@ FUNCTIONS = (
         (e, before, rate, W, phi, psi, authority, new, k, h),
         next_state,
         "State of the loop one sample later, inside the layer",
-        "Error [m/s], the one before it, filtered rate [m/s2] and W [m/s2]",
+        "Error [m/s], the one before it [m/s], filtered rate [m/s2] and W [m/s2]",
     ),
 )

@@ -10,13 +10,13 @@ from wspd_design.plants.protocol import Plant
 from wspd_design.plants.quarter import Quarter
 
 
-def _locomotive(vehicle: Vehicle) -> Plant:
+def _multibody(vehicle: Vehicle) -> Plant:
     from wspd_design.plants.locomotive import Locomotive  # what no stop on a small plant needs
 
     return Locomotive(vehicle)
 
 
-def _linear_locomotive(vehicle: Vehicle) -> Plant:
+def _linear_multibody(vehicle: Vehicle) -> Plant:
     from wspd_design.plants.locomotive import LinearLocomotive
 
     return LinearLocomotive(vehicle)
@@ -25,8 +25,8 @@ def _linear_locomotive(vehicle: Vehicle) -> Plant:
 _PLANTS: Final[dict[str, Callable[[Vehicle], Plant]]] = {
     Planar.name: Planar,
     Quarter.name: Quarter,
-    "locomotive": _locomotive,
-    "locomotive-linear": _linear_locomotive,
+    "locomotive": _multibody,
+    "locomotive-linear": _linear_multibody,
 }
 
 PLANTS: Final = tuple(_PLANTS)

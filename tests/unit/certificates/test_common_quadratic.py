@@ -8,7 +8,15 @@ import pytest
 from wspd_design.certificates.search.common_quadratic import contraction
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, LoopRanges, corners
 
-STEADY = LoopRanges(secants=(-3.0, 1.0), effects=(0.8, 0.8), parts=(0.55, 0.65), seen=(0.3, 0.62), pulse=1.0)
+STEADY = LoopRanges(
+    secants=(-3.0, 1.0),
+    effects=(0.8, 0.8),
+    parts=(0.55, 0.65),
+    seen=(0.3, 0.62),
+    pulse=1.0,
+    delay=0.0,
+    added=0.0,
+)
 
 
 def law(gain):

@@ -80,6 +80,7 @@ REGISTER: Final[tuple[Registered, ...]] = (
         title="the numbers of the vehicle and the rail are the nominal ones, and constant",
         clauses=(
             "nominal parameters",
+            "are the nominal ones",
             "other numbers are nominal",
             "do not change",
             "may even change with time",

@@ -100,7 +100,7 @@ def next_sample(
     Returns
     -------
     tuple[Number, Number, Number, Number]
-        Error [m/s], the one before it, filtered rate [m/s2] and W [m/s2].
+        Error [m/s], the one before it [m/s], filtered rate [m/s2] and W [m/s2].
     """
     x0 = new * (-rate + (error - error_before) / h) + rate
     x1 = authority * (error * surface_rate + x0) + torque

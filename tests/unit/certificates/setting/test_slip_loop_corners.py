@@ -67,6 +67,8 @@ def test_corners_in_balls_are_those_in_doubles():
             parts=(number(0.5), number(1.125)),
             seen=(number(0.25), number(0.625)),
             pulse=number(0.5),
+            delay=number(0.25),
+            added=number(0.0),
         )
 
     law = LoopLaw(
@@ -80,7 +82,15 @@ def test_corners_in_balls_are_those_in_doubles():
 
 def test_constant_errors_are_at_rest():
     """Whatever pads, inertia and valve: without drift the loop stays where all deviations are zero, and only there."""
-    ranges = LoopRanges(secants=(-3.0, 1.0), effects=(0.7, 1.3), parts=(0.4, 1.2), seen=(0.3, 0.6), pulse=1.0)
+    ranges = LoopRanges(
+        secants=(-3.0, 1.0),
+        effects=(0.7, 1.3),
+        parts=(0.4, 1.2),
+        seen=(0.3, 0.6),
+        pulse=1.0,
+        delay=0.0,
+        added=0.0,
+    )
     for matrix in corners(LAW, ranges):
         rest = np.array(matrix)[:, :STATES] - np.eye(STATES)
         assert np.linalg.matrix_rank(rest) == STATES
