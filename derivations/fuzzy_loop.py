@@ -13,9 +13,11 @@ while the valve fills and another one while it vents.
 Claims: bound and interval of a weight, and that the map below is one sample of e' = q e - W.
 """
 
+from functools import partial
+
 import sympy as sp
 
-from derivations.notation import Generated, time
+from derivations.notation import described, time
 
 # --- weights ----------------------------------------------------------------------------------------------------------
 b, drive, part, low, high = sp.symbols("b drive part low high", real=True)
@@ -84,25 +86,7 @@ _MEANINGS = {
 }
 
 
-def _function(
-    name: str,
-    arguments: tuple[sp.Symbol, ...],
-    value: sp.Expr | tuple[sp.Expr, ...],
-    summary: str,
-    returns: str,
-    steps: tuple[tuple[sp.Symbol, sp.Expr], ...] = (),
-) -> Generated:
-    return Generated(
-        name=name,
-        arguments=arguments,
-        value=value,
-        summary=summary,
-        returns=returns,
-        steps=steps,
-        equation="docs/theory.md#fuzzy-sector",
-        meanings={each.name: _MEANINGS[each.name] for each in arguments},
-    )
-
+_function = partial(described, equation="docs/theory.md#fuzzy-sector", meanings=_MEANINGS)
 
 FUNCTIONS = (
     _function(

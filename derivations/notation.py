@@ -426,6 +426,30 @@ class Generated:
         return tuple(sp.sympify(value).xreplace(known) for value in values)
 
 
+def described(
+    name: str,
+    arguments: tuple[sp.Symbol, ...],
+    value: sp.Expr | tuple[sp.Expr, ...],
+    summary: str,
+    returns: str,
+    steps: tuple[tuple[sp.Symbol, sp.Expr], ...] = (),
+    *,
+    equation: str,
+    meanings: dict[str, str],
+) -> Generated:
+    """Return a function whose arguments a table of its module describes."""
+    return Generated(
+        name=name,
+        arguments=arguments,
+        value=value,
+        summary=summary,
+        returns=returns,
+        steps=steps,
+        equation=equation,
+        meanings={each.name: meanings[each.name] for each in arguments},
+    )
+
+
 def numerator(fraction: sp.Expr) -> sp.Expr:
     """Return the expanded numerator of a fraction of polynomials or of powers of e, which is 0 exactly where it is 0.
 

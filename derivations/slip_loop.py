@@ -15,10 +15,12 @@ supply at the sample, by no more than below. An error of a measured speed moves 
 the filter of the acceleration shows errors of the train speed at most twice, its first step over h times them.
 """
 
+from functools import partial
+
 import sympy as sp
 
 from derivations import brake_actuator as brake
-from derivations.notation import Generated, time
+from derivations.notation import described, time
 
 h, g, rho, late, seen, phi, psi = sp.symbols("h g rho late seen phi psi", positive=True)
 e, p, N, Y, k, a, theta = sp.symbols(
@@ -181,23 +183,7 @@ _STATE = {
 }
 
 
-def _function(
-    name: str,
-    arguments: tuple[sp.Symbol, ...],
-    value: sp.Expr | tuple[sp.Expr, ...],
-    summary: str,
-    returns: str,
-) -> Generated:
-    return Generated(
-        name=name,
-        arguments=arguments,
-        value=value,
-        summary=summary,
-        returns=returns,
-        equation="docs/theory.md#band",
-        meanings={each.name: _STATE[each.name] for each in arguments},
-    )
-
+_function = partial(described, equation="docs/theory.md#band", meanings=_STATE)
 
 FUNCTIONS = (
     _function(

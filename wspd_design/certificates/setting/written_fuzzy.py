@@ -6,6 +6,7 @@ speed and the source of the train speed, is that of a protection of the package,
 
 from dataclasses import dataclass, fields
 
+from wspd_design.certificates.setting.written_laws import memberships
 from wspd_design.certificates.setting.written_protection import same_step
 from wspd_design.codegen.emitter import UntraceableError
 from wspd_design.codegen.laws import law_constants
@@ -39,15 +40,7 @@ class WrittenFuzzySurface:
         gains, h, error = self.gains, self.sample_time, self._error(view)
         rate = rate + (1.0 - exp(-h / gains.rate_filter)) * ((error - before) / h - rate)
         sigma = rate + gains.surface_rate * error
-        squares = [
-            (sigma - centre) / width * ((sigma - centre) / width)
-            for centre, width in zip(gains.centres, gains.widths, strict=True)
-        ]
-        least = squares[0]
-        for square in squares[1:]:
-            least = minimum(least, square)
-        members = [exp(least - square) for square in squares]
-        w = [member / sum(members) for member in members]
+        w = memberships(sigma, gains.centres, gains.widths)
         inside = minimum(maximum(sigma / gains.layer, -1.0), 1.0)
         u = sum(b * share for b, share in zip(weights, w, strict=True)) + psi * inside
         beyond = sigma - gains.layer * inside

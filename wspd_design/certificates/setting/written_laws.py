@@ -5,6 +5,7 @@ kernels of eq. (19). What the paper calls u is a torque per wheelset; the valve 
 to 0 and 1. The slip is referred to at least the speed below which it is regularized.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -16,6 +17,19 @@ from wspd_design.model.number import Number, exp, maximum, minimum, where
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
+
+
+def memberships(surface: Number, centres: Sequence[float], widths: Sequence[float]) -> list[Number]:
+    """Shares of the rules at a surface: Gaussian functions over their sum, none of which underflows."""
+    squares = [
+        (surface - centre) / width * ((surface - centre) / width)
+        for centre, width in zip(centres, widths, strict=True)
+    ]
+    least = squares[0]
+    for square in squares[1:]:
+        least = minimum(least, square)
+    members = [exp(least - square) for square in squares]
+    return [member / sum(members) for member in members]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,15 +153,7 @@ class WrittenAdaptiveFuzzy(WrittenLaw):
         total, *weights, bound = state
         error = gains.slip_reference - self.slip(measurement)
         surface = gains.proportional_gain * error + gains.integral_gain * total
-        squares = [
-            (surface - centre) / width * ((surface - centre) / width)
-            for centre, width in zip(gains.centres, gains.widths, strict=True)
-        ]
-        least = squares[0]
-        for square in squares[1:]:
-            least = minimum(least, square)
-        members = [exp(least - square) for square in squares]
-        w = [member / sum(members) for member in members]
+        w = memberships(surface, gains.centres, gains.widths)
         inside = _sat(surface / gains.boundary_layer)
         fuzzy = sum(b * share for b, share in zip(weights, w, strict=True))
         torque = gains.torque_unit * (fuzzy + bound * inside)

@@ -25,10 +25,10 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     stated, friction = bounded_friction(near, SLIP_WAY_IN.obligations(problem))
     cells = None if friction is None else cover(near, law_of(law), friction, Fraction(1), 1)
     band = write_band(cells) if isinstance(cells, Proof) else None
-    found = plan(problem, law, budget().effort, settled=band is not None)
-    if found is None:
+    pieces = plan(problem, law, budget().effort, settled=band is not None)
+    if pieces is None:
         return stated | {STRIPS: Stated(effort=Effort(undecided=1.0, cut=True))}
-    return stated | {STRIPS: Stated(proof=write(found.pieces, band))}
+    return stated | {STRIPS: Stated(proof=write(pieces, band))}
 
 
 CHECK = Check(theorem=SLIP_WAY_IN, search=search)

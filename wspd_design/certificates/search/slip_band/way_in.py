@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
@@ -30,14 +30,7 @@ SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does
 
 
-class Plan(NamedTuple):
-    """Pieces of a share of the friction, and whether they are all that is to be shown."""
-
-    share: float
-    pieces: tuple[Piece, ...]
-
-
-def plan(problem: Problem, law: Protection, effort: float, *, settled: bool) -> Plan | None:
+def plan(problem: Problem, law: Protection, effort: float, *, settled: bool) -> tuple[Piece, ...] | None:
     """Choose pieces and strips that the budget can follow, for the largest share of the friction; None if none can.
 
     The outer strips are tried; the checker follows all.
@@ -46,7 +39,7 @@ def plan(problem: Problem, law: Protection, effort: float, *, settled: bool) -> 
         for half, width in WIDTHS:
             pieces = _pieces(problem, law, share, (half, width), MOST * effort, LATER[settled])
             if pieces is not None and _corners_hold(problem, law, pieces):
-                return Plan(share, pieces)
+                return pieces
     return None
 
 

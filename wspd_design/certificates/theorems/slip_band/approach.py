@@ -137,10 +137,9 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
     """What the protection computes and commands, for one of its wheelsets, all of them alike."""
     tracking, valve, h = law.core.tracking, law.valve, law.sample_time  # type: ignore[attr-defined]
     inertia, over_radius = law.wheelset_inertia, plant.curvature
-    slip, source = law.reference.slip, law.source  # type: ignore[attr-defined]
+    slip = law.reference.slip  # type: ignore[attr-defined]
     pole, full = float(np.exp(-law.observer_rate * h)), valve.brake.max_torque
-    new = float(-np.expm1(-h / source.acceleration_time))  # type: ignore[attr-defined]
-    acceleration = state.acceleration + (state.change * (1.0 / h) - state.acceleration) * new
+    acceleration = known_acceleration(law, state)
     friction = fresh(observed_friction(law, plant, state).positive_part())
     rate = acceleration * over_radius * (1.0 - slip)
     error = slip_tracking.predicted_error(
@@ -178,6 +177,13 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
         - (friction - mean) * plant.radius * (h / inertia)
     )
     return Decided(fill, vent, friction, acceleration, innovation)
+
+
+def known_acceleration(law: Protection, state: State) -> Affine:
+    """Acceleration of the train that the filter of the law has after a measurement [m/s2]."""
+    h = law.sample_time
+    new = float(-np.expm1(-h / law.source.acceleration_time))  # type: ignore[attr-defined]
+    return state.acceleration + (state.change * (1.0 / h) - state.acceleration) * new
 
 
 def observed_friction(law: Protection, plant: Plant, state: State) -> Affine:

@@ -6,7 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from wspd_design.certificates.kernel.affine import Affine, Array
-from wspd_design.certificates.theorems.slip_band.approach import Plant, State, observed_friction, rates
+from wspd_design.certificates.theorems.slip_band.approach import (
+    Plant,
+    State,
+    known_acceleration,
+    observed_friction,
+    rates,
+)
 from wspd_design.controllers.protection import Protection
 
 INWARD = 1e-6  # by which an ellipsoid is made smaller, so that rounding of its root does not count
@@ -61,13 +67,12 @@ def in_band(law: Protection, plant: Plant, state: State) -> tuple[tuple[Affine, 
     """Return e, p, N and Y of the band and h times the error of the acceleration, once the law has observed [rad/s]."""
     h, inertia = law.sample_time, law.wheelset_inertia
     slip, pole = law.reference.slip, float(np.exp(-law.observer_rate * h))  # type: ignore[attr-defined]
-    new = float(-np.expm1(-h / law.source.acceleration_time))  # type: ignore[attr-defined]
     held = state.speed * slip
     slowing, _ = rates(plant, state.speed, state.sliding)
     slowing_there, gliding_there = rates(plant, state.speed, held)
     turning = slowing * (1.0 - slip)  # of the rim at the reference [m/s2]
     holding = (slowing_there - gliding_there - turning) / plant.effect  # N m, as the law sees it
-    known = state.acceleration + (state.change * (1.0 / h) - state.acceleration) * new
+    known = known_acceleration(law, state)
     friction = observed_friction(law, plant, state)
     deviations = (
         (held - state.sliding) * plant.curvature,
