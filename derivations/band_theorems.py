@@ -17,6 +17,19 @@ _t, _Pf, _Ps, _z, _D = sp.symbols("t P_f P_s z D", real=True)
 _form = (_t * _Pf - _Ps) * _z**2 - 2 * _Ps * _D * _z + (1 - _t - _D * _Ps * _D)
 _nested = sp.expand((1 - _Ps * (_z + _D) ** 2) - _t * (1 - _Pf * _z**2) - _form)
 
+# --- with Q = 1/P: both conditions are Schur complements of one block, and the other part of it is positive ----------
+_Q, _m, _o = sp.symbols("Q m o", positive=True)
+_alpha_, _d1 = sp.symbols("alpha_ d_1", positive=True)
+_block = sp.Matrix([[_alpha_ / _Q, 0, _m], [0, _d1, _o], [_m, _o, _Q]])
+_both = sp.Matrix([[_alpha_ / _Q - _m**2 / _Q, -_m * _o / _Q], [-_m * _o / _Q, _d1 - _o**2 / _Q]])
+_turned = sp.simplify(_block.det() - _Q * _both.det())
+_turned_other = sp.simplify(_block.det() - _alpha_ / _Q * _d1 * (_Q - _m * _Q * _m / _alpha_ - _o**2 / _d1))
+_Qf, _Qs = sp.symbols("Q_f Q_s", positive=True)
+_inner = sp.Matrix([[_t / _Qf, 0, 1], [0, 1 - _t, _D], [1, _D, _Qs]])
+_form_of = sp.Matrix([[_t / _Qf - 1 / _Qs, -_D / _Qs], [-_D / _Qs, 1 - _t - _D**2 / _Qs]])
+_inside = sp.simplify(_inner.det() - _Qs * _form_of.det())
+_inside_other = sp.simplify(_inner.det() - _t / _Qf * (1 - _t) * (_Qs - _Qf / _t - _D**2 / (1 - _t)))
+
 # --- about a center: X+ - c of X+ = A X + B (m + r z) ---------------------------------------------------------------
 _A, _B, _c, _m, _r, _X = sp.symbols("A B c m r X", real=True)
 _centered = sp.expand(
@@ -93,10 +106,10 @@ THEOREMS = (
         statement="With X = (e, p, N, Y), e = w - w_r the error of the wheel speed, p that of the observed one, N and "
         "Y h over the inertia of the law times the deviations of observed friction and seen torque from those that "
         "hold the reference, one sample makes X+ = A X + B (m + r z) with -1 <= z <= 1, where m + r z is what "
-        "disturbs. About a center c that is X+ - c = A (X - c) + o + B r z, o = A c - c + B m. If P > 0, shares "
-        "D >= 0 and alpha with alpha + sum D <= 1 make diag(alpha P, D) - [A o Br]' P [A o Br] positive definite at "
-        "the corners of all numbers of a sample, then no sample leads out of {(X - c)'P(X - c) <= 1}, and e stays "
-        "within the root of the first entry of P^-1 around the first entry of c. If such sets are given for windows "
+        "disturbs. About a center c that is X+ - c = A (X - c) + o + B r z, o = A c - c + B m. If Q > 0, shares "
+        "D > 0 and alpha > 0 with alpha + sum D <= 1 make Q - A Q A'/alpha - [o Br] D^-1 [o Br]' positive definite at "
+        "the corners of all numbers of a sample, then no sample leads out of {(X - c)'Q^-1(X - c) <= 1}, and e stays "
+        "within the root of the first entry of Q around the first entry of c. If such sets are given for windows "
         "of speed, that of a faster window inside that of the next slower one, a wheel that is in the set once keeps "
         "its slip in the band R e/v down to the lowest speed.",
         hypotheses=(
@@ -113,7 +126,9 @@ THEOREMS = (
             "the train slows down, the friction at the reference rises",
         ),
         sketch="In deviations from the torque that holds the reference, pads, inertia and friction drop out of what "
-        "is constant: the observer estimates the torque that explains the motion. A valve that is inverted with wrong "
+        "is constant: the observer estimates the torque that explains the motion. What is asked of Q is by Schur "
+        "complements that diag(alpha P, D) - [A o Br]' P [A o Br] is positive definite, P = Q^-1, so that the next "
+        "state has at most alpha + sum D. A valve that is inverted with wrong "
         "times goes the part rho of the wanted way. The map is affine in each of (phi, psi), g, rho, the late share "
         "and the share in the mean torque, so that a convex function of its values is largest at corners. Between "
         "samples e has the same form with a part of the change of the torque.",
@@ -147,6 +162,12 @@ THEOREMS = (
             Identity("X+ - c of X+ = A X + B (m + r z)", _centered),
             Identity("what the shares and alpha leave of 1", _budget),
             Identity("what lies between an ellipse and one in it", _nested),
+            Identity(
+                "diag(alpha P, D) - M'PM and the condition on Q are of one block: by its last pivot", _turned
+            ),
+            Identity("and by its first ones", _turned_other),
+            Identity("the same of an ellipse in another: by the last pivot", _inside),
+            Identity("and by the first ones", _inside_other),
         ),
         certificates=("slip_band",),
     ),

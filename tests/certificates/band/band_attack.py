@@ -87,7 +87,9 @@ def sets_of(problem, proof, numbers):
         speeds=np.array([high for _, high in windows]),
         lowest=problem.speeds[0],
         cells=np.array(cells, dtype=float),
-        matrices=np.array([[each.matrix for each in cell] for cell in found.cells], dtype=float),
+        matrices=np.linalg.inv(
+            np.array([[each.matrix for each in cell] for cell in found.cells], dtype=float)
+        ),
         centers=np.array([[each.center for each in cell] for cell in found.cells], dtype=float),
         supplies=np.array([[each.supply for each in cell] for cell in found.cells], dtype=float),
         bands=np.array(

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
@@ -13,7 +14,8 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND
-from wspd_design.certificates.theorems.slip_band.checker import checker
+from wspd_design.certificates.theorems.slip_band.checker import checker, lies_in
+from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import windows_of
 from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.controllers.valve_inversion import ValveInversion
@@ -48,20 +50,28 @@ def test_checker_alone_accepts_it(half, proof):
     assert checker(half, half.controller)(proof, Work(PLENTY))["cells"] >= 1
 
 
-SUPPLY, P, CENTER, ALPHA, SHARES = 1, slice(2, 12), 12, 16, 18  # places in an ellipsoid
+SUPPLY, Q, CENTER, ALPHA, OFFSET, SHARES, INSIDE = (
+    1,
+    slice(2, 12),
+    12,
+    16,
+    17,
+    18,
+    -1,
+)  # places in an ellipsoid
 
 
 def test_ellipsoid_that_is_too_small_is_refused(half, proof):
     for window in range(len(windows_of(half))):
         forged = json.loads(json.dumps(proof))
         each = forged["ellipsoids"][window]
-        each[P] = [repr(4.0 * float(number)) for number in each[P]]
+        each[Q] = [repr(0.25 * float(number)) for number in each[Q]]
         assert "may lead out of an ellipsoid" in refused(half, forged)
 
 
 def test_ellipsoid_that_is_too_large_is_refused(half, proof):
     each = proof["ellipsoids"][0]
-    each[P] = [repr(0.01 * float(number)) for number in each[P]]
+    each[Q] = [repr(100.0 * float(number)) for number in each[Q]]
     assert "may" in refused(half, proof)
 
 
@@ -121,8 +131,61 @@ def test_shares_above_one_are_refused(half, proof):
 
 
 def test_disturbance_without_share_is_refused(half, proof):
-    proof["ellipsoids"][0][SHARES] = "0.0"
-    assert "no share" in refused(half, proof)
+    for place in (OFFSET, SHARES):
+        forged = json.loads(json.dumps(proof))
+        forged["ellipsoids"][0][place] = "0.0"
+        assert "no share" in refused(half, forged)
+
+
+def test_numbers_with_a_sign_that_makes_a_term_vanish_or_turn_are_refused(half, proof):
+    """Dividing by a number below 0 takes off what is to be added, or leaves more than there is."""
+    for place, sign in ((ALPHA, -1.0), (ALPHA, 0.0), (OFFSET, -1.0), (SHARES, -1.0)):
+        forged = json.loads(json.dumps(proof))
+        each = forged["ellipsoids"][0]
+        each[place] = repr(sign * float(each[place]))
+        assert "add up to more than 1" in refused(half, forged)
+    for multiplier in ("-0.5", "0.0", "1.0", "1.5"):
+        forged = json.loads(json.dumps(proof))
+        forged["ellipsoids"][0][INSIDE] = multiplier
+        assert "next slower" in refused(half, forged)
+
+
+def test_alpha_that_the_loop_does_not_reach_is_refused(half, proof):
+    proof["ellipsoids"][0][ALPHA] = "0.5"
+    assert "may lead out of an ellipsoid" in refused(half, proof)
+
+
+def ellipse(size, center, inside):
+    """A ball of this radius about a point on the first axis."""
+    matrix = tuple(tuple(Fraction(size) ** 2 * (i == j) for j in range(4)) for i in range(4))
+    numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset"), Fraction(1))
+    return Ellipsoid(
+        **numbers, matrix=matrix, center=(Fraction(center), *[Fraction(0)] * 3), shares=(), inside=inside
+    )
+
+
+@pytest.mark.parametrize(("apart", "lies"), [("0.49", True), ("0.51", False)])
+def test_balls_lie_in_each_other_as_long_as_radius_and_way_reach(apart, lies):
+    found = [
+        lies_in(ellipse("1/2", apart, Fraction(0)), ellipse(1, 0, Fraction(t, 100))) for t in range(1, 100)
+    ]
+    assert any(found) is lies
+
+
+def test_matrix_that_is_not_positive_is_refused(half, proof):
+    """-Q has all that is asked of it but that."""
+    each = proof["ellipsoids"][0]
+    each[Q] = [repr(-float(number)) for number in each[Q]]
+    assert "not positive definite" in refused(half, proof)
+
+
+def test_each_share_is_needed(half, proof):
+    """A disturbance whose share is a hundredth of what the search gives it: what it adds is not left out."""
+    for window, number in ((0, SHARES), (0, SHARES + 2), (0, SHARES + 3), (5, OFFSET), (0, SHARES + 4)):
+        forged = json.loads(json.dumps(proof))
+        each = forged["ellipsoids"][window]
+        each[number] = repr(0.01 * float(each[number]))
+        assert "may lead out of an ellipsoid" in refused(half, forged)
 
 
 def test_share_of_the_box_is_part_of_the_statement(half, proof, document):
@@ -164,7 +227,7 @@ def test_hole_between_windows_is_refused(half, proof):
     cells[0], cells[-1] = cells[-1], cells[0]
     assert "may" in refused(half, proof)
     cells[0], cells[-1] = cells[-1], cells[0]
-    proof["ellipsoids"][0][-1] = "0.9999"
+    proof["ellipsoids"][0][INSIDE] = "0.9999"
     assert "next slower" in refused(half, proof)
 
 

@@ -70,7 +70,7 @@ def test_drift_within_its_bound_stays_and_a_jump_leaves(wander):
     problem, found = wander
     windows = windows_of(problem)
     ellipsoid = read(found.findings[CELLS].stated.proof, len(windows)).cells[0][0]
-    p = np.array(ellipsoid.matrix, dtype=float)
+    p = np.linalg.inv(np.array(ellipsoid.matrix, dtype=float))
     center = np.array(ellipsoid.center, dtype=float)
     law, h = problem.controller, problem.sample_time
     theta, k = np.exp(-law.observer * h), law.pull * h

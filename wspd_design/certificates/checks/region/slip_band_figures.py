@@ -144,7 +144,7 @@ def _outline(problem: Problem, name: str, each: Ellipsoid) -> Series:
     """Shadow of an ellipsoid on error and torque."""
     import numpy as np
 
-    spread = np.linalg.inv(np.array(each.matrix, dtype=float))[np.ix_(SEEN, SEEN)]
+    spread = np.array(each.matrix, dtype=float)[np.ix_(SEEN, SEEN)]
     center = np.array(each.center, dtype=float)[list(SEEN)]
     turn = np.linspace(0.0, 2.0 * math.pi, AROUND)
     edge = np.linalg.cholesky(spread) @ np.array([np.cos(turn), np.sin(turn)])
@@ -180,7 +180,7 @@ def _starts(each: Ellipsoid) -> "Array":
     """Errors and torques at the edge of the ellipsoid where the observer has settled [rad/s]."""
     import numpy as np
 
-    p, center = np.array(each.matrix, dtype=float), np.array(each.center, dtype=float)
+    p, center = np.linalg.inv(np.array(each.matrix, dtype=float)), np.array(each.center, dtype=float)
     seen = np.ix_(SEEN, SEEN)
     pull = (p @ center)[list(SEEN)]
     middle = np.linalg.solve(p[seen], pull)

@@ -23,6 +23,9 @@ FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 8, 8  # of the loop that the inequaliti
 SPREAD = 0.1  # of the room at the tightest limit, that the coordinates of the inequalities reach at least
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
 DIGITS = 9  # of the numbers in the proof
+LEAST = 1e-6  # of what disturbs most, as which anything else counts at least
+# [[x, 1], [1, y]] = x FIRST + y SECOND + CROSS is positive semidefinite if y is at least 1/x.
+FIRST, SECOND, CROSS = ((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 1.0), (1.0, 0.0))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,7 +95,7 @@ def _least_supply(loops: Callable[[Fraction], Loop], supply: Fraction, found: El
     """Return the least share of the full pressure, in steps of what this one lacks, that the states have room in."""
     if supply == 1:
         return supply
-    p, center = (
+    q, center = (
         [[point(each) for each in row] for row in found.matrix],
         [point(each) for each in found.center],
     )
@@ -100,7 +103,7 @@ def _least_supply(loops: Callable[[Fraction], Loop], supply: Fraction, found: El
     low, high = 1, int(supply / step)
     while low < high:
         middle = (low + high) // 2
-        if beyond_limit(loops(middle * step), p, center):
+        if beyond_limit(loops(middle * step), q, center):
             low = middle + 1
         else:
             high = middle
@@ -162,12 +165,12 @@ def _solve(
         solved = _inequalities(task, chosen, kept, faster)
         if solved is None:
             return None
-        p, shares, inside = solved
-        left = _left(p, shares, kept, task.maps)
+        q, shares, inside = solved
+        left = _left(q, shares, kept, task.maps)
         worst = [int(k) for k in np.argsort(left)[:MORE_CORNERS] if left[k] < 0.0 and int(k) not in chosen]
         if not worst:
             matter = tuple(int(k) for k in np.argsort(left)[: 2 * FIRST_CORNERS])
-            return _rounded(task, pulse, supply, p, shares, kept, inside), matter
+            return _rounded(task, pulse, supply, q, shares, kept, inside), matter
         chosen += worst
     return None
 
@@ -175,83 +178,64 @@ def _solve(
 def _inequalities(
     task: _Task, chosen: Sequence[int], kept: float, faster: Ellipsoid | None
 ) -> "tuple[Array, Array, float] | None":
-    """Minimize the largest error over P, the shares and the multiplier of the faster ellipsoid."""
+    """Minimize the largest error over Q, the shares and the multiplier of the faster ellipsoid.
+
+    The unknowns are the entries of Q, one over each share, each share, and one over the multiplier t and over 1 - t.
+    """
     import numpy as np
 
     units, count = unit_matrices(STATES), len(task.used) + 1
-    first, band, size = len(units), len(units) + count, STATES + count
-    asked = Inequalities(band + 2)
+    first, second, last = len(units), len(units) + count, len(units) + 2 * count
+    sizes = np.linalg.norm(task.maps[:, :, STATES:], axis=1).max(axis=0)
+    sizes += LEAST * sizes.max()  # what the shares are counted in, so that their numbers are near each other
+    asked = Inequalities(last + 2)
     for each in task.maps[list(chosen)]:
-        parts = [
-            (k, _padded(kept * (1.0 - SLACK) * unit, size) - each.T @ unit @ each)
-            for k, unit in enumerate(units)
-        ]
-        for k in range(count):
-            share = np.zeros((size, size))
-            share[STATES + k, STATES + k] = 1.0 - SLACK
-            parts.append((first + k, share))
-        asked.semidefinite(np.zeros((size, size)), parts)
-    total = np.zeros((1, band + 2))
-    total[0, first:band] = 1.0
+        state, columns = each[:, :STATES], each[:, STATES:].T
+        parts = [(k, (1.0 - SLACK) * unit - state @ unit @ state.T / kept) for k, unit in enumerate(units)]
+        parts += [(first + k, -np.outer(column, column) / sizes[k]) for k, column in enumerate(columns)]
+        asked.semidefinite(np.zeros((STATES, STATES)), parts)
+    for k in range(count):
+        asked.semidefinite(np.array(CROSS), [(first + k, np.array(FIRST)), (second + k, np.array(SECOND))])
+    total = np.zeros((1, last + 2))
+    total[0, second:last] = sizes
     asked.at_most(total, np.array([1.0 - kept - 1e-7]))
-    largest = np.zeros((STATES + 1, STATES + 1))
-    largest[STATES, STATES] = 1.0
-    blocks = [(k, _padded(unit, STATES + 1)) for k, unit in enumerate(units)]
-    error = task.basis[0] / np.linalg.norm(task.basis[0])
-    asked.semidefinite(_edge(error, 0.0), [*blocks, (band, largest)])
     for row, left in task.limits:
         length = float(np.linalg.norm(row))
-        asked.semidefinite(_edge(row / length, (left / length * (1.0 - SLACK)) ** 2), blocks)
+        reached = np.zeros((1, last + 2))
+        reached[0, :first] = _reached(row / length)
+        asked.at_most(reached, np.array([(left / length * (1.0 - SLACK)) ** 2]))
     if faster is not None:
-        _around(asked, task, faster, band + 1)
-    found = asked.minimize(np.eye(band + 2)[band], rough=True)
-    if found is None or not sum(found[first:band]) > 0.0:
+        back = np.linalg.inv(task.basis)
+        inner = back @ np.array(faster.matrix, dtype=float) @ back.T
+        apart = back @ (np.array(faster.center, dtype=float) - task.center)
+        parts = [(k, (1.0 - SLACK) * unit) for k, unit in enumerate(units)]
+        parts += [(last, -inner), (last + 1, -np.outer(apart, apart))]
+        asked.semidefinite(np.zeros((STATES, STATES)), parts)
+        one, other = (last, np.array(FIRST)), (last + 1, np.array(SECOND))
+        asked.semidefinite(np.array(CROSS) - np.eye(2), [one, other])
+    costs = np.zeros(last + 2)
+    costs[:first] = _reached(task.basis[0] / np.linalg.norm(task.basis[0]))
+    found = asked.minimize(costs, rough=True)
+    if found is None or not min(found[first:second]) > 0.0:
         return None
-    return np.tensordot(found[:first], units, 1), found[first:band], float(found[band + 1])
+    inside = 1.0 / float(found[last]) if faster is not None else 0.5
+    return np.tensordot(found[:first], units, 1), sizes / found[first:second], inside
 
 
-def _around(asked: Inequalities, task: _Task, faster: Ellipsoid, unknown: int) -> None:
-    """Ask that the faster ellipsoid lies inside, with its multiplier as the unknown of this number."""
+def _reached(row: "Array") -> "Array":
+    """Square of what a row reaches, over the entries of Q."""
     import numpy as np
 
-    inner = task.basis.T @ np.array(faster.matrix, dtype=float) @ task.basis
-    apart = np.linalg.solve(task.basis, np.array(faster.center, dtype=float) - task.center)
-    size = float(np.trace(inner))
-    shape = np.diag([*[size**-0.5] * STATES, 1.0])  # so that all entries are near 1
-    multiplier = _padded(inner, STATES + 1)
-    multiplier[STATES, STATES] = -1.0
-    parts = [(unknown, shape @ multiplier @ shape)]
-    for k, unit in enumerate(unit_matrices(STATES)):
-        moved = np.hstack([np.eye(STATES), apart[:, None]])
-        parts.append((k, -shape @ moved.T @ unit @ moved @ shape))
-    corner = np.zeros((STATES + 1, STATES + 1))
-    corner[STATES, STATES] = 1.0
-    asked.semidefinite(corner * (1.0 - SLACK), parts)
+    return np.array([row @ unit @ row for unit in unit_matrices(STATES)])
 
 
-def _padded(matrix: "Array", size: int) -> "Array":
-    import numpy as np
-
-    return np.pad(matrix, (0, size - len(matrix)))
-
-
-def _edge(row: "Array", corner: float) -> "Array":
-    """[[0, row'], [row, corner]]."""
-    import numpy as np
-
-    block = np.zeros((STATES + 1, STATES + 1))
-    block[STATES, :STATES] = block[:STATES, STATES] = row
-    block[STATES, STATES] = corner
-    return block
-
-
-def _left(p: "Array", shares: "Array", kept: float, maps: "Array") -> "Array":
+def _left(q: "Array", shares: "Array", kept: float, maps: "Array") -> "Array":
     """Smallest eigenvalue of what is left over at each corner."""
     import numpy as np
 
-    left = _padded(kept * p, STATES + len(shares)) - np.einsum("nki,kl,nlj->nij", maps, p, maps)
-    places = np.arange(STATES, STATES + len(shares))
-    left[:, places, places] += shares
+    state, columns = maps[:, :, :STATES], maps[:, :, STATES:]
+    left = q - np.einsum("nij,jk,nlk->nil", state, q / kept, state)
+    left -= np.einsum("nik,k,nlk->nil", columns, 1.0 / shares, columns)
     smallest: Array = np.linalg.eigvalsh(left)[:, 0]
     return smallest
 
@@ -260,14 +244,12 @@ def _rounded(
     task: _Task,
     pulse: Fraction,
     supply: Fraction,
-    p: "Array",
+    q: "Array",
     shares: "Array",
     kept: float,
     inside: float,
 ) -> Ellipsoid:
-    import numpy as np
 
-    back = np.linalg.inv(task.basis)
     shares = shares * min(1.0, (1.0 - kept - 1e-7) / float(shares.sum()))  # where the solver gave up
     every = [Fraction(0)] * len(DISTURBANCES)
     for k, share in zip(task.used, shares[1:], strict=True):
@@ -275,12 +257,12 @@ def _rounded(
     return Ellipsoid(
         pulse=pulse,
         supply=supply,
-        matrix=tuple(tuple(_short(float(each)) for each in row) for row in back.T @ p @ back),
+        matrix=tuple(tuple(_short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(_short(float(each)) for each in task.center),
         alpha=Fraction(kept),
         offset=_short(float(shares[0])),
         shares=tuple(every),
-        inside=_short(max(inside, 0.0)),
+        inside=_short(inside),
     )
 
 

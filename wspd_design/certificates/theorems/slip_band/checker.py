@@ -1,10 +1,11 @@
 """Decide about a proof of a band of slip: ellipsoids that no sample leads out of, in balls.
 
-For each cell and window the proof states a center c, P, alpha, a share for the way of the center and one for each
-disturbance. What disturbs lies between two bounds, so d = m + r z with -1 <= z <= 1, and X+ - c = A (X - c) + o + B r z
-with o = A c - c + B m. With (X - c)'P(X - c) <= 1 the next state has at most alpha + sum of the shares <= 1 if
+For each cell and window the proof states a center c, Q, alpha, a share for the way of the center and one for each
+disturbance; the ellipsoid is (X - c)'Q^-1(X - c) <= 1. What disturbs lies between two bounds, so d = m + r z with
+-1 <= z <= 1, and X+ - c = A (X - c) + o + B r z with o = A c - c + B m. From the ellipsoid the next state has at most
+alpha + sum of the shares <= 1 if
 
-    diag(alpha P, share of o, shares) - [A o B r]' P [A o B r]
+    Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share
 
 is positive definite at all corners. Windows follow each other from the fastest to the slowest; the ellipsoid of a
 faster one lies in that of the next. Between samples the error is bounded by the same state, with the torque in between.
@@ -13,6 +14,7 @@ faster one lies in that of the next. Between samples the error is bounded by the
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
+from operator import mul
 from typing import Any
 
 from wspd_design.certificates.kernel.arb import Ball, above, point
@@ -131,66 +133,95 @@ def _unknown() -> Sequence[Any]:
 
 def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     """Return between what the error of the wheel speed stays, also between samples [rad/s], or refuse the ellipsoid."""
-    p = [[point(each) for each in row] for row in found.matrix]
-    if not is_positive(p):
-        raise Refused("a matrix P is not positive definite")
-    shares = (found.offset, *found.shares)
-    if found.alpha < 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:
-        raise Refused("alpha and the shares of the disturbances add up to more than 1")
+    q, center = (
+        [[point(each) for each in row] for row in found.matrix],
+        [point(each) for each in found.center],
+    )
+    if not is_positive(q):
+        raise Refused("a matrix Q is not positive definite")
     spread = [(high - low) / 2 for low, high in loop.disturbances]
-    used = [k for k, each in enumerate(spread) if not each.is_zero()]
-    if any(found.shares[k] == 0 for k in used):
+    shares = (found.offset, *found.shares)
+    if found.alpha <= 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:
+        raise Refused(
+            "alpha and the shares of the disturbances add up to more than 1, or alpha is not positive"
+        )
+    if found.offset == 0 or any(
+        s == 0 and not r.is_zero() for s, r in zip(found.shares, spread, strict=True)
+    ):
         raise Refused("a disturbance has no share")
-    center = [point(each) for each in found.center]
-    kept = [point(each) for each in (found.offset, *(found.shares[k] for k in used))]
+    # What is left counts each disturbance with r^2 over its share.
+    counted = [
+        point(0) if r.is_zero() else r * r / point(s) for s, r in zip(found.shares, spread, strict=True)
+    ]
+    middle = [(low + high) / 2 for low, high in loop.disturbances]
     for matrix in corners(loop_law(law), loop.ranges):
-        columns = _about(matrix, loop, center, spread, used)
-        if not is_positive(_left_over(p, point(found.alpha), kept, columns)):
+        if not is_positive(_left_over(found, q, center, middle, counted, matrix)):
             raise Refused("a sample may lead out of an ellipsoid")
-    beyond = beyond_limit(loop, p, center)
+    beyond = beyond_limit(loop, q, center)
     if beyond:
         raise Refused(f"the state may go beyond {beyond}")
-    lowest, highest = _within(loop_law(law), loop, p, center)
+    lowest, highest = _within(loop_law(law), loop, q, center)
     if not highest < loop.widest or not -loop.widest < lowest:
         raise Refused("the error may leave the range in which the slope of the friction is bounded")
     return lowest, highest
 
 
-def beyond_limit(loop: Loop, p: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> str:
+def _left_over(
+    found: Ellipsoid,
+    q: Sequence[Sequence[Ball]],
+    center: Sequence[Ball],
+    middle: Sequence[Ball],
+    counted: Sequence[Ball],
+    matrix: Matrix,
+) -> list[list[Ball]]:
+    """Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share."""
+    from flint import arb_mat
+
+    a, b = arb_mat([list(row[:STATES]) for row in matrix]), arb_mat([list(row[STATES:]) for row in matrix])
+    at, scaled = (
+        arb_mat([[each] for each in center]),
+        arb_mat([list(map(mul, row[STATES:], counted)) for row in matrix]),
+    )
+    o = a * at - at + b * arb_mat([[each] for each in middle])
+    whole = arb_mat([list(row) for row in q])
+    added = scaled * b.transpose() + o * o.transpose() / point(found.offset)
+    left: list[list[Ball]] = (whole - a * whole * a.transpose() / point(found.alpha) - added).tolist()
+    return left
+
+
+def beyond_limit(loop: Loop, q: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> str:
     """Return which limit a state of the ellipsoid may exceed, or nothing."""
     for limit in loop.limits:
-        there = sum((a * c for a, c in zip(limit.row, center, strict=True)), point(0))
-        if not there + reaches(p, limit.row) < limit.bound:
+        if not _product(limit.row, center) + reaches(q, limit.row) < limit.bound:
             return limit.what
     return ""
 
 
-def reaches(p: Sequence[Sequence[Ball]], row: Sequence[Ball]) -> Ball:
-    """Return the largest value of a linear function on X'PX <= 1."""
-    from flint import arb_mat
+def reaches(q: Sequence[Sequence[Ball]], row: Sequence[Ball]) -> Ball:
+    """Return the largest value of a linear function on X'Q^-1 X <= 1."""
+    return _product(row, [_product(row, each) for each in q]).sqrt()
 
-    solved = arb_mat([list(each) for each in p]).solve(arb_mat([[each] for each in row]))
-    return sum((each * solved[k, 0] for k, each in enumerate(row)), point(0)).sqrt()
+
+def _product(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
+    return sum(map(mul, one, other), point(0))
 
 
 def lies_in(faster: Ellipsoid, slower: Ellipsoid) -> bool:
     """Whether one ellipsoid lies in another: 1 - (X-c)'P(X-c) of the slower one is at least t times that of the faster.
 
-    With D the center of the faster one less that of the slower one, that is [[t Pf - Ps, -Ps D], [., 1 - t - D'Ps D]]
-    positive definite.
+    With D the center of the faster one less that of the slower one, that is Qs - Qf/t - D D'/(1 - t) positive definite.
     """
     t = slower.inside
     apart = [a - b for a, b in zip(faster.center, slower.center, strict=True)]
-    pulled = [sum(a * b for a, b in zip(row, apart, strict=True)) for row in slower.matrix]
-    rows = [
-        [*(t * f - s for f, s in zip(*pair, strict=True)), -pull]
-        for *pair, pull in zip(faster.matrix, slower.matrix, pulled, strict=True)
-    ]
-    corner = 1 - t - sum(a * b for a, b in zip(apart, pulled, strict=True))
-    return t >= 0 and is_positive([*rows, [*(-pull for pull in pulled), corner]])
+    return 0 < t < 1 and is_positive(
+        [
+            [s - f / t - one * other / (1 - t) for s, f, other in zip(*rows, apart, strict=True)]
+            for *rows, one in zip(slower.matrix, faster.matrix, apart, strict=True)
+        ]
+    )
 
 
-def _within(law: LoopLaw, loop: Loop, p: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> Pair:
+def _within(law: LoopLaw, loop: Loop, q: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> Pair:
     """Bound the error at every instant of a sample, by parts of it in which phi and psi are enclosed."""
     h, (low, high) = law.sample_time, loop.ranges.secants
     asked, lowest, highest = wanted(law), center[0], center[0]
@@ -207,8 +238,8 @@ def _within(law: LoopLaw, loop: Loop, p: Sequence[Sequence[Ball]], center: Seque
             # A part of the sample has seen at most the drift of the whole one.
             disturbed = -g * psi * (gone * (asked[STATES] * known + command) - mean.union(point(0)))
             disturbed += (moved + uneven).union(point(0))
-            there = sum((a * c for a, c in zip(row, center, strict=True)), point(0)) + disturbed
-            reach = reaches(p, row)
+            there = _product(row, center) + disturbed
+            reach = reaches(q, row)
             lowest, highest = lowest.min(there - reach), highest.max(there + reach)
     return lowest, highest
 
@@ -217,38 +248,13 @@ def _psi(q: Ball, span: Ball) -> Ball:
     return (q * span).expm1() / q
 
 
-def _about(
-    matrix: Matrix, loop: Loop, center: Sequence[Ball], spread: Sequence[Ball], used: Sequence[int]
-) -> list[list[Ball]]:
-    """[A o Br]: a sample about the center, with what disturbs about its middle."""
-    middle = [(low + high) / 2 for low, high in loop.disturbances]
-    found = []
-    for row, c in zip(matrix, center, strict=True):
-        state, disturbed = row[:STATES], row[STATES:]
-        offset = sum((a * b for a, b in zip((*state, *disturbed), (*center, *middle), strict=True)), -c)
-        found.append([*state, offset, *(disturbed[k] * spread[k] for k in used)])
-    return found
+def inverse(matrix: Sequence[Sequence[Fraction]]) -> list[list[float]]:
+    """Return P = Q^-1 in doubles, worked out in balls."""
+    from flint import arb_mat, ctx
 
-
-def _left_over(
-    p: Sequence[Sequence[Ball]], alpha: Ball, shares: Sequence[Ball], m: Sequence[Sequence[Ball]]
-) -> list[list[Ball]]:
-    """diag(alpha P, shares) - M'PM."""
-    size = STATES + len(shares)
-    pm = [
-        [sum((p[i][k] * m[k][j] for k in range(STATES)), point(0)) for j in range(size)]
-        for i in range(STATES)
-    ]
-    left = [[point(0)] * size for _ in range(size)]
-    for i in range(size):
-        for j in range(i + 1):
-            value = -sum((m[k][i] * pm[k][j] for k in range(STATES)), point(0))
-            if i < STATES:
-                value += alpha * p[i][j]
-            elif i == j:
-                value += shares[i - STATES]
-            left[i][j] = left[j][i] = value
-    return left
+    with ctx.workprec(DIGITS):
+        found = arb_mat([[point(each) for each in row] for row in matrix]).inv()
+        return [[float(each.mid()) for each in row] for row in found.tolist()]
 
 
 def is_positive(matrix: Sequence[Sequence[Any]]) -> bool:

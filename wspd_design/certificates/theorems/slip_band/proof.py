@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 
-FORMAT = "wspd-slip-band/4"
+FORMAT = "wspd-slip-band/5"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -19,11 +19,11 @@ Square: TypeAlias = tuple[tuple[Fraction, ...], ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ellipsoid:
-    """(X - c)'P(X - c) <= 1, and the numbers that show that no sample leads out of it."""
+    """(X - c)'Q^-1(X - c) <= 1, and the numbers that show that no sample leads out of it."""
 
     pulse: Fraction  # -, longest pulse over the sample time that a state in it asks for
     supply: Fraction  # -, least share of the full pressure
-    matrix: Square  # P [s2/rad2]
+    matrix: Square  # Q [rad2/s2]
     center: tuple[Fraction, ...]  # c [rad/s]
     alpha: Fraction  # of the function that is left after a sample
     offset: Fraction  # what the way of the center adds at most

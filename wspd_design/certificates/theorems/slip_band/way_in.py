@@ -17,7 +17,7 @@ from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES
-from wspd_design.certificates.theorems.slip_band.checker import DIGITS
+from wspd_design.certificates.theorems.slip_band.checker import DIGITS, inverse
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
@@ -171,7 +171,7 @@ def _band(problem: Problem, law: Protection, proof: object, work: Work) -> "tupl
         misjudged = loop.disturbances[DISTURBANCES.index("acceleration error")]
         asked = Asked(
             speeds=windows[-1],
-            matrix=[[float(each) for each in row] for row in begin.matrix],
+            matrix=inverse(begin.matrix),
             center=[float(each) for each in begin.center],
             misjudged=(above(misjudged[0]), below(misjudged[1])),
             supply=float(begin.supply),
