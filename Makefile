@@ -19,7 +19,7 @@ unexport PYTHONDONTWRITEBYTECODE
 SENSING := --pulses 100 --period-timing --accelerometer-noise "0.05 m/s2"
 PROTECTION := reports/protection-polach-wet
 
-.PHONY: demo demo-paper demo-protection test check style types layers current derive docs reports wheels bench clean
+.PHONY: demo demo-paper demo-protection test check style types layers compiled current derive docs reports wheels bench clean
 
 demo: $(VENV)/.installed
 	@mkdir -p $(OUT)
@@ -47,6 +47,10 @@ types: $(VENV)/.installed-dev
 
 layers: $(VENV)/.installed-dev
 	$(BIN)/lint-imports
+
+# Gathers the tests once: what is compiled then, several processes that run them would compile at the same time.
+compiled: $(VENV)/.installed-dev
+	$(BIN)/python -m pytest --collect-only --quiet --quiet -n 0 > /dev/null
 
 current: $(VENV)/.installed-dev
 	$(BIN)/python -m derivations.generate --check
