@@ -25,6 +25,9 @@ def wspd(capsys, monkeypatch, tmp_path):
     """Run one command line in an empty folder, without a terminal, and return what came out."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr(
+        "wspd_design.cli.console._MINUTE", float("inf")
+    )  # on a busy machine, too, nothing is told of progress
 
     def call(*arguments):
         capsys.readouterr()
