@@ -37,7 +37,7 @@ def test_what_a_plant_does_not_have_is_refused(wspd):
 
 
 def test_many_stops_tell_that_no_ideal_stop_is_known(wspd):
-    outcome = wspd("simulate", *CASE, "--runs", "2", "--json")
+    outcome = wspd("simulate", *CASE, "--speed", "10 km/h", "--runs", "2", "--json")
     assert (outcome.code, outcome.err) == (0, "")
     found = json.loads(outcome.out)
     assert "vehicle.mass" in found["sampled"]

@@ -10,7 +10,7 @@ from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
-SPEED = 60.0 / 3.6
+SPEED = 25.0 / 3.6
 X = 5  # place of the distance in the state of four axles
 CASES = (("none", "polach-wet"), ("trenitalia", "table10-dry"), ("afsmc", "polach-dry"))
 

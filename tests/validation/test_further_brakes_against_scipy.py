@@ -44,9 +44,9 @@ def both(parts, law, rail):
 @pytest.mark.parametrize(
     ("parts", "law", "rail"),
     [
-        ("pads", "none", "polach-dry"),
+        pytest.param("pads", "none", "polach-dry", marks=pytest.mark.reference),  # "all" has them, too
         ("blended", "none", "polach-dry"),
-        ("magnets", "trenitalia", "low-adhesion"),
+        pytest.param("magnets", "trenitalia", "low-adhesion", marks=pytest.mark.reference),
         ("all", "trenitalia", "low-adhesion"),
     ],
 )

@@ -5,6 +5,7 @@ height of the traction rods), and the balances of weight and momentum.
 """
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,7 @@ PUSH = 20e3  # N m, which dry rail takes
 @pytest.fixture(scope="module")
 def found():
     case = load_case(str(DESIGN), CaseOptions())
-    stop = Scenario.stop(from_kmh=120.0, rail=case.rail, seed=1)
+    stop = Scenario.stop(from_kmh=60.0, rail=case.rail, seed=1)
     return ladder(
         case.vehicle,
         case.controller,
@@ -85,6 +86,7 @@ def pushed(er24pc):
     vehicle = replace(er24pc, wheelset_inertia=662.6, brake=brake, **calm)
     stop = Scenario.stop(from_kmh=60.0, rail=DRY)
 
+    @cache
     def transfers(height, lever):
         plant = LinearLocomotive(vehicle).with_number("traction_rod.height", height)
         run = simulate_on(

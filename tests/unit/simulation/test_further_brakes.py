@@ -159,7 +159,9 @@ def test_every_valve_lets_the_cylinder_down_to_what_is_asked(with_parts, make_co
     if kind != "ramp and orifice":
         return
     plant = Planar(vehicle)
-    given = replace(loop_input([(plant, replace(scenario, rail=LOW))], law), trace_rows=20_000)
+    given = replace(
+        loop_input([(plant, replace(scenario, rail=LOW, initial_speed=10.0))], law), trace_rows=20_000
+    )
     compiled = load_closed_loop(plant, law).run(given, sample_rows=sample_rows(law))
     virtual = run_virtual(plant, law, given, sample_rows=sample_rows(law), disturbed=False)
     np.testing.assert_allclose(virtual.trace, compiled.trace, rtol=1e-8, atol=1e-8)
