@@ -123,7 +123,15 @@ def test_momentum_bounds_the_simulated_speed_from_below(er24pc, stop):
     assert run.speed[200] - float(slowest(float(run.time[200]))) < 0.05
 
 
-@pytest.mark.parametrize("name", ["afsmc", "smc", "none", "torque-feedback"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "smc",
+        "none",
+        pytest.param("afsmc", marks=pytest.mark.reference),
+        pytest.param("torque-feedback", marks=pytest.mark.reference),
+    ],
+)
 def test_proved_and_kept(make_problem, make_controller, name):
     verdict = stop_bound.CHECK.run(make_problem(make_controller(name, "polach-wet"), rail="polach-wet"))
     assert verdict.status is Status.PROVED
@@ -140,7 +148,7 @@ def test_every_word_rests_on_the_peaks(make_problem, make_controller):
     no_proof_can_be_missed(kept)
 
 
-@pytest.mark.parametrize("factor", [1.1, 2.0])
+@pytest.mark.parametrize("factor", [1.1, pytest.param(2.0, marks=pytest.mark.reference)])
 def test_a_stop_shorter_than_a_planted_bound_is_remarked(make_problem, make_controller, monkeypatch, factor):
     """The stop is simulated and decides nothing; whoever reads the verdict sees that something is wrong."""
     right = theorem.decide

@@ -32,6 +32,9 @@ sys.exit(code)
 """
 
 
+# In CI: a deleted file is written again (test_generated_model), and no derivation imports what it generates
+# (test_import_rules).
+@pytest.mark.reference
 def test_missing_and_broken_files_are_written_again(files, tmp_path):
     for name in ("derivations", "wspd_design"):
         shutil.copytree(generate.ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))

@@ -87,7 +87,7 @@ def static_shares(vehicle, adhesions, speed, grade=0.0):
     rest = (0.0,) * (2 * plant.transfers)
     loads = np.array(plant.wheel_loads(rest))
     frequencies = np.array([vehicle.body_pitch_frequency, *[vehicle.bogie_pitch_frequency] * plant.bogies])
-    for _ in range(100):
+    for _ in range(30):
         # With no pitch yet the second derivative over the squared frequency is the static transfer.
         motion = plant.train_motion(
             speed=speed,
