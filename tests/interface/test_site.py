@@ -16,6 +16,7 @@ from docs.site import api, check, stage
 ROOT = Path(__file__).parents[2]
 SITE = ROOT / "docs" / "site"
 CELL = re.compile(r"^```\{code-cell\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+CONFIGURED = re.compile(r"\A(?:---\n.*?^---\n|(?::\w+:[^\n]*\n)+)", re.MULTILINE | re.DOTALL)  # for its page
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.md"))
 
 
@@ -112,15 +113,66 @@ def test_faults_of_a_site_are_seen(tmp_path):
     ]
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(importlib.util.find_spec("sphinx") is None, reason="the extra docs is not installed")
-def test_the_site_is_built_and_its_notebooks_run(tmp_path):
-    command = [sys.executable, str(SITE / "build.py"), str(tmp_path / "site")]
+def built(tmp_path, *options):
+    """Build the site, and return the pages and the cells of its notebooks."""
+    command = [sys.executable, str(SITE / "build.py"), str(tmp_path / "site"), *options]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    built = {path.stem for path in (tmp_path / "site").glob("*.html")}
-    assert {path.stem for path in (ROOT / "docs").glob("*.md")} <= built
+    pages = {path.stem for path in (tmp_path / "site").glob("*.html")}
+    assert {path.stem for path in (ROOT / "docs").glob("*.md")} <= pages
     for path in NOTEBOOKS:
         page = (tmp_path / "site" / "notebooks" / f"{path.stem}.html").read_text(encoding="utf-8")
-        plots = sum(cell.endswith(";\n") for cell in CELL.findall(path.read_text(encoding="utf-8")))
-        assert page.count("<img") >= plots > 0
+        yield page, cells(path)
+
+
+def cells(path):
+    return CELL.findall(path.read_text(encoding="utf-8"))
+
+
+def draws(cell):
+    return cell.endswith(";\n")
+
+
+SPHINX = pytest.mark.skipif(
+    importlib.util.find_spec("sphinx") is None, reason="the extra docs is not installed"
+)
+
+
+@pytest.mark.slow
+@SPHINX
+def test_the_site_is_built(tmp_path):
+    for page, code in built(tmp_path, "--without-notebooks"):
+        assert page.count('class="cell_input') == len(code) > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_the_cells_of_a_notebook_run(path, tmp_path, monkeypatch):
+    """In this process, with few drawn stops and the first of the checks; each figure is drawn and has its words."""
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    monkeypatch.chdir(tmp_path)
+    pyplot.switch_backend("agg")
+    many, certify = wd.simulate_many, wd.certify
+    monkeypatch.setattr(wd, "simulate_many", lambda *case, **given: many(*case, **{**given, "count": 8}))
+    monkeypatch.setattr(
+        wd, "certify", lambda *case, **given: certify(*case, **{**given, "only": given["only"][:1]})
+    )
+    space, plots = {}, 0
+    for cell in cells(path):
+        code = CONFIGURED.sub("", cell)
+        assert not draws(cell) or "alt: >-" in cell
+        exec(compile(code, str(path), "exec"), space)
+        assert bool(pyplot.get_fignums()) == draws(cell)
+        for number in pyplot.get_fignums():
+            pyplot.figure(number).canvas.draw()
+            plots += 1
+        pyplot.close("all")
+    assert plots > 0
+
+
+# In CI: the site is built without them, and the cells run without Jupyter (the two above).
+@pytest.mark.reference
+@SPHINX
+def test_the_site_is_built_and_its_notebooks_run(tmp_path):
+    for page, code in built(tmp_path):
+        assert page.count("<img") >= sum(map(draws, code)) > 0
