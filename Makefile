@@ -19,7 +19,7 @@ unexport PYTHONDONTWRITEBYTECODE
 SENSING := --pulses 100 --period-timing --accelerometer-noise "0.05 m/s2"
 PROTECTION := reports/protection-polach-wet
 
-.PHONY: demo demo-paper demo-protection test check style types layers current derive docs reports wheels bench clean
+.PHONY: demo demo-paper demo-protection test check style types layers compiled current derive docs reports wheels bench clean
 
 demo: $(VENV)/.installed
 	@mkdir -p $(OUT)
@@ -48,6 +48,10 @@ types: $(VENV)/.installed-dev
 layers: $(VENV)/.installed-dev
 	$(BIN)/lint-imports
 
+# Gathers the tests once: what is compiled then, several processes that run them would compile at the same time.
+compiled: $(VENV)/.installed-dev
+	$(BIN)/python -m pytest --collect-only --quiet --quiet -n 0 > /dev/null
+
 current: $(VENV)/.installed-dev
 	$(BIN)/python -m derivations.generate --check
 
@@ -74,14 +78,17 @@ wheels: $(VENV)/.installed-dev
 bench: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/run.py
 
-$(VENV)/.installed: pyproject.toml
+$(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable .
+
+# One installation, not a second one on top of the first. Compiled is what is imported, when it is: that is less.
+$(VENV)/.installed: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --no-compile --editable .
 	@touch $@
 
-$(VENV)/.installed-dev: $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet --editable ".[dev]"
-	@touch $@
+$(VENV)/.installed-dev: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --no-compile --editable ".[dev]"
+	@touch $(VENV)/.installed $@
 
 clean:
 	rm -rf $(VENV) $(OUT) build *.egg-info

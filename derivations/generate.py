@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import textwrap
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -167,6 +168,7 @@ def module_source(derivation: ModuleType) -> str:
     return _formatted(f"{header}from wspd_design.model.number import {imports}\n\n\n{functions}")
 
 
+@cache
 def _formatted(source: str) -> str:
     command = [sys.executable, "-m", "ruff", "format", "--line-length", "110", "-"]
     return subprocess.run(command, input=source, capture_output=True, text=True, check=True).stdout

@@ -8,9 +8,12 @@ import pytest
 import sympy as sp
 import typst
 
-from derivations import equation_map, generate
 from derivations.claim import Claim, certainty, units, vanishes, verdicts
+from tests.lazily import Lazily
 from wspd_design.parameters.equations import VERDICTS, load_equations
+
+equation_map = Lazily("equation_map")
+generate = Lazily("generate")
 
 EQUATIONS = load_equations()
 BY_NUMBER = {e.number: e for e in EQUATIONS}

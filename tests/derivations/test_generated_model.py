@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derivations import generate
 from derivations.notation import Generated
+from tests.lazily import Lazily, definition, generated_functions
 
-CASES = [(name, function) for name, module in generate.MODULES.items() for function in module.FUNCTIONS]
-IDS = [f"{name}.{function.name}" for name, function in CASES]
+generate = Lazily("generate")
+
+CASES = generated_functions()
+IDS = [f"{module}.{name}" for module, name in CASES]
 RANGES = {  # near the working point of a locomotive, and away from singularities
     "slip": (0.02, 0.6),
     "speed": (1.0, 34.0),
@@ -65,15 +67,20 @@ def means_the_same(source: str, function: Generated) -> bool:
     )
 
 
-@pytest.mark.parametrize(("name", "function"), CASES, ids=IDS)
-def test_symbolic_difference_is_zero(name, function):
-    source = (generate.ROOT / generate.PACKAGE / f"{name}.py").read_text()
-    assert means_the_same(source, function)
+@pytest.mark.parametrize(("module", "name"), CASES, ids=IDS)
+def test_symbolic_difference_is_zero(module, name):
+    source = (generate.ROOT / generate.PACKAGE / f"{module}.py").read_text()
+    assert means_the_same(source, definition(module, name))
 
 
-@pytest.mark.parametrize(("name", "function"), CASES, ids=IDS)
-def test_random_points(name, function):
-    call = getattr(committed(name), function.name)
+def test_every_function_of_the_derivations_is_tested():
+    derived = [(module, each.name) for module, part in generate.MODULES.items() for each in part.FUNCTIONS]
+    assert sorted(derived) == sorted(CASES)
+
+
+@pytest.mark.parametrize(("module", "name"), CASES, ids=IDS)
+def test_random_points(module, name):
+    call, function = getattr(committed(module), name), definition(module, name)
     for seed in range(3):
         values = point(function, seed)
         exact = [
@@ -83,9 +90,9 @@ def test_random_points(name, function):
         assert as_tuple(call(*values)) == pytest.approx(exact, rel=1e-10)
 
 
-@pytest.mark.parametrize(("name", "function"), CASES, ids=IDS)
-def test_number_types_agree(name, function):
-    call = getattr(committed(name), function.name)
+@pytest.mark.parametrize(("module", "name"), CASES, ids=IDS)
+def test_number_types_agree(module, name):
+    call, function = getattr(committed(module), name), definition(module, name)
     values = point(function, seed=7)
     floats = as_tuple(call(*values))
 
@@ -136,11 +143,10 @@ def test_tampered_file_is_caught(copy, module, function, pattern, replacement, m
     assert tampered != source
     (copy / path).write_text(tampered)
 
-    definition = next(f for f in generate.MODULES[module].FUNCTIONS if f.name == function)
-    assert means_the_same(source, definition)
-    assert not means_the_same(tampered, definition)
+    assert means_the_same(source, definition(module, function))
+    assert not means_the_same(tampered, definition(module, function))
 
-    monkeypatch.setattr(generate, "ROOT", copy)
+    monkeypatch.setattr("derivations.generate.ROOT", copy)
     monkeypatch.setattr(sys, "argv", ["generate", "--check"])
     assert generate.main() == 1
     assert str(path) in capsys.readouterr().err
@@ -149,7 +155,7 @@ def test_tampered_file_is_caught(copy, module, function, pattern, replacement, m
 def test_deleted_file_is_caught_and_written_again(copy, monkeypatch):
     (copy / generate.EQUATIONS).unlink()
     assert generate.outdated(copy) == [generate.EQUATIONS]
-    monkeypatch.setattr(generate, "ROOT", copy)
+    monkeypatch.setattr("derivations.generate.ROOT", copy)
     monkeypatch.setattr(sys, "argv", ["generate"])
     assert generate.main() == 0
     assert generate.outdated(copy) == []

@@ -5,16 +5,24 @@ import shutil
 import subprocess
 import sys
 
-from derivations import generate
+import pytest
 
-ROOT = generate.ROOT
-FILES = [
-    *sorted(path.relative_to(ROOT) for path in (ROOT / generate.PACKAGE).glob("*.py")),
-    generate.EQUATIONS,
-    generate.README,
-    generate.NOMENCLATURE_PAGE,
-    generate.THEORY_PAGE,
-]
+from tests.lazily import Lazily
+
+generate = Lazily("generate")
+
+
+@pytest.fixture
+def files():
+    return [
+        *sorted(path.relative_to(generate.ROOT) for path in (generate.ROOT / generate.PACKAGE).glob("*.py")),
+        generate.EQUATIONS,
+        generate.README,
+        generate.NOMENCLATURE_PAGE,
+        generate.THEORY_PAGE,
+    ]
+
+
 RUN = """
 import sys
 from derivations import generate
@@ -24,11 +32,11 @@ sys.exit(code)
 """
 
 
-def test_missing_and_broken_files_are_written_again(tmp_path):
+def test_missing_and_broken_files_are_written_again(files, tmp_path):
     for name in ("derivations", "wspd_design"):
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    for place, path in enumerate(FILES):
+        shutil.copytree(generate.ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(generate.ROOT / "pyproject.toml", tmp_path)
+    for place, path in enumerate(files):
         (tmp_path / path).parent.mkdir(exist_ok=True)
         if place % 2:
             (tmp_path / path).write_text("<<<<<<< this is neither Python nor TOML\n")
@@ -44,6 +52,6 @@ def test_missing_and_broken_files_are_written_again(tmp_path):
         check=False,
     )
     assert made.returncode == 0, made.stderr
-    written = {path: (tmp_path / path).read_bytes() for path in FILES}
-    assert written == {path: (ROOT / path).read_bytes() for path in FILES}
+    written = {path: (tmp_path / path).read_bytes() for path in files}
+    assert written == {path: (generate.ROOT / path).read_bytes() for path in files}
     assert made.stdout.split() == ["wspd_design.parameters", "wspd_design.parameters.equations"]

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from derivations import generate
-
+ROOT = Path(__file__).parents[2]
 LINT = Path(sys.executable).with_name("lint-imports")
 
 
@@ -20,10 +19,8 @@ def lint(folder):
 @pytest.fixture
 def copy(tmp_path):
     for name in ("derivations", "wspd_design"):
-        shutil.copytree(
-            generate.ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", "data")
-        )
-    shutil.copy(generate.ROOT / "pyproject.toml", tmp_path)
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", "data"))
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
     return tmp_path
 
 

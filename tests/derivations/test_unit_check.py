@@ -5,12 +5,12 @@ import re
 import pytest
 import sympy as sp
 
-from derivations import generate, track, unit_check
-from derivations.adaptive_fuzzy import last_line_printed, rate_claimed
+from derivations import unit_check
 from derivations.notation import NOMENCLATURE, symbols
 from derivations.unit_check import check, parse, unit_name
+from tests.lazily import Lazily, definition, generated_functions
 
-FUNCTIONS = [f for module in generate.MODULES.values() for f in module.FUNCTIONS]
+adaptive_fuzzy, track = Lazily("adaptive_fuzzy"), Lazily("track")
 
 
 @pytest.mark.parametrize(
@@ -47,8 +47,9 @@ def test_units_that_stand_with_a_function_are_checked():
     assert check((length, time * sp.Symbol("speed")), own={"elapsed": "m/s"}).fault
 
 
-@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.name)
-def test_generated_functions_return_what_their_docstrings_say(function):
+@pytest.mark.parametrize(("module", "name"), generated_functions())
+def test_generated_functions_return_what_their_docstrings_say(module, name):
+    function = definition(module, name)
     stated = re.findall(r"\[([^\];]*)[;\]]", function.returns)
     if function.name == "irregularity_spectrum":
         found = check(
@@ -74,9 +75,9 @@ def test_misprint_of_eq_14_is_proved():
 
 
 def test_last_line_of_eq_44_is_proved_wrong():
-    rate = sp.Symbol("lyapunov2_rate")
-    assert not check((rate, rate_claimed)).fault
-    assert check((rate, rate_claimed, last_line_printed)).fault.startswith("-|ξ| is in N m")
+    rate, claimed = sp.Symbol("lyapunov2_rate"), adaptive_fuzzy.rate_claimed
+    assert not check((rate, claimed)).fault
+    assert check((rate, claimed, adaptive_fuzzy.last_line_printed)).fault.startswith("-|ξ| is in N m")
 
 
 def test_units_of_unknowns_are_solved_for():

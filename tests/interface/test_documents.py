@@ -32,6 +32,7 @@ PAGES = (
 WITHOUT_COMMANDS = ("docs/python.md",)  # its commands stand in the text
 WITH_FILES = "docs/how-to.md"  # all its Python blocks are files that its commands use
 BLOCK = re.compile(r"^```(console|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+SHELL_ALONE = re.compile(r"[|<>&;*$]")  # what no program sees
 FILE = re.compile(r"^`(\S+)`:\n\n```(?:toml|python)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -56,25 +57,27 @@ def matches(expected, got):
     return doctest.OutputChecker().check_output(expected, got, FLAGS)
 
 
+def shown(command, folder, wspd):
+    """Output of a command and its errors: of the shell, or of the program in this process, which starts at once."""
+    if command.startswith("wspd ") and not SHELL_ALONE.search(command):
+        outcome = wspd(*shlex.split(command)[1:])
+        return outcome.out, outcome.err
+    done = subprocess.run(["bash", "-c", command], cwd=folder, capture_output=True, text=True, check=False)
+    return done.stdout, done.stderr
+
+
 @pytest.mark.parametrize("page", [*PAGES, WITH_FILES])
-def test_console_blocks_show_what_the_program_prints(page, tmp_path):
-    folder = str(Path(sys.executable).parent)
-    environment = os.environ | {"PATH": f"{folder}:{os.environ['PATH']}", "COLUMNS": "80", "NO_COLOR": "1"}
+def test_console_blocks_show_what_the_program_prints(page, wspd, tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}:{os.environ['PATH']}")
+    monkeypatch.setenv("NO_COLOR", "1")
     write_files(page, tmp_path)
     run = 0
     for block in blocks(page, "console"):
         for command, expected in commands(block):
             if command.startswith("make "):  # CI calls these; here they would call themselves
                 continue
-            done = subprocess.run(
-                ["bash", "-c", command],
-                cwd=tmp_path,
-                env=environment,
-                capture_output=True,
-                text=True,
-                check=False,
-            )
-            assert matches(expected, done.stdout), f"{page}: $ {command}\n{done.stdout}{done.stderr}"
+            out, errors = shown(command, tmp_path, wspd)
+            assert matches(expected, out), f"{page}: $ {command}\n{out}{errors}"
             run += 1
     assert run > 0
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from derivations import adaptive_fuzzy, slip_equation
+from tests.lazily import Lazily
 from wspd_design.model.adhesion import contact_stiffness
 from wspd_design.model.generated.adaptive_fuzzy import (
     lyapunov_printed,
@@ -15,6 +15,9 @@ from wspd_design.model.generated.adaptive_fuzzy import (
 )
 from wspd_design.model.generated.adhesion import creep_force_speed_derivative
 from wspd_design.parameters.loading import load_rail
+
+adaptive_fuzzy = Lazily("adaptive_fuzzy")
+slip_equation = Lazily("slip_equation")
 
 # The setting of the proof: u* = b'w(s) + xi with constant b and |xi| < psi; torque in kN m.
 K_P, ALPHA1, ALPHA2, PSI = 18.0, 10.0, 0.85, 1.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derivations import adhesion
+from tests.lazily import Lazily
 from wspd_design.model.generated.adhesion import (
     contact_stiffness,
     creep_force,
@@ -14,6 +14,8 @@ from wspd_design.model.generated.adhesion import (
     friction_coefficient,
 )
 from wspd_design.parameters.loading import load_rail
+
+adhesion = Lazily("adhesion")
 
 Q = 94226.0
 STIFFNESS = contact_stiffness(84e9, 7.73e-3, 5.17e-3, 4.2)

@@ -5,9 +5,11 @@ import pytest
 import sympy as sp
 from scipy.integrate import quad, solve_ivp
 
-from derivations import barbalat
+from tests.lazily import Lazily
 from wspd_design.model.generated.adaptive_fuzzy import lyapunov_printed_rate_true
 from wspd_design.model.generated.slip import slip_gain
+
+barbalat = Lazily("barbalat")
 
 
 def test_gamma_exceeds_the_decrease():

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from derivations import brake_actuator
+from tests.lazily import Lazily
 from wspd_design.model.generated import brake
+
+brake_actuator = Lazily("brake_actuator")
 
 P_MAX, RATE, T_F, T_V, T_MAX = 6e5, 0.75, 0.6, 0.8, 6e4
 

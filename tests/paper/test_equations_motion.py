@@ -4,13 +4,15 @@ import math
 
 import pytest
 
-from derivations import motion
+from tests.lazily import Lazily
 from wspd_design.model.generated.motion import (
     running_resistance,
     train_acceleration,
     wheel_acceleration,
     wheel_damping,
 )
+
+motion = Lazily("motion")
 
 M, R, INERTIA, B, F, FD, T, V, OMEGA = 76841.0, 0.55, 331.0, 1.0, 2.5e4, 5e3, 3e4, 20.0, 32.0
 

@@ -5,7 +5,7 @@ import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
 
-from derivations import sliding_surface
+from tests.lazily import Lazily
 from wspd_design.model.generated.sliding_surface import (
     equivalent_torque,
     lag_characteristic,
@@ -14,6 +14,8 @@ from wspd_design.model.generated.sliding_surface import (
     slip_error,
 )
 from wspd_design.model.generated.slip import slip_drift, slip_gain
+
+sliding_surface = Lazily("sliding_surface")
 
 K_P, K_I = 1800.0, 550.0
 RATE, DECELERATION, REFERENCE = 2.0, 3.0, 0.14

@@ -7,10 +7,11 @@ import pytest
 import sympy as sp
 from scipy.integrate import solve_ivp
 
-from derivations import slip_equation
 from derivations.claim import verdicts
-from derivations.claims import sliding
+from tests.lazily import Lazily
 from wspd_design.model.generated import adhesion, motion, slip
+
+slip_equation, sliding = Lazily("slip_equation"), Lazily("claims.sliding")
 
 M, R, INERTIA, B = 76841.0, 0.55, 331.0, 1.0
 LAW = (94226.0, 0.55, 0.4, 0.6, 1.0, 0.4, 1.1e7)

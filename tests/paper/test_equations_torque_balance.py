@@ -3,8 +3,10 @@
 import pytest
 from scipy.integrate import solve_ivp
 
-from derivations import torque_balance
+from tests.lazily import Lazily
 from wspd_design.model.generated import adhesion, motion
+
+torque_balance = Lazily("torque_balance")
 
 M, R, INERTIA = 76841.0, 0.55, 331.0
 

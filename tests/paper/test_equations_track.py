@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from derivations import track
+from tests.lazily import Lazily
 from wspd_design.model.generated.track import irregularity_spectrum
 from wspd_design.parameters.loading import load_track_spectrum
+
+track = Lazily("track")
 
 
 def spectrum(row, wavenumber):
