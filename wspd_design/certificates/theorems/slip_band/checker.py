@@ -122,7 +122,7 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
         "reserve": float(found.reserve),
         **{f"supply {k}": above(point(each)) for k, each in enumerate(supplies)},
         **{
-            f"band {k} {side}": above(radius * largest / point(window[0]))
+            f"band {k} {side}": max(above(radius * largest / point(window[0])), 0.0)
             for k, (band, window) in enumerate(zip(bands, windows, strict=True))
             if band is not None
             for side, largest in zip(("below", "above"), (band[1], -band[0]), strict=True)
