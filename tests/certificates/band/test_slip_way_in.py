@@ -16,7 +16,13 @@ from wspd_design.certificates.kernel.finding import Finding, Stated
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.slip_band import way_in as search
-from wspd_design.certificates.theorems.slip_band import approach, arrival, computed_law
+from wspd_design.certificates.theorems.slip_band import (
+    approach,
+    arrival,
+    computed_law,
+    followed_law,
+    followed_plant,
+)
 from wspd_design.certificates.theorems.slip_band.way_in import (
     FRICTION,
     SUPPLY,
@@ -160,9 +166,9 @@ def test_state_in_the_coordinates_of_the_band(low):
     def form(value):
         return Affine(np.array([value]), np.zeros((1, 32)), np.zeros(1))
 
-    numbers = {name: form(low.nominal(name)) for name in approach.NUMBERS}
-    plant = approach.plant_of(vehicle, rail, law.valve.brake.max_torque, numbers, 16)
-    state = approach.State(
+    numbers = {name: form(low.nominal(name)) for name in followed_plant.NUMBERS}
+    plant = followed_plant.plant_of(vehicle, rail, law.valve.brake.max_torque, numbers, 16)
+    state = followed_plant.State(
         *map(form, (speed, sliding, innovation, friction, torque, acceleration, change, 0.9))
     )
     found, misjudged = arrival.in_band(law, plant, state)
@@ -229,8 +235,8 @@ def test_end_before_the_reference_does_not_count_as_there(low, piece):
 
 def test_another_law_is_noticed(low, monkeypatch):
     assert computed_law.unlike(low, low.controller) == ""
-    original = approach._pull
-    monkeypatch.setattr(approach, "_pull", lambda error, rate, slew: original(error, rate, 1.001 * slew))
+    original = followed_law._pull
+    monkeypatch.setattr(followed_law, "_pull", lambda error, rate, slew: original(error, rate, 1.001 * slew))
     assert "computes another" in computed_law.unlike(low, low.controller)
     proof = write([Piece(friction=(0.08, 0.08), slope=0.0, borders=(0.75, 0.756), samples=(5,))])
     assert "computes another" in refused(low, proof)

@@ -6,13 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from wspd_design.certificates.kernel.affine import Affine, Array
-from wspd_design.certificates.theorems.slip_band.approach import (
-    Plant,
-    State,
-    known_acceleration,
-    observed_friction,
-    rates,
-)
+from wspd_design.certificates.theorems.slip_band.followed_law import known_acceleration, observed_friction
+from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
+from wspd_design.certificates.theorems.slip_band.motion import rates
 from wspd_design.controllers.protection import Protection
 
 INWARD = 1e-6  # by which an ellipsoid is made smaller, so that rounding of its root does not count

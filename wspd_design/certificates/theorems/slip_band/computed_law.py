@@ -22,7 +22,8 @@ def unlike(problem: Problem, law: Protection) -> str:
     import numpy as np
 
     from wspd_design.certificates.kernel.affine import Affine
-    from wspd_design.certificates.theorems.slip_band.approach import NUMBERS, State, decide, plant_of
+    from wspd_design.certificates.theorems.slip_band.followed_law import decide
+    from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS, State, plant_of
 
     def shares(name: str) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
         return np.array([element("way in", name, k) / PRIME for k in range(POINTS)])

@@ -304,7 +304,7 @@ def _boxes(problem: Problem, strips: Sequence[tuple[Piece, int]]) -> "tuple[Arra
     """Centers of the numbers, and what the symbols do to them: one for the friction, one for the supply."""
     import numpy as np
 
-    from wspd_design.certificates.theorems.slip_band.approach import NUMBERS
+    from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS
 
     middle = np.array([[problem.nominal(name) for name in NUMBERS]] * len(strips))
     spread = np.zeros((len(strips), len(NUMBERS), len(NUMBERS)))

@@ -1,0 +1,138 @@
+"""What the protection makes of a sample of a wheelset that is followed from rolling, in affine forms."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from wspd_design.certificates.kernel.affine import Affine, Array, constant
+from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
+from wspd_design.controllers.observer_smc import approach
+from wspd_design.controllers.protection import Protection
+from wspd_design.model.generated import slip_tracking
+
+LEAST = 1e-3  # of the full torque, and in N m: as the inversion of the valve
+
+
+class Decided(NamedTuple):
+    """What the law makes of a sample."""
+
+    fill: Affine  # -, share of the sample
+    vent: Affine  # -
+    friction: Affine  # N m
+    acceleration: Affine  # m/s2
+    innovation: Affine  # m/s, of the next sample, but for the way of the wheel
+
+
+def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine], Affine]) -> Decided:
+    """What the protection computes and commands, for one of its wheelsets, all of them alike."""
+    tracking, valve, h = law.core.tracking, law.valve, law.sample_time  # type: ignore[attr-defined]
+    inertia, over_radius = law.wheelset_inertia, plant.curvature
+    slip = law.reference.slip  # type: ignore[attr-defined]
+    pole, full = float(np.exp(-law.observer_rate * h)), valve.brake.max_torque
+    acceleration = known_acceleration(law, state)
+    friction = fresh(observed_friction(law, plant, state).positive_part())
+    rate = acceleration * over_radius * (1.0 - slip)
+    error = slip_tracking.predicted_error(
+        (state.speed * slip - state.sliding) * over_radius,
+        friction,
+        state.torque,
+        rate,
+        inertia,
+        h,
+        tracking.ahead,
+    )
+    pull = _pull(error, tracking.approach_rate, law.core.torque_slew / inertia)  # type: ignore[attr-defined]
+    available, least = state.supply * full, LEAST * full + LEAST
+    wanted = slip_tracking.target_torque(friction, rate, pull, inertia)
+    target = fresh(wanted.positive_part().at_most(available))
+    way = target - state.torque
+    up = fresh(way.positive_part())
+    down = up - way  # written so that what filling and venting have in common cancels
+    left_out, pulse = tracking.dead_band, valve.least_pulse / h
+    share = partial(_share, left_out=left_out, pulse=pulse)
+    room = (available - state.torque).at_least(least)
+    fill = fresh(share(up, room, valve.time_share * valve.brake.fill_time / h, least))
+    vent = fresh(
+        share(down, state.torque.at_least(least), valve.time_share * valve.brake.vent_time / h, least)
+    )
+    rise, fall = moved(
+        available, state.torque, fill, vent, h / valve.brake.fill_time, h / valve.brake.vent_time
+    )
+    mean = state.torque + rise - _missed(rise, fill, h / valve.brake.fill_time)
+    mean = mean - fall + _missed(fall, vent, h / valve.brake.vent_time)
+    innovation = (
+        state.sliding
+        - state.speed
+        + state.innovation * pole**2
+        - (friction - mean) * plant.radius * (h / inertia)
+    )
+    return Decided(fill, vent, friction, acceleration, innovation)
+
+
+def known_acceleration(law: Protection, state: State) -> Affine:
+    """Acceleration of the train that the filter of the law has after a measurement [m/s2]."""
+    h = law.sample_time
+    new = float(-np.expm1(-h / law.source.acceleration_time))  # type: ignore[attr-defined]
+    return state.acceleration + (state.change * (1.0 / h) - state.acceleration) * new
+
+
+def observed_friction(law: Protection, plant: Plant, state: State) -> Affine:
+    """Friction torque that the observer has after a measurement [N m]; the law takes none below 0."""
+    h, pole = law.sample_time, float(np.exp(-law.observer_rate * law.sample_time))
+    learned = law.wheelset_inertia * (1.0 - pole) ** 2 / h
+    return state.friction + state.innovation * plant.curvature * learned
+
+
+def _pull(error: Affine, rate: float, slew: float) -> Affine:
+    """Pull to the reference, a concave function of the error."""
+
+    def touching(slope: Array) -> tuple[Array, ...]:
+        return (
+            np.where(slope > 0.0, (slew / np.maximum(slope, 1e-9)) ** 2, 0.0) / (2.0 * slew)
+            + slew / (2.0 * rate**2),
+        )
+
+    return error.along(lambda e: np.asarray(approach(e, rate, slew)), touching)
+
+
+def _share(
+    way: Affine, room: Affine, length: float, least: float, *, left_out: float, pulse: float
+) -> Affine:
+    """Share of the sample that goes a way in a room, at most all of it; dead band and shortest pulse leave some out."""
+    longest = float(-np.expm1(-1.0 / length))
+    part = (way * room.inverse(least=least)).at_most(longest)
+
+    def touching(slope: Array) -> tuple[Array, ...]:
+        return (1.0 - length / np.maximum(slope, length),)
+
+    # Beyond the longest part the logarithm is not asked, and below 0 there is nothing but the width of the form.
+    share = part.along(lambda y: -length * np.log1p(-np.minimum(y, 0.999)), touching)
+    skipped = np.maximum(
+        pulse, -length * np.log1p(-np.minimum(left_out / np.maximum(room.low, least), 0.999))
+    )
+    below = np.minimum(skipped, 1.0) if left_out or pulse else np.zeros_like(share.center)
+    # In so little room the law takes its logarithm of another ratio, and may command less.
+    below = np.where(room.low < least * np.exp(1.0 / length), np.maximum(share.high, below), below)
+    return share.widened(below, 0.0)
+
+
+def moved(
+    supply: Affine,
+    torque: Affine,
+    fill: Affine,
+    vent: Affine,
+    filling: Affine | float,
+    venting: Affine | float,
+) -> tuple[Affine, Affine]:
+    """What filling adds and what venting then takes off; sample time over the times of the valve."""
+    rise = (supply - torque) * (1.0 - (-(fill * filling)).exp())
+    fall = (torque + rise) * (1.0 - (-(vent * venting)).exp())
+    return rise, fall
+
+
+def _missed(whole: Affine, share: Affine, speed: float) -> Affine:
+    """What the mean over the sample lacks of a change that goes exponentially and ends with the pulse."""
+    # Over the pulse the mean lacks 1 + 1/x - 1/(1 - exp(-x)) of the change, 1/2 - x/12 to 1/2 for x up to the speed.
+    return (whole * share) * constant(0.5, whole).widened(speed / 12.0, 0.0)
