@@ -7,6 +7,7 @@ turns the loop into vector instructions.
 import math
 from typing import Any
 
+from wspd_design.codegen.graph import operation_names
 from wspd_design.parameters.errors import WspdError
 
 _BINARY = {"OP_ADD": "+", "OP_SUB": "-", "OP_MUL": "*", "OP_DIV": "/"}
@@ -63,9 +64,7 @@ def emit(function: Any, lanes: str, *, shared: int | None = None) -> str:
     UntraceableError
         If the function contains an operation without a translation.
     """
-    import casadi as ca
-
-    names = {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}
+    names = operation_names()
     lines = []
     for k in range(function.n_instructions()):
         operation = names[function.instruction_id(k)]

@@ -9,7 +9,15 @@ from itertools import product
 from typing import Any
 
 from wspd_design.certificates.search.common_quadratic import contraction
-from wspd_design.certificates.setting.slip_loop import LoopLaw, LoopRanges, Pair, corners, parts_of
+from wspd_design.certificates.setting.slip_loop import (
+    DISTURBANCES,
+    STATES,
+    LoopLaw,
+    LoopRanges,
+    Pair,
+    corners,
+    parts_of,
+)
 from wspd_design.controllers.observer_smc import ObserverSmc
 from wspd_design.controllers.protection import Protection
 from wspd_design.design.problem import stated_bounds
@@ -99,12 +107,15 @@ def loop_of(law: Protection, core: ObserverSmc) -> LoopLaw:
 
 def _worst_of(loop: LoopLaw, apart: tuple[LoopRanges, LoopRanges]) -> float | None:
     """Try one function for all friction, then one each for the most and the least."""
+    import numpy as np
+
     secants = [end for each in apart for end in each.secants]
+    units = np.eye(STATES + len(DISTURBANCES))
     together = replace(apart[0], secants=(min(secants), max(secants)))
-    found = contraction(corners(loop, together))
+    found = contraction(corners(loop, together, list(units)))
     if found is not None:
         return found
-    alone = [contraction(corners(loop, each)) for each in apart]
+    alone = [contraction(corners(loop, each, list(units))) for each in apart]
     return None if None in alone else max(each for each in alone if each is not None)
 
 

@@ -102,7 +102,7 @@ def friction_at(problem, window, slips):
             slopes.append(-(course.force(v, slip + d) - course.force(v, slip - d)) / (2 * d * v) / weight)
             fade = (course.force(v + d, slip) - course.force(v - d, slip)) / (2 * d) / weight
             fadings.append(fade / slip)
-    return Friction(*((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, levels, fadings)))
+    return Friction(*((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, slopes, levels, fadings)))
 
 
 def loop_numbers(problem, law, *, told=None):

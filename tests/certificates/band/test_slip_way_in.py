@@ -144,7 +144,7 @@ def test_forged_band_is_refused(stop):
     proof = json.loads(json.dumps(found.findings[STRIPS].stated.proof))
     proof["pieces"][0]["samples"] = [2]
     each = proof["band"]["ellipsoids"][-1]
-    each[2:12] = [repr(0.01 * float(number)) for number in each[2:12]]
+    each[3:13] = [repr(0.01 * float(number)) for number in each[3:13]]
     assert "may" in refused(nominal, proof)
 
 

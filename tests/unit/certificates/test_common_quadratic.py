@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from wspd_design.certificates.search.common_quadratic import contraction
-from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, LoopRanges, corners
+from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, LoopRanges, corners
 
+UNITS = list(np.eye(STATES + len(DISTURBANCES)))
 STEADY = LoopRanges(
     secants=(-3.0, 1.0),
     effects=(0.8, 0.8),
@@ -24,8 +25,8 @@ def law(gain):
 
 
 def test_factor_is_one_by_which_products_of_the_corners_fall():
-    maps = [np.array(each)[:, :STATES] for each in corners(law(0.16), STEADY)]
-    factor = contraction(corners(law(0.16), STEADY))
+    maps = [np.array(each)[:, :STATES] for each in corners(law(0.16), STEADY, UNITS)]
+    factor = contraction(corners(law(0.16), STEADY, UNITS))
     assert factor is not None
     assert factor < 1.0
     random, steps = np.random.default_rng(5), 400
@@ -38,11 +39,12 @@ def test_factor_is_one_by_which_products_of_the_corners_fall():
 @pytest.mark.parametrize("gain", [0.16, 3.0])
 def test_no_function_is_found_where_a_corner_grows(gain):
     grows = any(
-        max(abs(np.linalg.eigvals(np.array(each)[:, :STATES]))) > 1.0 for each in corners(law(gain), STEADY)
+        max(abs(np.linalg.eigvals(np.array(each)[:, :STATES]))) > 1.0
+        for each in corners(law(gain), STEADY, UNITS)
     )
     assert grows == (gain == 3.0)
-    assert (contraction(corners(law(gain), STEADY)) is None) == grows
+    assert (contraction(corners(law(gain), STEADY, UNITS)) is None) == grows
 
 
 def test_same_factor_each_time():
-    assert len({contraction(corners(law(0.16), STEADY)) for _ in range(3)}) == 1
+    assert len({contraction(corners(law(0.16), STEADY, UNITS)) for _ in range(3)}) == 1

@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 from math import inf, nextafter
 from typing import TYPE_CHECKING, NamedTuple
 
 from wspd_design.certificates.kernel.claim import Claim
 from wspd_design.certificates.search.doubles import Doubles, is_whole
 from wspd_design.certificates.search.intervals import Backend, Intervals
+from wspd_design.codegen.graph import operation_names
 
 if TYPE_CHECKING:
     import numpy as np
@@ -134,7 +134,7 @@ def trace(claim: Claim, backend: Backend) -> Tape:
     ValueError
         If it contains an operation that has no interval form.
     """
-    names = _names()
+    names = operation_names()
     function = claim.function()
     ring = Ring(backend)
     place: dict[
@@ -167,14 +167,6 @@ def trace(claim: Claim, backend: Backend) -> Tape:
             raise ValueError(f"{claim.name}: the operation {operation} has no interval form")
         place[results[0]] = k
     return Tape(claim, backend, known, tuple(instructions), output)
-
-
-@lru_cache(maxsize=1)
-def _names() -> dict[int, str]:
-    """Names of CasADi's operations by their numbers."""
-    import casadi as ca
-
-    return {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}
 
 
 OPERATIONS = frozenset(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from wspd_design.certificates.kernel.checker import PRIME, element
 from wspd_design.certificates.setting.traced_law import TracedLaw
+from wspd_design.codegen.graph import evaluate
 from wspd_design.codegen.loop_numbers import LANE_SEEN
 
 if TYPE_CHECKING:
@@ -87,23 +88,11 @@ def read_names(law: TracedLaw) -> tuple[str, ...]:
 
 def _paths(function: Any) -> list[set[int]]:
     """Return for each element of the output the elements of all inputs that a path connects with it."""
-    import casadi as ca
-
     offsets = [sum(function.nnz_in(k) for k in range(place)) for place in range(function.n_in())]
-    work: list[set[int]] = [set() for _ in range(function.sz_w())]
-    outputs: list[set[int]] = [set() for _ in range(function.nnz_out(0))]
-    for k in range(function.n_instructions()):
-        operation = function.instruction_id(k)
-        read, written = function.instruction_input(k), function.instruction_output(k)
-        if operation == ca.OP_INPUT:
-            work[written[0]] = {offsets[read[0]] + read[1]}
-        elif operation == ca.OP_OUTPUT:
-            outputs[written[1]] = work[read[0]]
-        elif operation == ca.OP_CONST:
-            work[written[0]] = set()
-        else:
-            work[written[0]] = set().union(*(work[i] for i in read))
-    return outputs
+    inputs = [[{offset + k} for k in range(function.nnz_in(place))] for place, offset in enumerate(offsets)]
+    nothing: set[int] = set()
+    found = evaluate(function, inputs, lambda _: nothing, lambda _, x: nothing.union(*x))
+    return found[0]
 
 
 def differs(law: TracedLaw, wheelset: int, place: int, number: int) -> bool:

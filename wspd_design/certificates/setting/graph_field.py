@@ -12,11 +12,11 @@ there, so that "different" means "not shown to be the same".
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import cache
 from math import isfinite
 from typing import Any
 
 from wspd_design.certificates.kernel.checker import PRIME, element
+from wspd_design.codegen.graph import evaluate
 from wspd_design.parameters.errors import WspdError
 
 
@@ -44,23 +44,13 @@ def values(function: Any, inputs: Sequence[Sequence[int]]) -> list[list[int]]:
     UndecidedError
         If the graph has no value there.
     """
-    names = operation_names()
-    work = [0] * function.sz_w()
-    boolean = [False] * function.sz_w()
-    outputs = [[0] * function.nnz_out(k) for k in range(function.n_out())]
-    for k in range(function.n_instructions()):
-        name = names[function.instruction_id(k)]
-        read, written = function.instruction_input(k), function.instruction_output(k)
-        if name == "OP_OUTPUT":
-            outputs[written[0]][written[1]] = work[read[0]]
-        elif name == "OP_INPUT":
-            work[written[0]], boolean[written[0]] = inputs[read[0]][read[1]], False
-        elif name == "OP_CONST":
-            work[written[0]], boolean[written[0]] = residue(function.instruction_constant(k)), False
-        else:
-            x, truths = [work[i] for i in read], [boolean[i] for i in read]
-            work[written[0]], boolean[written[0]] = applied(name, x, truths)
-    return outputs
+    elements = [[(each, False) for each in row] for row in inputs]
+    found = evaluate(function, elements, lambda number: (residue(number), False), _applied)
+    return [[each for each, _ in row] for row in found]
+
+
+def _applied(name: str, x: list[tuple[int, bool]]) -> tuple[int, bool]:
+    return applied(name, [each for each, _ in x], [is_truth for _, is_truth in x])
 
 
 def applied(name: str, x: list[int], boolean: list[bool]) -> tuple[int, bool]:
@@ -126,14 +116,6 @@ def residue(number: float) -> int:
         raise UndecidedError(f"{number} is not a finite number")
     exact = Fraction(number)
     return exact.numerator * pow(exact.denominator, -1, PRIME) % PRIME
-
-
-@cache
-def operation_names() -> dict[int, str]:
-    """Return the names of the operations of a graph by their numbers."""
-    import casadi as ca
-
-    return {getattr(ca, name): name for name in dir(ca) if name.startswith("OP_")}
 
 
 def field_point(function: Any, number: int) -> list[list[int]]:

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from wspd_design.certificates.kernel.checker import PRIME, element
-from wspd_design.certificates.setting.graph_field import UndecidedError, applied, operation_names, residue
+from wspd_design.certificates.setting.graph_field import UndecidedError, applied, residue
+from wspd_design.codegen.graph import evaluate
 
 POINTS = 3
 SURE = 1e-9  # relative, by which a sign must be beyond rounding
@@ -72,22 +73,11 @@ def values(function: Any, inputs: Sequence[Sequence[Value]], known: Sequence[Kno
     UndecidedError
         If the graph has no value there.
     """
-    names = operation_names()
-    nothing = Value.of(0.0)
-    work = [nothing] * function.sz_w()
-    outputs = [[nothing] * function.nnz_out(k) for k in range(function.n_out())]
-    for k in range(function.n_instructions()):
-        name = names[function.instruction_id(k)]
-        read, written = function.instruction_input(k), function.instruction_output(k)
-        if name == "OP_OUTPUT":
-            outputs[written[0]][written[1]] = work[read[0]]
-        elif name == "OP_INPUT":
-            work[written[0]] = inputs[read[0]][read[1]]
-        elif name == "OP_CONST":
-            work[written[0]] = Value.of(function.instruction_constant(k))
-        else:
-            work[written[0]] = _apply(name, [work[i] for i in read], known)
-    return outputs
+
+    def constant(number: float) -> Value:
+        return Value.of(number)
+
+    return evaluate(function, inputs, constant, lambda name, x: _apply(name, x, known))
 
 
 def _apply(name: str, x: list[Value], known: Sequence[Known]) -> Value:

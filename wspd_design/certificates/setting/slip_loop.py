@@ -7,17 +7,18 @@ state is then convex along each, and corners of their ranges decide about all va
 Written for every number type: doubles search, balls prove.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise, product
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from wspd_design.model.generated import slip_loop as generated
 from wspd_design.model.number import Number, maximum, minimum
 
 Pair: TypeAlias = tuple[Number, Number]
-Matrix: TypeAlias = tuple[tuple[Number, ...], ...]
+Matrix: TypeAlias = tuple[Any, ...]
+"""Its rows."""
 
 STATES = 4
 DISTURBANCES = (
@@ -91,18 +92,34 @@ def parts_of(speedups: Pair, longest: Number) -> Pair:
     return reduce(minimum, shortest_and_longest), reduce(maximum, shortest_and_longest)
 
 
-def corners(law: LoopLaw, ranges: LoopRanges) -> Iterator[Matrix]:
-    """Return [A B] of X+ = A X + B d at all corners, d in the order of :data:`DISTURBANCES`."""
+def numbers_at_corners(law: LoopLaw, ranges: LoopRanges) -> Iterator[tuple[Number, ...]]:
+    """Return phi, psi/h, g, rho, and both shares of the sample at all corners."""
     latest = generated.lateness(ranges.secants[1] * law.sample_time, ranges.pulse, ranges.delay)
     latest = (latest + ranges.added) / (1.0 + ranges.added)  # what the supply adds may come last
-    for (phi, psi), g, rho, late, seen in product(
+    for slide, g, rho, late, seen in product(
         polygon(ranges.secants, law.sample_time),
         dict.fromkeys(ranges.effects),
         dict.fromkeys(ranges.parts),
         (0.0, latest),
         dict.fromkeys(ranges.seen),
     ):
-        yield _matrix(law, phi, psi, g, rho, late, seen)
+        yield (*slide, g, rho, late, seen)
+
+
+def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[Matrix]:
+    """Return [A B] of X+ = A X + B d at all corners, d in the order of :data:`DISTURBANCES`.
+
+    Parameters
+    ----------
+    law : LoopLaw
+        Numbers of the law.
+    ranges : LoopRanges
+        Of what may differ.
+    units : sequence
+        Rows of the identity, as anything that adds up and takes a factor.
+    """
+    for each in numbers_at_corners(law, ranges):
+        yield sample(law, each, units)
 
 
 def wanted(law: LoopLaw) -> tuple[Number, ...]:
@@ -113,14 +130,9 @@ def wanted(law: LoopLaw) -> tuple[Number, ...]:
     )
 
 
-def _matrix(
-    law: LoopLaw, phi: Number, psi: Number, g: Number, rho: Number, late: Number, seen: Number
-) -> Matrix:
-    asked, columns = wanted(law), []
-    for j in range(STATES + len(DISTURBANCES)):
-        e, p, n, y, _, *disturbed = (float(i == j) for i in range(STATES + len(DISTURBANCES)))
-        way = (asked[j] if j <= STATES else 0.0) - y
-        columns.append(
-            generated.next_sample(e, p, n, y, way, phi, psi, g, rho, late, seen, law.pole, *disturbed)
-        )
-    return tuple(zip(*columns, strict=True))
+def sample(law: LoopLaw, numbers: Sequence[Any], units: Sequence[Any]) -> tuple[Any, ...]:
+    """Return the rows of [A B] for some numbers of a sample, with units as in :func:`corners`."""
+    e, p, n, y, error, *disturbed = units
+    way = generated.wanted_torque(e, n, y, law.gain, law.ahead, error) - y
+    phi, psi, g, rho, late, seen = numbers
+    return generated.next_sample(e, p, n, y, way, phi, psi, g, rho, late, seen, law.pole, *disturbed)

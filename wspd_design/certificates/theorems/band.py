@@ -21,7 +21,13 @@ from wspd_design.certificates.setting.declared_law import not_declared
 from wspd_design.certificates.setting.plant import place
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.departure import LIMIT, denies, place_ranges
+from wspd_design.certificates.theorems.slip_band.departure import (
+    LIMIT,
+    corners,
+    denies,
+    holding_share,
+    place_ranges,
+)
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 from wspd_design.certificates.theorems.slip_band.reference import (
     reference_text,
@@ -30,6 +36,7 @@ from wspd_design.certificates.theorems.slip_band.reference import (
     slips_held,
 )
 from wspd_design.certificates.theorems.slip_band.statement import (
+    AROUND,
     JERK_FACTORS,
     NAMES,
     Interval,
@@ -45,6 +52,7 @@ from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH
 
 CELLS = "ellipsoids"
+RESERVED = "ellipsoids with a reserve of the brake"
 LATE = "ellipsoids with late pulses"
 NOISY = "ellipsoids with noise"
 DEPARTURE = "start at the reference"
@@ -52,11 +60,15 @@ VARIED = (*NAMES, "resistance constant", "resistance linear", "resistance quadra
 DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
 BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
     "slope": creep_slope.slope_claim,
+    "near_slope": creep_slope.slope_claim,
     "level": creep_slope.level_claim,
     "fading": creep_slope.fading_claim,
 }
 """What of the friction is bounded in each window: the fields of :class:`Friction`."""
+SLOPES = ("slope", "near_slope")
+"""In the order of the ranges about the reference."""
 DISTURBED = {
+    RESERVED: "where holding the reference takes no more than a share of the full pressure",
     LATE: "even if pulses begin late",
     NOISY: "even if speeds are measured with noise",
 }
@@ -64,7 +76,7 @@ DISTURBED = {
 
 def key(name: str, window: int, relation: Relation) -> str:
     """Name of the obligation to bound a property of the friction in a window, the slowest being 1."""
-    return f"{name} {'from' if relation == '>=' else 'to'}, window {window + 1}"
+    return f"{name.replace('_', ' ')} {'from' if relation == '>=' else 'to'}, window {window + 1}"
 
 
 def claims(problem: Problem) -> dict[str, Claim]:
@@ -74,9 +86,9 @@ def claims(problem: Problem) -> dict[str, Claim]:
     for k, window in enumerate(windows_of(problem)):
         there = _held(replace(problem, speeds=window))
         held = slips_held(law, window, radius)
-        around = slips_around(law, window, radius, problem.speeds[0])
         for name, claim in BOUNDED.items():
-            slips = around if name == "slope" else held
+            reach = AROUND[SLOPES.index(name)] if name in SLOPES else Fraction(0)
+            slips = slips_around(law, window, radius, problem.speeds[0], reach) if reach else held
             for relation in DIRECTIONS:
                 found[key(name, k, relation)] = claim(there, slips, relation, Fraction(0))
     return found
@@ -181,7 +193,7 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
             Special(
                 key=name,
                 text=f"for a share of the box no sample leads out of an ellipsoid of the state, {what}",
-                check=checker(_held(problem), problem.controller),
+                check=checker(_held(problem), problem.controller, reserved=name == RESERVED),
             )
             for name, what in DISTURBED.items()
         ),
@@ -232,11 +244,13 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "for each window of speed, that of a faster window inside that of the next slower one. "
         )
         explanation += _supplies(windows, cells)
-        explanation += "".join(
-            _borne(windows, each)
-            for name in DISTURBED
-            if (each := covered(problem, findings, name)).status is Status.PROVED
-        )
+    borne = "".join(
+        _borne(problem, windows, each)
+        for name in DISTURBED
+        if (each := covered(problem, findings, name)).status is Status.PROVED
+    )
+    if cells.status is Status.PROVED:
+        explanation += borne
         if share < 1.0:
             status = Status.UNDECIDED
             part = f"{100.0 * share:.3g} % of each range about its nominal value"
@@ -246,6 +260,8 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             slip = _largest_slip(problem) + largest
             margin = Range(low=1.0 - slip, high=None, unit="-")
             worst = (Point(name="slip", value=slip, unit="-"),)
+    elif borne:
+        explanation = borne.strip()
     away = findings[DEPARTURE]
     if away.status is Status.REFUTED and away.stated is not None:
         status, margin = Status.REFUTED, None
@@ -352,9 +368,14 @@ def _supplies(windows: Sequence[tuple[float, float]], cells: Finding) -> str:
     )
 
 
-def _borne(windows: Sequence[tuple[float, float]], found: Finding) -> str:
+def _borne(problem: Problem, windows: Sequence[tuple[float, float]], found: Finding) -> str:
     """Say what else the band bears, and how wide it is then."""
     numbers, told = found.numbers, []
+    if numbers["reserve"] < 1.0:
+        told.append(
+            f"while holding the reference takes at most {100.0 * numbers['reserve']:.3g} % of the full pressure "
+            f"({_most_held(problem)})"
+        )
     if numbers["delay"]:
         told.append(
             f"with pulses that begin up to {1e3 * numbers['delay']:.3g} ms late and end in their sample"
@@ -362,11 +383,21 @@ def _borne(windows: Sequence[tuple[float, float]], found: Finding) -> str:
     if numbers["noise"]:
         told.append(f"with speeds of wheels and train measured within {numbers['noise']:.3g} m/s")
     below, above = (
-        max(numbers[f"band {k} {side}"] for k in range(len(windows))) for side in ("below", "above")
+        max(numbers.get(f"band {k} {side}", 0.0) for k in range(len(windows))) for side in ("below", "above")
     )
     return (
         f" On {100.0 * numbers['share']:.3g} % of each range the slip also stays in a band {' and '.join(told)}: "
         f"within +{above:.2g} and -{below:.2g} at all speeds."
+    )
+
+
+def _most_held(problem: Problem) -> str:
+    """Say which corner of the box takes most of the full pressure at the lowest speed."""
+    held = [(holding_share(problem, {**each, "speed": problem.speeds[0]}), each) for each in corners(problem)]
+    share, at = max(held, key=lambda each: each[0])
+    return (
+        f"most of it, {100.0 * share:.3g} % at {problem.speeds[0] * KMH:.3g} km/h, with {at['mass'] / 1e3:.3g} t, "
+        f"mu0 = {at['mu0']:.3g} and {at['max torque'] / 1e3:.3g} kN m"
     )
 
 

@@ -19,6 +19,7 @@ from wspd_design.certificates.setting.slip_loop import (
 )
 
 H = 0.02
+UNITS = list(np.eye(STATES + len(DISTURBANCES)))
 LAW = LoopLaw(sample_time=H, gain=0.16, ahead=0.5, pole=math.exp(-0.6))
 
 
@@ -74,8 +75,11 @@ def test_corners_in_balls_are_those_in_doubles():
     law = LoopLaw(
         sample_time=flint.arb(H), gain=flint.arb(0.16), ahead=flint.arb(0.5), pole=flint.arb(LAW.pole)
     )
-    found = np.array(list(corners(law, ranges(flint.arb))), dtype=float)
-    wanted_ones = np.array(list(corners(LAW, ranges(float))), dtype=float)
+    balls = [flint.arb_mat([list(row)]) for row in np.eye(STATES + len(DISTURBANCES))]
+    found = np.array(
+        [[row.entries() for row in each] for each in corners(law, ranges(flint.arb), balls)], dtype=float
+    )
+    wanted_ones = np.array(list(corners(LAW, ranges(float), UNITS)), dtype=float)
     assert found.shape == (6 * 16, STATES, STATES + len(DISTURBANCES))
     np.testing.assert_allclose(found, wanted_ones, rtol=1e-9, atol=1e-12)
 
@@ -91,7 +95,7 @@ def test_constant_errors_are_at_rest():
         delay=0.0,
         added=0.0,
     )
-    for matrix in corners(LAW, ranges):
+    for matrix in corners(LAW, ranges, UNITS):
         rest = np.array(matrix)[:, :STATES] - np.eye(STATES)
         assert np.linalg.matrix_rank(rest) == STATES
     assert len(wanted(LAW)) == STATES + 1

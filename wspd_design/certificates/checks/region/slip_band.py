@@ -11,7 +11,13 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
 from wspd_design.certificates.search.slip_band.disturbed import latest, noisiest
-from wspd_design.certificates.search.slip_band.search import Failed, largest_share
+from wspd_design.certificates.search.slip_band.search import (
+    Failed,
+    Sought,
+    exactly,
+    largest_share,
+    with_reserve,
+)
 from wspd_design.certificates.theorems.band import (
     BOUNDED,
     CELLS,
@@ -19,6 +25,7 @@ from wspd_design.certificates.theorems.band import (
     DIRECTIONS,
     LATE,
     NOISY,
+    RESERVED,
     SLIP_BAND,
     key,
     proved_friction,
@@ -26,26 +33,43 @@ from wspd_design.certificates.theorems.band import (
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
-from wspd_design.certificates.theorems.slip_band.statement import BandLaw, law_of, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.controllers.protection import Protection
 
-TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
-CELLS_TRIED = 24  # for each share of the box, with an effort of 1
+TOLERANCES = {
+    "slope": 1e-3,
+    "near_slope": 1e-3,
+    "level": 2e-3,
+    "fading": 5e-4,
+}  # s/m, -, s/m
+SOUGHT = 300  # ellipsoids for each share of the box, with an effort of 1
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:
     """Bound the friction in each window, then cover the box with cells that have ellipsoids."""
     stated, friction = bounded_friction(problem, SLIP_BAND.obligations(problem))
     if friction is None:
-        return stated | {CELLS: Stated(), LATE: Stated(), NOISY: Stated(), DEPARTURE: _departure(problem)}
+        return stated | {
+            **dict.fromkeys((CELLS, RESERVED, LATE, NOISY), Stated()),
+            DEPARTURE: _departure(problem),
+        }
     law = law_of(problem.controller)
-    found = largest_share(problem, law, friction, max(1, round(CELLS_TRIED * budget().effort)))
+    sought = Sought(problem=problem, law=law, friction=friction, conditions=exactly(problem, law))
+    found = largest_share(sought, SOUGHT * budget().effort)
     if isinstance(found, Failed):
         failed = Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))
-        return stated | {CELLS: failed, LATE: Stated(), NOISY: Stated(), DEPARTURE: _departure(problem)}
+        others = {
+            RESERVED: _reserved(sought),
+            LATE: Stated(),
+            NOISY: Stated(),
+            DEPARTURE: _departure(problem),
+        }
+        return stated | others | {CELLS: failed}
     # What is shown on the whole box needs no look for what would deny it.
     away = Stated() if found.share == 1 else _departure(problem)
-    return stated | _disturbed(problem, law, found) | {CELLS: Stated(proof=write(found)), DEPARTURE: away}
+    reserved = Stated() if found.share == 1 else _reserved(sought)
+    others = _disturbed(sought, found) | {RESERVED: reserved, DEPARTURE: away}
+    return stated | others | {CELLS: Stated(proof=write(found))}
 
 
 def bounded_friction(
@@ -64,13 +88,21 @@ def bounded_friction(
     return stated, proved_friction(problem, found)
 
 
-def _disturbed(problem: Problem, law: BandLaw, found: Proof) -> dict[str, Stated]:
+def _reserved(sought: Sought) -> Stated:
+    """Look for the whole box with a reserve of the brake, if more than the usual effort is wanted."""
+    if budget().effort <= 1.0:
+        return Stated()
+    found = with_reserve(sought, SOUGHT * budget().effort)
+    return Stated(proof=write(found) if found else None)
+
+
+def _disturbed(sought: Sought, found: Proof) -> dict[str, Stated]:
     """Look for what else the band bears, unless less than the usual effort is wanted."""
     if budget().effort < 1.0:
         return {LATE: Stated(), NOISY: Stated()}
     # A law of a user is compared with what it declares for speeds without noise.
-    noisy = noisiest(problem, law, found) if isinstance(problem.controller, Protection) else None
-    borne = {LATE: latest(problem, law, found), NOISY: noisy}
+    noisy = noisiest(sought, found) if isinstance(sought.problem.controller, Protection) else None
+    borne = {LATE: latest(sought, found), NOISY: noisy}
     return {name: Stated(proof=write(each) if each else None) for name, each in borne.items()}
 
 

@@ -60,7 +60,11 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     cells = tuple(leaves(box_of(problem, proof.share), proof.steps))
     nominal = tuple(Fraction(problem.nominal(name)) for name in NAMES)
     inside = (all(low <= x <= high for x, (low, high) in zip(nominal, cell, strict=True)) for cell in cells)
-    ellipsoids = next(each for each, holds in zip(proof.cells, inside, strict=True) if holds)
+    ellipsoids = next(
+        [each for each in cell if each is not None]
+        for cell, holds in zip(proof.cells, inside, strict=True)
+        if holds
+    )
     return Figures(
         series=(
             *_band(problem, finding.numbers),

@@ -1,13 +1,20 @@
 """Search for what else a band of slip bears: pulses that begin late, and noise of the measured speeds."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
-from wspd_design.certificates.records import Problem
-from wspd_design.certificates.search.slip_band.search import all_windows, exactly, one_window, proof_of
-from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction
+from wspd_design.certificates.search.slip_band.search import (
+    Chain,
+    Sought,
+    Spent,
+    continued,
+    next_slower,
+    proof_of,
+)
+from wspd_design.certificates.theorems.slip_band.loop import Conditions
 from wspd_design.certificates.theorems.slip_band.proof import Proof
-from wspd_design.certificates.theorems.slip_band.statement import BandLaw, box_of, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import box_of
 
 DELAYS = tuple(map(Fraction, ("1/16", "1/8", "1/4", "1/2", "3/4")))  # of the sample
 NOISES = tuple(
@@ -16,41 +23,33 @@ NOISES = tuple(
 ALONE = Fraction(1, 4)  # of the box, where more than one cell was needed
 
 
-def latest(problem: Problem, law: BandLaw, found: Proof) -> Proof | None:
+def latest(sought: Sought, found: Proof) -> Proof | None:
     """Find ellipsoids for pulses that begin as late as some of :data:`DELAYS`."""
-    exact = exactly(problem, law)
-    return _most(problem, law, found, [exact._replace(delay=each) for each in DELAYS if each > exact.delay])
+    exact = sought.conditions
+    return _most(sought, found, [exact._replace(delay=each) for each in DELAYS if each > exact.delay])
 
 
-def noisiest(problem: Problem, law: BandLaw, found: Proof) -> Proof | None:
+def noisiest(sought: Sought, found: Proof) -> Proof | None:
     """Find ellipsoids for as much noise as some of :data:`NOISES`."""
-    exact = exactly(problem, law)
-    return _most(problem, law, found, [exact._replace(noise=each) for each in NOISES])
+    return _most(sought, found, [sought.conditions._replace(noise=each) for each in NOISES])
 
 
-def _most(problem: Problem, law: BandLaw, found: Proof, harder: Sequence[Conditions]) -> Proof | None:
+def _most(sought: Sought, found: Proof, harder: Sequence[Conditions]) -> Proof | None:
     """Find ellipsoids in one cell for the last conditions that have them; those before are easier."""
     share = found.share if len(found.cells) == 1 else min(ALONE, found.share)
-    cell, windows = box_of(problem, share), windows_of(problem)
+    cell, windows = box_of(sought.problem, share), len(sought.windows)
     borne = 0
     for conditions in harder:
+        harder_one = replace(sought, conditions=conditions)
         # At the lowest speed slips move fastest, at the highest there is least torque to vent.
         if any(
-            one_window(problem, law, cell, windows[k], found.friction[k], conditions, None, ()) is None
-            for k in (-1, 0)
+            next_slower(harder_one, cell, window, Chain(), Spent()) is None for window in (windows - 1, 0)
         ):
             break
         borne += 1
     for conditions in harder[:borne][::-1]:
-        proof = alone(problem, law, found.friction, share, conditions)
-        if proof is not None:
-            return proof
+        harder_one = replace(sought, conditions=conditions)
+        ellipsoids = continued(harder_one, cell, Chain(), Spent()).ellipsoids
+        if len(ellipsoids) == windows:
+            return proof_of(harder_one, share, ".", (ellipsoids[::-1],))
     return None
-
-
-def alone(
-    problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction, conditions: Conditions
-) -> Proof | None:
-    """Find ellipsoids for a share of the box as one cell."""
-    ellipsoids = all_windows(problem, law, box_of(problem, share), friction, conditions)
-    return None if isinstance(ellipsoids, int) else proof_of(share, conditions, friction, ".", (ellipsoids,))

@@ -1,15 +1,23 @@
 """Search for the ellipsoid of one cell and one window, in doubles; the checker decides about it."""
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.search.common_quadratic import unit_matrices
 from wspd_design.certificates.search.matrix_inequalities import Inequalities
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, corners
+from wspd_design.certificates.setting.slip_loop import (
+    DISTURBANCES,
+    STATES,
+    LoopLaw,
+    LoopRanges,
+    numbers_at_corners,
+    sample,
+)
 from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in
 from wspd_design.certificates.theorems.slip_band.loop import Loop, loop_law
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
@@ -22,10 +30,21 @@ KEPT = (0.93, 0.85, 0.97)  # of the function after a sample without disturbance;
 FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 8, 8  # of the loop that the inequalities begin with, and are added
 SPREAD = 0.1  # of the room at the tightest limit, that the coordinates of the inequalities reach at least
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
-DIGITS = 9  # of the numbers in the proof
+DIGITS = 7  # of the numbers in the proof
 LEAST = 1e-6  # of what disturbs most, as which anything else counts at least
 # [[x, 1], [1, y]] = x FIRST + y SECOND + CROSS is positive semidefinite if y is at least 1/x.
 FIRST, SECOND, CROSS = ((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 1.0), (1.0, 0.0))
+
+
+class Choice(NamedTuple):
+    """What an ellipsoid is sought for beside cell and window."""
+
+    pulse: Fraction  # -, longest one over the sample time
+    near: int  # which range about the reference the slope is bounded in
+
+
+Loops: TypeAlias = Callable[[Fraction], Loop]
+"""Numbers of cell and window for the least share of the full pressure."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,12 +56,13 @@ class _Task:
     basis: "Array"
     limits: tuple[tuple["Array", float], ...]  # rows, and what is left beside the center
     used: tuple[int, ...]  # disturbances
+    kept: float
 
 
 def ellipsoid(
     law: BandLaw,
-    loops: Callable[[Fraction], Loop],
-    pulse: Fraction,
+    loops: Loops,
+    choice: Choice,
     supply: Fraction,
     faster: Ellipsoid | None,
     hints: Sequence[int],
@@ -57,9 +77,9 @@ def ellipsoid(
     law : BandLaw
         Numbers of the law.
     loops : callable
-        Returns the numbers of cell and window with this longest pulse for the least share of the full pressure.
-    pulse : Fraction
-        Longest pulse over the sample time.
+        Returns the numbers of cell and window for the least share of the full pressure.
+    choice : Choice
+        What they are made for.
     supply : Fraction
         Share of the full pressure that the search may ask for.
     faster : Ellipsoid or None
@@ -77,10 +97,11 @@ def ellipsoid(
         task = _task(law, loop, kept)
         if task is None:
             return None
-        solved = _solve(task, pulse, supply, kept, faster, hints)
+        solved = _solve(task, faster, hints)
         if solved is None:
             continue
-        found, corners_that_matter = solved
+        q, shares, inside, corners_that_matter = solved
+        found = _rounded(task, choice, supply, q, shares, inside)
         found = replace(found, supply=_least_supply(loops, supply, found))
         try:
             errors(law, loops(found.supply), found)
@@ -89,6 +110,19 @@ def ellipsoid(
         if faster is None or lies_in(faster, found):
             return found, corners_that_matter
     return None
+
+
+def excess(law: BandLaw, loop: Loop, faster: Ellipsoid | None, hints: Sequence[int]) -> float:
+    """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
+    least = math.inf
+    for kept in KEPT[:2]:
+        task = _task(law, loop, kept)
+        solved = None if task is None else _solve(task, faster, hints, beyond=True)
+        if task is not None and solved is not None:
+            least = min(least, max(_used(task, solved[0])))
+        if least < 1.0:
+            break
+    return least
 
 
 def _least_supply(loops: Callable[[Fraction], Loop], supply: Fraction, found: Ellipsoid) -> Fraction:
@@ -118,7 +152,7 @@ def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
     middle, spread = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2.0
     used = tuple(int(k) for k in np.flatnonzero(spread > 0.0))
-    maps = np.array([_doubles(each) for each in corners(loop_law(law), loop.ranges)])
+    maps = _maps(loop_law(law), loop.ranges)
     state, disturbed = maps[:, :, :STATES], maps[:, :, STATES:]
     mean = state.mean(axis=0)
     # Where the loop would settle if nothing but the middle of all were there.
@@ -126,8 +160,13 @@ def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
     center = np.array([float(_short(each)) for each in center])
     offset = state @ center - center + disturbed @ middle
     columns = np.concatenate([offset[:, :, None], disturbed[:, :, used] * spread[list(used)]], axis=2)
-    limits = [(np.array([float(each.mid()) for each in limit.row]), limit) for limit in loop.limits]
-    rooms = [float(limit.bound.mid()) - float(row @ center) for row, limit in limits]
+    reaching = [np.array([float(each.mid()) for each in limit.row]) for limit in loop.limits]
+    rooms = [
+        float(limit.bound.mid()) - float(row @ center)
+        for row, limit in zip(reaching, loop.limits, strict=True)
+    ]
+    reaching.append(np.eye(STATES)[0])  # the error, between samples nearly the same
+    rooms.append(float(loop.widest.mid()) - abs(float(center[0])))
     contracting = max(abs(np.linalg.eigvals(mean))) ** 2 < kept
     if min(rooms) <= 0.0 or not contracting:
         return None
@@ -135,7 +174,7 @@ def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
     stirred = np.einsum("nik,njk->ij", columns, columns) / len(columns) + 1e-12 * np.eye(STATES)
     spreads = solve_discrete_lyapunov(mean / kept**0.5, stirred)
     basis = np.linalg.cholesky((spreads + spreads.T) / 2.0) / (1.0 - kept) ** 0.5
-    rows = [row @ basis for row, _ in limits]
+    rows = [row @ basis for row in reaching]
     widest = max(float(np.linalg.norm(row)) / room for row, room in zip(rows, rooms, strict=True))
     basis = basis * max(1.0, SPREAD / widest)
     back = np.linalg.inv(basis)
@@ -143,52 +182,52 @@ def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
         maps=np.concatenate([back @ state @ basis, back @ columns], axis=2),
         center=center,
         basis=basis,
-        limits=tuple((row @ basis, room) for (row, _), room in zip(limits, rooms, strict=True)),
+        limits=tuple((row @ basis, room) for row, room in zip(reaching, rooms, strict=True)),
         used=used,
+        kept=kept,
     )
 
 
 def _solve(
-    task: _Task,
-    pulse: Fraction,
-    supply: Fraction,
-    kept: float,
-    faster: Ellipsoid | None,
-    hints: Sequence[int],
-) -> tuple[Ellipsoid, tuple[int, ...]] | None:
+    task: _Task, faster: Ellipsoid | None, hints: Sequence[int], *, beyond: bool = False
+) -> "tuple[Array, Array, float, tuple[int, ...]] | None":
     """Solve for some corners, and add those that are not met."""
     import numpy as np
 
     count = len(task.maps)
     chosen = list(hints) or list(range(0, count, max(1, count // FIRST_CORNERS)))
     for _ in range(ROUNDS):
-        solved = _inequalities(task, chosen, kept, faster)
+        solved = _inequalities(task, chosen, faster, beyond=beyond)
         if solved is None:
             return None
         q, shares, inside = solved
-        left = _left(q, shares, kept, task.maps)
+        left = _left(q, shares, task.kept, task.maps)
         worst = [int(k) for k in np.argsort(left)[:MORE_CORNERS] if left[k] < 0.0 and int(k) not in chosen]
         if not worst:
             matter = tuple(int(k) for k in np.argsort(left)[: 2 * FIRST_CORNERS])
-            return _rounded(task, pulse, supply, q, shares, kept, inside), matter
+            return q, shares, inside, matter
         chosen += worst
     return None
 
 
 def _inequalities(
-    task: _Task, chosen: Sequence[int], kept: float, faster: Ellipsoid | None
+    task: _Task, chosen: Sequence[int], faster: Ellipsoid | None, *, beyond: bool
 ) -> "tuple[Array, Array, float] | None":
     """Minimize the largest error over Q, the shares and the multiplier of the faster ellipsoid.
 
-    The unknowns are the entries of Q, one over each share, each share, and one over the multiplier t and over 1 - t.
+    The unknowns are the entries of Q, one over each share, each share, one over the multiplier t and over 1 - t, and
+    the square of what is reached over what the tightest limit leaves: at most 1, and minimized in place of the error if
+    ``beyond``.
     """
     import numpy as np
+
+    kept = task.kept
 
     units, count = unit_matrices(STATES), len(task.used) + 1
     first, second, last = len(units), len(units) + count, len(units) + 2 * count
     sizes = np.linalg.norm(task.maps[:, :, STATES:], axis=1).max(axis=0)
     sizes += LEAST * sizes.max()  # what the shares are counted in, so that their numbers are near each other
-    asked = Inequalities(last + 2)
+    asked = Inequalities(last + 3)
     for each in task.maps[list(chosen)]:
         state, columns = each[:, :STATES], each[:, STATES:].T
         parts = [(k, (1.0 - SLACK) * unit - state @ unit @ state.T / kept) for k, unit in enumerate(units)]
@@ -196,14 +235,17 @@ def _inequalities(
         asked.semidefinite(np.zeros((STATES, STATES)), parts)
     for k in range(count):
         asked.semidefinite(np.array(CROSS), [(first + k, np.array(FIRST)), (second + k, np.array(SECOND))])
-    total = np.zeros((1, last + 2))
+    total = np.zeros((1, last + 3))
     total[0, second:last] = sizes
     asked.at_most(total, np.array([1.0 - kept - 1e-7]))
     for row, left in task.limits:
         length = float(np.linalg.norm(row))
-        reached = np.zeros((1, last + 2))
+        reached = np.zeros((1, last + 3))
         reached[0, :first] = _reached(row / length)
-        asked.at_most(reached, np.array([(left / length * (1.0 - SLACK)) ** 2]))
+        reached[0, last + 2] = -((left / length * (1.0 - SLACK)) ** 2)
+        asked.at_most(reached, np.zeros(1))
+    if not beyond:
+        asked.at_most(np.eye(last + 3)[last + 2 :], np.ones(1))
     if faster is not None:
         back = np.linalg.inv(task.basis)
         inner = back @ np.array(faster.matrix, dtype=float) @ back.T
@@ -213,13 +255,21 @@ def _inequalities(
         asked.semidefinite(np.zeros((STATES, STATES)), parts)
         one, other = (last, np.array(FIRST)), (last + 1, np.array(SECOND))
         asked.semidefinite(np.array(CROSS) - np.eye(2), [one, other])
-    costs = np.zeros(last + 2)
-    costs[:first] = _reached(task.basis[0] / np.linalg.norm(task.basis[0]))
+    costs = np.zeros(last + 3)
+    if beyond:
+        costs[last + 2] = 1.0
+    else:
+        costs[:first] = _reached(task.basis[0] / np.linalg.norm(task.basis[0]))
     found = asked.minimize(costs, rough=True)
     if found is None or not min(found[first:second]) > 0.0:
         return None
     inside = 1.0 / float(found[last]) if faster is not None else 0.5
     return np.tensordot(found[:first], units, 1), sizes / found[first:second], inside
+
+
+def _used(task: _Task, q: "Array") -> list[float]:
+    """Square of what is reached over what each limit leaves."""
+    return [float(row @ q @ row) / left**2 for row, left in task.limits]
 
 
 def _reached(row: "Array") -> "Array":
@@ -242,24 +292,24 @@ def _left(q: "Array", shares: "Array", kept: float, maps: "Array") -> "Array":
 
 def _rounded(
     task: _Task,
-    pulse: Fraction,
+    choice: Choice,
     supply: Fraction,
     q: "Array",
     shares: "Array",
-    kept: float,
     inside: float,
 ) -> Ellipsoid:
 
-    shares = shares * min(1.0, (1.0 - kept - 1e-7) / float(shares.sum()))  # where the solver gave up
+    shares = shares * min(1.0, (1.0 - task.kept - 1e-7) / float(shares.sum()))  # where the solver gave up
     every = [Fraction(0)] * len(DISTURBANCES)
     for k, share in zip(task.used, shares[1:], strict=True):
         every[k] = _short(float(share))
     return Ellipsoid(
-        pulse=pulse,
+        pulse=choice.pulse,
         supply=supply,
+        near=choice.near,
         matrix=tuple(tuple(_short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(_short(float(each)) for each in task.center),
-        alpha=Fraction(kept),
+        alpha=Fraction(task.kept),
         offset=_short(float(shares[0])),
         shares=tuple(every),
         inside=_short(inside),
@@ -270,7 +320,21 @@ def _short(number: float) -> Fraction:
     return Fraction(float(f"{number:.{DIGITS}g}"))
 
 
-def _doubles(matrix: Sequence[Sequence[object]]) -> "Array":
+def _maps(law: LoopLaw, ranges: LoopRanges) -> "Array":
+    """[A B] at all corners, the sample's numbers as columns of an array."""
     import numpy as np
 
-    return np.array([[float(each) for each in row] for row in matrix])  # type: ignore[arg-type]
+    numbers = np.array(list(numbers_at_corners(_doubles(law), _doubles(ranges))))
+    rows = sample(_doubles(law), list(numbers.T[:, :, None]), list(np.eye(STATES + len(DISTURBANCES))))
+    return np.stack(rows, axis=1)
+
+
+def _doubles(record: Any) -> Any:
+    """Return the record with doubles in place of balls."""
+    values = {
+        each.name: tuple(map(float, value))
+        if isinstance(value := getattr(record, each.name), tuple)
+        else float(value)
+        for each in fields(record)
+    }
+    return replace(record, **values)

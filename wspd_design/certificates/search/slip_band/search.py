@@ -2,16 +2,16 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import product
 
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.search.slip_band.ellipsoids import ellipsoid
-from wspd_design.certificates.theorems.slip_band.checker import least_delay
+from wspd_design.certificates.search.slip_band.ellipsoids import Choice, Loops, ellipsoid, excess
+from wspd_design.certificates.theorems.slip_band.checker import holds_more, least_delay
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import (
+    AROUND,
     LETTERS,
     BandLaw,
     Cell,
@@ -22,14 +22,63 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 
 NARROWEST = 1.02  # ratio of the ends of a range that is not worth halving
 SHARES = tuple(Fraction(k, 8) for k in range(1, 9))
-CORNERS = tuple(
-    (load, inertia, 1, load, torque, fill, vent)
-    for load, torque, inertia, fill, vent in product((1, 0), (0, 1), (0, 1), (1, 0), (0, 1))
-)
-"""Ends of the ranges, in the order of the names: mass and friction together, and the largest wheel."""
-PULSES = (Fraction(1, 2), Fraction(1), Fraction(1, 4))  # longest ones that are tried
-MATTERS = {"m": 1.0, "i": 1.0, "r": 1.0, "u": 1.0, "t": 0.6, "f": 0.2, "v": 0.2}
-"""How much a halved range tightens an ellipsoid; the drift of the friction spreads with mass, inertia and friction."""
+RESERVES = tuple(map(Fraction, ("0.5", "0.6", "0.7", "0.75", "0.8", "0.85")))
+PULSES = tuple(map(Fraction, ("3/4", "1/2", "1", "1/4")))  # longest ones that are tried
+FIRST = Choice(Fraction(1, 2), len(AROUND) - 1)
+MIDDLE = (Choice(Fraction(3, 4), 1), Choice(Fraction(1, 2), 1))  # that tell how far there is to go
+HOPELESS = 1.4  # square of what is reached over what limits leave, from which on a cell is halved at once
+WORTH = 0.3  # of the widest range, that another one has at least to be looked at
+MATTERS = {"m": 1.0, "i": 1.0, "r": 2.0, "u": 1.0, "t": 1.0, "f": 0.3, "v": 0.3}
+"""How much the logarithm of a range spreads the loop."""
+
+
+class Spent:
+    """Ellipsoids that were sought, and how many may be."""
+
+    def __init__(self, most: float = math.inf) -> None:
+        self.most, self.count = most, 0
+
+    def one(self) -> None:
+        """Count one more, or end the search."""
+        self.count += 1
+        if self.count > self.most:
+            raise OutOfBudget
+
+
+class OutOfBudget(Exception):
+    """More ellipsoids were sought than may be."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sought:
+    """What ellipsoids are sought for."""
+
+    problem: Problem
+    law: BandLaw
+    friction: tuple[Friction, ...]  # proved bounds for each window
+    conditions: Conditions
+
+    @property
+    def windows(self) -> tuple[tuple[float, float], ...]:
+        """Windows of speed, the slowest first."""
+        return windows_of(self.problem)
+
+    def loops(self, cell: Cell, window: int, choice: Choice) -> Loops:
+        """Return the loop of a cell and a window for a share of the full pressure."""
+
+        def loop(supply: Fraction) -> Loop:
+            conditions = self.conditions._replace(supply=supply, near=choice.near)
+            return loop_of(
+                self.problem,
+                self.law,
+                cell,
+                self.windows[window],
+                self.friction[window],
+                choice.pulse,
+                conditions,
+            )
+
+        return loop
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,48 +88,187 @@ class Failed:
     share: Fraction  # of the box
     cell: Cell
     window: int  # in which no ellipsoid was found, the slowest being 0
-    tried: int  # cells, for this share
+    tried: int  # ellipsoids
     cut: bool  # whether the budget ended the search
 
 
-def largest_share(
-    problem: Problem, law: BandLaw, friction: Sequence[Friction], most_cells: int
-) -> Proof | Failed:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chain:
+    """Ellipsoids of a cell from the fastest window on, as far as they were found."""
+
+    ellipsoids: tuple[Ellipsoid | None, ...] = ()
+    choice: Choice = FIRST
+    hints: tuple[int, ...] = ()
+
+    @property
+    def faster(self) -> Ellipsoid | None:
+        """Ellipsoid that that of the next slower window must hold."""
+        return self.ellipsoids[-1] if self.ellipsoids else None
+
+
+def continued(sought: Sought, cell: Cell, chain: Chain, spent: Spent) -> Chain:
+    """Go on with the ellipsoids of a cell towards slower windows, as far as there are some."""
+    while len(chain.ellipsoids) < len(sought.windows):
+        window = len(sought.windows) - 1 - len(chain.ellipsoids)
+        if holds_more(
+            sought.problem,
+            sought.law,
+            cell,
+            sought.windows[window],
+            sought.friction[window],
+            sought.conditions.reserve,
+        ):
+            return replace(chain, ellipsoids=(*chain.ellipsoids, *[None] * (window + 1)))
+        found = next_slower(sought, cell, window, chain, spent)
+        if found is None:
+            return chain
+        chain = found
+    return chain
+
+
+def next_slower(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> Chain | None:
+    """Add an ellipsoid to those of a cell, for the first choice that has one, unless none will."""
+    for number, choice in enumerate(choices(sought, chain.choice)):
+        spent.one()
+        loops = sought.loops(cell, window, choice)
+        found = ellipsoid(sought.law, loops, choice, sought.conditions.supply, chain.faster, chain.hints)
+        if found is not None:
+            return Chain(ellipsoids=(*chain.ellipsoids, found[0]), choice=choice, hints=found[1])
+        if number == 0 and all(
+            _excess(sought, cell, window, each, chain, spent) > HOPELESS for each in MIDDLE
+        ):
+            return None
+    return None
+
+
+def choices(sought: Sought, first: Choice) -> tuple[Choice, ...]:
+    """Return what an ellipsoid may be sought for; shorter pulses leave less room and less to be uncertain about."""
+    # A pulse ends in its sample, however late it begins.
+    every = (Choice(pulse, near) for near in (1, 0) for pulse in PULSES)
+    longest = 1 - sought.conditions.delay
+    return tuple(dict.fromkeys(each._replace(pulse=min(each.pulse, longest)) for each in (first, *every)))
+
+
+def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
+    """Find ellipsoids for a share of each range of the box, around its nominal value."""
+    waiting, steps = [(box_of(sought.problem, share), Chain())], ""
+    cells: list[tuple[Ellipsoid | None, ...]] = []
+    cell, window = waiting[0][0], 0
+    try:
+        while waiting:
+            cell, inherited = waiting.pop()
+            chain = continued(sought, cell, inherited, spent)
+            window = len(sought.windows) - 1 - len(chain.ellipsoids)
+            # The ellipsoids of a larger cell may be too large to lie in one of a slower window.
+            alone = Chain(choice=chain.choice, hints=chain.hints)
+            if window >= 0 and inherited.ellipsoids and _nearest(sought, cell, window, alone, spent) < 1.0:
+                chain = continued(sought, cell, Chain(), spent)
+                window = len(sought.windows) - 1 - len(chain.ellipsoids)
+            if window < 0:
+                steps, cells = f"{steps}.", [*cells, chain.ellipsoids[::-1]]
+                continue
+            if not _middle_has(sought, cell, window, chain, spent):
+                return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=False)
+            letter = _letter(sought, cell, window, chain, spent)
+            if letter is None:
+                return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=False)
+            steps += letter
+            waiting += [(half, chain) for half in halved(cell, letter)[::-1]]
+    except OutOfBudget:
+        return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=True)
+    return proof_of(sought, share, steps, cells)
+
+
+def _middle_has(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> bool:
+    """Whether the middle of a cell has an ellipsoid; no cell around it can do better."""
+    middle, alone = tuple(((low + high) / 2,) * 2 for low, high in cell), replace(chain, ellipsoids=())
+    tried = dict.fromkeys((chain.choice, *MIDDLE, *choices(sought, chain.choice)))
+    return any(_excess(sought, middle, window, choice, alone, spent) < 1.0 for choice in tried)
+
+
+def _nearest(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> float:
+    """Return how far an ellipsoid goes to its limits, for some choices."""
+    return min(_excess(sought, cell, window, each, chain, spent) for each in (chain.choice, *MIDDLE))
+
+
+def _letter(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> str | None:
+    """Return the range to halve: the widest if there is far to go, then that whose halves come nearest."""
+    widths = {
+        letter: MATTERS[letter] * math.log(high / low)
+        for letter, (low, high) in zip(LETTERS, cell, strict=True)
+        if high / low > NARROWEST
+    }
+    if not widths:
+        return None
+    far = {choice: _excess(sought, cell, window, choice, chain, spent) for choice in MIDDLE}
+    choice = min(MIDDLE, key=lambda each: far[each])
+    if far[choice] > HOPELESS:
+        return max(widths, key=lambda each: widths[each])
+    left = {
+        letter: max(_excess(sought, half, window, choice, chain, spent) for half in halved(cell, letter))
+        for letter in widths
+        if widths[letter] > WORTH * max(widths.values())
+    }
+    return min(left, key=lambda each: left[each])
+
+
+def _excess(sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent) -> float:
+    spent.one()
+    ends_in_time = choice._replace(pulse=min(choice.pulse, 1 - sought.conditions.delay))
+    loop = sought.loops(cell, window, ends_in_time)(sought.conditions.supply)
+    return excess(sought.law, loop, chain.faster, chain.hints)
+
+
+def largest_share(sought: Sought, most: float) -> Proof | Failed:
     """Find ellipsoids for the largest share of the box, in steps of :data:`SHARES`; none below the first.
 
     Parameters
     ----------
-    problem : Problem
-        Closed loop and domain.
-    law : BandLaw
-        Numbers of the law.
-    friction : sequence of Friction
-        Proved bounds for each window.
-    most_cells : int
-        That may be tried for each share.
+    sought : Sought
+        What they are sought for.
+    most : float
+        Ellipsoids that may be sought for each share.
     """
-    exact = exactly(problem, law)
-    whole = all_windows(problem, law, box_of(problem, SHARES[-1]), friction, exact)
-    if not isinstance(whole, int):
-        return proof_of(SHARES[-1], exact, friction, ".", (whole,))
-    middle = _middle(box_of(problem, SHARES[-1]))
-    alone = all_windows(problem, law, middle, friction, exact)
-    if isinstance(alone, int):  # no box around it can do better
-        return Failed(share=SHARES[-1], cell=middle, window=alone, tried=2, cut=False)
-    low, high = 0, len(SHARES)  # numbers of shares: one that is covered, and one that may be
-    best: Proof | Failed | None = None
-    while low < high and (best := _failing_corner(problem, law, friction, SHARES[high - 1])) is not None:
-        high -= 1
-    while low < high:
+    best = cover(sought, SHARES[-1], Spent(most))
+    low, high = 0, len(SHARES) - 1  # numbers of shares: one that is covered, and one that may be
+    while not isinstance(best, Proof) or best.share < 1:
+        if low == high:
+            break
         number = (low + high + 1) // 2
-        found = cover(problem, law, friction, SHARES[number - 1], most_cells)
+        found = cover(sought, SHARES[number - 1], Spent(most))
         if isinstance(found, Proof):
             low, best = number, found
         else:
             high = number - 1
-            best = found if best is None else best
-    assert best is not None
     return best
+
+
+def with_reserve(sought: Sought, most: float) -> Proof | None:
+    """Find ellipsoids for the whole box, with the largest of :data:`RESERVES` for which there are some."""
+    best = None
+    for reserve in RESERVES:  # what has none with the smallest has none with a larger one
+        conditions = sought.conditions._replace(reserve=reserve)
+        found = cover(replace(sought, conditions=conditions), Fraction(1), Spent(most))
+        if not isinstance(found, Proof):
+            break
+        best = found
+    return best
+
+
+def proof_of(
+    sought: Sought, share: Fraction, steps: str, cells: Sequence[tuple[Ellipsoid | None, ...]]
+) -> Proof:
+    """Put a proof together."""
+    conditions = sought.conditions
+    return Proof(
+        share=share,
+        delay=conditions.delay,
+        noise=conditions.noise,
+        reserve=conditions.reserve,
+        friction=sought.friction,
+        steps=steps,
+        cells=tuple(cells),
+    )
 
 
 def exactly(problem: Problem, law: BandLaw) -> Conditions:
@@ -90,129 +278,3 @@ def exactly(problem: Problem, law: BandLaw) -> Conditions:
     """
     supply = Fraction(63, 64) if problem.vehicle.brake.build_up == "main-pipe" else Fraction(1)
     return Conditions(supply=supply, delay=least_delay(problem, law), noise=Fraction(0))
-
-
-def proof_of(
-    share: Fraction,
-    conditions: Conditions,
-    friction: Sequence[Friction],
-    steps: str,
-    cells: Sequence[tuple[Ellipsoid, ...]],
-) -> Proof:
-    """Put a proof together."""
-    return Proof(
-        share=share,
-        delay=conditions.delay,
-        noise=conditions.noise,
-        friction=tuple(friction),
-        steps=steps,
-        cells=tuple(cells),
-    )
-
-
-def _failing_corner(
-    problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction
-) -> Failed | None:
-    """Look for a corner of the box that has no ellipsoid at the lowest speed, where it is hardest."""
-    box, window, exact = box_of(problem, share), windows_of(problem)[0], exactly(problem, law)
-    for tried, sides in enumerate(CORNERS, start=1):
-        corner = tuple((ends[side], ends[side]) for ends, side in zip(box, sides, strict=True))
-        if one_window(problem, law, corner, window, friction[0], exact, None, ()) is None:
-            return Failed(share=share, cell=corner, window=0, tried=tried, cut=False)
-    return None
-
-
-def cover(
-    problem: Problem, law: BandLaw, friction: Sequence[Friction], share: Fraction, most_cells: int
-) -> Proof | Failed:
-    """Find ellipsoids for a share of the box.
-
-    Parameters
-    ----------
-    problem : Problem
-        Closed loop and domain.
-    law : BandLaw
-        Numbers of the law.
-    friction : sequence of Friction
-        Proved bounds for each window.
-    share : Fraction
-        Of each range, around its nominal value.
-    most_cells : int
-        That may be tried.
-    """
-    exact = exactly(problem, law)
-    waiting, steps, tried = [box_of(problem, share)], "", 0
-    cells: list[tuple[Ellipsoid, ...]] = []
-    while waiting:
-        cell = waiting.pop()
-        found = all_windows(problem, law, cell, friction, exact)
-        tried += 1
-        if not isinstance(found, int):
-            steps, cells = f"{steps}.", [*cells, found]
-            continue
-        letter = _widest(cell)
-        if letter is None:
-            return Failed(share=share, cell=cell, window=found, tried=tried, cut=False)
-        middle = _middle(cell)
-        alone = all_windows(problem, law, middle, friction, exact)
-        tried += 1
-        if isinstance(alone, int):  # no cell around it can do better
-            return Failed(share=share, cell=middle, window=alone, tried=tried, cut=False)
-        if tried >= most_cells:
-            return Failed(share=share, cell=cell, window=found, tried=tried, cut=True)
-        steps += letter
-        waiting += halved(cell, letter)[::-1]
-    return proof_of(share, exact, friction, steps, cells)
-
-
-def all_windows(
-    problem: Problem, law: BandLaw, cell: Cell, friction: Sequence[Friction], conditions: Conditions
-) -> tuple[Ellipsoid, ...] | int:
-    """Return the ellipsoids of a cell, or the window in which none was found."""
-    windows = windows_of(problem)
-    found: list[Ellipsoid] = []
-    hints: tuple[int, ...] = ()
-    for k in reversed(range(len(windows))):  # with the speed the train loses the room that venting has
-        faster = found[-1] if found else None
-        each = one_window(problem, law, cell, windows[k], friction[k], conditions, faster, hints)
-        if each is None:
-            return k
-        found.append(each[0])
-        hints = each[1]
-    return tuple(found[::-1])
-
-
-def one_window(
-    problem: Problem,
-    law: BandLaw,
-    cell: Cell,
-    window: tuple[float, float],
-    friction: Friction,
-    conditions: Conditions,
-    faster: Ellipsoid | None,
-    hints: Sequence[int],
-) -> tuple[Ellipsoid, tuple[int, ...]] | None:
-    """Find an ellipsoid for one of the longest pulses; shorter ones leave less room and less to be uncertain about."""
-    # A pulse ends in its sample, however late it begins.
-    for pulse in dict.fromkeys(min(each, 1 - conditions.delay) for each in PULSES):
-
-        def loops(supply: Fraction, pulse: Fraction = pulse) -> Loop:
-            return loop_of(problem, law, cell, window, friction, pulse, conditions._replace(supply=supply))
-
-        found = ellipsoid(law, loops, pulse, conditions.supply, faster, hints)
-        if found is not None:
-            return found
-    return None
-
-
-def _middle(cell: Cell) -> Cell:
-    return tuple(((low + high) / 2,) * 2 for low, high in cell)
-
-
-def _widest(cell: Cell) -> str | None:
-    widths = {
-        letter: MATTERS[letter] * math.log(high / low)
-        for letter, (low, high) in zip(LETTERS, cell, strict=True)
-        if high / low > NARROWEST
-    }
-    return max(widths, key=lambda each: widths[each]) if widths else None

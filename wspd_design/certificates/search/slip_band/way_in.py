@@ -24,7 +24,7 @@ WIDTHS = ((0.025, 0.01), (0.018, 0.008), (0.0125, 0.006), (0.006, 0.003))
 """Relative half width of a piece of the friction, and width of a strip over its supply rate."""
 MOST = 400  # strips, with an effort of 1
 SETTLED = 0.004  # slip beside the reference
-LATER = {False: 0.3, True: 1.3}  # s, what is followed from there, and until the filters have settled as well
+LATER = {False: 0.3, True: 1.7}  # s, what is followed from there, and until the filters have settled as well
 STEPS = 8  # strips between two stops that tell how long they are followed
 SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does

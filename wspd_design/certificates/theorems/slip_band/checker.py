@@ -11,7 +11,7 @@ is positive definite at all corners. Windows follow each other from the fastest 
 faster one lies in that of the next. Between samples the error is bounded by the same state, with the torque in between.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from operator import mul
@@ -20,9 +20,10 @@ from typing import Any
 from wspd_design.certificates.kernel.arb import Ball, above, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Matrix, Pair, corners, wanted
+from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Pair, corners, wanted
 from wspd_design.certificates.theorems.slip_band.loop import (
     Conditions,
+    Friction,
     Loop,
     least_of,
     loop_law,
@@ -33,6 +34,7 @@ from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, read
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
     BandLaw,
+    Cell,
     box_of,
     halved,
     law_of,
@@ -42,18 +44,25 @@ from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import Law
 
 DIGITS = 128  # bits of the balls
-WORK = 150_000  # operations on intervals that an ellipsoid is worth
+WORK = 10_000  # operations on intervals that an ellipsoid is worth
 PARTS = 4  # of a sample, for what happens within it
 
 
-def checker(problem: Problem, law: Law) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
-    """Return what decides about a proof and tells its numbers."""
+def checker(
+    problem: Problem, law: Law, *, reserved: bool = False
+) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
+    """Return what decides about a proof and tells its numbers; ``reserved``: it may keep a reserve of the brake."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
         from flint import ctx
 
         with ctx.workprec(DIGITS):
-            return _check(problem, law, proof, work)
+            found = _check(problem, law, proof, work)
+        if found["reserve"] < 1.0 and not reserved:
+            raise Refused(
+                "the proof leaves out where holding the reference takes more than a share of the full pressure"
+            )
+        return found
 
     return check
 
@@ -85,7 +94,15 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
         slower = None
         for k, (window, friction, each) in enumerate(zip(windows, found.friction, ellipsoids, strict=True)):
             work.spend(WORK)
-            conditions = Conditions(each.supply, found.delay, found.noise)
+            if each is None:
+                if slower is not None:
+                    raise Refused("a window without ellipsoids stands after a slower one that has some")
+                if not holds_more(problem, law, cell, window, friction, found.reserve):
+                    raise Refused(
+                        "in a window without ellipsoids holding the reference may take less than is claimed"
+                    )
+                continue
+            conditions = Conditions(each.supply, found.delay, found.noise, found.reserve, each.near)
             loop = loop_of(problem, law, cell, window, friction, each.pulse, conditions)
             bands[k] = _joined(bands[k], errors(law, loop, each))
             supplies[k] = max(supplies[k], each.supply)
@@ -102,9 +119,10 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
         "cells": float(len(found.cells)),
         "delay": float(found.delay * law.sample_time),
         "noise": float(found.noise),
+        "reserve": float(found.reserve),
         **{f"supply {k}": above(point(each)) for k, each in enumerate(supplies)},
         **{
-            f"band {k} {side}": above(radius * largest / point(window[0]))
+            f"band {k} {side}": max(above(radius * largest / point(window[0])), 0.0)
             for k, (band, window) in enumerate(zip(bands, windows, strict=True))
             if band is not None
             for side, largest in zip(("below", "above"), (band[1], -band[0]), strict=True)
@@ -116,6 +134,19 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
             for end, value in zip(("low", "high"), ends, strict=True)
         },
     }
+
+
+def holds_more(
+    problem: Problem,
+    law: BandLaw,
+    cell: Cell,
+    window: tuple[float, float],
+    friction: Friction,
+    reserve: Fraction,
+) -> bool:
+    """Whether holding the reference takes more than a share of the full pressure, everywhere in cell and window."""
+    exact = Conditions(supply=Fraction(1), delay=Fraction(0), noise=Fraction(0))
+    return reserve < 1 and loop_of(problem, law, cell, window, friction, Fraction(1), exact).holding > reserve
 
 
 def least_delay(problem: Problem, law: BandLaw) -> Fraction:
@@ -149,14 +180,13 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
         s == 0 and not r.is_zero() for s, r in zip(found.shares, spread, strict=True)
     ):
         raise Refused("a disturbance has no share")
-    # What is left counts each disturbance with r^2 over its share.
-    counted = [
-        point(0) if r.is_zero() else r * r / point(s) for s, r in zip(found.shares, spread, strict=True)
+    blocks = [[each / point(found.alpha) for each in row] for row in q]
+    blocks += [
+        [point(0) if r.is_zero() else r * r / point(s)] for s, r in zip(found.shares, spread, strict=True)
     ]
-    middle = [(low + high) / 2 for low, high in loop.disturbances]
-    for matrix in corners(loop_law(law), loop.ranges):
-        if not is_positive(_left_over(found, q, center, middle, counted, matrix)):
-            raise Refused("a sample may lead out of an ellipsoid")
+    settled = [*center, *((low + high) / 2 for low, high in loop.disturbances)]
+    if not all(is_positive(each) for each in _left_over(law, loop, found, q, settled, blocks)):
+        raise Refused("a sample may lead out of an ellipsoid")
     beyond = beyond_limit(loop, q, center)
     if beyond:
         raise Refused(f"the state may go beyond {beyond}")
@@ -167,26 +197,31 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
 
 
 def _left_over(
+    law: BandLaw,
+    loop: Loop,
     found: Ellipsoid,
     q: Sequence[Sequence[Ball]],
-    center: Sequence[Ball],
-    middle: Sequence[Ball],
-    counted: Sequence[Ball],
-    matrix: Matrix,
-) -> list[list[Ball]]:
-    """Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share."""
+    settled: Sequence[Ball],
+    blocks: Sequence[Sequence[Ball]],
+) -> Iterator[list[list[Ball]]]:
+    """Yield Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share at all corners.
+
+    ``settled`` are the center and the middle of what disturbs; ``blocks`` the rows of Q/alpha, and r^2/share.
+    """
     from flint import arb_mat
 
-    a, b = arb_mat([list(row[:STATES]) for row in matrix]), arb_mat([list(row[STATES:]) for row in matrix])
-    at, scaled = (
-        arb_mat([[each] for each in center]),
-        arb_mat([list(map(mul, row[STATES:], counted)) for row in matrix]),
-    )
-    o = a * at - at + b * arb_mat([[each] for each in middle])
-    whole = arb_mat([list(row) for row in q])
-    added = scaled * b.transpose() + o * o.transpose() / point(found.offset)
-    left: list[list[Ball]] = (whole - a * whole * a.transpose() / point(found.alpha) - added).tolist()
-    return left
+    size = len(settled)
+    diagonal = arb_mat(size, size)
+    for i, row in enumerate(blocks):
+        for j, each in enumerate(row):
+            diagonal[i, j if i < STATES else i] = each
+    whole, at = arb_mat([list(row) for row in q]), arb_mat([[each] for each in settled])
+    center = arb_mat([[point(each)] for each in found.center])
+    units = [arb_mat([[int(i == j) for j in range(size)]]) for i in range(size)]
+    for matrix in corners(loop_law(law), loop.ranges, units):
+        ab = arb_mat([row.entries() for row in matrix])
+        o = ab * at - center
+        yield (whole - ab * diagonal * ab.transpose() - o * o.transpose() / point(found.offset)).tolist()
 
 
 def beyond_limit(loop: Loop, q: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> str:

@@ -104,6 +104,12 @@ def missing_torque(problem: Problem, place: Place) -> dict[str, float]:
     return dict(zip(LIMIT, (at.holding, full), strict=True)) if at.holding > full * (1.0 + BEYOND) else {}
 
 
+def holding_share(problem: Problem, place: Place) -> float:
+    """Share of the full pressure that holds the reference at a place [-]."""
+    at = _reference(problem, place)
+    return at.holding / at.vehicle.brake.max_torque
+
+
 class SettledStop(NamedTuple):
     """A stop that begins at the reference as if it had been held for long."""
 

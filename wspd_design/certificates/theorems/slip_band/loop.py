@@ -15,12 +15,12 @@ from wspd_design.certificates.setting.declared_law import LEAST
 from wspd_design.certificates.setting.slip_loop import LoopLaw, LoopRanges, Pair, parts_of, wanted
 from wspd_design.certificates.theorems.slip_band.reference import held_in
 from wspd_design.certificates.theorems.slip_band.statement import (
-    FASTEST_LOSS,
+    AROUND,
     JERK_FACTORS,
     NAMES,
-    SLIP_AROUND,
     BandLaw,
     Cell,
+    fastest_loss,
 )
 from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
@@ -35,9 +35,15 @@ ROOM = Fraction(1, 4)  # of what the supply lacks, that the cylinder lacks of th
 class Friction(NamedTuple):
     """Bounds of the friction in a window: of -S, of the force over mu0 Q at the reference, of its fading."""
 
-    slope: tuple[float, float]  # s/m
+    slope: tuple[float, float]  # s/m, in the widest range about the reference
+    near_slope: tuple[float, float]  # s/m, in the narrower one
     level: tuple[float, float]  # -
     fading: tuple[float, float]  # s/m
+
+    @property
+    def slopes(self) -> tuple[tuple[float, float], ...]:
+        """Bounds of -S in the order of the ranges about the reference."""
+        return self.slope, self.near_slope
 
 
 class Conditions(NamedTuple):
@@ -46,6 +52,10 @@ class Conditions(NamedTuple):
     supply: Fraction  # -, of the full pressure, at least
     delay: Fraction  # -, of the sample, until a pulse begins at the latest
     noise: Fraction  # m/s, by which measured speeds of rims and train differ from the true ones at most
+    reserve: Fraction = Fraction(
+        1
+    )  # -, share of the full pressure beyond which nothing is claimed; 1: no such share
+    near: int = 0  # which range about the reference the slope is bounded in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +75,7 @@ class Loop:
     disturbances: tuple[Pair, ...]  # lowest and highest [rad/s]
     limits: tuple[Limit, ...]
     widest: Ball  # rad/s, error up to which the slope is bounded
+    holding: float  # -, share of the full pressure that holds the reference, at least
 
 
 def loop_law(law: BandLaw) -> LoopLaw:
@@ -107,23 +118,36 @@ def loop_of(
     rolling, turned = (1 - slip) / radius, reference.turning / radius
     drag = _resistance(problem, speed) / mass
     # All axles are within their bands, and from the reference to their slip the force follows the slope.
-    slope = ball(*friction.slope)
-    used = ball(*friction.level) + slope * ball(-SLIP_AROUND, SLIP_AROUND) * point(problem.speeds[0])
-    braking = point(constants().gravity) * mu0 * used + drag
-    if not braking < point(FASTEST_LOSS) or not braking > 0:
+    slope, around = ball(*friction.slopes[conditions.near]), AROUND[conditions.near]
+    used = ball(*friction.level) + slope * ball(-around, around) * point(problem.speeds[0])
+    pulled = point(constants().gravity) * mu0  # deceleration by a friction of mu0 Q
+    braking = pulled * used + drag
+    if not braking < point(fastest_loss(problem)) or not braking > 0:
         raise Refused("the train may lose more speed in a sample than the windows overlap, or gain some")
     slowing = ball(Fraction(0), Fraction(above(braking)))
-    friction_torque = 2 * radius * normal * ball(*friction.level) - damping * rolling * speed
-    fading = -2 * radius * normal * slip * ball(*friction.fading)
-    # Torque that a wheel at the reference gains in time because the slip of the reference changes.
-    moving = -2 * radius * normal * slope * (speed * reference.fall * braking + reference.drift)
-    secants = (2 * radius * radius * normal * slope - damping) / inertia
     pads = torque / point(law.full_torque)
     seen_inertia = pads * point(law.inertia)  # true torque over the number Y h counts it in
-    held = (friction_torque + inertia * turned * slowing) / seen_inertia
+    effect, full = seen_inertia / inertia, point(law.full_torque) / point(law.inertia)
+    damped = damping * rolling * speed / seen_inertia
+    weight = 2 * radius * normal / seen_inertia  # torque of a friction of mu0 Q
+    holding = below((weight * ball(*friction.level) - damped) / full)  # of a train that does not slow down
+    rolled = 2 * radius * normal / inertia
+    if conditions.reserve < 1 and friction.level[0] > 0:
+        # Nothing is claimed of numbers and speeds at which more is held.
+        weight = weight.min((point(conditions.reserve) * full + damped) / point(friction.level[0]))
+        rolled = rolled.min(_upper(weight) * _upper(effect))
+    held = weight * ball(*friction.level) - damped + inertia * turned * slowing / seen_inertia
+    if conditions.reserve < 1:
+        held = held.min(point(conditions.reserve) * full)
+    # Torque of a friction of mu0 Q that a wheel at the reference gains in time: by its speed, and by the slip it holds.
+    fading, moved = (
+        slip * ball(*friction.fading),
+        slope * (speed * reference.fall * braking + reference.drift),
+    )
+    secants = radius * rolled * slope - damping / inertia
     # While the train slows down the friction at the reference rises, and with it the deceleration.
-    rising = wheels(vehicle) * fading / (2 * radius * mass) - _resistance(problem, speed, 1) / mass
-    jerk = ball(*JERK_FACTORS) * (braking * rising + wheels(vehicle) * moving / (2 * radius * mass))
+    rising = -pulled * fading - _resistance(problem, speed, 1) / mass
+    jerk = ball(*JERK_FACTORS) * (braking * rising - pulled * moved)
     bending = reference.bend / radius * braking**2 + reference.drift / speed / radius * braking
     turning = h * h * (bending - turned * jerk)
     # By how much a wheel and its reference seem to turn faster or slower. The filter shows an error of the train speed
@@ -132,11 +156,10 @@ def loop_of(
     rolls = turns * (1 + point(law.slip_error))
     misread = turns + rolls
     share = -(-h / point(law.acceleration_time)).expm1()
-    misread_rate = 2 * share * rolls + 3 * reference.bend * point(FASTEST_LOSS) * h * turns
+    misread_rate = 2 * share * rolls + 3 * reference.bend * point(fastest_loss(problem)) * h * turns
     sliding = h * reference.drift / radius
-    drift = (
-        h * h * ((fading + damping * turned) * braking + moving) + h * damping * sliding - inertia * turning
-    ) / seen_inertia
+    drift = -h * h * weight * (fading * braking + moved)
+    drift += (h * h * damping * turned * braking + h * damping * sliding - inertia * turning) / seen_inertia
     # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2.
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
     known = slowly * (1 / share - point(Fraction(1, 2))) + sliding + misread_rate
@@ -156,7 +179,7 @@ def loop_of(
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
-            effects=_ends(seen_inertia / inertia),
+            effects=_ends(effect),
             parts=_parts(law, fill, vent, pulse, added),
             seen=_seen(law, pulse),
             pulse=point(pulse),
@@ -165,7 +188,8 @@ def loop_of(
         ),
         disturbances=tuple(map(_ends, disturbed)),
         limits=_limits(law, pulse, conditions.supply, held, turned * slowing, known, misread),
-        widest=point(SLIP_AROUND) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
+        widest=point(around) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
+        holding=holding,
     )
 
 
@@ -197,10 +221,10 @@ def _limits(
     misread : ball
         Error of the error of the wheel speed in the law [rad/s].
     """
-    h, inertia = point(law.sample_time), point(law.inertia)
+    h = point(law.sample_time)
     least_held, most_held = _ends(h * held)
-    full = h * point(law.full_torque) / inertia
-    least, there = point(LEAST) * full, point(supply) * full
+    full = h * point(law.full_torque) / point(law.inertia)
+    least, room = point(LEAST) * full, point(supply) * full - most_held
     asked = wanted(loop_law(law))
     lowest, highest = _ends(asked[4] * known + asked[0] * misread)
     venting, filling = (-h * point(pulse) / point(each) for each in (law.vent_time, law.fill_time))
@@ -215,7 +239,7 @@ def _limits(
         Limit(
             what="what filling adds in its longest pulse",
             row=(*asked[:3], asked[3] - 1 + fill),
-            bound=fill * (there - most_held) - highest,
+            bound=fill * room - highest,
         ),
         *_below_the_curve(law, known, misread),
         Limit(
@@ -231,12 +255,12 @@ def _limits(
         Limit(
             what="the torque that the brake can add",
             row=(zero, zero, zero, point(1)),
-            bound=there - most_held - least / filling.exp(),
+            bound=room - least / filling.exp(),
         ),
         Limit(
             what="the room that a rising supply asks for",
             row=(zero, zero, zero, point(1)),
-            bound=there - most_held - point(ROOM) * (full - there),
+            bound=room - point(ROOM) * (1 - point(supply)) * full,
         ),
     )
 

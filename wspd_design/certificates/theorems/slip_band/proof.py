@@ -9,6 +9,7 @@ from wspd_design.certificates.kernel.checker import Refused, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.loop import Friction
+from wspd_design.certificates.theorems.slip_band.statement import AROUND
 
 FORMAT = "wspd-slip-band/5"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
@@ -23,6 +24,7 @@ class Ellipsoid:
 
     pulse: Fraction  # -, longest pulse over the sample time that a state in it asks for
     supply: Fraction  # -, least share of the full pressure
+    near: int  # which range about the reference the slope of the friction is bounded in, the widest being 0
     matrix: Square  # Q [rad2/s2]
     center: tuple[Fraction, ...]  # c [rad/s]
     alpha: Fraction  # of the function that is left after a sample
@@ -41,20 +43,27 @@ class Proof:
     share: Fraction
     delay: Fraction  # -, of the sample, until a pulse begins at the latest
     noise: Fraction  # m/s, by which measured speeds of rims and train differ from the true ones at most
+    reserve: Fraction  # -, share of the full pressure beyond which nothing is claimed where holding takes more; 1: none
     friction: tuple[Friction, ...]
     steps: str
-    cells: tuple[tuple[Ellipsoid, ...], ...]  # for each cell one for each window
+    cells: tuple[
+        tuple[Ellipsoid | None, ...], ...
+    ]  # for each cell one for each window; none beyond the reserve
 
 
 def write(found: Proof) -> dict[str, Any]:
     """Write a proof as JSON; what a cell has in common with an earlier one is written once."""
     ellipsoids: dict[Ellipsoid, int] = {}
-    cells = [[ellipsoids.setdefault(each, len(ellipsoids)) for each in cell] for cell in found.cells]
+    cells = [
+        [None if each is None else ellipsoids.setdefault(each, len(ellipsoids)) for each in cell]
+        for cell in found.cells
+    ]
     return {
         "format": FORMAT,
         "share": text(found.share),
         "delay": text(found.delay),
         "noise": text(found.noise),
+        "reserve": text(found.reserve),
         "friction": [[text(Fraction(end)) for ends in each for end in ends] for each in found.friction],
         "steps": found.steps,
         "ellipsoids": [_written(each) for each in ellipsoids],
@@ -66,6 +75,7 @@ def _written(each: Ellipsoid) -> list[str]:
     numbers = (
         each.pulse,
         each.supply,
+        Fraction(each.near),
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
         each.alpha,
@@ -77,7 +87,17 @@ def _written(each: Ellipsoid) -> list[str]:
 
 def read(proof: Mapping[str, Any], windows: int) -> Proof:
     """Read a proof about a number of windows, or refuse it."""
-    names = {"format", "share", "delay", "noise", "friction", "steps", "ellipsoids", "cells"}
+    names = {
+        "format",
+        "share",
+        "delay",
+        "noise",
+        "reserve",
+        "friction",
+        "steps",
+        "ellipsoids",
+        "cells",
+    }
     if proof.keys() != names or proof["format"] != FORMAT:
         raise Refused(f"the proof does not have the format {FORMAT}")
     steps, cells, ellipsoids = proof["steps"], proof["cells"], proof["ellipsoids"]
@@ -87,25 +107,34 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
         raise Refused("steps and cells do not match")
     if not isinstance(ellipsoids, list) or len(ellipsoids) > windows * len(cells):
         raise Refused("the proof has no ellipsoids, or too many")
-    share, delay, noise = _numbers([proof[name] for name in ("share", "delay", "noise")], 3)
+    share, delay, noise, reserve = _numbers(
+        [proof[name] for name in ("share", "delay", "noise", "reserve")], 4
+    )
     if not 0 < share <= 1:
         raise Refused("the share of the box must be above 0, and 1 at most")
     if delay < 0 or noise < 0:
         raise Refused("a delay or a noise is below 0")
+    if not 0 < reserve <= 1:
+        raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 2 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
+        _ellipsoid(_numbers(each, 3 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
     ]
     return Proof(
         share=share,
         delay=delay,
         noise=noise,
-        friction=tuple(_friction(_numbers(each, 6)) for each in _list(proof["friction"], windows)),
+        reserve=reserve,
+        friction=tuple(
+            _friction(_numbers(each, 2 * len(Friction._fields))) for each in _list(proof["friction"], windows)
+        ),
         steps=steps,
         cells=tuple(tuple(_one_of(known, each) for each in _list(cell, windows)) for cell in cells),
     )
 
 
-def _one_of(known: Sequence[Ellipsoid], place: object) -> Ellipsoid:
+def _one_of(known: Sequence[Ellipsoid], place: object) -> Ellipsoid | None:
+    if place is None:
+        return None
     if not isinstance(place, int) or isinstance(place, bool) or not 0 <= place < len(known):
         raise Refused("a cell names an ellipsoid that is not there")
     return known[place]
@@ -115,24 +144,27 @@ def _friction(numbers: Sequence[Fraction]) -> Friction:
     ends = [float(each) for each in numbers]
     if any(Fraction(end) != each for end, each in zip(ends, numbers, strict=True)):
         raise Refused("a bound of the friction is not a double")
-    slope, level, fading = (ends[0], ends[1]), (ends[2], ends[3]), (ends[4], ends[5])
-    if not (slope[0] < slope[1] and level[0] <= level[1] and fading[0] <= fading[1]):
+    found = Friction(*zip(ends[::2], ends[1::2], strict=True))
+    if not (all(low < high for low, high in found.slopes) and all(low <= high for low, high in found)):
         raise Refused("a range of the friction is none")
-    return Friction(slope=slope, level=level, fading=fading)
+    return found
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
-    pulse, supply, *numbers = written
+    pulse, supply, near, *numbers = written
     if not 0 < pulse <= 1:
         raise Refused("the longest pulse must be above 0, and the sample at most")
     if not 0 <= supply <= 1:
         raise Refused("the share of the full pressure must be from 0 to 1")
+    if near not in range(len(AROUND)):
+        raise Refused("a range about the reference is not there")
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, rest = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
     return Ellipsoid(
         pulse=pulse,
         supply=supply,
+        near=int(near),
         matrix=rows,
         center=tuple(center),
         alpha=rest[0],

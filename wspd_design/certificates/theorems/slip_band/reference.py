@@ -8,9 +8,10 @@ does where the train speed that it is told is wrong.
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 
 from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
-from wspd_design.certificates.theorems.slip_band.statement import SLIP_AROUND, BandLaw, Interval
+from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Interval
 from wspd_design.parameters.bounds import Ends
 
 
@@ -49,11 +50,11 @@ def slips_held(law: BandLaw, window: Ends, radius: Interval) -> Ends:
     return below(slip), above(slip)
 
 
-def slips_around(law: BandLaw, window: Ends, radius: Interval, slowest: float) -> Ends:
+def slips_around(law: BandLaw, window: Ends, radius: Interval, slowest: float, around: Fraction) -> Ends:
     """Range of slip in which a window bounds the slope of the friction: that of one wheel speed at all speeds."""
     low, high = slips_held(law, window, radius)
-    around = float(SLIP_AROUND) * slowest / window[0]
-    return max(low - around, 0.0), high + around
+    reach = float(around) * slowest / window[0]
+    return max(low - reach, 0.0), high + reach
 
 
 def slip_at(law: BandLaw, speed: float, radius: float) -> float:

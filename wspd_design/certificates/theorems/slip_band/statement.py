@@ -13,6 +13,7 @@ from wspd_design.controllers.observers.told import ToldSpeed
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import Law
 from wspd_design.controllers.references import ConstantSlip, FallingSlip
+from wspd_design.parameters.loading import constants
 
 Interval: TypeAlias = tuple[Fraction, Fraction]
 
@@ -26,11 +27,11 @@ JERK_FACTORS = (
     Fraction(3, 4),
     Fraction(5, 4),
 )  # -, how fast the deceleration rises, of what it does with all wheels at the reference
-FASTEST_LOSS = Fraction(10)  # m/s2, more than adhesion and resistance take off
-WIDEST_WINDOW = 1.3  # ratio of its speeds
-SLIP_AROUND = Fraction(
-    3, 100
-)  # -, on either side of the reference at the lowest speed, where the slope is bounded
+DRAG = Fraction(1, 2)  # m/s2, more than the resistance takes off
+WIDEST_WINDOW = 1.2  # ratio of its speeds
+AROUND = (Fraction(3, 100), Fraction(2, 100))
+"""On either side of the reference at the lowest speed, where the slope is bounded [-]: an ellipsoid takes one."""
+SLIP_AROUND = AROUND[0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,10 +140,15 @@ def halved(cell: Cell, letter: str) -> tuple[Cell, Cell]:
     return (*cell[:k], (low, middle), *cell[k + 1 :]), (*cell[:k], (middle, high), *cell[k + 1 :])
 
 
+def fastest_loss(problem: Problem) -> Fraction:
+    """Return more than adhesion and resistance take off the train speed [m/s2]."""
+    return Fraction(constants().gravity) * Fraction(problem.span("mu0")[1]) + DRAG
+
+
 def windows_of(problem: Problem) -> tuple[tuple[float, float], ...]:
     """Windows of speed, the slowest first; each reaches down as far as one sample may lead out of it [m/s]."""
     low, high = problem.speeds
     count = ceil(log(high / low) / log(WIDEST_WINDOW))
     edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
-    loss = float(FASTEST_LOSS) * problem.sample_time
+    loss = float(fastest_loss(problem)) * problem.sample_time
     return tuple((slow - loss, fast) for slow, fast in pairwise(edges))

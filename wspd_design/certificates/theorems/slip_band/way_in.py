@@ -157,7 +157,8 @@ def _band(problem: Problem, law: Protection, proof: object, work: Work) -> "tupl
     if found.share != 1 or len(found.cells) != 1:
         raise Refused("the band must be that of one cell, which is the whole box")
     begin = found.cells[0][-1]
-    conditions = Conditions(begin.supply, found.delay, found.noise)
+    assert begin is not None  # without a reserve no window is left out
+    conditions = Conditions(begin.supply, found.delay, found.noise, near=begin.near)
     with ctx.workprec(DIGITS):
         loop = loop_of(
             problem,
@@ -194,6 +195,7 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
     windows = windows_of(problem)
     found, vehicle = read_band(proof, len(windows)), problem.vehicle
     mu0, slowest = problem.span(FRICTION)[1], problem.span(SUPPLY)[0]
+    supplies = [each.supply for each in found.cells[0] if each is not None]
     lacking = 1.0 - supply
     for k in reversed(range(len(windows) - 1)):  # from the next slower window on
         friction, (_, top) = found.friction[k + 1], windows[k]
@@ -202,10 +204,10 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
         loss = (constants().gravity * mu0 * used + drag) * (1.0 + OUTWARD)
         lacking *= exp(-slowest * max(speed - top, 0.0) / loss) * (1.0 + OUTWARD)
         speed = min(speed, top)
-        if not 1.0 - lacking >= found.cells[0][k].supply:
+        if not 1.0 - lacking >= supplies[k]:
             raise Refused(
                 f"the supply may have {1.0 - lacking:.3g} of its pressure at {top * KMH:.0f} km/h, and the band asks "
-                f"for {float(found.cells[0][k].supply):.3g}"
+                f"for {float(supplies[k]):.3g}"
             )
 
 
