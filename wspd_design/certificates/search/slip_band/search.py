@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import Choice, Loops, ellipsoid, excess
-from wspd_design.certificates.theorems.slip_band.checker import holds_more, least_delay
+from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, least_delay
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -157,6 +158,7 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
     try:
         while waiting:
             cell, inherited = waiting.pop()
+            inherited = _still_holding(sought, cell, inherited)
             chain = continued(sought, cell, inherited, spent)
             window = len(sought.windows) - 1 - len(chain.ellipsoids)
             # The ellipsoids of a larger cell may be too large to lie in one of a slower window.
@@ -177,6 +179,23 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
     except OutOfBudget:
         return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=True)
     return proof_of(sought, share, steps, cells)
+
+
+def _still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
+    """Keep the ellipsoids of the larger cell up to the first that the cell does not have.
+
+    The tangents that enclose the numbers of a sample touch elsewhere for a smaller range, and may enclose more.
+    """
+    for number, each in enumerate(chain.ellipsoids):
+        window = len(sought.windows) - 1 - number
+        if each is None:
+            continue
+        loop = sought.loops(cell, window, Choice(each.pulse, each.near))(each.supply)
+        try:
+            errors(sought.law, loop, each)
+        except Refused:
+            return replace(chain, ellipsoids=chain.ellipsoids[:number])
+    return chain
 
 
 def _middle_has(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> bool:
