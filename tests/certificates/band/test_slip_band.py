@@ -10,14 +10,16 @@ from flint import ctx
 import wspd_design as wd
 from tests.certificates.band.conftest import certificate_of, problem_of
 from wspd_design.certificates.checks.frame import accepted
+from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
+from wspd_design.certificates.search.slip_band.search import Sought, Spent, cover, exactly
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.band import CELLS, RESERVED, SLIP_BAND
 from wspd_design.certificates.theorems.slip_band.checker import checker, lies_in
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
+from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.controllers.valve_inversion import ValveInversion
@@ -380,3 +382,17 @@ def test_worn_wheels_of_which_the_law_takes_no_scale_are_refused(half, proof):
     law = half.controller
     careless = replace(half, controller=replace(law, source=replace(law.source, largest_scale_error=0.03)))
     assert "does not take its scale" in refused(careless, proof)
+
+
+def test_cells_that_go_on_with_the_ellipsoids_of_a_larger_one_are_accepted():
+    """Tangents of a smaller range touch elsewhere: an ellipsoid of a cell may not be one of its half."""
+    problem = problem_of(0.75, speeds=(24.0 / 3.6, 50.0 / 3.6))
+    _, friction = bounded_friction(problem, SLIP_BAND.obligations(problem))
+    assert friction is not None
+    law = law_of(problem.controller)
+    sought = Sought(problem=problem, law=law, friction=friction, conditions=exactly(problem, law))
+    proof = cover(sought, Fraction(1), Spent(200))
+    assert isinstance(proof, Proof)
+    assert len(proof.cells) > 1
+    numbers = checker(problem, problem.controller)(write(proof), Work(10**9))
+    assert numbers["cells"] == len(proof.cells)

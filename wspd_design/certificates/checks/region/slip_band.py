@@ -42,7 +42,7 @@ TOLERANCES = {
     "level": 2e-3,
     "fading": 5e-4,
 }  # s/m, -, s/m
-SOUGHT = 300  # ellipsoids for each share of the box, with an effort of 1
+SOUGHT = 240  # ellipsoids for each share of the box, with an effort of 1
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:
