@@ -4,12 +4,15 @@ import io
 import json
 import re
 from dataclasses import replace
+from functools import partial
 from html import escape
 
 import pypdf
 import pytest
 
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.search.budget import Budget
+from wspd_design.certificates.suite import verify
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import named_design
 from wspd_design.parameters.loading import load_rail, load_vehicle
@@ -17,8 +20,10 @@ from wspd_design.reporting.report import write_report
 from wspd_design.reporting.sections.summary import verdict
 from wspd_design.reporting.text import plain
 from wspd_design.simulation.records import Scenario
+from wspd_design.studies import dossier as dossier_module
 from wspd_design.studies.dossier import dossier
 from wspd_design.studies.judgment import judged_stop
+from wspd_design.studies.uncertainty import uncertainty
 
 pytestmark = pytest.mark.slow
 
@@ -28,6 +33,9 @@ def made():
     vehicle, rail = load_vehicle("er24pc"), load_rail("table10-dry")
     with pytest.MonkeyPatch.context() as patch:  # one other law is tried in place of this one, not all
         patch.setattr("wspd_design.studies.next_step.RULES", {"super-twisting": None})
+        # What cannot be decided here is given up sooner.
+        patch.setattr(dossier_module, "verify", partial(verify, budget=Budget(effort=0.1)))
+        patch.setattr(dossier_module, "uncertainty", partial(uncertainty, sets=32))
         return dossier(
             named_design("afsmc", vehicle, rail, Specification()),
             vehicle="er24pc",
