@@ -43,10 +43,10 @@ class Spent:
         """Count one more, or end the search."""
         self.count += 1
         if self.count > self.most:
-            raise OutOfBudget
+            raise _OutOfBudget
 
 
-class OutOfBudget(Exception):
+class _OutOfBudget(Exception):
     """More ellipsoids were sought than may be."""
 
 
@@ -176,7 +176,7 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
                 return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=False)
             steps += letter
             waiting += [(half, chain) for half in halved(cell, letter)[::-1]]
-    except OutOfBudget:
+    except _OutOfBudget:
         return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=True)
     return proof_of(sought, share, steps, cells)
 
