@@ -9,10 +9,9 @@ from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
-from wspd_design.certificates.search.slip_band.search import Sought, Spent, cover, exactly
+from wspd_design.certificates.search.slip_band.search import Sought, alone, exactly
 from wspd_design.certificates.search.slip_band.way_in import plan
 from wspd_design.certificates.theorems.slip_band.loop import Friction
-from wspd_design.certificates.theorems.slip_band.proof import Proof
 from wspd_design.certificates.theorems.slip_band.proof import write as write_band
 from wspd_design.certificates.theorems.slip_band.statement import law_of
 from wspd_design.certificates.theorems.slip_band.way_in import around, write
@@ -35,8 +34,8 @@ def _band(problem: Problem, law: Protection, friction: tuple[Friction, ...]) -> 
     """Find a band in one cell, which is the whole box of friction and supply rate."""
     numbers = law_of(law)
     sought = Sought(problem=problem, law=numbers, friction=friction, conditions=exactly(problem, numbers))
-    found = cover(sought, Fraction(1), Spent())
-    return write_band(found) if isinstance(found, Proof) and len(found.cells) == 1 else None
+    found = alone(sought, Fraction(1))
+    return write_band(found) if found else None
 
 
 CHECK = Check(theorem=SLIP_WAY_IN, search=search)

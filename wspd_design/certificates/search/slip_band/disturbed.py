@@ -8,9 +8,8 @@ from wspd_design.certificates.search.slip_band.search import (
     Chain,
     Sought,
     Spent,
-    continued,
+    alone,
     next_slower,
-    proof_of,
 )
 from wspd_design.certificates.theorems.slip_band.loop import Conditions
 from wspd_design.certificates.theorems.slip_band.proof import Proof
@@ -48,8 +47,7 @@ def _most(sought: Sought, found: Proof, harder: Sequence[Conditions]) -> Proof |
             break
         borne += 1
     for conditions in harder[:borne][::-1]:
-        harder_one = replace(sought, conditions=conditions)
-        ellipsoids = continued(harder_one, cell, Chain(), Spent()).ellipsoids
-        if len(ellipsoids) == windows:
-            return proof_of(harder_one, share, ".", (ellipsoids[::-1],))
+        proof = alone(replace(sought, conditions=conditions), share)
+        if proof is not None:
+            return proof
     return None

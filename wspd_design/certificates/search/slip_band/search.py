@@ -162,8 +162,8 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
             chain = continued(sought, cell, inherited, spent)
             window = len(sought.windows) - 1 - len(chain.ellipsoids)
             # The ellipsoids of a larger cell may be too large to lie in one of a slower window.
-            alone = Chain(choice=chain.choice, hints=chain.hints)
-            if window >= 0 and inherited.ellipsoids and _nearest(sought, cell, window, alone, spent) < 1.0:
+            anew = Chain(choice=chain.choice, hints=chain.hints)
+            if window >= 0 and inherited.ellipsoids and _nearest(sought, cell, window, anew, spent) < 1.0:
                 chain = continued(sought, cell, Chain(), spent)
                 window = len(sought.windows) - 1 - len(chain.ellipsoids)
             if window < 0:
@@ -179,6 +179,13 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
     except _OutOfBudget:
         return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=True)
     return proof_of(sought, share, steps, cells)
+
+
+def alone(sought: Sought, share: Fraction) -> Proof | None:
+    """Find ellipsoids for a share of the box as one cell."""
+    ellipsoids = continued(sought, box_of(sought.problem, share), Chain(), Spent()).ellipsoids
+    whole = len(ellipsoids) == len(sought.windows)
+    return proof_of(sought, share, ".", (ellipsoids[::-1],)) if whole else None
 
 
 def _still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
@@ -200,9 +207,9 @@ def _still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
 
 def _middle_has(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> bool:
     """Whether the middle of a cell has an ellipsoid; no cell around it can do better."""
-    middle, alone = tuple(((low + high) / 2,) * 2 for low, high in cell), replace(chain, ellipsoids=())
+    middle, anew = tuple(((low + high) / 2,) * 2 for low, high in cell), replace(chain, ellipsoids=())
     tried = dict.fromkeys((chain.choice, *MIDDLE, *choices(sought, chain.choice)))
-    return any(_excess(sought, middle, window, choice, alone, spent) < 1.0 for choice in tried)
+    return any(_excess(sought, middle, window, choice, anew, spent) < 1.0 for choice in tried)
 
 
 def _nearest(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> float:
