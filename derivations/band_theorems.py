@@ -103,9 +103,10 @@ THEOREMS = (
     Theorem(
         anchor="band",
         title="Band of slip of a sampled law with friction-torque observer",
-        statement="With X = (e, p, N, Y), e = w - w_r the error of the wheel speed, p that of the observed one, N and "
-        "Y h over the inertia of the law times the deviations of observed friction and seen torque from those that "
-        "hold the reference, one sample makes X+ = A X + B (m + r z) with -1 <= z <= 1, where m + r z is what "
+        statement="With X = (e, p, N, Y, D), e = w - w_r the error of the wheel speed, p that of the observed one, N "
+        "and Y h over the inertia of the law times the deviations of observed friction and seen torque from those that "
+        "hold the reference, D h times the error of its filtered acceleration, one sample makes "
+        "X+ = A X + B (m + r z) with -1 <= z <= 1, where m + r z is what "
         "disturbs. About a center c that is X+ - c = A (X - c) + o + B r z, o = A c - c + B m. If Q > 0, shares "
         "D > 0 and alpha > 0 with alpha + sum D <= 1 make Q - A Q A'/alpha - [o Br] D^-1 [o Br]' positive definite at "
         "the corners of all numbers of a sample, then no sample leads out of {(X - c)'Q^-1(X - c) <= 1}, and e stays "
@@ -159,6 +160,12 @@ THEOREMS = (
             Identity(
                 "share of a steady drift in its mean with the same weight", slip_loop.seen_of_drift_residual
             ),
+            Identity("error of the filtered acceleration", slip_loop.filter_residual),
+            Identity("rho_a (u - u_c) + rho_c u_c = rho u", slip_loop.about_residual),
+            Identity("a longer pulse counts in the mean from its end on", slip_loop.mean_residual),
+            Identity("change of the way over that of the wanted one", slip_loop.rate_residual),
+            Identity("the length of a pulse is convex over the wanted way", slip_loop.convex_residual),
+            Identity("another speed that errors are counted from", slip_loop.shift_residual),
             Identity("X+ - c of X+ = A X + B (m + r z)", _centered),
             Identity("what the shares and alpha leave of 1", _budget),
             Identity("what lies between an ellipse and one in it", _nested),

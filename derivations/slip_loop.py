@@ -13,6 +13,10 @@ its value at the longest pulse. The share of the sample that sees the old torque
 the longest pulse, as late as pulses begin. While the supply rises by (8) a pulse that fills gets more than from the
 supply at the sample, by no more than below. An error of a measured speed moves the wanted torque by k times itself, and
 the filter of the acceleration shows errors of the train speed at most twice, its first step over h times them.
+
+Errors may be counted from another wheel speed, w_s = w_r + E with a constant E, and torques from the one that holds it:
+all of the above stands, with E k added to the wanted torque. What changes steadily is then no disturbance of the same
+size: with u_c the wanted change at a center, u = u_c + (u - u_c), and the ways are rho u = rho_a (u - u_c) + rho_c u_c.
 """
 
 from functools import partial
@@ -103,6 +107,39 @@ longest = sp.Symbol("longest", positive=True)
 part_of_pulse = part.subs(x, sp.exp(-longest))  # x at the end of a pulse, its length over the assumed time
 part_residual = sp.simplify(sp.integrate(c * u ** (c - 1), (u, x, 1), conds="none") - part * (1 - x))
 
+# --- changes about the wanted change u_c at a center: rho_a (u - u_c) + rho_c u_c is rho u, with rho_a = rho_c = rho
+# where u and u_c have one sign; where u has the other one, with a rho_a between those of both sides -------------------
+_u, _u_c, _rho_u, _rho_c = sp.symbols("u u_c rho_u rho_c", real=True)
+_weight_of_u = _u / (_u - _u_c)  # between 0 and 1 where u and u_c have opposite signs
+_rho_a = _weight_of_u * _rho_u + (1 - _weight_of_u) * _rho_c
+about_residual = sp.simplify(_rho_a * (_u - _u_c) + _rho_c * _u_c - _rho_u * _u)
+
+# --- the mean torque that the law works out: a pulse of the length P over h, of the room or of the torque to vent -----
+P, T_n, T_a = sp.symbols(
+    "P T_n T_a", positive=True
+)  # T_n: nominal time, T_a: the one that the inversion assumes
+_gone = 1 - sp.exp(-P * h / T_n)
+_in_mean = sp.integrate(1 - sp.exp(-u * h / T_n), (u, 0, P)) + _gone * (1 - P)
+mean_residual = sp.simplify(sp.diff(_in_mean, P) - (1 - P) * sp.diff(_gone, P))
+_asked_for = 1 - sp.exp(-P * h / T_a)
+rate = (T_a / T_n) * sp.exp(
+    (1 - T_a / T_n) * P * h / T_a
+)  # of the way over the wanted one, at the end of the pulse
+rate_residual = sp.simplify(sp.diff(_gone, P) - rate * sp.diff(_asked_for, P))
+rate_of_pulse = rate.subs(T_n, T_a / c).subs(P, longest * T_a / h)
+_length = -T_a / h * sp.log(1 - u)  # of the pulse that is wanted, over the part of the room: convex
+convex_residual = sp.simplify(sp.diff(_length, u, 2) - T_a / h / (1 - u) ** 2)
+
+# --- from one speed that errors are counted from to another: t0 moves by the secant between them ----------------------
+_E, _E2, _f, _rate, _y = sp.symbols("E E_2 f rate y_T", real=True)
+_t0_of = (_f - _rate) / g
+_t0_there = (_f + q * (_E2 - _E) - _rate) / g
+_moved_by = sp.Matrix([w - (w_r + _E2), h * (_y - _t0_there)]) - sp.Matrix(
+    [w - (w_r + _E), h * (_y - _t0_of)]
+)
+shift = (_E - _E2) * sp.Matrix([1, h * q / g])
+shift_residual = sp.simplify(sum((_moved_by - shift).applyfunc(sp.Abs)))
+
 # --- what a supply that rises by (8) adds to a pulse that fills: D' = (what the supply has risen by - D)/T_F, so that D
 # is at most as if the supply rose at its first rate and D did not hold it back; a pulse that begins late sees it later.
 # A pulse over T_F of x goes at least the part x - x^2/2 of the room, a share "room" of what the supply lacks ----------
@@ -123,8 +160,15 @@ latest_residual = sp.simplify((1 - (late + _more) / (1 + _more)) * (1 + _more) -
 
 # --- errors of the measured train speed in its filtered slope, a <- a + (1 - kept) ((v - v before)/h - a): the last one
 # counts (1 - kept)/h, those of up to count samples ago sum up to less, whatever their signs ---------------------------
-_kept = sp.Symbol("kept", positive=True)  # below 1
+_kept = kept = sp.Symbol("kept", positive=True)  # below 1
+lag, lag_drift = sp.symbols("lag lag_drift", real=True)
 _count, _j = sp.symbols("count j", integer=True, positive=True)
+_d, _jerk, _gone_by = sp.symbols("d jerk gone_by", real=True)
+_filtered = (
+    (1 - (1 - _kept)) * _d + h * _jerk - (1 - _kept) * h * _jerk / 2
+)  # v' - a, while v' changes steadily
+_weighed = sp.integrate(_jerk * (1 - (1 - _kept) * (1 - _gone_by / h)), (_gone_by, 0, h))  # or in any way
+filter_residual = sp.simplify(_filtered - (_kept * _d + _weighed))
 _earlier = sp.summation((1 - _kept) * (_kept ** (_j - 1) - _kept**_j), (_j, 1, _count))
 earlier_residual = sp.simplify(_earlier - (1 - _kept) * (1 - _kept**_count))
 
@@ -149,9 +193,12 @@ _STATE = {
     "observer_error": "Observed wheel speed minus the true one, p [rad/s]",
     "friction": "Deviation N of the observed friction torque, times h over the inertia of the law [rad/s]",
     "torque": "Deviation Y of the torque that the law sees, times h over the inertia of the law [rad/s]",
+    "lag": "Error D of the filtered acceleration of the reference, times h [rad/s]",
+    "kept": "Part of it that the filter keeps over a sample [-]",
+    "lag_drift": "What the change of the acceleration adds to it over the sample [rad/s]",
     "gain": "Gain k of the surface times h [-]",
     "ahead": "Share of a sample by which the error is predicted [-]",
-    "acceleration_error": "Error of the acceleration of the reference that the law has, times h [rad/s]",
+    "acceleration_error": "Error of the acceleration of the reference that the law has, D and more, times h [rad/s]",
     "phi": "What becomes of an error within the sample without torque [-]",
     "psi": "What a torque contributes within the sample, over h [-]",
     "g": "True over assumed effect of the torque, (T/T_seen) (assumed/true inertia) [-]",
@@ -196,17 +243,18 @@ FUNCTIONS = (
     _function(
         "next_sample",
         (
-            *(e, p, N, Y, way, phi, psi, g, rho, late, seen, theta),
-            *(asked, rise, held, turn, turned, moved, bent, misread),
+            *(e, p, N, Y, lag, way, phi, psi, g, rho, late, seen, theta, kept),
+            *(asked, rise, held, turn, turned, moved, bent, misread, lag_drift),
         ),
         (
             error_next,
             observer_next.subs(_e1, error_next),
             friction_next.subs(_e1, error_next),
             torque_next,
+            kept * lag + lag_drift,
         ),
         "State of the loop one sample later",
-        "e, p, N and Y [rad/s]",
+        "e, p, N, Y and D [rad/s]",
     ),
     _function(
         "switched_slide",
@@ -221,6 +269,13 @@ FUNCTIONS = (
         part_of_pulse,
         "Part of the wanted way that the valve goes with the longest pulse; with the shortest it is c",
         "Part [-]",
+    ),
+    _function(
+        "rate_of_way",
+        (c, longest),
+        rate_of_pulse,
+        "Change of the way over that of the wanted one, at the end of the longest pulse; with the shortest it is c",
+        "Rate [-]",
     ),
     _function(
         "lateness",

@@ -102,21 +102,26 @@ def loop_of(law: Protection, core: ObserverSmc) -> LoopLaw:
         gain=core.tracking.approach_rate * law.sample_time,
         ahead=core.tracking.ahead,
         pole=exp(-law.observer_rate * law.sample_time),
+        kept=0.0,  # the filter of the acceleration has settled
     )
 
 
 def _worst_of(loop: LoopLaw, apart: tuple[LoopRanges, LoopRanges]) -> float | None:
     """Try one function for all friction, then one each for the most and the least."""
-    import numpy as np
-
     secants = [end for each in apart for end in each.secants]
-    units = np.eye(STATES + len(DISTURBANCES))
     together = replace(apart[0], secants=(min(secants), max(secants)))
-    found = contraction(corners(loop, together, list(units)))
+    found = _contraction(loop, together)
     if found is not None:
         return found
-    alone = [contraction(corners(loop, each, list(units))) for each in apart]
+    alone = [_contraction(loop, each) for each in apart]
     return None if None in alone else max(each for each in alone if each is not None)
+
+
+def _contraction(loop: LoopLaw, ranges: LoopRanges) -> float | None:
+    import numpy as np
+
+    units = list(np.eye(STATES + len(DISTURBANCES)))
+    return contraction(rest for rest, _ in corners(loop, ranges, units))
 
 
 def _corners(
@@ -134,6 +139,7 @@ def _corners(
     for (inertia, torque), (fill, vent) in product(zip(inertias, reversed(torques), strict=True), times):
         effect = torque / vehicle.brake.max_torque * law.wheelset_inertia / inertia
         speedups = sorted((assumed[0] / fill, assumed[1] / vent))
+        parts = parts_of((speedups[0], speedups[1]), longest)
         ranges = [
             LoopRanges(
                 secants=_secants(
@@ -144,8 +150,9 @@ def _corners(
                     around,
                 ),
                 effects=(effect, effect),
-                parts=parts_of((speedups[0], speedups[1]), longest),
+                parts=tuple((end, end) for end in parts),
                 seen=(0.5 * seen[0], seen[1]),
+                seen_center=seen[1],  # nothing is asked about what disturbs
                 pulse=1.0,
                 delay=0.0,
                 added=0.0,

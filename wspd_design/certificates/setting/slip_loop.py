@@ -1,8 +1,8 @@
 """The sampled loop of a law with friction-torque observer, as corners of what may enter a sample.
 
-The state X = (e, p, N, Y) and what one sample makes of it stand in :mod:`derivations.slip_loop`. The map is affine in
-each of the numbers that may differ from sample to sample, (phi, psi) counted as one: a quadratic function of the next
-state is then convex along each, and corners of their ranges decide about all values in between.
+The state X = (e, p, N, Y, D) and what one sample makes of it stand in :mod:`derivations.slip_loop`. The map is affine
+in each of the numbers that may differ from sample to sample, (phi, psi) counted as one: a quadratic function of the
+next state is then convex along each, and corners of their ranges decide about all values in between.
 
 Written for every number type: doubles search, balls prove.
 """
@@ -20,7 +20,7 @@ Pair: TypeAlias = tuple[Number, Number]
 Matrix: TypeAlias = tuple[Any, ...]
 """Its rows."""
 
-STATES = 4
+STATES = 5
 DISTURBANCES = (
     "acceleration error",
     "command error",
@@ -31,6 +31,7 @@ DISTURBANCES = (
     "slip drift",
     "uneven slip drift",
     "speed error",
+    "lag drift",
 )
 """Beside the state; each is bounded [rad/s]."""
 
@@ -45,6 +46,7 @@ class LoopLaw:
     gain: Number  # -, of the surface, k h
     ahead: Number  # -
     pole: Number  # -, of the observer, theta
+    kept: Number  # -, of the error of the filtered acceleration over a sample
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,8 +55,11 @@ class LoopRanges:
 
     secants: Pair  # 1/s, of the friction over the wheel speed, over the inertia; neither end 0
     effects: Pair  # -, g
-    parts: Pair  # -, rho
-    seen: Pair  # -, share of the wanted way in the mean torque of the law
+    parts: tuple[
+        Pair, ...
+    ]  # -, rho of the rest of a wanted way, and of the way at the center; corners of both
+    seen: Pair  # -, share of the rest in the mean torque of the law
+    seen_center: Number  # -, share of the way at the center
     pulse: Number  # -, longest pulse over the sample time
     delay: Number  # -, latest beginning of a pulse over the sample time
     added: Number  # -, what a rising supply adds to a way at most, over the way
@@ -88,26 +93,60 @@ def parts_of(speedups: Pair, longest: Number) -> Pair:
     longest : number
         Longest pulse over the assumed time [-].
     """
-    shortest_and_longest = [*speedups, *(generated.part_of_way(each, longest) for each in speedups)]
-    return reduce(minimum, shortest_and_longest), reduce(maximum, shortest_and_longest)
+    return _ends([*speedups, *(generated.part_of_way(each, longest) for each in speedups)])
 
 
-def numbers_at_corners(law: LoopLaw, ranges: LoopRanges) -> Iterator[tuple[Number, ...]]:
-    """Return phi, psi/h, g, rho, and both shares of the sample at all corners."""
+def parts_of_longer(speedup: Number, longest: Number) -> Pair:
+    """Return the smallest and the largest part of a longer wanted way that the valve goes further.
+
+    Parameters
+    ----------
+    speedup : number
+        Assumed over true time of the valve [-].
+    longest : number
+        Longest pulse over the assumed time [-].
+    """
+    return _ends([speedup, generated.rate_of_way(speedup, longest)])
+
+
+def parts_about(side: Pair, other: Pair) -> tuple[Pair, ...]:
+    """Return the parts of the rest of a way and of the way at the center that go together, as corners.
+
+    Parameters
+    ----------
+    side : tuple of number
+        Smallest and largest part of ways to the side of that at the center.
+    other : tuple of number
+        The same of ways to the other side.
+    """
+    (low, high), (other_low, other_high) = side, other
+    return (low, low), (high, high), (minimum(other_low, low), low), (maximum(other_high, high), high)
+
+
+def _ends(numbers: Sequence[Number]) -> Pair:
+    return reduce(minimum, numbers), reduce(maximum, numbers)
+
+
+def numbers_at_corners(
+    law: LoopLaw, ranges: LoopRanges
+) -> Iterator[tuple[tuple[Number, ...], tuple[Number, ...]]]:
+    """Return phi, psi/h, g, rho, and both shares of the sample at all corners, for the rest and for the center."""
     latest = generated.lateness(ranges.secants[1] * law.sample_time, ranges.pulse, ranges.delay)
     latest = (latest + ranges.added) / (1.0 + ranges.added)  # what the supply adds may come last
-    for slide, g, rho, late, seen in product(
+    for slide, g, (rho, rho_center), late, seen in product(
         polygon(ranges.secants, law.sample_time),
         dict.fromkeys(ranges.effects),
         dict.fromkeys(ranges.parts),
         (0.0, latest),
         dict.fromkeys(ranges.seen),
     ):
-        yield (*slide, g, rho, late, seen)
+        yield (*slide, g, rho, late, seen), (*slide, g, rho_center, late, ranges.seen_center)
 
 
-def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[Matrix]:
-    """Return [A B] of X+ = A X + B d at all corners, d in the order of :data:`DISTURBANCES`.
+def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[tuple[Matrix, Matrix]]:
+    """Return [A B] of X+ = A X + B d at all corners, for the rest beside a center and for the center.
+
+    With Z = (X, d) and Z_c its values at the center, X+ = [A B] (Z - Z_c) + [A B]_c Z_c.
 
     Parameters
     ----------
@@ -116,23 +155,23 @@ def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[
     ranges : LoopRanges
         Of what may differ.
     units : sequence
-        Rows of the identity, as anything that adds up and takes a factor.
+        Rows of the identity, as anything that adds up and takes a factor; d in the order of :data:`DISTURBANCES`.
     """
-    for each in numbers_at_corners(law, ranges):
-        yield sample(law, each, units)
+    for rest, center in numbers_at_corners(law, ranges):
+        yield sample(law, rest, units), sample(law, center, units)
 
 
 def wanted(law: LoopLaw) -> tuple[Number, ...]:
-    """Return the row that gives Y* from the state, and from the acceleration error last."""
-    columns = [[float(i == j) for i in range(STATES + 1)] for j in range(STATES + 1)]
-    return tuple(
-        generated.wanted_torque(e, n, y, law.gain, law.ahead, error) for e, _, n, y, error in columns
-    )
+    """Return the row that gives Y* from the state; what adds to D, it counts as D."""
+    columns = [[float(i == j) for i in range(STATES)] for j in range(STATES)]
+    return tuple(generated.wanted_torque(e, n, y, law.gain, law.ahead, lag) for e, _, n, y, lag in columns)
 
 
 def sample(law: LoopLaw, numbers: Sequence[Any], units: Sequence[Any]) -> tuple[Any, ...]:
     """Return the rows of [A B] for some numbers of a sample, with units as in :func:`corners`."""
-    e, p, n, y, error, *disturbed = units
-    way = generated.wanted_torque(e, n, y, law.gain, law.ahead, error) - y
+    e, p, n, y, lag, error, *disturbed = units
+    way = generated.wanted_torque(e, n, y, law.gain, law.ahead, lag + error) - y
     phi, psi, g, rho, late, seen = numbers
-    return generated.next_sample(e, p, n, y, way, phi, psi, g, rho, late, seen, law.pole, *disturbed)
+    return generated.next_sample(
+        e, p, n, y, lag, way, phi, psi, g, rho, late, seen, law.pole, law.kept, *disturbed
+    )

@@ -39,6 +39,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     AROUND,
     JERK_FACTORS,
     NAMES,
+    SETTLED,
     Interval,
     law_of,
     windows_of,
@@ -61,12 +62,13 @@ DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
 BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
     "slope": creep_slope.slope_claim,
     "near_slope": creep_slope.slope_claim,
+    "lower_slope": creep_slope.slope_claim,
     "level": creep_slope.level_claim,
     "fading": creep_slope.fading_claim,
 }
 """What of the friction is bounded in each window: the fields of :class:`Friction`."""
-SLOPES = ("slope", "near_slope")
-"""In the order of the ranges about the reference."""
+REACHES = dict(zip(("slope", "near_slope", "lower_slope"), AROUND, strict=True)) | {"fading": SETTLED}
+"""How far about the reference they are bounded; the level is bounded at the reference alone."""
 DISTURBED = {
     RESERVED: "where holding the reference takes no more than a share of the full pressure",
     LATE: "even if pulses begin late",
@@ -87,8 +89,8 @@ def claims(problem: Problem) -> dict[str, Claim]:
         there = _held(replace(problem, speeds=window))
         held = slips_held(law, window, radius)
         for name, claim in BOUNDED.items():
-            reach = AROUND[SLOPES.index(name)] if name in SLOPES else Fraction(0)
-            slips = slips_around(law, window, radius, problem.speeds[0], reach) if reach else held
+            reach = REACHES.get(name)
+            slips = held if reach is None else slips_around(law, window, radius, problem.speeds[0], reach)
             for relation in DIRECTIONS:
                 found[key(name, k, relation)] = claim(there, slips, relation, Fraction(0))
     return found

@@ -21,7 +21,7 @@ def wanted_torque(
     ahead : Number
         Share of a sample by which the error is predicted [-].
     acceleration_error : Number
-        Error of the acceleration of the reference that the law has, times h [rad/s].
+        Error of the acceleration of the reference that the law has, D and more, times h [rad/s].
 
     Returns
     -------
@@ -37,6 +37,7 @@ def next_sample(
     observer_error: Number,
     friction: Number,
     torque: Number,
+    lag: Number,
     way: Number,
     phi: Number,
     psi: Number,
@@ -45,6 +46,7 @@ def next_sample(
     late: Number,
     seen: Number,
     observer_pole: Number,
+    kept: Number,
     command_error: Number,
     torque_drift: Number,
     mean_torque_drift: Number,
@@ -53,7 +55,8 @@ def next_sample(
     slip_drift: Number,
     uneven_slip_drift: Number,
     speed_error: Number,
-) -> tuple[Number, Number, Number, Number]:
+    lag_drift: Number,
+) -> tuple[Number, Number, Number, Number, Number]:
     """State of the loop one sample later, docs/theory.md#band.
 
     Parameters
@@ -66,6 +69,8 @@ def next_sample(
         Deviation N of the observed friction torque, times h over the inertia of the law [rad/s].
     torque : Number
         Deviation Y of the torque that the law sees, times h over the inertia of the law [rad/s].
+    lag : Number
+        Error D of the filtered acceleration of the reference, times h [rad/s].
     way : Number
         Y* - Y, the change of the torque that is wanted [rad/s].
     phi : Number
@@ -82,6 +87,8 @@ def next_sample(
         Share of the wanted way in the mean torque that the law works out [-].
     observer_pole : Number
         Pole theta of the observer [-].
+    kept : Number
+        Part of it that the filter keeps over a sample [-].
     command_error : Number
         What dead band, shortest pulse and errors of measured speeds add to the wanted change [rad/s].
     torque_drift : Number
@@ -98,11 +105,13 @@ def next_sample(
         What more it adds to the error, because an error grows or fades within the sample [rad/s].
     speed_error : Number
         Measured wheel speed at the end of the sample minus the true one [rad/s].
+    lag_drift : Number
+        What the change of the acceleration adds to it over the sample [rad/s].
 
     Returns
     -------
-    tuple[Number, Number, Number, Number]
-        e, p, N and Y [rad/s].
+    tuple[Number, Number, Number, Number, Number]
+        e, p, N, Y and D [rad/s].
     """
     x0 = command_error + way
     x1 = rho * x0
@@ -114,6 +123,7 @@ def next_sample(
         -(observer_pole**2) * x3 + speed_error,
         friction - reference_drift + x3 * (1.0 - observer_pole) ** 2 + x4,
         torque + x1 + x4,
+        kept * lag + lag_drift,
     )
 
 
@@ -166,6 +176,24 @@ def part_of_way(c: Number, longest: Number) -> Number:
         Part [-].
     """
     return (1.0 - exp(-c * longest)) / (1.0 - exp(-longest))
+
+
+def rate_of_way(c: Number, longest: Number) -> Number:
+    """Change of the way over that of the wanted one, at the end of the longest pulse; with the shortest it is c, docs/theory.md#band.
+
+    Parameters
+    ----------
+    c : Number
+        Assumed over true time of the valve [-].
+    longest : Number
+        Longest pulse over the assumed time of the valve [-].
+
+    Returns
+    -------
+    Number
+        Rate [-].
+    """
+    return c * exp(longest * (1.0 - c))
 
 
 def lateness(m: Number, pulse: Number, delay: Number) -> Number:

@@ -39,6 +39,7 @@ from wspd_design.controllers.protection import Protection
 TOLERANCES = {
     "slope": 1e-3,
     "near_slope": 1e-3,
+    "lower_slope": 1e-3,
     "level": 2e-3,
     "fading": 5e-4,
 }  # s/m, -, s/m

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
@@ -18,33 +18,31 @@ from wspd_design.certificates.setting.slip_loop import (
     numbers_at_corners,
     sample,
 )
-from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in
-from wspd_design.certificates.theorems.slip_band.loop import Loop, loop_law
+from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in, shifts
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Loop, about, loop_law, way_at
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 
 if TYPE_CHECKING:
     from wspd_design.certificates.search.matrix_inequalities import Array
 
-KEPT = (0.93, 0.85, 0.97)  # of the function after a sample without disturbance; the first that succeeds
+KEPT = (0.95, 0.92, 0.85)  # of the function after a sample without disturbance; the first that succeeds
 FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 8, 8  # of the loop that the inequalities begin with, and are added
 SPREAD = 0.1  # of the room at the tightest limit, that the coordinates of the inequalities reach at least
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
+NEAR = 0.002  # rad/s, of the error at which the loop settles, that is near enough
+SETTLING = 6  # times that it is looked for
+HEIGHT = (
+    0.9  # of what a pulse at the center goes a part of, that may be left of it, or be one over this share
+)
 DIGITS = 7  # of the numbers in the proof
 LEAST = 1e-6  # of what disturbs most, as which anything else counts at least
 # [[x, 1], [1, y]] = x FIRST + y SECOND + CROSS is positive semidefinite if y is at least 1/x.
 FIRST, SECOND, CROSS = ((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 1.0), (1.0, 0.0))
 
 
-class Choice(NamedTuple):
-    """What an ellipsoid is sought for beside cell and window."""
-
-    pulse: Fraction  # -, longest one over the sample time
-    near: int  # which range about the reference the slope is bounded in
-
-
-Loops: TypeAlias = Callable[[Fraction], Loop]
-"""Numbers of cell and window for the least share of the full pressure."""
+Loops: TypeAlias = Callable[[Fraction, Fraction], Loop]
+"""Numbers of cell and window for the least share of the full pressure, and the error that errors are counted from."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +50,10 @@ class _Task:
     """What the inequalities are made of, in coordinates z, X - c = basis z, in which their numbers are near 1."""
 
     maps: "Array"  # [A o Br] at all corners
+    settled: Fraction  # rad/s, E
+    shift: "Array"  # rad/s, ends of what the faster ellipsoid is shifted by, as rows
     center: "Array"
+    lengths: tuple[Fraction, Fraction]  # of the pulse at the center over the sample time
     basis: "Array"
     limits: tuple[tuple["Array", float], ...]  # rows, and what is left beside the center
     used: tuple[int, ...]  # disturbances
@@ -77,9 +78,9 @@ def ellipsoid(
     law : BandLaw
         Numbers of the law.
     loops : callable
-        Returns the numbers of cell and window for the least share of the full pressure.
+        Returns the numbers of cell and window.
     choice : Choice
-        What they are made for.
+        What they are made for; what errors are counted from is chosen here.
     supply : Fraction
         Share of the full pressure that the search may ask for.
     faster : Ellipsoid or None
@@ -92,9 +93,8 @@ def ellipsoid(
     tuple of Ellipsoid and corners, or None
         The ellipsoid, and the corners that mattered.
     """
-    loop = loops(supply)
     for kept in KEPT:
-        task = _task(law, loop, kept)
+        task = _task(law, loops, supply, faster, kept)
         if task is None:
             return None
         solved = _solve(task, faster, hints)
@@ -102,21 +102,24 @@ def ellipsoid(
             continue
         q, shares, inside, corners_that_matter = solved
         found = _rounded(task, choice, supply, q, shares, inside)
-        found = replace(found, supply=_least_supply(loops, supply, found))
+        found = replace(found, supply=_least_supply(law, loops, supply, found))
+        loop = loops(found.supply, found.settled)
         try:
-            errors(law, loops(found.supply), found)
+            errors(law, loop, found)
         except Refused:
             continue
-        if faster is None or lies_in(faster, found):
+        if faster is None or lies_in(faster, found, shifts(law, loop, faster.settled, found.settled)):
             return found, corners_that_matter
     return None
 
 
-def excess(law: BandLaw, loop: Loop, faster: Ellipsoid | None, hints: Sequence[int]) -> float:
+def excess(
+    law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None, hints: Sequence[int]
+) -> float:
     """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
     least = math.inf
     for kept in KEPT[:2]:
-        task = _task(law, loop, kept)
+        task = _task(law, loops, supply, faster, kept)
         solved = None if task is None else _solve(task, faster, hints, beyond=True)
         if task is not None and solved is not None:
             least = min(least, max(_used(task, solved[0])))
@@ -125,7 +128,7 @@ def excess(law: BandLaw, loop: Loop, faster: Ellipsoid | None, hints: Sequence[i
     return least
 
 
-def _least_supply(loops: Callable[[Fraction], Loop], supply: Fraction, found: Ellipsoid) -> Fraction:
+def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid) -> Fraction:
     """Return the least share of the full pressure, in steps of what this one lacks, that the states have room in."""
     if supply == 1:
         return supply
@@ -137,36 +140,44 @@ def _least_supply(loops: Callable[[Fraction], Loop], supply: Fraction, found: El
     low, high = 1, int(supply / step)
     while low < high:
         middle = (low + high) // 2
-        if beyond_limit(loops(middle * step), q, center):
+        loop = about(law, loops(middle * step, found.settled), center, (found.shortest, found.longest))
+        if beyond_limit(loop, q, center):
             low = middle + 1
         else:
             high = middle
     return high * step
 
 
-def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
+def _task(
+    law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None, kept: float
+) -> _Task | None:
     """Set the inequalities up; None if the center is beyond a limit or the loop does not contract so much."""
     import numpy as np
     from scipy.linalg import solve_discrete_lyapunov
 
+    settled, center = _center(law, loops, supply, faster)
+    exact = [point(each) for each in center]
+    loop = loops(supply, settled)
+    lengths = _lengths(law, loop, exact)
+    loop = about(law, loop, exact, lengths)
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
     middle, spread = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2.0
     used = tuple(int(k) for k in np.flatnonzero(spread > 0.0))
-    maps = _maps(loop_law(law), loop.ranges)
+    maps, at_center = _maps(loop_law(law), loop.ranges)
     state, disturbed = maps[:, :, :STATES], maps[:, :, STATES:]
-    mean = state.mean(axis=0)
-    # Where the loop would settle if nothing but the middle of all were there.
-    center = np.linalg.solve(np.eye(STATES) - mean, disturbed.mean(axis=0) @ middle)
-    center = np.array([float(_short(each)) for each in center])
-    offset = state @ center - center + disturbed @ middle
+    mean, at = state.mean(axis=0), np.array(center, dtype=float)
+    offset = at_center[:, :, :STATES] @ at - at + at_center[:, :, STATES:] @ middle
     columns = np.concatenate([offset[:, :, None], disturbed[:, :, used] * spread[list(used)]], axis=2)
     reaching = [np.array([float(each.mid()) for each in limit.row]) for limit in loop.limits]
     rooms = [
-        float(limit.bound.mid()) - float(row @ center)
-        for row, limit in zip(reaching, loop.limits, strict=True)
+        float(limit.bound.mid()) - float(row @ at) for row, limit in zip(reaching, loop.limits, strict=True)
     ]
-    reaching.append(np.eye(STATES)[0])  # the error, between samples nearly the same
-    rooms.append(float(loop.widest.mid()) - abs(float(center[0])))
+    # The error, between samples nearly the same.
+    reaching += [np.eye(STATES)[0], -np.eye(STATES)[0]]
+    rooms += [
+        float(sign * (end - point(settled)).mid()) - sign * float(at[0])
+        for sign, end in zip((1, -1), loop.widest[::-1], strict=True)
+    ]
     contracting = max(abs(np.linalg.eigvals(mean))) ** 2 < kept
     if min(rooms) <= 0.0 or not contracting:
         return None
@@ -180,12 +191,66 @@ def _task(law: BandLaw, loop: Loop, kept: float) -> _Task | None:
     back = np.linalg.inv(basis)
     return _Task(
         maps=np.concatenate([back @ state @ basis, back @ columns], axis=2),
-        center=center,
+        settled=settled,
+        shift=_shift(law, loop, settled, faster),
+        center=at,
+        lengths=lengths,
         basis=basis,
         limits=tuple((row @ basis, room) for row, room in zip(reaching, rooms, strict=True)),
         used=used,
         kept=kept,
     )
+
+
+def _center(
+    law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None
+) -> tuple[Fraction, tuple[Fraction, ...]]:
+    """Return the error at which the loop settles if nothing but the middle of all is there, and its state then.
+
+    If that of the faster window is near, it is kept: there is nothing to shift.
+    """
+    import numpy as np
+
+    settled = Fraction(0) if faster is None else faster.settled
+    center: tuple[Fraction, ...] | None = None
+    for _ in range(SETTLING):
+        loop = loops(supply, settled)
+        middle = np.array([[float(end.mid()) for end in each] for each in loop.disturbances]).mean(axis=1)
+        if center is not None:
+            loop = about(law, loop, [point(each) for each in center], (Fraction(0), Fraction(1)))
+        found = _maps(loop_law(law), loop.ranges)[1].mean(axis=0)
+        at = np.linalg.solve(np.eye(STATES) - found[:, :STATES], found[:, STATES:] @ middle)
+        first, center = center is None, tuple(_short(float(each)) for each in at)
+        if abs(at[0]) < NEAR and not first:
+            break
+        low, high = (0.99 * float(end.mid()) for end in loop.settles)
+        settled = _short(min(max(float(settled) + float(at[0]), low), high))
+    assert center is not None
+    return settled, center
+
+
+def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> tuple[Fraction, Fraction]:
+    """Return between what the pulse of the way at the center stays if its height does not change much."""
+    way = float(way_at(law, loop, center).mid())
+    side = loop.pulses[0 if way > 0.0 else 1]
+    torque, time = side.rises * float(center[3].mid()), float(side.time.mid())
+    longest = float(loop.ranges.pulse.mid())
+    low, high = (float(end.mid()) + torque for end in side.height)
+    shortest_and_longest = [
+        -time * math.log1p(-abs(way) / height) if abs(way) < height else longest
+        for height in (high / HEIGHT, low * HEIGHT)
+    ]
+    return _short(shortest_and_longest[0]), min(_short(shortest_and_longest[1]), Fraction(longest))
+
+
+def _shift(law: BandLaw, loop: Loop, settled: Fraction, faster: Ellipsoid | None) -> "Array":
+    """Ends of what the states of the faster window are shifted by, as rows."""
+    import numpy as np
+
+    if faster is None:
+        return np.zeros((1, STATES))
+    ends = shifts(law, loop, faster.settled, settled)
+    return np.array([[float(each.mid()) for each in end] for end in ends])
 
 
 def _solve(
@@ -249,10 +314,11 @@ def _inequalities(
     if faster is not None:
         back = np.linalg.inv(task.basis)
         inner = back @ np.array(faster.matrix, dtype=float) @ back.T
-        apart = back @ (np.array(faster.center, dtype=float) - task.center)
-        parts = [(k, (1.0 - SLACK) * unit) for k, unit in enumerate(units)]
-        parts += [(last, -inner), (last + 1, -np.outer(apart, apart))]
-        asked.semidefinite(np.zeros((STATES, STATES)), parts)
+        for shift in task.shift:
+            apart = back @ (np.array(faster.center, dtype=float) + shift - task.center)
+            parts = [(k, (1.0 - SLACK) * unit) for k, unit in enumerate(units)]
+            parts += [(last, -inner), (last + 1, -np.outer(apart, apart))]
+            asked.semidefinite(np.zeros((STATES, STATES)), parts)
         one, other = (last, np.array(FIRST)), (last + 1, np.array(SECOND))
         asked.semidefinite(np.array(CROSS) - np.eye(2), [one, other])
     costs = np.zeros(last + 3)
@@ -307,6 +373,9 @@ def _rounded(
         pulse=choice.pulse,
         supply=supply,
         near=choice.near,
+        settled=task.settled,
+        shortest=task.lengths[0],
+        longest=task.lengths[1],
         matrix=tuple(tuple(_short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(_short(float(each)) for each in task.center),
         alpha=Fraction(task.kept),
@@ -320,21 +389,24 @@ def _short(number: float) -> Fraction:
     return Fraction(float(f"{number:.{DIGITS}g}"))
 
 
-def _maps(law: LoopLaw, ranges: LoopRanges) -> "Array":
-    """[A B] at all corners, the sample's numbers as columns of an array."""
+def _maps(law: LoopLaw, ranges: LoopRanges) -> "tuple[Array, Array]":
+    """[A B] and that of the center at all corners, the sample's numbers as columns of an array."""
     import numpy as np
 
-    numbers = np.array(list(numbers_at_corners(_doubles(law), _doubles(ranges))))
-    rows = sample(_doubles(law), list(numbers.T[:, :, None]), list(np.eye(STATES + len(DISTURBANCES))))
-    return np.stack(rows, axis=1)
+    law, ranges = _doubles(law), _doubles(ranges)
+    both = np.array(list(numbers_at_corners(law, ranges)))
+    units = list(np.eye(STATES + len(DISTURBANCES)))
+    rest, center = (
+        np.stack(np.broadcast_arrays(*sample(law, list(numbers.T[:, :, None]), units)), axis=1)
+        for numbers in (both[:, 0], both[:, 1])
+    )
+    return rest, center
 
 
 def _doubles(record: Any) -> Any:
     """Return the record with doubles in place of balls."""
-    values = {
-        each.name: tuple(map(float, value))
-        if isinstance(value := getattr(record, each.name), tuple)
-        else float(value)
-        for each in fields(record)
-    }
-    return replace(record, **values)
+    return replace(record, **{each.name: _double(getattr(record, each.name)) for each in fields(record)})
+
+
+def _double(value: Any) -> Any:
+    return tuple(map(_double, value)) if isinstance(value, tuple) else float(value)

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.search.slip_band.ellipsoids import Choice, Loops, ellipsoid, excess
+from wspd_design.certificates.search.slip_band.ellipsoids import Loops, ellipsoid, excess
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, least_delay
-from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, Loop, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Friction, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import (
     AROUND,
@@ -26,7 +26,9 @@ SHARES = tuple(Fraction(k, 8) for k in range(1, 9))
 RESERVES = tuple(map(Fraction, ("0.5", "0.6", "0.7", "0.75", "0.8", "0.85")))
 PULSES = tuple(map(Fraction, ("3/4", "1/2", "1", "1/4")))  # longest ones that are tried
 FIRST = Choice(Fraction(1, 2), len(AROUND) - 1)
-MIDDLE = tuple(Choice(Fraction(pulse, 4), 1) for pulse in (3, 2, 1))  # that tell how far there is to go
+MIDDLE = tuple(
+    Choice(Fraction(pulse, 4), near) for pulse, near in ((4, 2), (3, 2), (2, 1), (1, 1))
+)  # that tell how far there is to go
 HOPELESS = 1.4  # square of what is reached over what limits leave, from which on a cell is halved at once
 WORTH = 0.3  # of the widest range, that another one has at least to be looked at
 MATTERS = {"m": 1.0, "i": 1.0, "r": 2.0, "u": 1.0, "t": 1.0, "f": 0.3, "v": 0.3}
@@ -65,18 +67,17 @@ class Sought:
         return windows_of(self.problem)
 
     def loops(self, cell: Cell, window: int, choice: Choice) -> Loops:
-        """Return the loop of a cell and a window for a share of the full pressure."""
+        """Return the loop of a cell and a window for a share of the full pressure and what errors are counted from."""
 
-        def loop(supply: Fraction) -> Loop:
-            conditions = self.conditions._replace(supply=supply, near=choice.near)
+        def loop(supply: Fraction, settled: Fraction) -> Loop:
             return loop_of(
                 self.problem,
                 self.law,
                 cell,
                 self.windows[window],
                 self.friction[window],
-                choice.pulse,
-                conditions,
+                choice._replace(settled=settled),
+                self.conditions._replace(supply=supply),
             )
 
         return loop
@@ -145,7 +146,7 @@ def next_slower(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Sp
 def choices(sought: Sought, first: Choice) -> tuple[Choice, ...]:
     """Return what an ellipsoid may be sought for; shorter pulses leave less room and less to be uncertain about."""
     # A pulse ends in its sample, however late it begins.
-    every = (Choice(pulse, near) for near in (1, 0) for pulse in PULSES)
+    every = (Choice(pulse, near) for near in (2, 1, 0) for pulse in PULSES)
     longest = 1 - sought.conditions.delay
     return tuple(dict.fromkeys(each._replace(pulse=min(each.pulse, longest)) for each in (first, *every)))
 
@@ -197,7 +198,7 @@ def _still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
         window = len(sought.windows) - 1 - number
         if each is None:
             continue
-        loop = sought.loops(cell, window, Choice(each.pulse, each.near))(each.supply)
+        loop = sought.loops(cell, window, Choice(each.pulse, each.near))(each.supply, each.settled)
         try:
             errors(sought.law, loop, each)
         except Refused:
@@ -241,8 +242,8 @@ def _letter(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent)
 def _excess(sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent) -> float:
     spent.one()
     ends_in_time = choice._replace(pulse=min(choice.pulse, 1 - sought.conditions.delay))
-    loop = sought.loops(cell, window, ends_in_time)(sought.conditions.supply)
-    return excess(sought.law, loop, chain.faster, chain.hints)
+    loops = sought.loops(cell, window, ends_in_time)
+    return excess(sought.law, loops, sought.conditions.supply, chain.faster, chain.hints)
 
 
 def largest_share(sought: Sought, most: float) -> Proof | Failed:

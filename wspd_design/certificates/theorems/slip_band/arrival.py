@@ -18,11 +18,9 @@ class Asked(NamedTuple):
     """What a band asks of a wheel at its beginning."""
 
     speeds: tuple[float, float]  # m/s, of the window
+    settled: float  # rad/s, error of the wheel speed that errors are counted from
     matrix: Sequence[Sequence[float]]  # P of (X - c)'P(X - c) <= 1 [s2/rad2]
     center: Sequence[float]  # c [rad/s]
-    misjudged: tuple[
-        float, float
-    ]  # rad/s, error of the acceleration of the reference that the law has, times h
     supply: float  # -, of the full pressure, at least
 
 
@@ -38,7 +36,7 @@ def arrived(law: Protection, plant: Plant, state: State, asked: Asked) -> Array:
     asked : Asked
         Of the band.
     """
-    deviations, misjudged = in_band(law, plant, state)
+    deviations = in_band(law, plant, state, asked.settled)
     root = np.linalg.cholesky(np.asarray(asked.matrix, dtype=float)).T
     apart = [x - float(c) for x, c in zip(deviations, asked.center, strict=True)]
     # The length of a sum is at most the sum of the lengths: of the center, of each symbol, and of the errors.
@@ -47,33 +45,31 @@ def arrived(law: Protection, plant: Plant, state: State, asked: Asked) -> Array:
     length = np.linalg.norm(centers @ root.T, axis=1)
     length = length + np.linalg.norm(np.einsum("ij,bjs->bis", root, symbols), axis=1).sum(axis=1)
     length = length + np.linalg.norm(errors @ np.abs(root).T, axis=1)
-    (slow, fast), (least, most) = asked.speeds, asked.misjudged
+    slow, fast = asked.speeds
     inside: Array = (
         (length < 1.0 - INWARD)
         & (state.speed.low >= slow)
         & (state.speed.high <= fast)
-        & (misjudged.low >= least)
-        & (misjudged.high <= most)
         & (state.supply.low >= asked.supply)
     )
     return inside
 
 
-def in_band(law: Protection, plant: Plant, state: State) -> tuple[tuple[Affine, ...], Affine]:
-    """Return e, p, N and Y of the band and h times the error of the acceleration, once the law has observed [rad/s]."""
+def in_band(law: Protection, plant: Plant, state: State, settled: float) -> tuple[Affine, ...]:
+    """Return e, p, N, Y and D of the band, once the law has observed [rad/s]."""
     h, inertia = law.sample_time, law.wheelset_inertia
     slip, pole = law.reference.slip, float(np.exp(-law.observer_rate * h))  # type: ignore[attr-defined]
-    held = state.speed * slip
+    held = state.speed * slip - settled / plant.curvature  # sliding speed
     slowing, _ = rates(plant, state.speed, state.sliding)
     slowing_there, gliding_there = rates(plant, state.speed, held)
     turning = slowing * (1.0 - slip)  # of the rim at the reference [m/s2]
     holding = (slowing_there - gliding_there - turning) / plant.effect  # N m, as the law sees it
     known = known_acceleration(law, state)
     friction = observed_friction(law, plant, state)
-    deviations = (
+    return (
         (held - state.sliding) * plant.curvature,
         state.innovation * plant.curvature * -(pole**2),
         (friction - holding) * (h / inertia) - turning * plant.curvature * h,
         (state.torque - holding) * (h / inertia),
+        (slowing - known) * plant.curvature * ((1.0 - slip) * h),
     )
-    return deviations, (slowing - known) * plant.curvature * ((1.0 - slip) * h)

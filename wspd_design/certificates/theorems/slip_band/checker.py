@@ -2,13 +2,14 @@
 
 For each cell and window the proof states a center c, Q, alpha, a share for the way of the center and one for each
 disturbance; the ellipsoid is (X - c)'Q^-1(X - c) <= 1. What disturbs lies between two bounds, so d = m + r z with
--1 <= z <= 1, and X+ - c = A (X - c) + o + B r z with o = A c - c + B m. From the ellipsoid the next state has at most
-alpha + sum of the shares <= 1 if
+-1 <= z <= 1, and X+ - c = A (X - c) + o + B r z with o = A_c c - c + B_c m: the change of the torque at the center has
+numbers of its own. From the ellipsoid the next state has at most alpha + sum of the shares <= 1 if
 
     Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share
 
 is positive definite at all corners. Windows follow each other from the fastest to the slowest; the ellipsoid of a
-faster one lies in that of the next. Between samples the error is bounded by the same state, with the torque in between.
+faster one lies in that of the next, with errors counted as there. Between samples the error is bounded by the same
+state, with the torque in between.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,9 +23,11 @@ from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Pair, corners, wanted
 from wspd_design.certificates.theorems.slip_band.loop import (
+    Choice,
     Conditions,
     Friction,
     Loop,
+    about,
     least_of,
     loop_law,
     loop_of,
@@ -102,15 +105,16 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
                         "in a window without ellipsoids holding the reference may take less than is claimed"
                     )
                 continue
-            conditions = Conditions(each.supply, found.delay, found.noise, found.reserve, each.near)
-            loop = loop_of(problem, law, cell, window, friction, each.pulse, conditions)
+            conditions = Conditions(each.supply, found.delay, found.noise, found.reserve)
+            choice = Choice(each.pulse, each.near, each.settled)
+            loop = loop_of(problem, law, cell, window, friction, choice, conditions)
             bands[k] = _joined(bands[k], errors(law, loop, each))
             supplies[k] = max(supplies[k], each.supply)
-            if slower is not None and not lies_in(each, slower):
+            if slower is not None and not _lies_in_next(law, each, *slower):
                 raise Refused(
                     f"an ellipsoid at {window[1] * 3.6:.0f} km/h does not lie in the next slower one"
                 )
-            slower = each
+            slower = each, loop
     if waiting or next(cells, None) is not None:
         raise Refused("steps and cells do not match")
     radius = point(problem.span("wheel radius")[1])
@@ -146,7 +150,8 @@ def holds_more(
 ) -> bool:
     """Whether holding the reference takes more than a share of the full pressure, everywhere in cell and window."""
     exact = Conditions(supply=Fraction(1), delay=Fraction(0), noise=Fraction(0))
-    return reserve < 1 and loop_of(problem, law, cell, window, friction, Fraction(1), exact).holding > reserve
+    loop = loop_of(problem, law, cell, window, friction, Choice(Fraction(1), 0), exact)
+    return reserve < 1 and loop.holding > reserve
 
 
 def least_delay(problem: Problem, law: BandLaw) -> Fraction:
@@ -170,6 +175,7 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     )
     if not is_positive(q):
         raise Refused("a matrix Q is not positive definite")
+    loop = about(law, loop, center, (found.shortest, found.longest))
     spread = [(high - low) / 2 for low, high in loop.disturbances]
     shares = (found.offset, *found.shares)
     if found.alpha <= 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:
@@ -190,8 +196,8 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     beyond = beyond_limit(loop, q, center)
     if beyond:
         raise Refused(f"the state may go beyond {beyond}")
-    lowest, highest = _within(loop_law(law), loop, q, center)
-    if not highest < loop.widest or not -loop.widest < lowest:
+    lowest, highest = (point(found.settled) + each for each in _within(loop_law(law), loop, q, center))
+    if not highest < loop.widest[1] or not loop.widest[0] < lowest:
         raise Refused("the error may leave the range in which the slope of the friction is bounded")
     return lowest, highest
 
@@ -218,9 +224,9 @@ def _left_over(
     whole, at = arb_mat([list(row) for row in q]), arb_mat([[each] for each in settled])
     center = arb_mat([[point(each)] for each in found.center])
     units = [arb_mat([[int(i == j) for j in range(size)]]) for i in range(size)]
-    for matrix in corners(loop_law(law), loop.ranges, units):
-        ab = arb_mat([row.entries() for row in matrix])
-        o = ab * at - center
+    for rest, of_center in corners(loop_law(law), loop.ranges, units):
+        ab = arb_mat([row.entries() for row in rest])
+        o = arb_mat([[(row * at)[0, 0]] for row in of_center]) - center
         yield (whole - ab * diagonal * ab.transpose() - o * o.transpose() / point(found.offset)).tolist()
 
 
@@ -241,18 +247,49 @@ def _product(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
     return sum(map(mul, one, other), point(0))
 
 
-def lies_in(faster: Ellipsoid, slower: Ellipsoid) -> bool:
+def shifts(law: BandLaw, loop: Loop, before: Fraction, after: Fraction) -> list[tuple[Ball, ...]]:
+    """Return between what a state changes if errors are counted from another one, in a window whose loop is given.
+
+    Another speed takes another torque to hold, by the secant of the friction between both.
+    """
+    if before == after:
+        return [(point(0),) * STATES]
+    apart = point(before - after)
+    torques = [
+        point(law.sample_time) * secant / effect
+        for secant, effect in product(loop.ranges.secants, loop.ranges.effects)
+    ]
+    return [
+        tuple(each * apart for each in (point(1), point(0), torque, torque, point(0)))
+        for torque in (least_of(torques), most_of(torques))
+    ]
+
+
+def _lies_in_next(law: BandLaw, faster: Ellipsoid, slower: Ellipsoid, loop: Loop) -> bool:
+    return lies_in(faster, slower, shifts(law, loop, faster.settled, slower.settled))
+
+
+def lies_in(faster: Ellipsoid, slower: Ellipsoid, shifts: Sequence[Sequence[Ball]]) -> bool:
     """Whether one ellipsoid lies in another: 1 - (X-c)'P(X-c) of the slower one is at least t times that of the faster.
 
     With D the center of the faster one less that of the slower one, that is Qs - Qf/t - D D'/(1 - t) positive definite.
+    If it lies there at both ends of what it is shifted by, it does in between.
     """
     t = slower.inside
-    apart = [a - b for a, b in zip(faster.center, slower.center, strict=True)]
-    return 0 < t < 1 and is_positive(
-        [
-            [s - f / t - one * other / (1 - t) for s, f, other in zip(*rows, apart, strict=True)]
-            for *rows, one in zip(slower.matrix, faster.matrix, apart, strict=True)
-        ]
+    return 0 < t < 1 and all(
+        is_positive(
+            [
+                [
+                    point(s - f / t) - one * other / point(1 - t)
+                    for s, f, other in zip(*rows, apart, strict=True)
+                ]
+                for *rows, one in zip(slower.matrix, faster.matrix, apart, strict=True)
+            ]
+        )
+        for apart in (
+            [point(a - b) + by for a, b, by in zip(faster.center, slower.center, shift, strict=True)]
+            for shift in shifts
+        )
     )
 
 
@@ -260,18 +297,19 @@ def _within(law: LoopLaw, loop: Loop, q: Sequence[Sequence[Ball]], center: Seque
     """Bound the error at every instant of a sample, by parts of it in which phi and psi are enclosed."""
     h, (low, high) = law.sample_time, loop.ranges.secants
     asked, lowest, highest = wanted(law), center[0], center[0]
-    known, command, _, mean, _, _, moved, uneven, _ = (a.union(b) for a, b in loop.disturbances)
+    farthest = most_of([end for each in loop.pulses for end in each.parts])
+    known, command, _, mean, _, _, moved, uneven, *_ = (a.union(b) for a, b in loop.disturbances)
     for part in range(PARTS):
         begin, end = h * part / PARTS, h * (part + 1) / PARTS
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]
         psis = (_psi(low, begin) / h, _psi(high, end) / h)
         for phi, psi, g, gone in product(
-            (least_of(phis), most_of(phis)), psis, loop.ranges.effects, (point(0), most_of(loop.ranges.parts))
+            (least_of(phis), most_of(phis)), psis, loop.ranges.effects, (point(0), farthest)
         ):
-            way = [each - (k == 3) for k, each in enumerate(asked[:STATES])]
+            way = [each - (k == 3) for k, each in enumerate(asked)]
             row = [phi * (k == 0) - g * psi * ((k == 3) + gone * each) for k, each in enumerate(way)]
             # A part of the sample has seen at most the drift of the whole one.
-            disturbed = -g * psi * (gone * (asked[STATES] * known + command) - mean.union(point(0)))
+            disturbed = -g * psi * (gone * (asked[4] * known + command) - mean.union(point(0)))
             disturbed += (moved + uneven).union(point(0))
             there = _product(row, center) + disturbed
             reach = reaches(q, row)

@@ -3,23 +3,36 @@
 All of them are worked out in balls from the box and from the proved bounds of the friction, and rounded outwards.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from operator import mul
 from typing import NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.declared_law import LEAST
-from wspd_design.certificates.setting.slip_loop import LoopLaw, LoopRanges, Pair, parts_of, wanted
+from wspd_design.certificates.setting.slip_loop import (
+    DISTURBANCES,
+    LoopLaw,
+    LoopRanges,
+    Pair,
+    parts_about,
+    parts_of,
+    parts_of_longer,
+    wanted,
+)
 from wspd_design.certificates.theorems.slip_band.reference import held_in
 from wspd_design.certificates.theorems.slip_band.statement import (
     AROUND,
     JERK_FACTORS,
     NAMES,
+    SETTLED,
     BandLaw,
     Cell,
+    Interval,
+    Sides,
     fastest_loss,
 )
 from wspd_design.model.generated.slip_loop import added_by_supply, lateness
@@ -36,14 +49,15 @@ class Friction(NamedTuple):
     """Bounds of the friction in a window: of -S, of the force over mu0 Q at the reference, of its fading."""
 
     slope: tuple[float, float]  # s/m, in the widest range about the reference
-    near_slope: tuple[float, float]  # s/m, in the narrower one
+    near_slope: tuple[float, float]  # s/m, in a narrower one
+    lower_slope: tuple[float, float]  # s/m, in one that lies below the reference for the most part
     level: tuple[float, float]  # -
-    fading: tuple[float, float]  # s/m
+    fading: tuple[float, float]  # s/m, where a loop may settle
 
     @property
     def slopes(self) -> tuple[tuple[float, float], ...]:
         """Bounds of -S in the order of the ranges about the reference."""
-        return self.slope, self.near_slope
+        return self.slope, self.near_slope, self.lower_slope
 
 
 class Conditions(NamedTuple):
@@ -54,8 +68,15 @@ class Conditions(NamedTuple):
     noise: Fraction  # m/s, by which measured speeds of rims and train differ from the true ones at most
     reserve: Fraction = Fraction(
         1
-    )  # -, share of the full pressure beyond which nothing is claimed; 1: no such share
-    near: int = 0  # which range about the reference the slope is bounded in
+    )  # -, of the full pressure, beyond which nothing is claimed; 1: no such share
+
+
+class Choice(NamedTuple):
+    """What the states are chosen for."""
+
+    pulse: Fraction  # -, longest one over the sample time
+    near: int  # which range about the reference the slope is bounded in
+    settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,8 +95,20 @@ class Loop:
     ranges: LoopRanges
     disturbances: tuple[Pair, ...]  # lowest and highest [rad/s]
     limits: tuple[Limit, ...]
-    widest: Ball  # rad/s, error up to which the slope is bounded
+    widest: Pair  # rad/s, errors between which the slope is bounded
+    settles: Pair  # rad/s, errors between which the fading is bounded
     holding: float  # -, share of the full pressure that holds the reference, at least
+    pulses: tuple["Pulses", "Pulses"]  # that fill and that vent
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pulses:
+    """Pulses of one kind; they go a part of a height: that of the supply above the torque, or of the torque above 0."""
+
+    parts: Pair  # -, rho
+    time: Ball  # -, that the inversion assumes, over the sample time
+    height: Pair  # rad/s, at the torque that holds the reference
+    rises: int  # with Y: 1 or -1
 
 
 def loop_law(law: BandLaw) -> LoopLaw:
@@ -86,6 +119,7 @@ def loop_law(law: BandLaw) -> LoopLaw:
         gain=point(law.approach_rate) * h,
         ahead=point(law.ahead),
         pole=(-point(law.observer_rate) * h).exp(),
+        kept=(-h / point(law.acceleration_time)).exp(),
     )
 
 
@@ -95,10 +129,11 @@ def loop_of(
     cell: Cell,
     window: tuple[float, float],
     friction: Friction,
-    pulse: Fraction,
+    choice: Choice,
     conditions: Conditions,
 ) -> Loop:
-    """Work out the loop of a cell in a window of speed, with pulses of at most this share of the sample."""
+    """Work out the loop of a cell in a window of speed."""
+    pulse = choice.pulse
     if pulse + conditions.delay > 1:
         raise Refused("a pulse may go on into the next sample")
     if 2 * conditions.noise > window[0]:
@@ -117,9 +152,16 @@ def loop_of(
     normal = mass * point(constants().gravity) / wheels(vehicle) * mu0  # mu0 Q
     rolling, turned = (1 - slip) / radius, reference.turning / radius
     drag = _resistance(problem, speed) / mass
+    slope, (under, over) = ball(*friction.slopes[choice.near]), AROUND[choice.near]
+    apart, slowest = point(choice.settled), point(problem.speeds[0])
+    settled, widest = (
+        _errors(side, slowest / point(problem.span("wheel radius")[1]))
+        for side in (SETTLED, AROUND[choice.near])
+    )
+    if not settled[0] < apart < settled[1]:
+        raise Refused("errors are counted from where the fading of the friction is not bounded")
     # All axles are within their bands, and from the reference to their slip the force follows the slope.
-    slope, around = ball(*friction.slopes[conditions.near]), AROUND[conditions.near]
-    used = ball(*friction.level) + slope * ball(-around, around) * point(problem.speeds[0])
+    used = ball(*friction.level) + slope * ball(-over, under) * slowest
     pulled = point(constants().gravity) * mu0  # deceleration by a friction of mu0 Q
     braking = pulled * used + drag
     if not braking < point(fastest_loss(problem)) or not braking > 0:
@@ -139,7 +181,9 @@ def loop_of(
     held = weight * ball(*friction.level) - damped + inertia * turned * slowing / seen_inertia
     if conditions.reserve < 1:
         held = held.min(point(conditions.reserve) * full)
-    # Torque of a friction of mu0 Q that a wheel at the reference gains in time: by its speed, and by the slip it holds.
+    # At the speed w_r + E; its sliding speed is E R less.
+    held += (weight * slope * radius - damping / seen_inertia) * apart
+    # Friction over mu0 Q that a wheel at the reference gains in time: by its speed, and by the slip it holds.
     fading, moved = (
         slip * ball(*friction.fading),
         slope * (speed * reference.fall * braking + reference.drift),
@@ -158,11 +202,17 @@ def loop_of(
     share = -(-h / point(law.acceleration_time)).expm1()
     misread_rate = 2 * share * rolls + 3 * reference.bend * point(fastest_loss(problem)) * h * turns
     sliding = h * reference.drift / radius
-    drift = -h * h * weight * (fading * braking + moved)
+    # The slip at w_r + E is E R/v less, and falls with the speed.
+    there = (slip - apart * radius / speed) * ball(*friction.fading)
+    drift = -h * h * weight * (there * braking + moved - slope * apart * radius * braking / speed)
     drift += (h * h * damping * turned * braking + h * damping * sliding - inertia * turning) / seen_inertia
-    # The filter's error of the acceleration is e <- (1 - n)(e + h jerk) + n h jerk/2.
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
-    known = slowly * (1 / share - point(Fraction(1, 2))) + sliding + misread_rate
+    lag_drift = slowly * (1 - share / 2)
+    # The part of the change of the speed that the rims take part in changes where the slip falls; settled, the lag is
+    # what drifts over the share.
+    bent = reference.bend * h * braking / reference.turning
+    lag_drift += bent * lag_drift / share * ball(Fraction(-1), Fraction(1))
+    known = sliding + misread_rate
     left_out = (
         h
         / point(law.inertia)
@@ -174,28 +224,50 @@ def loop_of(
     # The share of a steady drift that a sample has seen; a later weight sees more of it.
     half_way = (1 - lateness(high * h, 1, 0)).union(1 - lateness(low * h, 1, 0))
     added = _added(problem, law, fill, pulse, conditions)
-    left_out += loop_law(law).gain * misread
-    disturbed = (known, left_out, drift, drift * half_way, turning, turning / 2, sliding, uneven, turns)
+    left_out += loop_law(law).gain * (misread + apart)
+    disturbed = (
+        known,
+        left_out,
+        drift,
+        drift * half_way,
+        turning,
+        turning / 2,
+        sliding,
+        uneven,
+        turns,
+        lag_drift,
+    )
+    pulses = _pulses(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
+    seen = _seen(law, pulse)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
             effects=_ends(effect),
-            parts=_parts(law, fill, vent, pulse, added),
-            seen=_seen(law, pulse),
+            parts=tuple((end, end) for end in _ends(_hull([end for each in pulses for end in each.parts]))),
+            seen=seen,
+            seen_center=_hull(seen),
             pulse=point(pulse),
             delay=point(conditions.delay),
             added=added,
         ),
         disturbances=tuple(map(_ends, disturbed)),
-        limits=_limits(law, pulse, conditions.supply, held, turned * slowing, known, misread),
-        widest=point(around) * point(problem.speeds[0]) / point(problem.span("wheel radius")[1]),
+        limits=_limits(law, choice, conditions.supply, held, turned * slowing, known, misread),
+        widest=widest,
+        settles=settled,
         holding=holding,
+        pulses=pulses,
     )
+
+
+def _errors(around: Sides, turning: Ball) -> Pair:
+    """Errors of a wheel speed between which the slip is so much below and above the reference."""
+    below_it, above_it = map(point, around)
+    return -above_it * turning, below_it * turning
 
 
 def _limits(
     law: BandLaw,
-    pulse: Fraction,
+    choice: Choice,
     supply: Fraction,
     held: Ball,
     falling: Ball,
@@ -208,8 +280,8 @@ def _limits(
     ----------
     law : BandLaw
         Its numbers.
-    pulse : Fraction
-        Longest pulse over the sample time.
+    choice : Choice
+        Longest pulse, and the error that errors are counted from.
     supply : Fraction
         Least share of the full pressure.
     held : ball
@@ -217,7 +289,7 @@ def _limits(
     falling : ball
         Deceleration of the reference [rad/s2].
     known : ball
-        Error of that acceleration in the law, times h [rad/s].
+        Error of that acceleration in the law, beside the lag of its filter, times h [rad/s].
     misread : ball
         Error of the error of the wheel speed in the law [rad/s].
     """
@@ -226,40 +298,40 @@ def _limits(
     full = h * point(law.full_torque) / point(law.inertia)
     least, room = point(LEAST) * full, point(supply) * full - most_held
     asked = wanted(loop_law(law))
-    lowest, highest = _ends(asked[4] * known + asked[0] * misread)
-    venting, filling = (-h * point(pulse) / point(each) for each in (law.vent_time, law.fill_time))
+    lowest, highest = _ends(asked[4] * known + asked[0] * (misread + point(choice.settled)))
+    venting, filling = (-h * point(choice.pulse) / point(each) for each in (law.vent_time, law.fill_time))
     vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one pulse
     zero = point(0)
     return (
         Limit(
             what="what venting takes off in its longest pulse",
-            row=tuple(-each for each in (*asked[:3], asked[3] - 1 + vent)),
+            row=tuple(-each for each in (*asked[:3], asked[3] - 1 + vent, asked[4])),
             bound=vent * least_held + lowest,
         ),
         Limit(
             what="what filling adds in its longest pulse",
-            row=(*asked[:3], asked[3] - 1 + fill),
+            row=(*asked[:3], asked[3] - 1 + fill, asked[4]),
             bound=fill * room - highest,
         ),
-        *_below_the_curve(law, known, misread),
+        *_below_the_curve(law, known, misread + point(choice.settled)),
         Limit(
             what="the observed friction above 0",
-            row=(zero, zero, point(-1), zero),
+            row=(zero, zero, point(-1), zero, zero),
             bound=least_held - _upper(h * falling),
         ),
         Limit(
             what="the torque that is left",
-            row=(zero, zero, zero, point(-1)),
+            row=(zero, zero, zero, point(-1), zero),
             bound=least_held - least / venting.exp(),
         ),
         Limit(
             what="the torque that the brake can add",
-            row=(zero, zero, zero, point(1)),
+            row=(zero, zero, zero, point(1), zero),
             bound=room - least / filling.exp(),
         ),
         Limit(
             what="the room that a rising supply asks for",
-            row=(zero, zero, zero, point(1)),
+            row=(zero, zero, zero, point(1), zero),
             bound=room - point(ROOM) * (1 - point(supply)) * full,
         ),
     )
@@ -287,24 +359,118 @@ def _below_the_curve(law: BandLaw, known: Ball, misread: Ball) -> tuple[Limit, .
     return (
         Limit(
             what="the beginning of the braking curve",
-            row=(point(1), point(0), ahead, -ahead),
+            row=(point(1), point(0), ahead, -ahead, ahead),
             bound=slew - _upper(misread + ahead * known),
         ),
     )
 
 
-def _parts(law: BandLaw, fill: Ball, vent: Ball, pulse: Fraction, added: Ball) -> Pair:
-    """Part of the wanted way that the true valve goes."""
-    longest = point(pulse * law.sample_time) / point(min(law.fill_time, law.vent_time))
+def _pulses(
+    law: BandLaw, times: tuple[Ball, Ball], pulse: Fraction, added: Ball, supplied: Ball, held: Ball
+) -> tuple[Pulses, Pulses]:
+    """Return pulses that fill and pulses that vent.
+
+    Parameters
+    ----------
+    law : BandLaw
+        Its numbers.
+    times : tuple of ball
+        Of filling and venting [s].
+    pulse : Fraction
+        Longest one over the sample time.
+    added : ball
+        What a rising supply adds to a way that fills, over the way.
+    supplied, held : ball
+        Torque of the supply, and the one that holds, over the inertia of the law [rad/s2].
+    """
+    h, assumed = point(law.sample_time), (law.fill_time, law.vent_time)
+    longest = point(pulse * law.sample_time) / point(min(assumed))
     filling, venting = (
-        _hull(parts_of(_ends(point(assumed) / true), longest))
-        for assumed, true in ((law.fill_time, fill), (law.vent_time, vent))
+        _hull(parts_of(_ends(point(each) / true), longest)) for each, true in zip(assumed, times, strict=True)
     )
-    return _ends(filling.union(filling * (1 + added)).union(venting))
+    fill, vent = (point(each) / h for each in assumed)
+    return (
+        Pulses(
+            parts=_ends(filling.union(filling * (1 + added))),
+            time=fill,
+            height=_ends(h * (supplied - held)),
+            rises=-1,
+        ),
+        Pulses(parts=_ends(venting), time=vent, height=_ends(h * held), rises=1),
+    )
+
+
+def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Interval) -> Loop:
+    """Return the loop with changes of the torque counted from the one at a center of the states.
+
+    Parameters
+    ----------
+    law : BandLaw
+        Its numbers.
+    loop : Loop
+        As :func:`loop_of` returns it.
+    center : sequence of ball
+        State [rad/s].
+    lengths : tuple of Fraction
+        Shortest and longest pulse of the way at the center over the sample time, at any torque of the states.
+    """
+    way = way_at(law, loop, center)
+    if not (way > 0 or way < 0):
+        return loop
+    side, other = loop.pulses if way > 0 else loop.pulses[::-1]
+    share, (shortest, longest) = point(law.time_share), map(point, lengths)
+    pulse = loop.ranges.pulse
+    further = parts_of_longer(share, most_of([pulse / each.time for each in loop.pulses]))
+    # The mean over a pulse of what it has reached: a longer one counts from its end on, and ends are convex over ways.
+    seen = _ends((further[0] * (1 - (pulse + longest) / 2)).union(further[1]))
+    least, most = parts_of((share, share), longest / side.time)
+    fading = (
+        -share * longest / side.time
+    ).exp()  # the rate at the end of the pulse over that at its beginning
+    seen_center = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
+    known = point(Fraction(float(seen_center.mid())))
+    disturbances = [low.union(high) for low, high in loop.disturbances]
+    disturbances[DISTURBANCES.index("mean reference drift")] += (seen_center - known) * way
+    return replace(
+        loop,
+        ranges=replace(loop.ranges, parts=parts_about(side.parts, other.parts), seen=seen, seen_center=known),
+        disturbances=tuple(map(_ends, disturbances)),
+        limits=(*loop.limits, *_center_in_time(side, abs(way), (shortest, longest))),
+    )
+
+
+def way_at(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Ball:
+    """Return the wanted change of the torque at a center, what disturbs being in its middle [rad/s]."""
+    known, command = ((low + high) / 2 for low, high in loop.disturbances[:2])
+    asked = wanted(loop_law(law))
+    return sum(map(mul, asked, center), command + asked[4] * known - center[3])
+
+
+def _center_in_time(side: Pulses, way: Ball, lengths: tuple[Ball, Ball]) -> Iterator[Limit]:
+    """Keep the torque where the way at the center takes no shorter and no longer a pulse."""
+    least, most = way.lower(), way.upper()
+    shortest, longest = (-(-each / side.time).expm1() for each in lengths)  # parts of the height
+
+    def row(sign: int) -> Row:
+        return (point(0), point(0), point(0), point(sign * side.rises), point(0))
+
+    if not longest > 0:
+        raise Refused("the pulses of the way at the center must be from 0 to the longest one")
+    yield Limit(
+        what="the torque at which the way at the center is too long",
+        row=row(-1),
+        bound=side.height[0] - most / longest,
+    )
+    if shortest > 0:
+        yield Limit(
+            what="the torque at which the way at the center is too short",
+            row=row(1),
+            bound=least / shortest - side.height[1],
+        )
 
 
 def _seen(law: BandLaw, pulse: Fraction) -> Pair:
-    """Part of the wanted way in the mean torque, which the law works out with the nominal times."""
+    """Return the part of the wanted way in the mean torque, which the law works out with the nominal times."""
     longest = point(pulse * law.sample_time) / point(min(law.fill_time, law.vent_time))
     share = point(law.time_share)
     low, high = parts_of((share, share), longest)

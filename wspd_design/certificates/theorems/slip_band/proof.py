@@ -11,7 +11,7 @@ from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.loop import Friction
 from wspd_design.certificates.theorems.slip_band.statement import AROUND
 
-FORMAT = "wspd-slip-band/5"
+FORMAT = "wspd-slip-band/6"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -25,6 +25,11 @@ class Ellipsoid:
     pulse: Fraction  # -, longest pulse over the sample time that a state in it asks for
     supply: Fraction  # -, least share of the full pressure
     near: int  # which range about the reference the slope of the friction is bounded in, the widest being 0
+    settled: Fraction  # E [rad/s], error of the wheel speed that errors of the state are counted from
+    shortest: (
+        Fraction  # -, pulse of the way at the center over the sample time, at any state of the ellipsoid
+    )
+    longest: Fraction  # -, the same, at most
     matrix: Square  # Q [rad2/s2]
     center: tuple[Fraction, ...]  # c [rad/s]
     alpha: Fraction  # of the function that is left after a sample
@@ -76,6 +81,9 @@ def _written(each: Ellipsoid) -> list[str]:
         each.pulse,
         each.supply,
         Fraction(each.near),
+        each.settled,
+        each.shortest,
+        each.longest,
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
         each.alpha,
@@ -117,7 +125,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 3 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
+        _ellipsoid(_numbers(each, 6 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
     ]
     return Proof(
         share=share,
@@ -151,13 +159,15 @@ def _friction(numbers: Sequence[Fraction]) -> Friction:
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
-    pulse, supply, near, *numbers = written
+    pulse, supply, near, settled, shortest, longest, *numbers = written
     if not 0 < pulse <= 1:
         raise Refused("the longest pulse must be above 0, and the sample at most")
     if not 0 <= supply <= 1:
         raise Refused("the share of the full pressure must be from 0 to 1")
     if near not in range(len(AROUND)):
         raise Refused("a range about the reference is not there")
+    if not 0 <= shortest <= longest <= pulse:
+        raise Refused("the pulses of the way at the center must be from 0 to the longest one")
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, rest = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
@@ -165,6 +175,9 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         pulse=pulse,
         supply=supply,
         near=int(near),
+        settled=settled,
+        shortest=shortest,
+        longest=longest,
         matrix=rows,
         center=tuple(center),
         alpha=rest[0],

@@ -8,10 +8,9 @@ does where the train speed that it is told is wrong.
 
 import math
 from dataclasses import dataclass
-from fractions import Fraction
 
 from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
-from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Interval
+from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Interval, Sides
 from wspd_design.parameters.bounds import Ends
 
 
@@ -50,11 +49,11 @@ def slips_held(law: BandLaw, window: Ends, radius: Interval) -> Ends:
     return below(slip), above(slip)
 
 
-def slips_around(law: BandLaw, window: Ends, radius: Interval, slowest: float, around: Fraction) -> Ends:
-    """Range of slip in which a window bounds the slope of the friction: that of one wheel speed at all speeds."""
+def slips_around(law: BandLaw, window: Ends, radius: Interval, slowest: float, around: Sides) -> Ends:
+    """Range of slip about the reference in a window: that of a wheel speed which is the same at all speeds."""
     low, high = slips_held(law, window, radius)
-    reach = float(around) * slowest / window[0]
-    return max(low - reach, 0.0), high + reach
+    below, above = (float(side) * slowest / window[0] for side in around)
+    return max(low - below, 0.0), high + above
 
 
 def slip_at(law: BandLaw, speed: float, radius: float) -> float:

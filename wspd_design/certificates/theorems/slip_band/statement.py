@@ -29,9 +29,15 @@ JERK_FACTORS = (
 )  # -, how fast the deceleration rises, of what it does with all wheels at the reference
 DRAG = Fraction(1, 2)  # m/s2, more than the resistance takes off
 WIDEST_WINDOW = 1.2  # ratio of its speeds
-AROUND = (Fraction(3, 100), Fraction(2, 100))
-"""On either side of the reference at the lowest speed, where the slope is bounded [-]: an ellipsoid takes one."""
-SLIP_AROUND = AROUND[0]
+Sides: TypeAlias = tuple[Fraction, Fraction]
+AROUND: tuple[Sides, ...] = (
+    (Fraction(3, 100), Fraction(3, 100)),
+    (Fraction(2, 100), Fraction(2, 100)),
+    (Fraction(18, 1000), Fraction(2, 1000)),
+)
+"""Below and above the reference at the lowest speed, where the slope is bounded [-]: an ellipsoid takes one."""
+SETTLED: Sides = (Fraction(12, 1000), Fraction(2, 1000))
+"""Below and above the reference at the lowest speed, where a loop may settle, and the fading is bounded [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,16 +12,13 @@ from itertools import pairwise
 from math import ceil, exp, inf
 from typing import TYPE_CHECKING, Any
 
-from wspd_design.certificates.kernel.arb import above, below
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES
-from wspd_design.certificates.theorems.slip_band.checker import DIGITS, inverse
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
-from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.checker import inverse
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
-from wspd_design.certificates.theorems.slip_band.statement import SLIP_AROUND, box_of, law_of, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import AROUND, windows_of
 from wspd_design.controllers.protection import Protection
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Bounds
@@ -145,8 +142,6 @@ def around(problem: Problem) -> Problem:
 
 def _band(problem: Problem, law: Protection, proof: object, work: Work) -> "tuple[dict[str, float], Asked]":
     """Decide about the band, and return its numbers and what it asks for at the highest speeds."""
-    from flint import ctx
-
     from wspd_design.certificates.theorems.slip_band.arrival import Asked
 
     if not isinstance(proof, dict):
@@ -158,25 +153,13 @@ def _band(problem: Problem, law: Protection, proof: object, work: Work) -> "tupl
         raise Refused("the band must be that of one cell, which is the whole box")
     begin = found.cells[0][-1]
     assert begin is not None  # without a reserve no window is left out
-    conditions = Conditions(begin.supply, found.delay, found.noise, near=begin.near)
-    with ctx.workprec(DIGITS):
-        loop = loop_of(
-            problem,
-            law_of(law),
-            box_of(problem, found.share),
-            windows[-1],
-            found.friction[-1],
-            begin.pulse,
-            conditions,
-        )
-        misjudged = loop.disturbances[DISTURBANCES.index("acceleration error")]
-        asked = Asked(
-            speeds=windows[-1],
-            matrix=inverse(begin.matrix),
-            center=[float(each) for each in begin.center],
-            misjudged=(above(misjudged[0]), below(misjudged[1])),
-            supply=float(begin.supply),
-        )
+    asked = Asked(
+        speeds=windows[-1],
+        settled=float(begin.settled),
+        matrix=inverse(begin.matrix),
+        center=[float(each) for each in begin.center],
+        supply=float(begin.supply),
+    )
     return numbers, asked
 
 
@@ -199,7 +182,7 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
     lacking = 1.0 - supply
     for k in reversed(range(len(windows) - 1)):  # from the next slower window on
         friction, (_, top) = found.friction[k + 1], windows[k]
-        used = friction.level[1] + max(map(abs, friction.slope)) * float(SLIP_AROUND) * problem.speeds[0]
+        used = friction.level[1] + max(map(abs, friction.slope)) * float(max(AROUND[0])) * problem.speeds[0]
         drag = float(resistance(vehicle, windows[k + 1][1])) / vehicle.mass
         loss = (constants().gravity * mu0 * used + drag) * (1.0 + OUTWARD)
         lacking *= exp(-slowest * max(speed - top, 0.0) / loss) * (1.0 + OUTWARD)
