@@ -260,7 +260,8 @@ def _solve(
     import numpy as np
 
     count = len(task.maps)
-    chosen = list(hints) or list(range(0, count, max(1, count // FIRST_CORNERS)))
+    # Where the way at the center has no sign, there are fewer corners.
+    chosen = [each for each in hints if each < count] or list(range(0, count, max(1, count // FIRST_CORNERS)))
     for _ in range(ROUNDS):
         solved = _inequalities(task, chosen, faster, beyond=beyond)
         if solved is None:
