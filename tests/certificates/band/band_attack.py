@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tests.attack.plant import Plant, creep_force, filled, holding_torque, resistance, static_load, vented
+from tests.attack.plant import Plant, creep_force, filled, resistance, static_load, vented
 from wspd_design.certificates.theorems.band import CELLS
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.statement import LETTERS, box_of, halved, windows_of
@@ -56,8 +56,9 @@ class Sets:
     speeds: Any  # (windows,) upper ends, the slowest first [m/s]
     lowest: float  # m/s
     cells: Any  # (cells, numbers, 2)
-    matrices: Any  # (cells, windows, 4, 4)
-    centers: Any  # (cells, windows, 4)
+    matrices: Any  # (cells, windows, 5, 5)
+    centers: Any  # (cells, windows, 5)
+    settled: Any  # (cells, windows), error that errors are counted from [rad/s]
     supplies: Any  # (cells, windows), least share of the full pressure [-]
     bands: Any  # (windows, 2): below and above the reference [-]
 
@@ -91,6 +92,7 @@ def sets_of(problem, proof, numbers):
             np.array([[each.matrix for each in cell] for cell in found.cells], dtype=float)
         ),
         centers=np.array([[each.center for each in cell] for cell in found.cells], dtype=float),
+        settled=np.array([[each.settled for each in cell] for cell in found.cells], dtype=float),
         supplies=np.array([[each.supply for each in cell] for cell in found.cells], dtype=float),
         bands=np.array(
             [[numbers[f"band {k} {side}"] for side in ("below", "above")] for k in range(len(windows))]
@@ -274,24 +276,33 @@ def sampled(law, runs, drawn=(0.0, 0.0, 0.0)):
     return after, np.min(slips, axis=0), np.max(slips, axis=0)
 
 
-def deviations(law, runs):
-    """State of the theorem: errors of wheel speed and observer, and of friction and torque over what holds [rad/s]."""
+def deviations(law, runs, settled):
+    """State of the theorem [rad/s]: errors of wheel speed, observer, friction, torque and filtered acceleration."""
     plant, h = runs.plant, law.h
-    wanted = (1.0 - law.slip) * runs.speed / plant.wheel_radius
-    slip = 1.0 - plant.wheel_radius * runs.wheel / runs.speed
-    held, rate = holds(law, plant, runs.speed, slip)
+    there = (1.0 - law.slip) * runs.speed / plant.wheel_radius + settled
+    held, rate = holds(law, plant, runs.speed, runs.wheel, there)
     friction = h * (runs.memory.friction / law.inertia - held - rate)
     seen = runs.torque * law.full / plant.max_torque
+    known = (1.0 - law.slip) / law.radius * runs.memory.acceleration
     return np.array(
-        [runs.wheel - wanted, runs.memory.observed - runs.wheel, friction, h * (seen / law.inertia - held)]
+        [
+            runs.wheel - there,
+            runs.memory.observed - runs.wheel,
+            friction,
+            h * (seen / law.inertia - held),
+            h * (rate - known),
+        ]
     )
 
 
-def holds(law, plant, speed, slip):
-    """Torque that holds the reference over the inertia, as the law counts it, and the rate of the reference."""
-    slowing = -motion(plant, speed, (1.0 - slip) * speed / plant.wheel_radius, 0.0)[0]
+def holds(law, plant, speed, wheel, there):
+    """Torque that keeps a wheel beside the reference over the inertia, as the law counts it; rate of the reference.
+
+    The train slows down as the slip of its wheels makes it.
+    """
+    slowing = -motion(plant, speed, wheel, 0.0)[0]
     rate = -(1.0 - law.slip) / plant.wheel_radius * slowing
-    torque = holding_torque(plant.with_numbers({"train_deceleration": slowing}), law.slip, speed)
+    torque = plant.wheelset_inertia * (motion(plant, speed, there, 0.0)[1] - rate)
     return torque * law.full / plant.max_torque / law.inertia, rate
 
 
@@ -323,7 +334,8 @@ def follow(law, sets, runs, *, samples, disturbance=None, seed=3):
         if not len(runs.speed):
             break
         now, window = runs.number, sets.window(runs.speed)
-        apart = deviations(law, runs) - sets.centers[cells[now], window].T
+        apart = deviations(law, runs, sets.settled[cells[now], window])
+        apart -= sets.centers[cells[now], window].T
         size = np.einsum("ik,kij,jk->k", apart, sets.matrices[cells[now], window], apart)
         inside = size <= 1.0 + 1e-9
         # As long as the supply is below what a slower window asks for, nothing is claimed.
@@ -355,17 +367,18 @@ def boundary(problem, law, sets, random, count, larger=1.0):
     window, cell = random.integers(0, len(sets.speeds), count), sets.cell(plant)
     edges = np.concatenate([[sets.lowest], sets.speeds])
     speed = edges[window] + (edges[window + 1] - edges[window]) * random.random(count)
-    direction = random.normal(size=(count, 4))
+    direction = random.normal(size=(count, 5))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     roots = np.linalg.cholesky(np.linalg.inv(sets.matrices[cell, window]))
-    e, p, n, y = (sets.centers[cell, window] + larger * np.einsum("kij,kj->ki", roots, direction)).T
-    wheel = (1.0 - law.slip) * speed / plant.wheel_radius + e
-    held, rate = holds(law, plant, speed, 1.0 - plant.wheel_radius * wheel / speed)
+    e, p, n, y, lag = (sets.centers[cell, window] + larger * np.einsum("kij,kj->ki", roots, direction)).T
+    there = (1.0 - law.slip) * speed / plant.wheel_radius + sets.settled[cell, window]
+    wheel = there + e
+    held, rate = holds(law, plant, speed, wheel, there)
     scale = law.radius / plant.wheel_radius
     memory = Memory(
         scale=scale,
         told=scale * speed,
-        acceleration=rate * law.radius / (1.0 - law.slip),
+        acceleration=(rate - lag / law.h) * law.radius / (1.0 - law.slip),
         observed=wheel + p,
         friction=law.inertia * (n / law.h + held + rate),
     )
