@@ -65,9 +65,17 @@ BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
     "lower_slope": creep_slope.slope_claim,
     "level": creep_slope.level_claim,
     "fading": creep_slope.fading_claim,
+    "near_fading": creep_slope.fading_claim,
+    "lower_fading": creep_slope.fading_claim,
 }
 """What of the friction is bounded in each window: the fields of :class:`Friction`."""
-REACHES = dict(zip(("slope", "near_slope", "lower_slope"), AROUND, strict=True)) | {"fading": SETTLED}
+REACHES = dict(
+    zip(
+        ("slope", "near_slope", "lower_slope", "fading", "near_fading", "lower_fading"),
+        (*AROUND, *SETTLED),
+        strict=True,
+    )
+)
 """How far about the reference they are bounded; the level is bounded at the reference alone."""
 DISTURBED = {
     RESERVED: "where holding the reference takes no more than a share of the full pressure",

@@ -42,6 +42,8 @@ TOLERANCES = {
     "lower_slope": 1e-3,
     "level": 2e-3,
     "fading": 5e-4,
+    "near_fading": 5e-4,
+    "lower_fading": 5e-4,
 }  # s/m, -, s/m
 SOUGHT = 240  # ellipsoids for each share of the box, with an effort of 1
 

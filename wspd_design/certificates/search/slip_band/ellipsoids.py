@@ -211,7 +211,12 @@ def _center(
     """
     import numpy as np
 
-    settled = Fraction(0) if faster is None else faster.settled
+    lowest, highest = (0.99 * float(end.mid()) for end in loops(supply, Fraction(0)).settles)
+
+    def within(error: float) -> Fraction:
+        return _short(min(max(error, lowest), highest))
+
+    settled = within(0.0 if faster is None else float(faster.settled))
     center: tuple[Fraction, ...] | None = None
     for _ in range(SETTLING):
         loop = loops(supply, settled)
@@ -220,11 +225,12 @@ def _center(
             loop = about(law, loop, [point(each) for each in center], (Fraction(0), Fraction(1)))
         found = _maps(loop_law(law), loop.ranges)[1].mean(axis=0)
         at = np.linalg.solve(np.eye(STATES) - found[:, :STATES], found[:, STATES:] @ middle)
-        first, center = center is None, tuple(_short(float(each)) for each in at)
-        if abs(at[0]) < NEAR and not first:
+        first, before = center is None, settled
+        settled = settled if abs(at[0]) < NEAR and not first else within(float(settled) + float(at[0]))
+        at[0] -= float(settled - before)
+        center = tuple(_short(float(each)) for each in at)
+        if settled == before and not first:
             break
-        low, high = (0.99 * float(end.mid()) for end in loop.settles)
-        settled = _short(min(max(float(settled) + float(at[0]), low), high))
     assert center is not None
     return settled, center
 

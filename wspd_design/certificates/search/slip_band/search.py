@@ -12,7 +12,6 @@ from wspd_design.certificates.theorems.slip_band.checker import errors, holds_mo
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Friction, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import (
-    AROUND,
     LETTERS,
     BandLaw,
     Cell,
@@ -24,22 +23,24 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 NARROWEST = 1.02  # ratio of the ends of a range that is not worth halving
 SHARES = tuple(Fraction(k, 8) for k in range(1, 9))
 RESERVES = tuple(map(Fraction, ("0.5", "0.6", "0.7", "0.75", "0.8", "0.85")))
-PULSES = tuple(map(Fraction, ("3/4", "1/2", "1", "1/4")))  # longest ones that are tried
-FIRST = Choice(Fraction(1, 2), len(AROUND) - 1)
-MIDDLE = tuple(
-    Choice(Fraction(pulse, 4), near) for pulse, near in ((4, 2), (3, 2), (2, 1), (1, 1))
-)  # that tell how far there is to go
-HOPELESS = 1.4  # square of what is reached over what limits leave, from which on a cell is halved at once
+CHOICES = tuple(
+    Choice(Fraction(pulse, 4), near)
+    for pulse, near in ((4, 2), (4, 1), (3, 2), (3, 1), (2, 1), (1, 1), (4, 0), (2, 0), (1, 0))
+)
+"""What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
+FIRST = Choice(Fraction(1, 2), 1)
+HOPELESS = 1.4  # square of what is reached over what limits leave, from which on the widest range is halved
 WORTH = 0.3  # of the widest range, that another one has at least to be looked at
 MATTERS = {"m": 1.0, "i": 1.0, "r": 2.0, "u": 1.0, "t": 1.0, "f": 0.3, "v": 0.3}
 """How much the logarithm of a range spreads the loop."""
 
 
 class Spent:
-    """Ellipsoids that were sought, and how many may be."""
+    """Ellipsoids that were sought, how many may be, and how far those were from their limits that were not found."""
 
     def __init__(self, most: float = math.inf) -> None:
         self.most, self.count = most, 0
+        self.known: dict[object, float] = {}
 
     def one(self) -> None:
         """Count one more, or end the search."""
@@ -129,26 +130,34 @@ def continued(sought: Sought, cell: Cell, chain: Chain, spent: Spent) -> Chain:
 
 
 def next_slower(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> Chain | None:
-    """Add an ellipsoid to those of a cell, for the first choice that has one, unless none will."""
-    for number, choice in enumerate(choices(sought, chain.choice)):
+    """Add an ellipsoid to those of a cell: for the choice of the last one, or for the one that is best."""
+
+    def tried(choice: Choice) -> Chain | None:
         spent.one()
         loops = sought.loops(cell, window, choice)
         found = ellipsoid(sought.law, loops, choice, sought.conditions.supply, chain.faster, chain.hints)
-        if found is not None:
-            return Chain(ellipsoids=(*chain.ellipsoids, found[0]), choice=choice, hints=found[1])
-        if number == 0 and all(
-            _excess(sought, cell, window, each, chain, spent) > HOPELESS for each in MIDDLE
-        ):
+        if found is None:
             return None
-    return None
+        return Chain(ellipsoids=(*chain.ellipsoids, found[0]), choice=choice, hints=found[1])
+
+    found = tried(_in_time(sought, chain.choice))
+    if found is None:
+        choice, left = _best(sought, cell, window, chain, spent)
+        found = tried(choice) if left < 1.0 else None
+    return found
 
 
-def choices(sought: Sought, first: Choice) -> tuple[Choice, ...]:
-    """Return what an ellipsoid may be sought for; shorter pulses leave less room and less to be uncertain about."""
-    # A pulse ends in its sample, however late it begins.
-    every = (Choice(pulse, near) for near in (2, 1, 0) for pulse in PULSES)
-    longest = 1 - sought.conditions.delay
-    return tuple(dict.fromkeys(each._replace(pulse=min(each.pulse, longest)) for each in (first, *every)))
+def _in_time(sought: Sought, choice: Choice) -> Choice:
+    """A pulse ends in its sample, however late it begins."""
+    return choice._replace(pulse=min(choice.pulse, 1 - sought.conditions.delay))
+
+
+def _best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> tuple[Choice, float]:
+    """Return the choice for which an ellipsoid goes least far to its limits, and how far."""
+    tried = dict.fromkeys(_in_time(sought, each) for each in (chain.choice, *CHOICES))
+    found = {each: _excess(sought, cell, window, each, chain, spent) for each in tried}
+    best = min(found, key=lambda each: found[each])
+    return best, found[best]
 
 
 def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
@@ -164,15 +173,16 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
             window = len(sought.windows) - 1 - len(chain.ellipsoids)
             # The ellipsoids of a larger cell may be too large to lie in one of a slower window.
             anew = Chain(choice=chain.choice, hints=chain.hints)
-            if window >= 0 and inherited.ellipsoids and _nearest(sought, cell, window, anew, spent) < 1.0:
+            if window >= 0 and inherited.ellipsoids and _best(sought, cell, window, anew, spent)[1] < 1.0:
                 chain = continued(sought, cell, Chain(), spent)
                 window = len(sought.windows) - 1 - len(chain.ellipsoids)
             if window < 0:
                 steps, cells = f"{steps}.", [*cells, chain.ellipsoids[::-1]]
                 continue
-            if not _middle_has(sought, cell, window, chain, spent):
-                return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=False)
-            letter = _letter(sought, cell, window, chain, spent)
+            choice, _ = _best(sought, cell, window, chain, spent)
+            letter = None
+            if _middle_has(sought, cell, window, choice, chain, spent):
+                letter = _letter(sought, cell, window, choice, anew, spent)
             if letter is None:
                 return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=False)
             steps += letter
@@ -206,20 +216,18 @@ def _still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
     return chain
 
 
-def _middle_has(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> bool:
+def _middle_has(sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent) -> bool:
     """Whether the middle of a cell has an ellipsoid; no cell around it can do better."""
     middle, anew = tuple(((low + high) / 2,) * 2 for low, high in cell), replace(chain, ellipsoids=())
-    tried = dict.fromkeys((chain.choice, *MIDDLE, *choices(sought, chain.choice)))
-    return any(_excess(sought, middle, window, choice, anew, spent) < 1.0 for choice in tried)
+    if _excess(sought, middle, window, choice, anew, spent) < 1.0:
+        return True
+    return _best(sought, middle, window, anew, spent)[1] < 1.0
 
 
-def _nearest(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> float:
-    """Return how far an ellipsoid goes to its limits, for some choices."""
-    return min(_excess(sought, cell, window, each, chain, spent) for each in (chain.choice, *MIDDLE))
-
-
-def _letter(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> str | None:
-    """Return the range to halve: the widest if there is far to go, then that whose halves come nearest."""
+def _letter(
+    sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent
+) -> str | None:
+    """Return the range to halve: the widest if there is far to go, else that whose halves come nearest."""
     widths = {
         letter: MATTERS[letter] * math.log(high / low)
         for letter, (low, high) in zip(LETTERS, cell, strict=True)
@@ -227,9 +235,7 @@ def _letter(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent)
     }
     if not widths:
         return None
-    far = {choice: _excess(sought, cell, window, choice, chain, spent) for choice in MIDDLE}
-    choice = min(MIDDLE, key=lambda each: far[each])
-    if far[choice] > HOPELESS:
+    if _excess(sought, cell, window, choice, chain, spent) > HOPELESS:
         return max(widths, key=lambda each: widths[each])
     left = {
         letter: max(_excess(sought, half, window, choice, chain, spent) for half in halved(cell, letter))
@@ -240,10 +246,14 @@ def _letter(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent)
 
 
 def _excess(sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent) -> float:
-    spent.one()
-    ends_in_time = choice._replace(pulse=min(choice.pulse, 1 - sought.conditions.delay))
-    loops = sought.loops(cell, window, ends_in_time)
-    return excess(sought.law, loops, sought.conditions.supply, chain.faster, chain.hints)
+    looked_at = cell, window, choice, chain.faster
+    if looked_at not in spent.known:
+        spent.one()
+        loops = sought.loops(cell, window, choice)
+        spent.known[looked_at] = excess(
+            sought.law, loops, sought.conditions.supply, chain.faster, chain.hints
+        )
+    return spent.known[looked_at]
 
 
 def largest_share(sought: Sought, most: float) -> Proof | Failed:

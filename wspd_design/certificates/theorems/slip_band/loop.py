@@ -37,6 +37,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 )
 from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
+from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.loading import constants
 
 Row: TypeAlias = tuple[Ball, ...]
@@ -46,18 +47,29 @@ ROOM = Fraction(1, 4)  # of what the supply lacks, that the cylinder lacks of th
 
 
 class Friction(NamedTuple):
-    """Bounds of the friction in a window: of -S, of the force over mu0 Q at the reference, of its fading."""
+    """Bounds of the friction in a window: of -S, of the force over mu0 Q at the reference, of its fading.
 
-    slope: tuple[float, float]  # s/m, in the widest range about the reference
-    near_slope: tuple[float, float]  # s/m, in a narrower one
-    lower_slope: tuple[float, float]  # s/m, in one that lies below the reference for the most part
-    level: tuple[float, float]  # -
-    fading: tuple[float, float]  # s/m, where a loop may settle
+    Slope and fading are bounded in three ranges about the reference: a wide one, a narrower one, and one that lies
+    below it for the most part.
+    """
+
+    slope: Ends  # s/m
+    near_slope: Ends
+    lower_slope: Ends
+    level: Ends  # -
+    fading: Ends  # s/m
+    near_fading: Ends
+    lower_fading: Ends
 
     @property
-    def slopes(self) -> tuple[tuple[float, float], ...]:
+    def slopes(self) -> tuple[Ends, ...]:
         """Bounds of -S in the order of the ranges about the reference."""
         return self.slope, self.near_slope, self.lower_slope
+
+    @property
+    def fadings(self) -> tuple[Ends, ...]:
+        """Bounds of the fading in that order."""
+        return self.fading, self.near_fading, self.lower_fading
 
 
 class Conditions(NamedTuple):
@@ -153,10 +165,11 @@ def loop_of(
     rolling, turned = (1 - slip) / radius, reference.turning / radius
     drag = _resistance(problem, speed) / mass
     slope, (under, over) = ball(*friction.slopes[choice.near]), AROUND[choice.near]
+    fades = ball(*friction.fadings[choice.near])
     apart, slowest = point(choice.settled), point(problem.speeds[0])
     settled, widest = (
         _errors(side, slowest / point(problem.span("wheel radius")[1]))
-        for side in (SETTLED, AROUND[choice.near])
+        for side in (SETTLED[choice.near], AROUND[choice.near])
     )
     if not settled[0] < apart < settled[1]:
         raise Refused("errors are counted from where the fading of the friction is not bounded")
@@ -185,7 +198,7 @@ def loop_of(
     held += (weight * slope * radius - damping / seen_inertia) * apart
     # Friction over mu0 Q that a wheel at the reference gains in time: by its speed, and by the slip it holds.
     fading, moved = (
-        slip * ball(*friction.fading),
+        slip * fades,
         slope * (speed * reference.fall * braking + reference.drift),
     )
     secants = radius * rolled * slope - damping / inertia
@@ -203,7 +216,7 @@ def loop_of(
     misread_rate = 2 * share * rolls + 3 * reference.bend * point(fastest_loss(problem)) * h * turns
     sliding = h * reference.drift / radius
     # The slip at w_r + E is E R/v less, and falls with the speed.
-    there = (slip - apart * radius / speed) * ball(*friction.fading)
+    there = (slip - apart * radius / speed) * fades
     drift = -h * h * weight * (there * braking + moved - slope * apart * radius * braking / speed)
     drift += (h * h * damping * turned * braking + h * damping * sliding - inertia * turning) / seen_inertia
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
