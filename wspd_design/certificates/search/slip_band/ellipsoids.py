@@ -19,7 +19,7 @@ from wspd_design.certificates.setting.slip_loop import (
     sample,
 )
 from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in, shifts
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Loop, about, loop_law, way_at
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Lengths, Loop, about, loop_law, way_at
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 
@@ -32,6 +32,7 @@ SPREAD = 0.1  # of the room at the tightest limit, that the coordinates of the i
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
 NEAR = 0.002  # rad/s, of the error at which the loop settles, that is near enough
 SETTLING = 6  # times that it is looked for
+BACK = 0.2  # of the way at the center, to its other side, that there is room for at least
 HEIGHT = (
     0.9  # of what a pulse at the center goes a part of, that may be left of it, or be one over this share
 )
@@ -53,7 +54,7 @@ class _Task:
     settled: Fraction  # rad/s, E
     shift: "Array"  # rad/s, ends of what the faster ellipsoid is shifted by, as rows
     center: "Array"
-    lengths: tuple[Fraction, Fraction]  # of the pulse at the center over the sample time
+    lengths: Lengths
     basis: "Array"
     limits: tuple[tuple["Array", float], ...]  # rows, and what is left beside the center
     used: tuple[int, ...]  # disturbances
@@ -140,7 +141,12 @@ def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid
     low, high = 1, int(supply / step)
     while low < high:
         middle = (low + high) // 2
-        loop = about(law, loops(middle * step, found.settled), center, (found.shortest, found.longest))
+        loop = about(
+            law,
+            loops(middle * step, found.settled),
+            center,
+            Lengths(found.shortest, found.longest, found.back),
+        )
         if beyond_limit(loop, q, center):
             low = middle + 1
         else:
@@ -222,7 +228,9 @@ def _center(
         loop = loops(supply, settled)
         middle = np.array([[float(end.mid()) for end in each] for each in loop.disturbances]).mean(axis=1)
         if center is not None:
-            loop = about(law, loop, [point(each) for each in center], (Fraction(0), Fraction(1)))
+            loop = about(
+                law, loop, [point(each) for each in center], Lengths(Fraction(0), Fraction(1), Fraction(1))
+            )
         found = _maps(loop_law(law), loop.ranges)[1].mean(axis=0)
         at = np.linalg.solve(np.eye(STATES) - found[:, :STATES], found[:, STATES:] @ middle)
         first, before = center is None, settled
@@ -235,10 +243,10 @@ def _center(
     return settled, center
 
 
-def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> tuple[Fraction, Fraction]:
-    """Return between what the pulse of the way at the center stays if its height does not change much."""
+def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
+    """Return pulses of the way at the center if their height does not change much, and to as far on its other side."""
     way = float(way_at(law, loop, center).mid())
-    side = loop.pulses[0 if way > 0.0 else 1]
+    side, other = loop.pulses if way > 0.0 else loop.pulses[::-1]
     torque, time = side.rises * float(center[3].mid()), float(side.time.mid())
     longest = float(loop.ranges.pulse.mid())
     low, high = (float(end.mid()) + torque for end in side.height)
@@ -246,7 +254,14 @@ def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> tuple[Fraction,
         -time * math.log1p(-abs(way) / height) if abs(way) < height else longest
         for height in (high / HEIGHT, low * HEIGHT)
     ]
-    return _short(shortest_and_longest[0]), min(_short(shortest_and_longest[1]), Fraction(longest))
+    way_back = max(float(side.part(loop.ranges.pulse).mid()) * low - 2.0 * abs(way), BACK * abs(way))
+    there = float(other.height[0].mid()) + other.rises * float(center[3].mid())
+    back = -float(other.time.mid()) * math.log1p(-min(way_back / there, 0.5))
+    return Lengths(
+        shortest=_short(shortest_and_longest[0]),
+        longest=min(_short(shortest_and_longest[1]), Fraction(longest)),
+        back=min(_short(back), Fraction(longest)),
+    )
 
 
 def _shift(law: BandLaw, loop: Loop, settled: Fraction, faster: Ellipsoid | None) -> "Array":
@@ -381,8 +396,9 @@ def _rounded(
         supply=supply,
         near=choice.near,
         settled=task.settled,
-        shortest=task.lengths[0],
-        longest=task.lengths[1],
+        shortest=task.lengths.shortest,
+        longest=task.lengths.longest,
+        back=task.lengths.back,
         matrix=tuple(tuple(_short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(_short(float(each)) for each in task.center),
         alpha=Fraction(task.kept),

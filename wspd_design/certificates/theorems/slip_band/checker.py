@@ -26,6 +26,7 @@ from wspd_design.certificates.theorems.slip_band.loop import (
     Choice,
     Conditions,
     Friction,
+    Lengths,
     Loop,
     about,
     least_of,
@@ -175,7 +176,7 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     )
     if not is_positive(q):
         raise Refused("a matrix Q is not positive definite")
-    loop = about(law, loop, center, (found.shortest, found.longest))
+    loop = about(law, loop, center, Lengths(found.shortest, found.longest, found.back))
     spread = [(high - low) / 2 for low, high in loop.disturbances]
     shares = (found.offset, *found.shares)
     if found.alpha <= 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:

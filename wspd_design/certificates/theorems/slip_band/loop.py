@@ -31,7 +31,6 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     SETTLED,
     BandLaw,
     Cell,
-    Interval,
     Sides,
     fastest_loss,
 )
@@ -111,6 +110,7 @@ class Loop:
     settles: Pair  # rad/s, errors between which the fading is bounded
     holding: float  # -, share of the full pressure that holds the reference, at least
     pulses: tuple["Pulses", "Pulses"]  # that fill and that vent
+    beside: Pair  # rad/s, what the law wants beside what the state asks for
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,6 +121,18 @@ class Pulses:
     time: Ball  # -, that the inversion assumes, over the sample time
     height: Pair  # rad/s, at the torque that holds the reference
     rises: int  # with Y: 1 or -1
+
+    def part(self, length: Ball) -> Ball:
+        """Part of the height that a pulse of a length over the sample time takes."""
+        return -(-length / self.time).expm1()
+
+
+class Lengths(NamedTuple):
+    """Pulses over the sample time."""
+
+    shortest: Fraction  # of the way at the center, at any torque of the states
+    longest: Fraction
+    back: Fraction  # longest one to the other side
 
 
 def loop_law(law: BandLaw) -> LoopLaw:
@@ -252,6 +264,9 @@ def loop_of(
     )
     pulses = _pulses(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
     seen = _seen(law, pulse)
+    asked = wanted(loop_law(law))
+    beside = _ends(asked[4] * known + asked[0] * (misread + apart))
+    limits = _limits(law, choice, conditions.supply, held, turned * slowing, known, misread)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
@@ -264,11 +279,12 @@ def loop_of(
             added=added,
         ),
         disturbances=tuple(map(_ends, disturbed)),
-        limits=_limits(law, choice, conditions.supply, held, turned * slowing, known, misread),
+        limits=(*(_in_time(law, each, point(pulse), beside) for each in pulses), *limits),
         widest=widest,
         settles=settled,
         holding=holding,
         pulses=pulses,
+        beside=beside,
     )
 
 
@@ -287,7 +303,7 @@ def _limits(
     known: Ball,
     misread: Ball,
 ) -> tuple[Limit, ...]:
-    """Return what keeps the state where the law is the written one and the valve is not saturated.
+    """Return what keeps the state where the law is the written one, and torque and room are left.
 
     Parameters
     ----------
@@ -310,22 +326,9 @@ def _limits(
     least_held, most_held = _ends(h * held)
     full = h * point(law.full_torque) / point(law.inertia)
     least, room = point(LEAST) * full, point(supply) * full - most_held
-    asked = wanted(loop_law(law))
-    lowest, highest = _ends(asked[4] * known + asked[0] * (misread + point(choice.settled)))
     venting, filling = (-h * point(choice.pulse) / point(each) for each in (law.vent_time, law.fill_time))
-    vent, fill = -venting.expm1(), -filling.expm1()  # largest part of torque or room in one pulse
     zero = point(0)
     return (
-        Limit(
-            what="what venting takes off in its longest pulse",
-            row=tuple(-each for each in (*asked[:3], asked[3] - 1 + vent, asked[4])),
-            bound=vent * least_held + lowest,
-        ),
-        Limit(
-            what="what filling adds in its longest pulse",
-            row=(*asked[:3], asked[3] - 1 + fill, asked[4]),
-            bound=fill * room - highest,
-        ),
         *_below_the_curve(law, known, misread + point(choice.settled)),
         Limit(
             what="the observed friction above 0",
@@ -413,7 +416,22 @@ def _pulses(
     )
 
 
-def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Interval) -> Loop:
+def _in_time(law: BandLaw, pulses: Pulses, longest: Ball, beside: Pair) -> Limit:
+    """Keep what is wanted within pulses of a length over the sample time."""
+    asked, part = wanted(loop_law(law)), pulses.part(longest)
+    ways = tuple(each + (part - 1) * (k == 3) for k, each in enumerate(asked))
+    if pulses.rises < 0:
+        return Limit(
+            what="what filling adds in its longest pulse", row=ways, bound=part * pulses.height[0] - beside[1]
+        )
+    return Limit(
+        what="what venting takes off in its longest pulse",
+        row=tuple(-each for each in ways),
+        bound=part * pulses.height[0] + beside[0],
+    )
+
+
+def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) -> Loop:
     """Return the loop with changes of the torque counted from the one at a center of the states.
 
     Parameters
@@ -424,14 +442,14 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Interval) -
         As :func:`loop_of` returns it.
     center : sequence of ball
         State [rad/s].
-    lengths : tuple of Fraction
-        Shortest and longest pulse of the way at the center over the sample time, at any torque of the states.
+    lengths : Lengths
+        What pulses are kept to.
     """
     way = way_at(law, loop, center)
     if not (way > 0 or way < 0):
         return loop
     side, other = loop.pulses if way > 0 else loop.pulses[::-1]
-    share, (shortest, longest) = point(law.time_share), map(point, lengths)
+    share, (shortest, longest, back) = point(law.time_share), map(point, lengths)
     pulse = loop.ranges.pulse
     further = parts_of_longer(share, most_of([pulse / each.time for each in loop.pulses]))
     # The mean over a pulse of what it has reached: a longer one counts from its end on, and ends are convex over ways.
@@ -444,11 +462,18 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Interval) -
     known = point(Fraction(float(seen_center.mid())))
     disturbances = [low.union(high) for low, high in loop.disturbances]
     disturbances[DISTURBANCES.index("mean reference drift")] += (seen_center - known) * way
+    # A way to the other side counts for its part of the distance from the center, at most as it does for the longest.
+    most_back = other.part(back) * _upper(loop.pulses[0].height[1] + loop.pulses[1].height[1])
+    far = most_back / (most_back + abs(way))
+    opposite = tuple(end + far * (each - end) for end, each in zip(side.parts, other.parts, strict=True))
+    in_time = (_in_time(law, each, pulse if each is side else back, loop.beside) for each in loop.pulses)
     return replace(
         loop,
-        ranges=replace(loop.ranges, parts=parts_about(side.parts, other.parts), seen=seen, seen_center=known),
+        ranges=replace(
+            loop.ranges, parts=parts_about(side.parts, _ends(_hull(opposite))), seen=seen, seen_center=known
+        ),
         disturbances=tuple(map(_ends, disturbances)),
-        limits=(*loop.limits, *_center_in_time(side, abs(way), (shortest, longest))),
+        limits=(*in_time, *loop.limits[2:], *_center_in_time(side, abs(way), (shortest, longest))),
     )
 
 
@@ -462,7 +487,7 @@ def way_at(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Ball:
 def _center_in_time(side: Pulses, way: Ball, lengths: tuple[Ball, Ball]) -> Iterator[Limit]:
     """Keep the torque where the way at the center takes no shorter and no longer a pulse."""
     least, most = way.lower(), way.upper()
-    shortest, longest = (-(-each / side.time).expm1() for each in lengths)  # parts of the height
+    shortest, longest = map(side.part, lengths)
 
     def row(sign: int) -> Row:
         return (point(0), point(0), point(0), point(sign * side.rises), point(0))

@@ -30,6 +30,7 @@ class Ellipsoid:
         Fraction  # -, pulse of the way at the center over the sample time, at any state of the ellipsoid
     )
     longest: Fraction  # -, the same, at most
+    back: Fraction  # -, longest pulse to the other side over the sample time
     matrix: Square  # Q [rad2/s2]
     center: tuple[Fraction, ...]  # c [rad/s]
     alpha: Fraction  # of the function that is left after a sample
@@ -84,6 +85,7 @@ def _written(each: Ellipsoid) -> list[str]:
         each.settled,
         each.shortest,
         each.longest,
+        each.back,
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
         each.alpha,
@@ -125,7 +127,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 6 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
+        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
     ]
     return Proof(
         share=share,
@@ -159,15 +161,17 @@ def _friction(numbers: Sequence[Fraction]) -> Friction:
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
-    pulse, supply, near, settled, shortest, longest, *numbers = written
+    pulse, supply, near, settled, shortest, longest, back, *numbers = written
     if not 0 < pulse <= 1:
         raise Refused("the longest pulse must be above 0, and the sample at most")
     if not 0 <= supply <= 1:
         raise Refused("the share of the full pressure must be from 0 to 1")
     if near not in range(len(AROUND)):
         raise Refused("a range about the reference is not there")
-    if not 0 <= shortest <= longest <= pulse:
-        raise Refused("the pulses of the way at the center must be from 0 to the longest one")
+    if not 0 <= shortest <= longest <= pulse or not 0 < back <= pulse:
+        raise Refused(
+            "the pulses of the way at the center, and those back, must be from 0 to the longest one"
+        )
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, rest = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
@@ -178,6 +182,7 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         settled=settled,
         shortest=shortest,
         longest=longest,
+        back=back,
         matrix=rows,
         center=tuple(center),
         alpha=rest[0],
