@@ -28,18 +28,17 @@ from wspd_design.certificates.theorems.slip_band.departure import (
     holding_share,
     place_ranges,
 )
-from wspd_design.certificates.theorems.slip_band.loop import Friction
+from wspd_design.certificates.theorems.slip_band.friction import NAMES as BOUNDS
+from wspd_design.certificates.theorems.slip_band.friction import Friction, strip_of
 from wspd_design.certificates.theorems.slip_band.reference import (
     reference_text,
     slip_at,
-    slips_around,
+    slips_beside,
     slips_held,
 )
 from wspd_design.certificates.theorems.slip_band.statement import (
-    AROUND,
     JERK_FACTORS,
     NAMES,
-    SETTLED,
     Interval,
     law_of,
     windows_of,
@@ -61,22 +60,10 @@ VARIED = (*NAMES, "resistance constant", "resistance linear", "resistance quadra
 DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
 BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
     "slope": creep_slope.slope_claim,
-    "near_slope": creep_slope.slope_claim,
-    "lower_slope": creep_slope.slope_claim,
     "level": creep_slope.level_claim,
     "fading": creep_slope.fading_claim,
-    "near_fading": creep_slope.fading_claim,
-    "lower_fading": creep_slope.fading_claim,
 }
-"""What of the friction is bounded in each window: the fields of :class:`Friction`."""
-REACHES = dict(
-    zip(
-        ("slope", "near_slope", "lower_slope", "fading", "near_fading", "lower_fading"),
-        (*AROUND, *SETTLED),
-        strict=True,
-    )
-)
-"""How far about the reference they are bounded; the level is bounded at the reference alone."""
+"""What of the friction is bounded in each window, by the first word of its name."""
 DISTURBED = {
     RESERVED: "where holding the reference takes no more than a share of the full pressure",
     LATE: "even if pulses begin late",
@@ -86,7 +73,7 @@ DISTURBED = {
 
 def key(name: str, window: int, relation: Relation) -> str:
     """Name of the obligation to bound a property of the friction in a window, the slowest being 1."""
-    return f"{name.replace('_', ' ')} {'from' if relation == '>=' else 'to'}, window {window + 1}"
+    return f"{name} {'from' if relation == '>=' else 'to'}, window {window + 1}"
 
 
 def claims(problem: Problem) -> dict[str, Claim]:
@@ -96,9 +83,9 @@ def claims(problem: Problem) -> dict[str, Claim]:
     for k, window in enumerate(windows_of(problem)):
         there = _held(replace(problem, speeds=window))
         held = slips_held(law, window, radius)
-        for name, claim in BOUNDED.items():
-            reach = REACHES.get(name)
-            slips = held if reach is None else slips_around(law, window, radius, problem.speeds[0], reach)
+        for name in BOUNDS:
+            strip, claim = strip_of(name), BOUNDED[name.split()[0]]
+            slips = held if strip is None else slips_beside(law, window, radius, problem.speeds[0], strip)
             for relation in DIRECTIONS:
                 found[key(name, k, relation)] = claim(there, slips, relation, Fraction(0))
     return found
@@ -108,10 +95,10 @@ def proved_friction(problem: Problem, findings: Findings) -> tuple[Friction, ...
     """Proved bounds of the friction for each window, or none if one is open."""
     found = []
     for k in range(len(windows_of(problem))):
-        ends = [(findings[key(name, k, ">=")].low, findings[key(name, k, "<=")].high) for name in BOUNDED]
+        ends = tuple((findings[key(name, k, ">=")].low, findings[key(name, k, "<=")].high) for name in BOUNDS)
         if not all(math.isfinite(end) for each in ends for end in each):
             return None
-        found.append(Friction(*ends))
+        found.append(Friction.of(ends))
     return tuple(found)
 
 
@@ -224,7 +211,7 @@ def covered(problem: Problem, findings: Findings, name: str) -> Finding:
     within = proved is not None and all(
         found.numbers[f"{name} {k} low"] <= low and high <= found.numbers[f"{name} {k} high"]
         for k, friction in enumerate(proved)
-        for name, (low, high) in friction._asdict().items()
+        for name, (low, high) in friction.named.items()
     )
     return found if within else Finding(status=Status.UNDECIDED, asked=found.asked)
 

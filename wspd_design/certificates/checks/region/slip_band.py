@@ -19,7 +19,6 @@ from wspd_design.certificates.search.slip_band.search import (
     with_reserve,
 )
 from wspd_design.certificates.theorems.band import (
-    BOUNDED,
     CELLS,
     DEPARTURE,
     DIRECTIONS,
@@ -31,20 +30,12 @@ from wspd_design.certificates.theorems.band import (
     proved_friction,
 )
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
-from wspd_design.certificates.theorems.slip_band.loop import Friction
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, Friction
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.controllers.protection import Protection
 
-TOLERANCES = {
-    "slope": 1e-3,
-    "near_slope": 1e-3,
-    "lower_slope": 1e-3,
-    "level": 2e-3,
-    "fading": 5e-4,
-    "near_fading": 5e-4,
-    "lower_fading": 5e-4,
-}  # s/m, -, s/m
+TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
 SOUGHT = 240  # ellipsoids for each share of the box, with an effort of 1
 
 
@@ -82,11 +73,11 @@ def bounded_friction(
     wanted = {each.key: each for each in obligations}
     stated = {}
     for k in range(len(windows_of(problem))):
-        for name in BOUNDED:
+        for name in NAMES:
             for relation in DIRECTIONS:
                 obligation = wanted[key(name, k, relation)]
                 assert isinstance(obligation, Inequality)
-                stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name])
+                stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name.split()[0]])
     found = {name: finding(wanted[name], each) for name, each in stated.items()}
     return stated, proved_friction(problem, found)
 

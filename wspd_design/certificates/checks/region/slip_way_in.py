@@ -11,7 +11,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.slip_band.search import Sought, alone, exactly
 from wspd_design.certificates.search.slip_band.way_in import plan
-from wspd_design.certificates.theorems.slip_band.loop import Friction
+from wspd_design.certificates.theorems.slip_band.friction import Friction
 from wspd_design.certificates.theorems.slip_band.proof import write as write_band
 from wspd_design.certificates.theorems.slip_band.statement import law_of
 from wspd_design.certificates.theorems.slip_band.way_in import around, write

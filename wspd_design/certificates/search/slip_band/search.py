@@ -9,7 +9,8 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import Loops, ellipsoid, excess
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, least_delay
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Friction, Loop, loop_of
+from wspd_design.certificates.theorems.slip_band.friction import Friction
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
@@ -25,7 +26,19 @@ SHARES = tuple(Fraction(k, 8) for k in range(1, 9))
 RESERVES = tuple(map(Fraction, ("0.5", "0.6", "0.7", "0.75", "0.8", "0.85")))
 CHOICES = tuple(
     Choice(Fraction(pulse, 4), near)
-    for pulse, near in ((4, 2), (4, 1), (3, 2), (3, 1), (2, 1), (1, 1), (4, 0), (2, 0), (1, 0))
+    for pulse, near in (
+        (4, 2),
+        (4, 1),
+        (3, 2),
+        (3, 1),
+        (2, 1),
+        (1, 1),
+        (4, 0),
+        (2, 0),
+        (1, 0),
+        (4, 3),
+        (3, 3),
+    )
 )
 """What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
 FIRST = Choice(Fraction(1, 2), 1)

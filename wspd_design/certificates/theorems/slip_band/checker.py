@@ -22,10 +22,10 @@ from wspd_design.certificates.kernel.arb import Ball, above, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Pair, corners, wanted
+from wspd_design.certificates.theorems.slip_band.friction import Friction
 from wspd_design.certificates.theorems.slip_band.loop import (
     Choice,
     Conditions,
-    Friction,
     Lengths,
     Loop,
     about,
@@ -135,7 +135,7 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
         **{
             f"{name} {k} {end}": value
             for k, each in enumerate(found.friction)
-            for name, ends in each._asdict().items()
+            for name, ends in each.named.items()
             for end, value in zip(("low", "high"), ends, strict=True)
         },
     }
@@ -267,6 +267,9 @@ def shifts(law: BandLaw, loop: Loop, before: Fraction, after: Fraction) -> list[
 
 
 def _lies_in_next(law: BandLaw, faster: Ellipsoid, slower: Ellipsoid, loop: Loop) -> bool:
+    low, high = loop.widest
+    if not low < point(faster.settled) < high:
+        raise Refused("the slope is not bounded where errors of the next faster window are counted from")
     return lies_in(faster, slower, shifts(law, loop, faster.settled, slower.settled))
 
 

@@ -23,52 +23,31 @@ from wspd_design.certificates.setting.slip_loop import (
     parts_of_longer,
     wanted,
 )
+from wspd_design.certificates.theorems.slip_band.friction import (
+    FADINGS,
+    Friction,
+    Strip,
+    fading_at,
+    mean_slope,
+    reached,
+    slope_at,
+)
 from wspd_design.certificates.theorems.slip_band.reference import held_in
 from wspd_design.certificates.theorems.slip_band.statement import (
-    AROUND,
     JERK_FACTORS,
     NAMES,
-    SETTLED,
     BandLaw,
     Cell,
-    Sides,
     fastest_loss,
 )
 from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
-from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.loading import constants
 
 Row: TypeAlias = tuple[Ball, ...]
 
 RADIUS = NAMES.index("wheel radius")
 ROOM = Fraction(1, 4)  # of what the supply lacks, that the cylinder lacks of the supply at least
-
-
-class Friction(NamedTuple):
-    """Bounds of the friction in a window: of -S, of the force over mu0 Q at the reference, of its fading.
-
-    Slope and fading are bounded in three ranges about the reference: a wide one, a narrower one, and one that lies
-    below it for the most part.
-    """
-
-    slope: Ends  # s/m
-    near_slope: Ends
-    lower_slope: Ends
-    level: Ends  # -
-    fading: Ends  # s/m
-    near_fading: Ends
-    lower_fading: Ends
-
-    @property
-    def slopes(self) -> tuple[Ends, ...]:
-        """Bounds of -S in the order of the ranges about the reference."""
-        return self.slope, self.near_slope, self.lower_slope
-
-    @property
-    def fadings(self) -> tuple[Ends, ...]:
-        """Bounds of the fading in that order."""
-        return self.fading, self.near_fading, self.lower_fading
 
 
 class Conditions(NamedTuple):
@@ -86,7 +65,7 @@ class Choice(NamedTuple):
     """What the states are chosen for."""
 
     pulse: Fraction  # -, longest one over the sample time
-    near: int  # which range about the reference the slope is bounded in
+    near: int  # which errors are kept to: the number of a reach
     settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
 
 
@@ -176,17 +155,14 @@ def loop_of(
     normal = mass * point(constants().gravity) / wheels(vehicle) * mu0  # mu0 Q
     rolling, turned = (1 - slip) / radius, reference.turning / radius
     drag = _resistance(problem, speed) / mass
-    slope, (under, over) = ball(*friction.slopes[choice.near]), AROUND[choice.near]
-    fades = ball(*friction.fadings[choice.near])
-    apart, slowest = point(choice.settled), point(problem.speeds[0])
-    settled, widest = (
-        _errors(side, slowest / point(problem.span("wheel radius")[1]))
-        for side in (SETTLED[choice.near], AROUND[choice.near])
-    )
-    if not settled[0] < apart < settled[1]:
-        raise Refused("errors are counted from where the fading of the friction is not bounded")
+    # Errors e R over the lowest speed of the range: of the reference, where errors are counted from, that are reached.
+    slowest, apart, none = point(problem.speeds[0]), point(choice.settled), point(0)
+    settled = apart * radius / slowest
+    fades, fades_there = fading_at(friction, none), fading_at(friction, settled)
     # All axles are within their bands, and from the reference to their slip the force follows the slope.
-    used = ball(*friction.level) + slope * ball(-over, under) * slowest
+    used = ball(*friction.level) + mean_slope(friction, none, choice.near) * slowest * -ball(
+        *reached(choice.near)
+    )
     pulled = point(constants().gravity) * mu0  # deceleration by a friction of mu0 Q
     braking = pulled * used + drag
     if not braking < point(fastest_loss(problem)) or not braking > 0:
@@ -207,13 +183,11 @@ def loop_of(
     if conditions.reserve < 1:
         held = held.min(point(conditions.reserve) * full)
     # At the speed w_r + E; its sliding speed is E R less.
-    held += (weight * slope * radius - damping / seen_inertia) * apart
+    held += (weight * mean_slope(friction, none, choice.near) * radius - damping / seen_inertia) * apart
     # Friction over mu0 Q that a wheel at the reference gains in time: by its speed, and by the slip it holds.
-    fading, moved = (
-        slip * fades,
-        slope * (speed * reference.fall * braking + reference.drift),
-    )
-    secants = radius * rolled * slope - damping / inertia
+    fading, moving = slip * fades, speed * reference.fall * braking + reference.drift
+    moved, moved_there = (slope_at(friction, error) * moving for error in (none, settled))
+    secants = radius * rolled * mean_slope(friction, settled, choice.near) - damping / inertia
     # While the train slows down the friction at the reference rises, and with it the deceleration.
     rising = -pulled * fading - _resistance(problem, speed, 1) / mass
     jerk = ball(*JERK_FACTORS) * (braking * rising - pulled * moved)
@@ -228,8 +202,9 @@ def loop_of(
     misread_rate = 2 * share * rolls + 3 * reference.bend * point(fastest_loss(problem)) * h * turns
     sliding = h * reference.drift / radius
     # The slip at w_r + E is E R/v less, and falls with the speed.
-    there = (slip - apart * radius / speed) * fades
-    drift = -h * h * weight * (there * braking + moved - slope * apart * radius * braking / speed)
+    there = (slip - apart * radius / speed) * fades_there
+    there -= slope_at(friction, settled) * apart * radius / speed
+    drift = -h * h * weight * (there * braking + moved_there)
     drift += (h * h * damping * turned * braking + h * damping * sliding - inertia * turning) / seen_inertia
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
     lag_drift = slowly * (1 - share / 2)
@@ -262,6 +237,7 @@ def loop_of(
         turns,
         lag_drift,
     )
+    widest_radius = point(problem.span("wheel radius")[1])
     pulses = _pulses(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
     seen = _seen(law, pulse)
     asked = wanted(loop_law(law))
@@ -280,18 +256,18 @@ def loop_of(
         ),
         disturbances=tuple(map(_ends, disturbed)),
         limits=(*(_in_time(law, each, point(pulse), beside) for each in pulses), *limits),
-        widest=widest,
-        settles=settled,
+        widest=_errors(reached(choice.near), slowest / widest_radius),
+        settles=_errors((FADINGS[0][0], FADINGS[-1][1]), slowest / widest_radius),
         holding=holding,
         pulses=pulses,
         beside=beside,
     )
 
 
-def _errors(around: Sides, turning: Ball) -> Pair:
-    """Errors of a wheel speed between which the slip is so much below and above the reference."""
-    below_it, above_it = map(point, around)
-    return -above_it * turning, below_it * turning
+def _errors(strip: Strip, turning: Ball) -> Pair:
+    """Errors of the wheel speed in a strip, at the wheel speed of the lowest train speed."""
+    low, high = map(point, strip)
+    return low * turning, high * turning
 
 
 def _limits(

@@ -8,8 +8,7 @@ from typing import Any, TypeAlias
 from wspd_design.certificates.kernel.checker import Refused, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
-from wspd_design.certificates.theorems.slip_band.loop import Friction
-from wspd_design.certificates.theorems.slip_band.statement import AROUND
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, REACHES, Friction
 
 FORMAT = "wspd-slip-band/6"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
@@ -24,7 +23,7 @@ class Ellipsoid:
 
     pulse: Fraction  # -, longest pulse over the sample time that a state in it asks for
     supply: Fraction  # -, least share of the full pressure
-    near: int  # which range about the reference the slope of the friction is bounded in, the widest being 0
+    near: int  # number of the reach that errors are kept to
     settled: Fraction  # E [rad/s], error of the wheel speed that errors of the state are counted from
     shortest: (
         Fraction  # -, pulse of the way at the center over the sample time, at any state of the ellipsoid
@@ -70,7 +69,9 @@ def write(found: Proof) -> dict[str, Any]:
         "delay": text(found.delay),
         "noise": text(found.noise),
         "reserve": text(found.reserve),
-        "friction": [[text(Fraction(end)) for ends in each for end in ends] for each in found.friction],
+        "friction": [
+            [text(Fraction(end)) for ends in each.named.values() for end in ends] for each in found.friction
+        ],
         "steps": found.steps,
         "ellipsoids": [_written(each) for each in ellipsoids],
         "cells": cells,
@@ -135,7 +136,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
         noise=noise,
         reserve=reserve,
         friction=tuple(
-            _friction(_numbers(each, 2 * len(Friction._fields))) for each in _list(proof["friction"], windows)
+            _friction(_numbers(each, 2 * len(NAMES))) for each in _list(proof["friction"], windows)
         ),
         steps=steps,
         cells=tuple(tuple(_one_of(known, each) for each in _list(cell, windows)) for cell in cells),
@@ -154,10 +155,10 @@ def _friction(numbers: Sequence[Fraction]) -> Friction:
     ends = [float(each) for each in numbers]
     if any(Fraction(end) != each for end, each in zip(ends, numbers, strict=True)):
         raise Refused("a bound of the friction is not a double")
-    found = Friction(*zip(ends[::2], ends[1::2], strict=True))
-    if not (all(low < high for low, high in found.slopes) and all(low <= high for low, high in found)):
+    pairs = tuple(zip(ends[::2], ends[1::2], strict=True))
+    if any(low > high for low, high in pairs):
         raise Refused("a range of the friction is none")
-    return found
+    return Friction.of(pairs)
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
@@ -166,8 +167,8 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         raise Refused("the longest pulse must be above 0, and the sample at most")
     if not 0 <= supply <= 1:
         raise Refused("the share of the full pressure must be from 0 to 1")
-    if near not in range(len(AROUND)):
-        raise Refused("a range about the reference is not there")
+    if near not in range(len(REACHES)):
+        raise Refused("a reach is not there")
     if not 0 <= shortest <= longest <= pulse or not 0 < back <= pulse:
         raise Refused(
             "the pulses of the way at the center, and those back, must be from 0 to the longest one"

@@ -10,7 +10,8 @@ import math
 from dataclasses import dataclass
 
 from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
-from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Interval, Sides
+from wspd_design.certificates.theorems.slip_band.friction import Strip
+from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Interval
 from wspd_design.parameters.bounds import Ends
 
 
@@ -49,11 +50,11 @@ def slips_held(law: BandLaw, window: Ends, radius: Interval) -> Ends:
     return below(slip), above(slip)
 
 
-def slips_around(law: BandLaw, window: Ends, radius: Interval, slowest: float, around: Sides) -> Ends:
-    """Range of slip about the reference in a window: that of a wheel speed which is the same at all speeds."""
+def slips_beside(law: BandLaw, window: Ends, radius: Interval, slowest: float, strip: Strip) -> Ends:
+    """Range of the slips of errors in a strip, e R over the lowest speed, in a window."""
     low, high = slips_held(law, window, radius)
-    below, above = (float(side) * slowest / window[0] for side in around)
-    return max(low - below, 0.0), high + above
+    beside = [float(end) * slowest / speed for end in strip for speed in window]
+    return max(low - max(beside), 0.0), high - min(beside)
 
 
 def slip_at(law: BandLaw, speed: float, radius: float) -> float:

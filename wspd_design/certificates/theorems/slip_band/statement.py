@@ -29,17 +29,6 @@ JERK_FACTORS = (
 )  # -, how fast the deceleration rises, of what it does with all wheels at the reference
 DRAG = Fraction(1, 2)  # m/s2, more than the resistance takes off
 WIDEST_WINDOW = 1.2  # ratio of its speeds
-Sides: TypeAlias = tuple[Fraction, Fraction]
-AROUND: tuple[Sides, ...] = (
-    (Fraction(4, 100), Fraction(2, 100)),
-    (Fraction(25, 1000), Fraction(12, 1000)),
-    (Fraction(18, 1000), Fraction(2, 1000)),
-)
-"""Below and above the reference at the lowest speed, where the slope is bounded [-]: an ellipsoid takes one."""
-SETTLED: tuple[Sides, ...] = tuple(
-    (below * Fraction(2, 3), above * Fraction(2, 3)) for below, above in AROUND
-)
-"""The same, where the loop may settle then, and the fading is bounded [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,8 +17,9 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.checker import inverse
+from wspd_design.certificates.theorems.slip_band.friction import SLOPES
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
-from wspd_design.certificates.theorems.slip_band.statement import AROUND, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import windows_of
 from wspd_design.controllers.protection import Protection
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Bounds
@@ -182,7 +183,9 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
     lacking = 1.0 - supply
     for k in reversed(range(len(windows) - 1)):  # from the next slower window on
         friction, (_, top) = found.friction[k + 1], windows[k]
-        used = friction.level[1] + max(map(abs, friction.slope)) * float(max(AROUND[0])) * problem.speeds[0]
+        steepest = max(abs(end) for ends in friction.slopes for end in ends)
+        farthest = max(abs(end) for strip in SLOPES for end in strip)
+        used = friction.level[1] + steepest * float(farthest) * problem.speeds[0]
         drag = float(resistance(vehicle, windows[k + 1][1])) / vehicle.mass
         loss = (constants().gravity * mu0 * used + drag) * (1.0 + OUTWARD)
         lacking *= exp(-slowest * max(speed - top, 0.0) / loss) * (1.0 + OUTWARD)
