@@ -8,7 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
+from itertools import product
 
+from wspd_design.certificates.kernel.arb import above, below, point
 from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.kernel.finding import Finding, Place
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
@@ -28,8 +30,8 @@ from wspd_design.certificates.theorems.slip_band.departure import (
     holding_share,
     place_ranges,
 )
+from wspd_design.certificates.theorems.slip_band.friction import HALVES, Friction, Halves, halves_of, strip_of
 from wspd_design.certificates.theorems.slip_band.friction import NAMES as BOUNDS
-from wspd_design.certificates.theorems.slip_band.friction import Friction, strip_of
 from wspd_design.certificates.theorems.slip_band.reference import (
     reference_text,
     slip_at,
@@ -48,9 +50,10 @@ from wspd_design.controllers.observer_form import TorqueObserver
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import FallingSlip
 from wspd_design.model.slip import slip_dynamics
-from wspd_design.parameters.bounds import Ends
+from wspd_design.parameters.bounds import Bounds, Ends
 from wspd_design.parameters.units import KMH
 
+FRICTION = "mu0"
 CELLS = "ellipsoids"
 RESERVED = "ellipsoids with a reserve of the brake"
 LATE = "ellipsoids with late pulses"
@@ -71,34 +74,48 @@ DISTURBED = {
 }
 
 
-def key(name: str, window: int, relation: Relation) -> str:
-    """Name of the obligation to bound a property of the friction in a window, the slowest being 1."""
-    return f"{name} {'from' if relation == '>=' else 'to'}, window {window + 1}"
+def key(name: str, half: int, window: int, relation: Relation) -> str:
+    """Name of the obligation to bound a property of the friction for a half of mu0, in a window; the slowest is 1."""
+    side = "from" if relation == ">=" else "to"
+    return f"{name} {side}, {('lower', 'upper')[half]} half of mu0, window {window + 1}"
 
 
 def claims(problem: Problem) -> dict[str, Claim]:
     """Claims about the friction; whatever bound is proved counts."""
     found = {}
     law, radius = law_of(problem.controller), _radii(problem)
-    for k, window in enumerate(windows_of(problem)):
-        there = _held(replace(problem, speeds=window))
+    for (k, window), (half, ends) in product(enumerate(windows_of(problem)), enumerate(_halves(problem))):
+        there = replace(_held(problem), speeds=window)
+        there = replace(there, bounds=Bounds.of({**dict(there.bounds.items()), FRICTION: ends}))
         held = slips_held(law, window, radius)
         for name in BOUNDS:
             strip, claim = strip_of(name), BOUNDED[name.split()[0]]
             slips = held if strip is None else slips_beside(law, window, radius, problem.speeds[0], strip)
             for relation in DIRECTIONS:
-                found[key(name, k, relation)] = claim(there, slips, relation, Fraction(0))
+                found[key(name, half, k, relation)] = claim(there, slips, relation, Fraction(0))
     return found
 
 
-def proved_friction(problem: Problem, findings: Findings) -> tuple[Friction, ...] | None:
+def _halves(problem: Problem) -> tuple[Ends, ...]:
+    """Ranges of mu0 that hold its halves."""
+    low, high = map(Fraction, problem.span(FRICTION))
+    return tuple((below(point(one)), above(point(other))) for one, other in halves_of(low, high))
+
+
+def proved_friction(problem: Problem, findings: Findings) -> tuple[Halves, ...] | None:
     """Proved bounds of the friction for each window, or none if one is open."""
     found = []
     for k in range(len(windows_of(problem))):
-        ends = tuple((findings[key(name, k, ">=")].low, findings[key(name, k, "<=")].high) for name in BOUNDS)
-        if not all(math.isfinite(end) for each in ends for end in each):
-            return None
-        found.append(Friction.of(ends))
+        halves = []
+        for half in range(HALVES):
+            ends = tuple(
+                (findings[key(name, half, k, ">=")].low, findings[key(name, half, k, "<=")].high)
+                for name in BOUNDS
+            )
+            if not all(math.isfinite(end) for each in ends for end in each):
+                return None
+            halves.append(Friction.of(ends))
+        found.append(tuple(halves))
     return tuple(found)
 
 
@@ -209,8 +226,9 @@ def covered(problem: Problem, findings: Findings, name: str) -> Finding:
     if found.status is not Status.PROVED:
         return found
     within = proved is not None and all(
-        found.numbers[f"{name} {k} low"] <= low and high <= found.numbers[f"{name} {k} high"]
-        for k, friction in enumerate(proved)
+        found.numbers[f"{name} {half} {k} low"] <= low and high <= found.numbers[f"{name} {half} {k} high"]
+        for k, halves in enumerate(proved)
+        for half, friction in enumerate(halves)
         for name, (low, high) in friction.named.items()
     )
     return found if within else Finding(status=Status.UNDECIDED, asked=found.asked)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 from wspd_design.certificates.checks.frame import Check
 from wspd_design.certificates.checks.region.slip_band_figures import figures
@@ -30,7 +31,7 @@ from wspd_design.certificates.theorems.band import (
     proved_friction,
 )
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
-from wspd_design.certificates.theorems.slip_band.friction import NAMES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, Halves
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.controllers.protection import Protection
@@ -68,16 +69,14 @@ def search(problem: Problem) -> Mapping[str, Stated]:
 
 def bounded_friction(
     problem: Problem, obligations: Sequence[Obligation]
-) -> tuple[dict[str, Stated], tuple[Friction, ...] | None]:
+) -> tuple[dict[str, Stated], tuple[Halves, ...] | None]:
     """Bound the friction in each window; none if one is open."""
     wanted = {each.key: each for each in obligations}
     stated = {}
-    for k in range(len(windows_of(problem))):
-        for name in NAMES:
-            for relation in DIRECTIONS:
-                obligation = wanted[key(name, k, relation)]
-                assert isinstance(obligation, Inequality)
-                stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name.split()[0]])
+    for k, half, name, relation in product(range(len(windows_of(problem))), range(HALVES), NAMES, DIRECTIONS):
+        obligation = wanted[key(name, half, k, relation)]
+        assert isinstance(obligation, Inequality)
+        stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name.split()[0]])
     found = {name: finding(wanted[name], each) for name, each in stated.items()}
     return stated, proved_friction(problem, found)
 

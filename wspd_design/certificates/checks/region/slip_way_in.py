@@ -11,7 +11,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.slip_band.search import Sought, alone, exactly
 from wspd_design.certificates.search.slip_band.way_in import plan
-from wspd_design.certificates.theorems.slip_band.friction import Friction
+from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.proof import write as write_band
 from wspd_design.certificates.theorems.slip_band.statement import law_of
 from wspd_design.certificates.theorems.slip_band.way_in import around, write
@@ -30,7 +30,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     return stated | {STRIPS: Stated(proof=write(pieces, band))}
 
 
-def _band(problem: Problem, law: Protection, friction: tuple[Friction, ...]) -> dict[str, Any] | None:
+def _band(problem: Problem, law: Protection, friction: tuple[Halves, ...]) -> dict[str, Any] | None:
     """Find a band in one cell, which is the whole box of friction and supply rate."""
     numbers = law_of(law)
     sought = Sought(problem=problem, law=numbers, friction=friction, conditions=exactly(problem, numbers))

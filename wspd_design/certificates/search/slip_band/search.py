@@ -9,7 +9,7 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import Loops, ellipsoid, excess
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, least_delay
-from wspd_design.certificates.theorems.slip_band.friction import Friction
+from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -72,7 +72,7 @@ class Sought:
 
     problem: Problem
     law: BandLaw
-    friction: tuple[Friction, ...]  # proved bounds for each window
+    friction: tuple[Halves, ...]  # proved bounds for each window
     conditions: Conditions
 
     @property

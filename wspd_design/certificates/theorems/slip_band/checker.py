@@ -22,7 +22,7 @@ from wspd_design.certificates.kernel.arb import Ball, above, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Pair, corners, wanted
-from wspd_design.certificates.theorems.slip_band.friction import Friction
+from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.loop import (
     Choice,
     Conditions,
@@ -133,8 +133,9 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
             for side, largest in zip(("below", "above"), (band[1], -band[0]), strict=True)
         },
         **{
-            f"{name} {k} {end}": value
-            for k, each in enumerate(found.friction)
+            f"{name} {half} {k} {end}": value
+            for k, halves in enumerate(found.friction)
+            for half, each in enumerate(halves)
             for name, ends in each.named.items()
             for end, value in zip(("low", "high"), ends, strict=True)
         },
@@ -146,7 +147,7 @@ def holds_more(
     law: BandLaw,
     cell: Cell,
     window: tuple[float, float],
-    friction: Friction,
+    friction: Halves,
     reserve: Fraction,
 ) -> bool:
     """Whether holding the reference takes more than a share of the full pressure, everywhere in cell and window."""

@@ -2,10 +2,11 @@
 
 A wheel that turns faster than the reference by an error e has a sliding speed that is e R less, at every train speed.
 Errors are therefore divided into strips by e R over the lowest speed of the range, and the friction of a window is
-bounded in each of them. Between two errors it changes by the mean slope of the strips in between.
+bounded in each of them, for either half of mu0. Between two errors it changes by the mean slope of the strips in
+between.
 """
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple, TypeAlias
@@ -22,11 +23,11 @@ def _strips(edges: tuple[str, ...]) -> tuple[Strip, ...]:
     return tuple(pairwise(ends))
 
 
-SLOPES = _strips(("-0.02", "-0.012", "-0.002", "0.003", "0.008", "0.013", "0.018", "0.04"))
+SLOPES = _strips(("-0.02", "-0.01", "-0.002", "0.004", "0.01", "0.018", "0.04"))
 """Strips in which the slope is bounded, e R over the lowest speed [-]."""
-FADINGS = _strips(("-0.013", "-0.001", "0.004", "0.008", "0.012", "0.027"))
+FADINGS = _strips(("-0.013", "0.004", "0.012", "0.027"))
 """The same for the fading, where a loop may settle."""
-REACHES = ((0, 7), (1, 6), (2, 6), (2, 7))
+REACHES = ((0, 6), (1, 5), (2, 5), (2, 6))
 """First strip of the slope and the one after the last, that errors of an ellipsoid are kept in: it takes one."""
 
 
@@ -47,6 +48,31 @@ class Friction(NamedTuple):
         """Put bounds in the order of a proof together."""
         count = len(SLOPES)
         return cls(bounds[:count], bounds[count], bounds[count + 1 :])
+
+
+HALVES = 2  # of the range of mu0, for which the friction is bounded alone
+
+Halves: TypeAlias = tuple[Friction, ...]
+
+
+def halves_of(low: Fraction, high: Fraction) -> tuple[Strip, ...]:
+    """Divide the range of mu0."""
+    middle = (low + high) / 2
+    return (low, middle), (middle, high)
+
+
+def bounds_for(friction: Halves, whole: Strip, part: Strip) -> Friction:
+    """Return bounds for a part of the range of mu0."""
+    used = [
+        list(each.named.values())
+        for each, (low, high) in zip(friction, halves_of(*whole), strict=True)
+        if part[0] <= high and low <= part[1]
+    ]
+    return Friction.of(
+        tuple(
+            (min(low for low, _ in ends), max(high for _, high in ends)) for ends in zip(*used, strict=True)
+        )
+    )
 
 
 NAMES = (
@@ -100,27 +126,23 @@ def mean_slope(friction: Friction, error: Ball, reach: int) -> Ball:
     if not _inside(error, reached(reach)):
         raise Refused("errors are counted from outside of those that are reached")
     found = slope_at(friction, error)
-    for side in _sides(friction, error, reach):
-        length, sums = point(0), (point(0), point(0))
-        for strip, ends in side:
-            length += strip
-            sums = sums[0] + strip * point(ends[0]), sums[1] + strip * point(ends[1])
-            if length > 0:
-                found = found.union(sums[0] / length).union(sums[1] / length)
+    first, after = REACHES[reach]
+    strips = list(zip(SLOPES, friction.slopes, strict=True))[first:after]
+    for k, ((low, high), own) in enumerate(strips):
+        if error < point(low) or error > point(high):
+            continue
+        for end, further in ((high, strips[k + 1 :]), (low, strips[:k][::-1])):
+            # The mean to the end of a further strip is monotonic over what lies in the own one.
+            for begin in (error.lower().max(point(low)), error.upper().min(point(high))):
+                found = _joined(found, abs(point(end) - begin), own, further)
     return found
 
 
-def _sides(friction: Friction, error: Ball, reach: int) -> Iterator[list[tuple[Ball, Ends]]]:
-    """Yield lengths and bounds of the strips on either side of an error, from there on."""
-    first, after = REACHES[reach]
-    strips = list(zip(SLOPES, friction.slopes, strict=True))[first:after]
-    yield [
-        ((point(high) - error.max(point(low))).max(point(0)), ends)
-        for (low, high), ends in strips
-        if not error >= point(high)
-    ]
-    yield [
-        ((error.min(point(high)) - point(low)).max(point(0)), ends)
-        for (low, high), ends in strips[::-1]
-        if not error <= point(low)
-    ]
+def _joined(found: Ball, length: Ball, own: Ends, further: Sequence[tuple[Strip, Ends]]) -> Ball:
+    """Join means to the ends of further strips, from a length in the own one."""
+    sums = [length * point(end) for end in own]
+    for (low, high), ends in further:
+        length += point(high - low)
+        sums = [each + point(high - low) * point(end) for each, end in zip(sums, ends, strict=True)]
+        found = found.union(sums[0] / length).union(sums[1] / length)
+    return found

@@ -25,8 +25,9 @@ from wspd_design.certificates.setting.slip_loop import (
 )
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
-    Friction,
+    Halves,
     Strip,
+    bounds_for,
     fading_at,
     mean_slope,
     reached,
@@ -131,11 +132,13 @@ def loop_of(
     law: BandLaw,
     cell: Cell,
     window: tuple[float, float],
-    friction: Friction,
+    bounds: Halves,
     choice: Choice,
     conditions: Conditions,
 ) -> Loop:
-    """Work out the loop of a cell in a window of speed."""
+    """Work out the loop of a cell in a window of speed, with bounds of the friction there."""
+    low, high = map(Fraction, problem.span("mu0"))
+    friction = bounds_for(bounds, (low, high), cell[NAMES.index("mu0")])
     pulse = choice.pulse
     if pulse + conditions.delay > 1:
         raise Refused("a pulse may go on into the next sample")

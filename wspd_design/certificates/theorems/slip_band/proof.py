@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from wspd_design.certificates.kernel.checker import Refused, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
-from wspd_design.certificates.theorems.slip_band.friction import NAMES, REACHES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, REACHES, Friction, Halves
 
 FORMAT = "wspd-slip-band/6"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
@@ -49,7 +49,7 @@ class Proof:
     delay: Fraction  # -, of the sample, until a pulse begins at the latest
     noise: Fraction  # m/s, by which measured speeds of rims and train differ from the true ones at most
     reserve: Fraction  # -, share of the full pressure beyond which nothing is claimed where holding takes more; 1: none
-    friction: tuple[Friction, ...]
+    friction: tuple[Halves, ...]
     steps: str
     cells: tuple[
         tuple[Ellipsoid | None, ...], ...
@@ -70,7 +70,8 @@ def write(found: Proof) -> dict[str, Any]:
         "noise": text(found.noise),
         "reserve": text(found.reserve),
         "friction": [
-            [text(Fraction(end)) for ends in each.named.values() for end in ends] for each in found.friction
+            [text(Fraction(end)) for each in halves for ends in each.named.values() for end in ends]
+            for halves in found.friction
         ],
         "steps": found.steps,
         "ellipsoids": [_written(each) for each in ellipsoids],
@@ -136,7 +137,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
         noise=noise,
         reserve=reserve,
         friction=tuple(
-            _friction(_numbers(each, 2 * len(NAMES))) for each in _list(proof["friction"], windows)
+            _friction(_numbers(each, HALVES * 2 * len(NAMES))) for each in _list(proof["friction"], windows)
         ),
         steps=steps,
         cells=tuple(tuple(_one_of(known, each) for each in _list(cell, windows)) for cell in cells),
@@ -151,14 +152,14 @@ def _one_of(known: Sequence[Ellipsoid], place: object) -> Ellipsoid | None:
     return known[place]
 
 
-def _friction(numbers: Sequence[Fraction]) -> Friction:
+def _friction(numbers: Sequence[Fraction]) -> Halves:
     ends = [float(each) for each in numbers]
     if any(Fraction(end) != each for end, each in zip(ends, numbers, strict=True)):
         raise Refused("a bound of the friction is not a double")
     pairs = tuple(zip(ends[::2], ends[1::2], strict=True))
     if any(low > high for low, high in pairs):
         raise Refused("a range of the friction is none")
-    return Friction.of(pairs)
+    return tuple(Friction.of(pairs[k : k + len(NAMES)]) for k in range(0, len(pairs), len(NAMES)))
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:

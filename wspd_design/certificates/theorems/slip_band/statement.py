@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, log
+from math import ceil
 from typing import TypeAlias
 
 from wspd_design.certificates.records import Problem
@@ -28,7 +28,8 @@ JERK_FACTORS = (
     Fraction(5, 4),
 )  # -, how fast the deceleration rises, of what it does with all wheels at the reference
 DRAG = Fraction(1, 2)  # m/s2, more than the resistance takes off
-WIDEST_WINDOW = 1.2  # ratio of its speeds
+SLOWEST_WINDOW = 1.2  # ratio of the speeds of the slowest window
+WIDENING = 0.33  # power of the speed with which the logarithm of that ratio grows
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -143,9 +144,13 @@ def fastest_loss(problem: Problem) -> Fraction:
 
 
 def windows_of(problem: Problem) -> tuple[tuple[float, float], ...]:
-    """Windows of speed, the slowest first; each reaches down as far as one sample may lead out of it [m/s]."""
+    """Windows of speed, the slowest first; each reaches down as far as one sample may lead out of it [m/s].
+
+    They widen with the speed: slips move less there.
+    """
     low, high = problem.speeds
-    count = ceil(log(high / low) / log(WIDEST_WINDOW))
-    edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
+    whole = 1.0 - (high / low) ** -WIDENING
+    count = max(1, ceil(whole / (1.0 - SLOWEST_WINDOW**-WIDENING)))
+    edges = [low * (1.0 - k / count * whole) ** (-1.0 / WIDENING) for k in range(count)] + [high]
     loss = float(fastest_loss(problem)) * problem.sample_time
     return tuple((slow - loss, fast) for slow, fast in pairwise(edges))
