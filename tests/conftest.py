@@ -6,6 +6,7 @@ from functools import cache
 
 import pytest
 
+from wspd_design.certificates.memory import remembering
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.controllers.baselines.knorr_bremse import KnorrBremse
 from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
@@ -104,6 +105,13 @@ def stop(er24pc):
         return simulate(er24pc, _controller(controller, rail), scenario, plant="quarter")
 
     return simulated
+
+
+@pytest.fixture(scope="module")
+def remembered():
+    """Search and decide nothing twice in a file; not for one that changes how this is done."""
+    with remembering():
+        yield
 
 
 @pytest.fixture(scope="session")
