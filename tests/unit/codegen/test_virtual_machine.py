@@ -18,6 +18,8 @@ from wspd_design.simulation.loop_input import loop_input, sample_rows
 from wspd_design.simulation.records import LoadIrregularity, Patch, Scenario, Sensing, Start
 from wspd_design.simulation.stop import simulate
 
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
+
 SPEED = 60.0 / 3.6
 LAWS = ("afsmc", "afsmc-repaired", "smc", "trenitalia", "knorr-bremse", "mitsubishi", "none")
 SENSITIVE = {("mitsubishi", "polach-wet"), ("knorr-bremse", "polach-wet")}
