@@ -6,6 +6,8 @@ from functools import cache
 
 import pytest
 
+from wspd_design.certificates.memory import remembering
+from wspd_design.codegen import compiler
 from wspd_design.controllers.adaptive_fuzzy import AdaptiveFuzzy, AdaptiveFuzzyGains
 from wspd_design.controllers.baselines.knorr_bremse import KnorrBremse
 from wspd_design.controllers.baselines.mitsubishi import Mitsubishi
@@ -104,6 +106,21 @@ def stop(er24pc):
         return simulate(er24pc, _controller(controller, rail), scenario, plant="quarter")
 
     return simulated
+
+
+@pytest.fixture(scope="module")
+def remembered():
+    """Search and decide nothing twice in a file; not for one that changes how this is done."""
+    with remembering():
+        yield
+
+
+@pytest.fixture(scope="module")
+def compiled_quickly():
+    """Compile in half the time; that this does not change a bit is seen in the tests of stops side by side."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiler, "FLAGS", tuple("-O1" if flag == "-O3" else flag for flag in compiler.FLAGS))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -30,7 +30,9 @@ def of(check, claim="", **entries):
 
 def broken(case, stated, names=BOX, evaluations=EVALUATIONS):
     """Statements of a file that the attacker breaks."""
-    found = [assail(each, evaluations=evaluations, seed=3) for each in attacks(case, stated, names)]
+    found = [
+        assail(each, evaluations=evaluations, seed=3, stop=True) for each in attacks(case, stated, names)
+    ]
     assert found
     return [each.attack.statement for each in found if each.broken]
 

@@ -21,6 +21,8 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.torque_feedback import TorqueFeedback
 from wspd_design.parameters.bounds import EXACT, Bounds
 
+pytestmark = pytest.mark.usefixtures("remembered")
+
 
 @pytest.fixture(scope="module")
 def problem(make_problem, make_controller):

@@ -14,6 +14,8 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.model.number import maximum, where
 from wspd_design.parameters.bounds import EXACT, Bounds
 
+pytestmark = pytest.mark.usefixtures("remembered")
+
 WET = "polach-wet"
 
 

@@ -27,6 +27,8 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.sliding_mode import SlidingMode, sliding_torque
 from wspd_design.model.slip import slip_dynamics
 
+pytestmark = pytest.mark.usefixtures("remembered")
+
 KNOWN_SUPREMUM = 24.7935  # m/s2, enclosed by 24.793 and 24.794
 PLACE = {"slip": 0.121, "speed": 2.0 * 3.6, "mass": 1.2 * 76841.0, "mu0": 0.6}
 

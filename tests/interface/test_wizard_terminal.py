@@ -98,7 +98,7 @@ def test_wizard_on_a_screen(terminal, tmp_path):
     assert 'rail = "polach-dry"' in (tmp_path / "design.toml.part").read_text()
 
 
-@pytest.mark.parametrize(("rows", "columns"), [(24, 80), (20, 60)])
+@pytest.mark.parametrize(("rows", "columns"), [pytest.param(24, 80, marks=pytest.mark.reference), (20, 60)])
 def test_help_completion_and_the_review(rows, columns, terminal, tmp_path):
     """Own file by Tab, help at ``?``, a note that follows the list, an answer changed in the review, and resumed."""
     (tmp_path / "vehicles").mkdir()

@@ -9,6 +9,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -81,6 +82,13 @@ def load_entries(kind: Kind, name_or_path: str | Path) -> ParameterSet:
         return laden(load_entries(kind, text.removesuffix(LADEN)))
     if kind in ("vehicle", "rail") and text.endswith(".toml"):
         return _load_own(kind, Path(text))
+    shipped = _shipped(kind, text)
+    return replace(shipped, entries=dict(shipped.entries))  # what a caller does to them stays with the caller
+
+
+@cache
+def _shipped(kind: Kind, text: str) -> ParameterSet:
+    """Read a file that ships with the program, which does not change while it runs."""
     if text not in available(kind):
         remedy = f"available: {', '.join(available(kind))}"
         if kind in ("vehicle", "rail"):

@@ -14,6 +14,8 @@ from wspd_design.plants.quarter import Quarter
 from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.stop import simulate
 
+pytestmark = pytest.mark.usefixtures("compiled_quickly")
+
 WET = load_rail("polach-wet")
 
 

@@ -18,6 +18,8 @@ from wspd_design.simulation.records import Scenario
 from wspd_design.simulation.runs import Ending
 from wspd_design.simulation.stop import simulate
 
+pytestmark = pytest.mark.usefixtures("remembered")
+
 DESIGNED = tuple(family.name for family in designed() if family.name != "afsmc")
 """Laws whose gains the rules choose."""
 

@@ -19,6 +19,8 @@ from wspd_design.parameters.bounds import EXACT
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.loading import load_paper_gains, load_rail
 
+pytestmark = pytest.mark.usefixtures("remembered")
+
 RAILS = ("polach-dry", "polach-wet", "table10-dry", "eurosprinter127")
 
 
@@ -143,7 +145,7 @@ def test_the_switching_gain_outweighs_the_model_error_at_random_points(er24pc, n
     assert np.any(np.abs(r) > rho * 0.5 * w0)  # half of it would not do
 
 
-@pytest.mark.parametrize("name", ["polach-dry", "polach-wet"])
+@pytest.mark.parametrize("name", [pytest.param("polach-dry", marks=pytest.mark.reference), "polach-wet"])
 def test_the_design_passes_its_own_certificate(er24pc, name):
     rail, specification = load_rail(name), Specification()
     controller = design_controller(er24pc, rail, specification, law="smc").build(er24pc, rail)

@@ -1,6 +1,7 @@
 """From a task to a design: one look at the held-out sets, and a design that says and keeps what was found."""
 
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
@@ -52,15 +53,33 @@ def start(er24pc, task):
     return design_controller(er24pc, load_rail("polach-wet"), task.specification, law=task.law)
 
 
-@pytest.fixture
-def finds(task, start, er24pc, tmp_path):
+@pytest.fixture(scope="module")
+def search(task, start, er24pc):
+    """Find a design with some requirements changed; what is found goes into a journal."""
     space = space_of(start, er24pc, load_rail("polach-wet"))
 
-    def finding_one(keep=True, effort=task.effort, **changes):
+    def found(journal, keep=True, effort=task.effort, **changes):
         wanted = replace(task, requirements=replace(task.requirements, **changes), effort=effort)
-        return find(wanted, space, keep=keep, journal=tmp_path / "journal")
+        return find(wanted, space, keep=keep, journal=journal)
 
-    return finding_one
+    return found
+
+
+@pytest.fixture(scope="module")
+def usual(search, tmp_path_factory):
+    """What is found of the task as it stands, by code in which nothing is planted."""
+    return search(tmp_path_factory.mktemp("usual") / "journal")
+
+
+@pytest.fixture(scope="module")
+def free(search, tmp_path_factory):
+    """What is found where no limit has to be kept."""
+    return search(tmp_path_factory.mktemp("free") / "journal", keep=False)
+
+
+@pytest.fixture
+def finds(search, tmp_path):
+    return partial(search, tmp_path / "journal")
 
 
 def test_the_held_out_sets_are_looked_at_once_and_last(finds, monkeypatch):
@@ -90,8 +109,8 @@ def test_the_held_out_sets_are_looked_at_once_and_last(finds, monkeypatch):
     assert found.held_out.reached != found.held_out_start.reached
 
 
-def test_the_design_says_what_was_found(finds, task, start, tmp_path):
-    found = finds()
+def test_the_design_says_what_was_found(usual, task, start, tmp_path):
+    found = usual
     made = explained(found, start, "made")
     assert made.requirements == task.requirements
     assert (made.name, made.law, made.vehicle) == ("made", "torque-feedback", "er24pc")
@@ -109,9 +128,8 @@ def test_the_design_says_what_was_found(finds, task, start, tmp_path):
     assert read_design(path) == made
 
 
-def test_the_reason_says_how_many_points_kept_the_limits(finds):
+def test_the_reason_says_how_many_points_kept_the_limits(finds, free):
     """The first generation is the same with and without limits, so that some point is sure to keep this one."""
-    free = finds(keep=False)
     most = max(each.score.reached["vented_air"] for each in free.tried[:8])
     limit = Limit(criterion="vented_air", value=most + 0.5)
     bound = finds(limits=(limit,))
@@ -135,9 +153,9 @@ def test_a_limit_that_cannot_be_kept_is_missed_least(finds):
     assert found.chosen.score.reached["efficiency_mean"] == best
 
 
-def test_quadratic_functions_that_must_be_found_are_claims(finds, monkeypatch):
+def test_quadratic_functions_that_must_be_found_are_claims(finds, free, monkeypatch):
     """Planted answers: they are found for torque gains below that of the free optimum only."""
-    edge = finds(keep=False).chosen.values[-1]
+    edge = free.chosen.values[-1]
     asked = []
 
     def closes(law, vehicle, rail, *, speeds, share):
@@ -164,8 +182,8 @@ def test_quadratic_functions_that_must_be_found_are_claims(finds, monkeypatch):
     assert len(asked) == 1  # told of the chosen one, not asked of every point
 
 
-def test_anybody_can_judge_the_design_again(finds, start, tmp_path):
-    found = finds()
+def test_anybody_can_judge_the_design_again(usual, start, tmp_path):
+    found = usual
     made = explained(found, start, "made")
     again = judge(made, load_rail("polach-wet"))
     assert again == found.judged
@@ -181,10 +199,9 @@ def test_a_design_without_requirements_cannot_be_judged(start):
         judge(start, load_rail("polach-wet"))
 
 
-def test_certificates_that_must_hold_choose_among_the_best(finds, monkeypatch):
+def test_certificates_that_must_hold_choose_among_the_best(finds, free, monkeypatch):
     """Planted verdicts: only laws with a torque gain below that of the free optimum are proved."""
     wanted = ("open_loop_pole",)
-    free = finds(keep=False)
     edge = free.chosen.values[-1]
 
     def verdict(problem, *, only, figures):
@@ -207,12 +224,11 @@ def test_certificates_that_must_hold_choose_among_the_best(finds, monkeypatch):
     assert finds(keep=False, certificates=wanted).unproved == ("open_loop_pole",)
 
 
-def test_a_final_judges_the_best_points_on_further_sets(finds, task):
+def test_a_final_judges_the_best_points_on_further_sets(finds, usual, task):
     """Chosen is the best of start and best points there; held-out sets stay unseen."""
     drawn = DrawnSets(sets=24, seed=500_000)
-    alone = finds()
     found = finds(effort=replace(task.effort, final=drawn))
-    assert [each.point for each in found.tried] == [each.point for each in alone.tried]
+    assert [each.point for each in found.tried] == [each.point for each in usual.tried]
     aim = finding.Aim(limits=found.limits)
     kept = {each.point for each in found.finalists}
     assert found.tried[0].point in kept
@@ -226,10 +242,10 @@ def test_a_final_judges_the_best_points_on_further_sets(finds, task):
     assert "24 further sets of seed 500000" in found.reason
 
 
-def test_a_lucky_point_does_not_survive_the_final(finds, task, monkeypatch):
+def test_a_lucky_point_does_not_survive_the_final(finds, usual, task, monkeypatch):
     """Planted luck: the best point of the search is the worst of the final."""
     drawn = DrawnSets(sets=24, seed=500_000)
-    lucky = finds().chosen.point
+    lucky = usual.chosen.point
     honest = finding.evaluate
 
     def unlucky(laws, sets, pool):

@@ -18,6 +18,8 @@ from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail
 
+pytestmark = pytest.mark.usefixtures("remembered")
+
 LAG = 0.6  # s, of the paper's valve
 FAST, SLOW = 0.3, 0.9  # s, of the valves that its bounds allow
 RAILS = ("polach-dry", "polach-wet", "table10-dry", "eurosprinter127")

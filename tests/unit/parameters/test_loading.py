@@ -255,3 +255,8 @@ def test_a_multibody_file_stands_beside_its_vehicle_file(tmp_path):
         assert loading.load_vehicle(own).multibody == loaded
     own.write_text('base = "er24pc"\n')
     assert loading.load_vehicle(own).multibody == "er24pc-82"
+
+
+def test_what_a_caller_does_to_shipped_entries_reaches_no_other():
+    loading.load_entries("rail", "polach-wet").entries.clear()
+    assert "mu0" in loading.load_entries("rail", "polach-wet").entries

@@ -65,8 +65,9 @@ DRAWN = {
 UNIT = re.compile(r".+ \[(-|%|[A-Za-z0-9/ ^²]+)\]$")
 
 
-@pytest.fixture(params=DRAWN)
+@pytest.fixture(scope="module", params=DRAWN)
 def figure(request):
+    """A figure as it is drawn, to be looked at."""
     with figure_style():
         drawn = new_figure(height=4.0)
         assert DRAWN[request.param](drawn) is drawn
