@@ -103,35 +103,40 @@ THEOREMS = (
     Theorem(
         anchor="band",
         title="Band of slip of a sampled law with friction-torque observer",
-        statement="With X = (e, p, N, Y, D), e = w - w_r the error of the wheel speed, p that of the observed one, N "
-        "and Y h over the inertia of the law times the deviations of observed friction and seen torque from those that "
-        "hold the reference, D h times the error of its filtered acceleration, one sample makes "
-        "X+ = A X + B (m + r z) with -1 <= z <= 1, where m + r z is what "
-        "disturbs. About a center c that is X+ - c = A (X - c) + o + B r z, o = A c - c + B m. If Q > 0, shares "
-        "D > 0 and alpha > 0 with alpha + sum D <= 1 make Q - A Q A'/alpha - [o Br] D^-1 [o Br]' positive definite at "
-        "the corners of all numbers of a sample, then no sample leads out of {(X - c)'Q^-1(X - c) <= 1}, and e stays "
-        "within the root of the first entry of Q around the first entry of c. If such sets are given for windows "
-        "of speed, that of a faster window inside that of the next slower one, a wheel that is in the set once keeps "
-        "its slip in the band R e/v down to the lowest speed.",
+        statement="Let E be an error of the wheel speed beside its reference w_r, about where the loop settles. With "
+        "X = (e, p, N, Y, D), e = w - w_r - E, p the error of the observed wheel speed, N and Y h over the inertia of "
+        "the law times the deviations of observed friction and seen torque from those that hold the speed w_r + E, D h "
+        "times the error of the filtered acceleration of the reference, one sample makes X+ = A X + B (m + r z) with "
+        "-1 <= z <= 1, where m + r z is what disturbs. About a center c that is X+ - c = A (X - c) + o + B r z, "
+        "o = A_c c - c + B_c m: what the valve makes of the change of the torque that is wanted at the center has "
+        "numbers of its own. If Q > 0, shares D > 0 and alpha > 0 with alpha + sum D <= 1 make "
+        "Q - A Q A'/alpha - [o Br] D^-1 [o Br]' positive definite at the corners of all numbers of a sample, then no "
+        "sample leads out of {(X - c)'Q^-1(X - c) <= 1}, and w - w_r stays within the root of the first entry of Q "
+        "around E plus the first entry of c. If such sets are given for windows of speed, that of a faster window, "
+        "with errors counted as there, inside that of the next slower one, a wheel that is in the set once keeps its "
+        "slip in the band R (w - w_r)/v down to the lowest speed.",
         hypotheses=(
             "mass, inertia, radius, pads and valve times do not change; there are sets for each cell of their box",
-            "(phi, psi) in the polygon of the range of the slope of the friction, which is proved over the slips that "
-            "the band reaches",
+            "(phi, psi) in the polygon of the range of the mean slope of the friction between E and what the band "
+            "reaches, from bounds that are proved in strips of the error, for either half of mu0",
             "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
             "and torque above zero: there the law is the written one",
             "pressure measured exactly, wheel and train speed within a bound; pulses begin within a bound after the "
             "sample and end in it; the supply has at least a share of the full pressure, and rises by eq. (8)",
             "the slip that is held is constant or c/sqrt(v); beside that it may move within stated bounds, at most at "
             "a stated rate, of which the law knows nothing",
-            "drift of torque and reference, and the error of the filtered acceleration, between their bounds: while "
-            "the train slows down, the friction at the reference rises",
+            "drift of torque and reference, and of the error of the filtered acceleration, between their bounds: while "
+            "the train slows down, the friction at the reference rises; where the slip falls as c/sqrt(v), the filter "
+            "has settled",
         ),
         sketch="In deviations from the torque that holds the reference, pads, inertia and friction drop out of what "
         "is constant: the observer estimates the torque that explains the motion. What is asked of Q is by Schur "
         "complements that diag(alpha P, D) - [A o Br]' P [A o Br] is positive definite, P = Q^-1, so that the next "
-        "state has at most alpha + sum D. A valve that is inverted with wrong "
-        "times goes the part rho of the wanted way. The map is affine in each of (phi, psi), g, rho, the late share "
-        "and the share in the mean torque, so that a convex function of its values is largest at corners. Between "
+        "state has at most alpha + sum D. A valve that is inverted with wrong times goes the part rho of the wanted "
+        "way; a way to the side of that at the center has a rho of this side, and one to the other side counts for its "
+        "part of the distance from the center. The mean torque that the law works out grows with a longer pulse only "
+        "from its end on. The map is affine in each of (phi, psi), g, rho, the late share and the share in the mean "
+        "torque, so that a convex function of its values is largest at corners. Between "
         "samples e has the same form with a part of the change of the torque.",
         not_said="How a wheel gets into the set; what happens where a pulse goes on into the next sample, or with a "
         "brake that is the limit.",

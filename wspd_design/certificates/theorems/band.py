@@ -306,7 +306,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             f"{_measured(problem)}; the scale of the train speed was found while rolling",
             "all axles at static load and within their bands; the deceleration of the train rises "
             f"{float(JERK_FACTORS[0]):g} to {float(JERK_FACTORS[1]):g} times as fast as with all wheels at the "
-            "reference, and its filter has settled",
+            f"reference{', and its filter has settled' if law_of(problem.controller).falls else ''}",
             f"pulses begin {_beginning(problem)}; the law computes with real numbers{_compared(problem)}",
             "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
         ),
