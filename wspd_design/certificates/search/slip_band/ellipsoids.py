@@ -118,15 +118,12 @@ def excess(
     law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None, hints: Sequence[int]
 ) -> float:
     """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
-    least = math.inf
-    for kept in KEPT[:2]:
+    for kept in KEPT:
         task = _task(law, loops, supply, faster, kept)
         solved = None if task is None else _solve(task, faster, hints, beyond=True)
         if task is not None and solved is not None:
-            least = min(least, max(_used(task, solved[0])))
-        if least < 1.0:
-            break
-    return least
+            return max(_used(task, solved[0]))
+    return math.inf
 
 
 def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid) -> Fraction:

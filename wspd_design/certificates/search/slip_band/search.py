@@ -166,8 +166,13 @@ def _in_time(sought: Sought, choice: Choice) -> Choice:
 
 
 def _best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> tuple[Choice, float]:
-    """Return the choice for which an ellipsoid goes least far to its limits, and how far."""
-    tried = dict.fromkeys(_in_time(sought, each) for each in (chain.choice, *CHOICES))
+    """Return the choice for which an ellipsoid goes least far to its limits, and how far.
+
+    That of the last ellipsoid is compared with those that have its reach or its pulse.
+    """
+    last = chain.choice
+    near = (each for each in CHOICES if each.near == last.near or each.pulse == last.pulse)
+    tried = dict.fromkeys(_in_time(sought, each) for each in (last, *near))
     found = {each: _excess(sought, cell, window, each, chain, spent) for each in tried}
     best = min(found, key=lambda each: found[each])
     return best, found[best]
@@ -186,19 +191,21 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
             window = len(sought.windows) - 1 - len(chain.ellipsoids)
             # The ellipsoids of a larger cell may be too large to lie in one of a slower window.
             anew = Chain(choice=chain.choice, hints=chain.hints)
-            if window >= 0 and inherited.ellipsoids and _best(sought, cell, window, anew, spent)[1] < 1.0:
+            if window >= 0 and inherited.ellipsoids and _alone(sought, cell, window, anew, spent) < 1.0:
                 chain = continued(sought, cell, Chain(), spent)
                 window = len(sought.windows) - 1 - len(chain.ellipsoids)
+                anew = Chain(choice=chain.choice, hints=chain.hints)
             if window < 0:
                 steps, cells = f"{steps}.", [*cells, chain.ellipsoids[::-1]]
                 continue
-            choice, _ = _best(sought, cell, window, chain, spent)
+            anew = replace(anew, choice=_best(sought, cell, window, anew, spent)[0])
             letter = None
-            if _middle_has(sought, cell, window, choice, chain, spent):
-                letter = _letter(sought, cell, window, choice, anew, spent)
+            if _middle_has(sought, cell, window, anew, spent):
+                letter = _letter(sought, cell, window, anew, spent)
             if letter is None:
                 return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=False)
             steps += letter
+            chain = replace(chain, choice=anew.choice)
             waiting += [(half, chain) for half in halved(cell, letter)[::-1]]
     except _OutOfBudget:
         return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=True)
@@ -229,18 +236,22 @@ def _still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
     return chain
 
 
-def _middle_has(sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent) -> bool:
+def _alone(sought: Sought, cell: Cell, window: int, anew: Chain, spent: Spent) -> float:
+    """Return how far an ellipsoid that need not hold any other goes to its limits."""
+    return _excess(sought, cell, window, _in_time(sought, anew.choice), anew, spent)
+
+
+def _middle_has(sought: Sought, cell: Cell, window: int, anew: Chain, spent: Spent) -> bool:
     """Whether the middle of a cell has an ellipsoid; no cell around it can do better."""
-    middle, anew = tuple(((low + high) / 2,) * 2 for low, high in cell), replace(chain, ellipsoids=())
-    if _excess(sought, middle, window, choice, anew, spent) < 1.0:
-        return True
-    return _best(sought, middle, window, anew, spent)[1] < 1.0
+    middle = tuple(((low + high) / 2,) * 2 for low, high in cell)
+    return (
+        _alone(sought, middle, window, anew, spent) < 1.0
+        or min(_excess(sought, middle, window, _in_time(sought, each), anew, spent) for each in CHOICES) < 1.0
+    )
 
 
-def _letter(
-    sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent
-) -> str | None:
-    """Return the range to halve: the widest if there is far to go, else that whose halves come nearest."""
+def _letter(sought: Sought, cell: Cell, window: int, anew: Chain, spent: Spent) -> str | None:
+    """Return the range to halve: the widest if there is far to go, else that without which there is least."""
     widths = {
         letter: MATTERS[letter] * math.log(high / low)
         for letter, (low, high) in zip(LETTERS, cell, strict=True)
@@ -248,14 +259,21 @@ def _letter(
     }
     if not widths:
         return None
-    if _excess(sought, cell, window, choice, chain, spent) > HOPELESS:
+    if _alone(sought, cell, window, anew, spent) > HOPELESS:
         return max(widths, key=lambda each: widths[each])
     left = {
-        letter: max(_excess(sought, half, window, choice, chain, spent) for half in halved(cell, letter))
+        letter: _alone(sought, _without(cell, letter), window, anew, spent)
         for letter in widths
         if widths[letter] > WORTH * max(widths.values())
     }
     return min(left, key=lambda each: left[each])
+
+
+def _without(cell: Cell, letter: str) -> Cell:
+    """Return a cell with the middle of a range alone."""
+    k = LETTERS.index(letter)
+    middle = (cell[k][0] + cell[k][1]) / 2
+    return (*cell[:k], (middle, middle), *cell[k + 1 :])
 
 
 def _excess(sought: Sought, cell: Cell, window: int, choice: Choice, chain: Chain, spent: Spent) -> float:
