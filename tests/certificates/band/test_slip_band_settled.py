@@ -86,15 +86,27 @@ def test_pulses_at_the_center_in_no_order_are_refused(half, proof, place, length
 
 
 def test_ellipsoids_lie_in_each_other_only_with_errors_counted_from_the_same(half, proof, monkeypatch):
-    """With nothing else asked for: a faster ellipsoid about another error is not where it seems to be."""
+    """With nothing else asked for: an ellipsoid about another error is not where it seems to be."""
     monkeypatch.setattr(checker, "errors", lambda *_: (point(-0.01), point(0.01)))
-    decide = checker.checker(half, half.controller)
+    decide, original = checker.checker(half, half.controller), checker.shifts
     assert decide(proof, Work(PLENTY))["cells"] == 1.0
+    own = Fraction(proof["ellipsoids"][6][SETTLES])
     for by in (-0.025, 0.03):
         shifted = forged(proof, 6, SETTLES, lambda e, by=by: e + by)
         assert "next slower" in refused(half, shifted)
+        other = Fraction(shifted["ellipsoids"][6][SETTLES])
+
+        def blind(law, loop, before, after, other=other):
+            """As if the ellipsoid were still about its own error."""
+            return original(law, loop, *(own if each == other else each for each in (before, after)))
+
+        with monkeypatch.context() as patch:
+            patch.setattr(checker, "shifts", blind)
+            assert decide(shifted, Work(PLENTY))["cells"] == 1.0
+    # The windows of the proof settle at different errors, and their ellipsoids lie in each other with shifts alone.
+    assert len({each[SETTLES] for each in proof["ellipsoids"]}) > 1
     monkeypatch.setattr(checker, "shifts", lambda *_: [(point(0),) * STATES])
-    assert decide(shifted, Work(PLENTY))["cells"] == 1.0
+    assert "next slower" in refused(half, proof)
 
 
 def loop_in(problem, proof, window):
