@@ -2,7 +2,7 @@
 
 import math
 from functools import cache
-from itertools import product
+from itertools import pairwise, product
 from types import SimpleNamespace
 
 import numpy as np
@@ -80,7 +80,7 @@ def mean_of(torque, target):
     return (
         sum(
             quad(lambda t: course(torque, target, NOMINAL, t), *each, epsabs=1e-9)[0]
-            for each in zip(ends, ends[1:], strict=False)
+            for each in pairwise(ends)
         )
         / H
     )
@@ -228,7 +228,7 @@ def of_sample(numbers):
 
 @pytest.mark.parametrize("place", [0, 2, 3, 4, STATES + 1])
 def test_what_is_counted_from_another_speed_is_not_the_same(place):
-    """Errors, torques, the lag and what the settled error asks for all matter: without one the next state is another."""
+    """Errors, torques, lag and what the settled error asks for: without one the next state is another."""
     run = simulated(settled=0.05)
     numbers = (*run.slide, EFFECT, run.gone / run.wanted, run.late, run.in_mean / run.wanted)
     moved = run.z.copy()
@@ -236,7 +236,7 @@ def test_what_is_counted_from_another_speed_is_not_the_same(place):
     assert np.abs(of_sample(numbers) @ moved - run.after).max() > 1e-5
 
 
-# --- ways about one at a center ----------------------------------------------------------------------------------------
+# --- ways about one at a center -----------------------------------------------------------------------------------
 PULSE, AT_CENTER = 0.6, 0.2  # longest pulse over the sample time, and of the way at the center
 TORQUES = (22.2e3, 22.8e3, 23.0e3, 23.1e3, 23.2e3, 23.7e3)  # N m, from which the way is up, none, and down
 # True times of filling and venting [s]: the valve that fills is the slower, or the faster one.
@@ -287,7 +287,7 @@ def mixed(pairs, run, way):
 
 
 def test_ways_about_a_center_are_those_of_the_valve():
-    """X+ = [A B] (Z - Z_c) + [A B]_c Z_c, on both sides of 0 and for a valve that fills faster or slower than it vents."""
+    """X+ = [A B] (Z - Z_c) + [A B]_c Z_c, on both sides of 0, for a valve that fills faster or slower than it vents."""
     kinds = set()
     for run, z, way, parts in ways():
         kinds.add((run.wanted > 0.0, way > 0.0))
@@ -320,7 +320,7 @@ def test_parts_of_the_other_side_do_not_hold_for_the_center():
 
 
 def further_in_mean(torque, kind, before, after):
-    """What of a way that is wanted further is in the mean of the law, for pulses of two lengths over the sample time."""
+    """What of a way that is wanted further is in the mean of the law, for two lengths over the sample time."""
     assumed = SHARE * NOMINAL[kind]
     ends = [
         FULL - (FULL - torque) * math.exp(-each * H / assumed)

@@ -1,4 +1,4 @@
-"""Errors counted from where a loop settles, and the way of the torque at a center: what a proof says of them is checked."""
+"""Where a loop settles, and the way of the torque at the center: what a proof says of them is checked."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.kernel.arb import point
-from wspd_design.certificates.kernel.checker import Refused, Work
+from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.band import CELLS
 from wspd_design.certificates.theorems.slip_band import arrival, checker, followed_plant
@@ -50,7 +50,7 @@ def forged(proof, window, place, change):
     """A proof of which one number of an ellipsoid is another."""
     found = json.loads(json.dumps(proof))
     each = found["ellipsoids"][window]
-    each[place] = repr(change(float(Fraction(each[place]))))
+    each[place] = repr(change(float(number(each[place]))))
     return found
 
 
@@ -90,11 +90,11 @@ def test_ellipsoids_lie_in_each_other_only_with_errors_counted_from_the_same(hal
     monkeypatch.setattr(checker, "errors", lambda *_: (point(-0.01), point(0.01)))
     decide, original = checker.checker(half, half.controller), checker.shifts
     assert decide(proof, Work(PLENTY))["cells"] == 1.0
-    own = Fraction(proof["ellipsoids"][6][SETTLES])
+    own = number(proof["ellipsoids"][6][SETTLES])
     for by in (-0.025, 0.03):
         shifted = forged(proof, 6, SETTLES, lambda e, by=by: e + by)
         assert "next slower" in refused(half, shifted)
-        other = Fraction(shifted["ellipsoids"][6][SETTLES])
+        other = number(shifted["ellipsoids"][6][SETTLES])
 
         def blind(law, loop, before, after, other=other):
             """As if the ellipsoid were still about its own error."""
@@ -153,7 +153,7 @@ def test_shift_between_windows_is_that_of_a_wheel(half, proof, window):
         assert abs(moved[2]) > 1e-6
 
 
-# --- the way at a center, with valves that fill and vent at different rates ---------------------------------------------
+# --- the way at a center, with valves that fill and vent at different rates -------------------------------------
 WAYS = (0.003, -0.003)  # rad/s
 LENGTHS = (Fraction(1, 20), Fraction(1, 4))  # of the pulse at the center over the sample time
 
