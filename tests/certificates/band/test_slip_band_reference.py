@@ -193,6 +193,14 @@ def drift_by_friction(problem, law, settled):
     return torque + problem.nominal("wheelset inertia") / float(law.inertia) * rims
 
 
+# Limits of a state of which all numbers are 0: what is held, the way that is asked for, and the error itself.
+RESTING = (
+    "the torque that is left",
+    "what filling adds in its longest pulse",
+    "the beginning of the braking curve",
+)
+
+
 @pytest.mark.parametrize("settled", [-0.01, 0.05])
 def test_errors_that_are_counted_from_another_speed_move_what_is_held_and_asked_for(falling, settled):
     """Against the difference of both torques; what is left of the torque is one of its limits."""
@@ -203,12 +211,15 @@ def test_errors_that_are_counted_from_another_speed_move_what_is_held_and_asked_
     course = Course(falling, law, lambda _, __: slip)
     more = course.holding(8.03, slip, settled) - course.holding(8.03, slip, 0.0)
     loops = [loop_at(falling, law, each) for each in (0.0, settled)]
-    left = [
-        next(float(each.bound.mid()) for each in loop.limits if each.what == "the torque that is left")
-        for loop in loops
-    ]
+    before, after = (
+        {each.what: float(each.bound.mid()) for each in loop.limits if each.what in RESTING} for loop in loops
+    )
+    assert set(before) == set(RESTING)
     h = float(law.sample_time)
-    assert left[1] - left[0] == pytest.approx(h * more / float(law.inertia), rel=0.1)
+    held, asked = h * more / float(law.inertia), float(law.approach_rate) * h * settled
+    filled = -math.expm1(-h / 2.0 / float(law.fill_time))
+    for what, moved in zip(RESTING, (held, -filled * held - asked, -settled), strict=True):
+        assert after[what] - before[what] == pytest.approx(moved, rel=0.1)
     low, high = (float(end.mid()) for end in loops[1].disturbances[1])
     assert low == pytest.approx(float(law.approach_rate) * h * settled, rel=1e-9)
     assert high == pytest.approx(low)

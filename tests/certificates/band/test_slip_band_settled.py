@@ -109,6 +109,17 @@ def test_ellipsoids_lie_in_each_other_only_with_errors_counted_from_the_same(hal
     assert "next slower" in refused(half, proof)
 
 
+def test_band_reaches_as_far_as_the_states_do(half, proved, proof):
+    """About E and the center; with the largest wheel at the lowest speed of the window."""
+    windows = windows_of(half)
+    for k, each in enumerate(read(proof, len(windows)).cells[0]):
+        middle, reach = float(each.settled + each.center[0]), math.sqrt(each.matrix[0][0])
+        slip = half.span("wheel radius")[1] / windows[k][0]
+        numbers = proved.findings[CELLS].numbers
+        assert slip * (middle + reach) <= numbers[f"band {k} below"] <= 1.3 * slip * (middle + reach)
+        assert slip * (reach - middle) <= numbers[f"band {k} above"]
+
+
 def loop_in(problem, proof, window):
     """The loop of an ellipsoid of the proof, and the ellipsoid."""
     found = read(proof, len(windows_of(problem)))
