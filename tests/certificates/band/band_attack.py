@@ -130,6 +130,10 @@ class Memory:
     acceleration: Any  # m/s2
     observed: Any  # rad/s
     friction: Any  # N m
+    exact: Any  # m/s, as "told" without its error
+    unspoiled: (
+        Any  # m/s2, what the filter of the acceleration makes of that: the lag of the theorem is its error
+    )
 
 
 class Law:
@@ -151,20 +155,27 @@ class Law:
         """Memory where rolling wheels and a released brake have shown the scale of the speed."""
         found = self.radius / radius
         scale = np.where(abs(found - 1.0) <= self.source.largest_scale_error, found, 1.0)
-        return Memory(scale, scale * speed, 0.0 * speed, speed / radius, 0.0 * speed)
+        still = 0.0 * speed
+        return Memory(scale, scale * speed, still, speed / radius, still, scale * speed, still)
 
-    def measured(self, memory, mean, speed, wheel):
-        """Take in a measurement after a sample with a mean torque."""
-        told, h = memory.scale * speed, self.h
+    def measured(self, memory, mean, speed, wheel, error=0.0):
+        """Take in a measurement after a sample with a mean torque; ``error`` is in the speed of the train."""
+        told, exact, h = memory.scale * (speed + error), memory.scale * speed, self.h
         expected = memory.observed + h / self.inertia * (memory.friction - mean)
         r = wheel - expected
         return Memory(
             scale=memory.scale,
             told=told,
-            acceleration=memory.acceleration + self.new * ((told - memory.told) / h - memory.acceleration),
+            acceleration=self.filtered(memory.acceleration, memory.told, told),
             observed=expected + (1.0 - self.theta**2) * r,
             friction=np.maximum(memory.friction + (1.0 - self.theta) ** 2 * self.inertia / h * r, 0.0),
+            exact=exact,
+            unspoiled=self.filtered(memory.unspoiled, memory.exact, exact),
         )
+
+    def filtered(self, acceleration, before, after):
+        """Acceleration after one more sample."""
+        return acceleration + self.new * ((after - before) / self.h - acceleration)
 
     def desired(self, memory):
         """Wheel speed at the reference, and its rate."""
@@ -266,7 +277,7 @@ def sampled(law, runs, drawn=(0.0, 0.0, 0.0)):
     measured = wheel + of_rim / plant.wheel_radius
     after = replace(
         runs,
-        memory=law.measured(runs.memory, mean, speed + of_train, measured),
+        memory=law.measured(runs.memory, mean, speed, measured, of_train),
         since=runs.since + h,
         measured=measured,
         speed=speed,
@@ -283,7 +294,7 @@ def deviations(law, runs, settled):
     held, rate = holds(law, plant, runs.speed, runs.wheel, there)
     friction = h * (runs.memory.friction / law.inertia - held - rate)
     seen = runs.torque * law.full / plant.max_torque
-    known = (1.0 - law.slip) / law.radius * runs.memory.acceleration
+    known = (1.0 - law.slip) / law.radius * runs.memory.unspoiled
     return np.array(
         [
             runs.wheel - there,
@@ -351,7 +362,8 @@ def follow(law, sets, runs, *, samples, disturbance=None, seed=3):
         strayed = np.where(entered, np.array([law.slip - lowest, highest - law.slip]), 0.0)
         for side in range(2):
             np.maximum.at(seen.used[:, side], window, strayed[side])
-        share = np.max(strayed.T / sets.bands[window], axis=1)
+        # A side of the band may be 0: what is not there yet has no share, and must not be lost as 0/0.
+        share = np.where(entered, np.max(strayed.T / sets.bands[window], axis=1), 0.0)
         seen.share[now] = np.maximum(seen.share[now], share)
     seen.left |= seen.share > 1.0
     return seen
@@ -375,12 +387,15 @@ def boundary(problem, law, sets, random, count, larger=1.0):
     wheel = there + e
     held, rate = holds(law, plant, speed, wheel, there)
     scale = law.radius / plant.wheel_radius
+    acceleration = (rate - lag / law.h) * law.radius / (1.0 - law.slip)
     memory = Memory(
         scale=scale,
         told=scale * speed,
-        acceleration=(rate - lag / law.h) * law.radius / (1.0 - law.slip),
+        acceleration=acceleration,
         observed=wheel + p,
         friction=law.inertia * (n / law.h + held + rate),
+        exact=scale * speed,
+        unspoiled=acceleration,
     )
     torque = law.inertia * (y / law.h + held) * plant.max_torque / law.full
     return Runs(

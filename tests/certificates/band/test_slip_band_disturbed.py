@@ -28,7 +28,7 @@ def late():
 def certificate(late):
     """With few steps, one of each that is too much."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(disturbed, "DELAYS", (Fraction(1, 2), Fraction(15, 16)))
+        patch.setattr(disturbed, "DELAYS", (Fraction(1, 2), Fraction(7, 8), Fraction(63, 64)))
         patch.setattr(disturbed, "NOISES", (Fraction(1, 1000), Fraction(1, 10)))
         return certificate_of(late, effort=1.0)
 
@@ -50,7 +50,7 @@ def borne(certificate):
 def test_what_the_band_bears_is_proved_and_told(certificate, borne):
     assert certificate.status is Status.PROVED
     assert borne[CELLS] == Disturbance(late=DEAD_TIME)
-    assert borne[LATE] == Disturbance(late=0.01)
+    assert borne[LATE] == Disturbance(late=pytest.approx(0.0175))
     assert borne[NOISY] == Disturbance(late=DEAD_TIME, noise=0.001)
     assert f"begin up to {1e3 * borne[LATE].late:g} ms late" in certificate.explanation
     assert f"measured within {borne[NOISY].noise:g} m/s" in certificate.explanation
@@ -74,5 +74,5 @@ def test_larger_disturbances_lead_out(late, sets, larger):
 
 def test_less_supply_leads_out(late, sets, borne):
     exact = sets[CELLS]
-    starved = replace(exact, supplies=0.5 * exact.supplies)
+    starved = replace(exact, supplies=0.3 * exact.supplies)  # less than holding takes in some of the plants
     assert attack_boundary(late, starved, starts=FEW, disturbance=borne[CELLS]).left.any()

@@ -16,7 +16,7 @@ from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
 from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.loop import Conditions, Friction, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Friction, loop_of
 from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held, turning_at
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, law_of, windows_of
 from wspd_design.design.problem import stability_problem
@@ -69,8 +69,11 @@ class Course:
             found.append(found[-1] - (after - before) * self.braking(middle, self.slip(at, middle)))
         return np.array(found)
 
-    def numbers(self, speed, start=0.0):
-        """h (change of t0), h (change of w_r' at a fixed course of the slip) and what the slip moves, in a sample."""
+    def numbers(self, speed, start=0.0, settled=0.0):
+        """h (change of t0), h (change of w_r' at a fixed course of the slip) and what the slip moves, in a sample.
+
+        t0 holds a wheel beside the train's, of which the speed differs from the reference by one that is settled.
+        """
         h, radius = float(self.law.sample_time), self.problem.vehicle.wheel_radius
         inertia = self.problem.vehicle.wheelset_inertia
         times = start + np.linspace(0.0, h, 21)
@@ -80,13 +83,31 @@ class Course:
             slip = self.slip(t, v)
             aside = slip - slip_at(self.law, v, radius)
             rate = -self.braking(v, slip) * (turning_at(self.law, v, radius) - aside) / radius
-            torque = 2.0 * radius * self.force(v, slip)
-            torque -= 2.0 * self.problem.vehicle.wheel_damping * (1.0 - slip) * v / radius
-            known.append(((torque / inertia - rate), rate))
+            known.append((self.holding(v, slip, settled) / inertia - rate, rate))
         (t0, rate0), (t1, rate1) = known[0], known[-1]
         asides = [self.slip(t, v) - slip_at(self.law, v, radius) for t, v in zip(times, speeds, strict=True)]
         middle = (speeds[1:] + speeds[:-1]) / 2.0
         return h * (t1 - t0), h * (rate1 - rate0), float(np.sum(np.diff(asides) * middle)) / radius
+
+    def holding(self, speed, slip, settled):
+        """Torque of friction and damping on a wheel that is faster than the reference by a settled error [N m]."""
+        radius = self.problem.vehicle.wheel_radius
+        wheel = (1.0 - slip) * speed / radius + settled
+        torque = 2.0 * radius * self.force(speed, 1.0 - radius * wheel / speed)
+        return torque - 2.0 * self.problem.vehicle.wheel_damping * wheel
+
+    def lags(self, speed, samples):
+        """Errors of the filtered acceleration of the reference, times h, from the moment when the filter is exact."""
+        h, radius = float(self.law.sample_time), self.problem.vehicle.wheel_radius
+        kept = math.exp(-h / float(self.law.acceleration_time))
+        filtered, found = -self.braking(speed, self.slip(0.0, speed)), [0.0]
+        for k in range(samples):
+            after = self.speeds(speed, h * (k + np.linspace(0.0, 1.0, 21)))[-1]
+            filtered += (1.0 - kept) * ((after - speed) / h - filtered)
+            speed = after
+            rate = -self.braking(speed, self.slip(h * (k + 1), speed))
+            found.append(h * turning_at(self.law, speed, radius) / radius * (rate - filtered))
+        return found
 
 
 def friction_at(problem, window, slips):
@@ -102,18 +123,25 @@ def friction_at(problem, window, slips):
             slopes.append(-(course.force(v, slip + d) - course.force(v, slip - d)) / (2 * d * v) / weight)
             fade = (course.force(v + d, slip) - course.force(v - d, slip)) / (2 * d) / weight
             fadings.append(fade / slip)
-    return Friction(*((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, slopes, levels, fadings)))
+    return Friction(
+        *((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, slopes, slopes, levels, fadings))
+    )
 
 
-def loop_numbers(problem, law, *, told=None):
-    """Disturbances of the loop with nominal numbers; ``told`` is the law that the statement believes in."""
-    law = told or law
+def loop_at(problem, law, settled=0.0, *, window=WINDOW, friction=None):
+    """The loop with nominal numbers, errors counted from one that is settled [rad/s]."""
     with ctx.workprec(128):
         cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
-        slips = slips_held(law, WINDOW, cell[2])
-        friction = friction_at(problem, WINDOW, (slips[0] - 1e-3, slips[1] + 1e-3))
-        found = loop_of(problem, law, cell, WINDOW, friction, Fraction(1, 2), EXACT).disturbances
-        return [tuple(float(end.mid()) for end in each) for each in found]
+        slips = slips_held(law, window, cell[2])
+        friction = friction or friction_at(problem, window, (slips[0] - 4e-3, slips[1] + 1e-3))
+        choice = Choice(Fraction(1, 2), 0, Fraction(settled))
+        return loop_of(problem, law, cell, window, friction, choice, EXACT)
+
+
+def loop_numbers(problem, law, *, told=None, settled=0.0):
+    """Disturbances of that loop; ``told`` is the law that the statement believes in."""
+    found = loop_at(problem, told or law, settled).disturbances
+    return [tuple(float(end.mid()) for end in each) for each in found]
 
 
 def inside(value, ends):
@@ -134,6 +162,96 @@ def test_drift_along_a_falling_slip_is_in_its_bounds(falling):
     assert inside(turning, ends[4])
     assert moved == pytest.approx(0.0, abs=1e-12)
     assert ends[6] == ends[7] == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("settled", [-0.01, 0.05])
+@pytest.mark.parametrize("falls", [True, False])
+def test_torque_that_holds_another_speed_than_the_reference_drifts_within_its_bounds(falling, falls, settled):
+    """The slip there is less by E R/v, and falls with the speed; a wrong sign of it would show."""
+    law = law_of(falling.controller)
+    if not falls:
+        law = replace(law, falls=False, slip=Fraction(9, 50))
+    course = Course(falling, law, lambda _, v: slip_at(law, v, falling.vehicle.wheel_radius))
+    torque, reference = course.numbers(8.03, settled=settled)[0], course.numbers(8.03)[0]
+    assert inside(torque, loop_numbers(falling, law, settled=settled)[2])
+    there, here = (drift_by_friction(falling, law, each) for each in (settled, 0.0))
+    assert there - here == pytest.approx(torque - reference, rel=0.03)
+
+
+def drift_by_friction(problem, law, settled):
+    """Middle of the drift of the torque, without that of the rims, from the friction at one slip alone."""
+    slip = slip_at(law, 8.03, problem.vehicle.wheel_radius)
+    at, level = (
+        friction_at(problem, (8.03,), (each - 1e-6, each + 1e-6))
+        for each in (slip - settled * problem.vehicle.wheel_radius / 8.03, slip)
+    )
+    with ctx.workprec(128):
+        ends = loop_at(
+            problem, law, settled, window=(8.029, 8.031), friction=at._replace(level=level.level)
+        ).disturbances
+        torque, rims = (float((ends[k][0] + ends[k][1]).mid()) / 2.0 for k in (2, 4))
+    return torque + problem.nominal("wheelset inertia") / float(law.inertia) * rims
+
+
+# Limits of a state of which all numbers are 0: what is held, the way that is asked for, and the error itself.
+RESTING = (
+    "the torque that is left",
+    "what filling adds in its longest pulse",
+    "the beginning of the braking curve",
+)
+
+
+@pytest.mark.parametrize("settled", [-0.01, 0.05])
+def test_errors_that_are_counted_from_another_speed_move_what_is_held_and_asked_for(falling, settled):
+    """Against the difference of both torques; what is left of the torque is one of its limits."""
+    law, slip = (
+        law_of(falling.controller),
+        slip_at(law_of(falling.controller), 8.03, falling.vehicle.wheel_radius),
+    )
+    course = Course(falling, law, lambda _, __: slip)
+    more = course.holding(8.03, slip, settled) - course.holding(8.03, slip, 0.0)
+    loops = [loop_at(falling, law, each) for each in (0.0, settled)]
+    before, after = (
+        {each.what: float(each.bound.mid()) for each in loop.limits if each.what in RESTING} for loop in loops
+    )
+    assert set(before) == set(RESTING)
+    h = float(law.sample_time)
+    held, asked = h * more / float(law.inertia), float(law.approach_rate) * h * settled
+    filled = -math.expm1(-h / 2.0 / float(law.fill_time))
+    for what, moved in zip(RESTING, (held, -filled * held - asked, -settled), strict=True):
+        assert after[what] - before[what] == pytest.approx(moved, rel=0.1)
+    low, high = (float(end.mid()) for end in loops[1].disturbances[1])
+    assert low == pytest.approx(float(law.approach_rate) * h * settled, rel=1e-9)
+    assert high == pytest.approx(low)
+
+
+@pytest.mark.parametrize("falls", [True, False])
+def test_lag_of_the_filter_drifts_within_its_bounds(falling, falls):
+    """From a filter that is exact to one that has settled; the theorem takes off what the filter keeps."""
+    law = law_of(falling.controller)
+    if not falls:
+        law = replace(law, falls=False, slip=Fraction(9, 50))
+    course = Course(falling, law, lambda _, v: slip_at(law, v, falling.vehicle.wheel_radius))
+    kept = math.exp(-float(law.sample_time / law.acceleration_time))
+    ends = loop_numbers(falling, law)[9]
+    # In the window for as long as the train takes to lose .05 m/s.
+    lags = course.lags(8.049, 2)
+    assert all(inside(after - kept * before, ends) for before, after in pairwise(lags))
+    # More than the width of the bounds: not any lag would do, and what is kept is not left out.
+    settled = course.lags(8.35, 12)[-2:]
+    assert inside(settled[1] - kept * settled[0], ends)
+    assert not inside(settled[1], ends)
+    assert abs(settled[1]) > 2.0 * (ends[1] - ends[0])
+
+
+@pytest.mark.parametrize("settled", ["0.061", "-0.0102"])
+def test_errors_counted_from_where_the_fading_is_not_bounded_are_refused(falling, settled):
+    """12 per mille below and 2 above the reference at 10 km/h, with the largest wheel."""
+    law = law_of(falling.controller)
+    slowest = LAW_SPEEDS[0] / falling.span("wheel radius")[1]
+    assert not -0.002 * slowest < float(settled) < 0.012 * slowest
+    with pytest.raises(Refused, match="fading of the friction is not bounded"):
+        loop_at(falling, law, Fraction(settled))
 
 
 def test_wrong_slope_of_the_reference_would_be_left(falling):

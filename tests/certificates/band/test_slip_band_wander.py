@@ -82,13 +82,14 @@ def test_drift_within_its_bound_stays_and_a_jump_leaves(wander):
 
     def sample(state, drift, q=0.0):
         """The loop once more, for a true valve and a friction that does not change."""
-        e, observer, n, y = state
+        e, observer, n, y, lag = state
         phi, psi = np.exp(q * h), 1.0
-        wanted = n + k * (e + law.ahead * (n - y))
+        wanted = n + k * (e + float(ellipsoid.settled) + law.ahead * (n - y + lag)) + lag
         part = law.share * (wanted - y)
         error = phi * e - psi * (y + 0.6 * part) + drift
         r = error - drift - e - observer - n + y + 0.6 * part
-        return np.array([error, -(theta**2) * r, n + (1.0 - theta) ** 2 * r, y + part])
+        lag *= np.exp(-h / law.smoothing)
+        return np.array([error, -(theta**2) * r, n + (1.0 - theta) ** 2 * r, y + part, lag])
 
     random = np.random.default_rng(3)
     worst, state = 0.0, center.copy()

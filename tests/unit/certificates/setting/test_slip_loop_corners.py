@@ -13,14 +13,18 @@ from wspd_design.certificates.setting.slip_loop import (
     LoopLaw,
     LoopRanges,
     corners,
+    numbers_at_corners,
+    parts_about,
     parts_of,
+    parts_of_longer,
     polygon,
+    sample,
     wanted,
 )
 
 H = 0.02
 UNITS = list(np.eye(STATES + len(DISTURBANCES)))
-LAW = LoopLaw(sample_time=H, gain=0.16, ahead=0.5, pole=math.exp(-0.6))
+LAW = LoopLaw(sample_time=H, gain=0.16, ahead=0.5, pole=math.exp(-0.6), kept=math.exp(-0.2))
 
 
 def course(secants, random, pieces):
@@ -65,22 +69,31 @@ def test_corners_in_balls_are_those_in_doubles():
         return LoopRanges(
             secants=(number(-7.0), number(1.0)),
             effects=(number(0.75), number(1.25)),
-            parts=(number(0.5), number(1.125)),
+            parts=((number(0.5), number(0.5)), (number(1.125), number(1.125)), (number(0.25), number(0.5))),
             seen=(number(0.25), number(0.625)),
+            seen_center=number(0.375),
             pulse=number(0.5),
             delay=number(0.25),
             added=number(0.0),
         )
 
     law = LoopLaw(
-        sample_time=flint.arb(H), gain=flint.arb(0.16), ahead=flint.arb(0.5), pole=flint.arb(LAW.pole)
+        sample_time=flint.arb(H),
+        gain=flint.arb(0.16),
+        ahead=flint.arb(0.5),
+        pole=flint.arb(LAW.pole),
+        kept=flint.arb(LAW.kept),
     )
     balls = [flint.arb_mat([list(row)]) for row in np.eye(STATES + len(DISTURBANCES))]
     found = np.array(
-        [[row.entries() for row in each] for each in corners(law, ranges(flint.arb), balls)], dtype=float
+        [
+            [[row.entries() for row in each] for each in both]
+            for both in corners(law, ranges(flint.arb), balls)
+        ],
+        dtype=float,
     )
     wanted_ones = np.array(list(corners(LAW, ranges(float), UNITS)), dtype=float)
-    assert found.shape == (6 * 16, STATES, STATES + len(DISTURBANCES))
+    assert found.shape == (6 * 2 * 3 * 2 * 2, 2, STATES, STATES + len(DISTURBANCES))
     np.testing.assert_allclose(found, wanted_ones, rtol=1e-9, atol=1e-12)
 
 
@@ -89,16 +102,76 @@ def test_constant_errors_are_at_rest():
     ranges = LoopRanges(
         secants=(-3.0, 1.0),
         effects=(0.7, 1.3),
-        parts=(0.4, 1.2),
+        parts=((0.4, 0.4), (1.2, 1.2)),
         seen=(0.3, 0.6),
+        seen_center=0.5,
         pulse=1.0,
         delay=0.0,
         added=0.0,
     )
-    for matrix in corners(LAW, ranges, UNITS):
+    for matrix in (each for both in corners(LAW, ranges, UNITS) for each in both):
         rest = np.array(matrix)[:, :STATES] - np.eye(STATES)
         assert np.linalg.matrix_rank(rest) == STATES
-    assert len(wanted(LAW)) == STATES + 1
+    assert len(wanted(LAW)) == STATES
+
+
+def test_center_has_its_own_part_and_share_and_all_else_of_the_sample():
+    ranges = LoopRanges(
+        secants=(-3.0, 1.0),
+        effects=(0.7, 1.3),
+        parts=((0.4, 0.6), (1.2, 0.9)),
+        seen=(0.3, 0.6),
+        seen_center=0.5,
+        pulse=0.5,
+        delay=0.25,
+        added=0.0,
+    )
+    found = list(numbers_at_corners(LAW, ranges))
+    assert {(rest[3], center[3]) for rest, center in found} == {(0.4, 0.6), (1.2, 0.9)}
+    assert {(rest[5], center[5]) for rest, center in found} == {(0.3, 0.5), (0.6, 0.5)}
+    assert all((*rest[:3], rest[4]) == (*center[:3], center[4]) for rest, center in found)
+    latest = {rest[4] for rest, _ in found}
+    # Of a steady rise over half of the sample after a quarter of it, half is gone at half of the sample.
+    assert min(latest) == 0.0
+    assert max(latest) == pytest.approx(0.5, abs=0.01)
+    for (rest, center), maps in zip(found, corners(LAW, ranges, UNITS), strict=True):
+        for numbers, one in zip((rest, center), maps, strict=True):
+            np.testing.assert_array_equal(np.array(one), np.array(sample(LAW, numbers, UNITS)))
+
+
+def test_what_is_wanted_is_what_a_whole_way_leads_to():
+    """The row of Y* against Y+ of a valve that goes the whole way; the lag counts as the error of the acceleration."""
+    whole = np.array(sample(LAW, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0), UNITS))[3]
+    assert wanted(LAW) == pytest.approx(whole[:STATES])
+    assert whole[4] == whole[STATES + DISTURBANCES.index("acceleration error")]
+
+
+def test_pairs_of_parts_are_those_of_both_signs():
+    """Ways beside the center on its side have its part; across 0 the rest has a part of the other side at worst."""
+    side, other = (0.8, 1.1), (0.5, 1.4)
+    assert set(parts_about(side, other)) == {(0.8, 0.8), (1.1, 1.1), (0.5, 0.8), (1.4, 1.1)}
+    assert set(parts_about(other, side)) == {(0.5, 0.5), (1.4, 1.4)}
+    random = np.random.default_rng(2)
+    for one, opposite in ((side, other), (other, side), (side, side)):
+        pairs = parts_about(one, opposite)
+        for u, u_center in random.uniform(-1.0, 1.0, (200, 2)):
+            part = random.choice(one if u * u_center > 0.0 else opposite)
+            gone = [rest * (u - u_center) + center * u_center for rest, center in pairs]
+            assert min(gone) - 1e-12 <= part * u <= max(gone) + 1e-12
+
+
+def test_a_longer_way_goes_further_by_the_rate_at_one_of_the_ends():
+    """A slow valve goes ever more of what is wanted, a fast one ever less; the rate goes farther than the part."""
+    for speedup in (0.4, 1.3):
+        low, high = parts_of_longer(speedup, 0.5)
+        assert low < speedup < high or speedup in (low, high)
+        part = parts_of((speedup, speedup), 0.5)
+        assert low <= part[0] <= part[1] <= high
+        ends = np.linspace(0.0, 0.5, 21)
+        asked, gone = 1.0 - np.exp(-ends), 1.0 - np.exp(-speedup * ends)
+        rates = np.diff(gone) / np.diff(asked)
+        assert low <= rates.min() <= rates.max() <= high
+        assert rates.min() < part[0] or rates.max() > part[1]
 
 
 def test_part_of_the_way_is_the_assumed_time_over_the_true_one_for_short_pulses():

@@ -1,0 +1,322 @@
+"""Where a loop settles, and the way of the torque at the center: what a proof says of them is checked."""
+
+import json
+import math
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+from flint import ctx
+from scipy.integrate import quad
+
+from wspd_design.certificates.kernel.affine import Affine
+from wspd_design.certificates.kernel.arb import point
+from wspd_design.certificates.kernel.checker import Refused, Work, number
+from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
+from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.theorems.slip_band import arrival, checker, followed_plant
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, about, loop_of, way_at
+from wspd_design.certificates.theorems.slip_band.proof import read
+from wspd_design.certificates.theorems.slip_band.statement import (
+    AROUND,
+    NAMES,
+    SETTLED,
+    box_of,
+    law_of,
+    windows_of,
+)
+from wspd_design.parameters.bounds import Bounds
+
+pytestmark = pytest.mark.slow
+PLENTY = 10**9
+SETTLES, SHORTEST, LONGEST = 3, 4, 5
+PULSE = Fraction(1, 2)
+
+
+@pytest.fixture
+def proof(document):
+    return document["findings"][CELLS]["proof"]
+
+
+def refused(problem, proof):
+    with pytest.raises(Refused) as reason:
+        checker.checker(problem, problem.controller)(proof, Work(PLENTY))
+    return str(reason.value)
+
+
+def forged(proof, window, place, change):
+    """A proof of which one number of an ellipsoid is another."""
+    found = json.loads(json.dumps(proof))
+    each = found["ellipsoids"][window]
+    each[place] = repr(change(float(number(each[place]))))
+    return found
+
+
+@pytest.mark.parametrize("window", [0, 5, 13])
+@pytest.mark.parametrize("by", [-0.01, 0.01])
+def test_ellipsoid_about_another_error_than_its_own_is_refused(half, proof, window, by):
+    assert "may lead out of an ellipsoid" in refused(half, forged(proof, window, SETTLES, lambda e: e + by))
+
+
+@pytest.mark.parametrize("window", [0, 13])
+@pytest.mark.parametrize("settled", [0.0607, -0.0102])
+def test_error_from_where_the_fading_is_not_bounded_is_refused(half, proof, window, settled):
+    """12 per mille below and 2 above the reference at 10 km/h, and wheels of .55 m at most."""
+    slowest = half.speeds[0] / half.span("wheel radius")[1]
+    assert not -0.002 * slowest <= settled <= 0.012 * slowest
+    reason = refused(half, forged(proof, window, SETTLES, lambda _: settled))
+    assert "where the fading of the friction is not bounded" in reason
+
+
+@pytest.mark.parametrize("window", [0, 5, 13])
+def test_pulses_at_the_center_that_the_torques_do_not_keep_are_refused(half, proof, window):
+    assert "too long" in refused(half, forged(proof, window, LONGEST, lambda x: 0.95 * x))
+    assert "too short" in refused(half, forged(proof, window, SHORTEST, lambda x: 1.3 * x))
+
+
+@pytest.mark.parametrize(
+    ("place", "length"), [(SHORTEST, 0.4), (SHORTEST, -0.001), (LONGEST, 0.001), (LONGEST, 0.9)]
+)
+def test_pulses_at_the_center_in_no_order_are_refused(half, proof, place, length):
+    """Longer than the longest one, shorter than the shortest, below 0, and longer than any pulse."""
+    reason = refused(half, forged(proof, 0, place, lambda _: length))
+    assert reason == "the pulses of the way at the center must be from 0 to the longest one"
+
+
+def test_ellipsoids_lie_in_each_other_only_with_errors_counted_from_the_same(half, proof, monkeypatch):
+    """With nothing else asked for: an ellipsoid about another error is not where it seems to be."""
+    monkeypatch.setattr(checker, "errors", lambda *_: (point(-0.01), point(0.01)))
+    decide, original = checker.checker(half, half.controller), checker.shifts
+    assert decide(proof, Work(PLENTY))["cells"] == 1.0
+    own = number(proof["ellipsoids"][6][SETTLES])
+    for by in (-0.025, 0.03):
+        shifted = forged(proof, 6, SETTLES, lambda e, by=by: e + by)
+        assert "next slower" in refused(half, shifted)
+        other = number(shifted["ellipsoids"][6][SETTLES])
+
+        def blind(law, loop, before, after, other=other):
+            """As if the ellipsoid were still about its own error."""
+            return original(law, loop, *(own if each == other else each for each in (before, after)))
+
+        with monkeypatch.context() as patch:
+            patch.setattr(checker, "shifts", blind)
+            assert decide(shifted, Work(PLENTY))["cells"] == 1.0
+    # The windows of the proof settle at different errors, and their ellipsoids lie in each other with shifts alone.
+    assert len({each[SETTLES] for each in proof["ellipsoids"]}) > 1
+    monkeypatch.setattr(checker, "shifts", lambda *_: [(point(0),) * STATES])
+    assert "next slower" in refused(half, proof)
+
+
+def test_band_reaches_as_far_as_the_states_do(half, proved, proof):
+    """About E and the center; with the largest wheel at the lowest speed of the window."""
+    windows = windows_of(half)
+    for k, each in enumerate(read(proof, len(windows)).cells[0]):
+        middle, reach = float(each.settled + each.center[0]), math.sqrt(each.matrix[0][0])
+        slip = half.span("wheel radius")[1] / windows[k][0]
+        numbers = proved.findings[CELLS].numbers
+        assert slip * (middle + reach) <= numbers[f"band {k} below"] <= 1.3 * slip * (middle + reach)
+        assert slip * (reach - middle) <= numbers[f"band {k} above"]
+
+
+def loop_in(problem, proof, window):
+    """The loop of an ellipsoid of the proof, and the ellipsoid."""
+    found = read(proof, len(windows_of(problem)))
+    each = found.cells[0][window]
+    return loop_of(
+        problem,
+        law_of(problem.controller),
+        box_of(problem, Fraction(1)),
+        windows_of(problem)[window],
+        found.friction[window],
+        Choice(each.pulse, each.near, each.settled),
+        Conditions(each.supply, Fraction(0), Fraction(0)),
+    ), each
+
+
+@pytest.mark.parametrize("window", [0, 6, 12])
+def test_shift_between_windows_is_that_of_a_wheel(half, proof, window):
+    """The same wheel in the coordinates of both windows, as the way in knows them."""
+    law, speed = half.controller, windows_of(half)[window][1]
+    radius = half.vehicle.wheel_radius
+
+    def form(value):
+        return Affine(np.array([value]), np.zeros((1, 32)), np.zeros(1))
+
+    numbers = {name: form(half.nominal(name)) for name in followed_plant.NUMBERS}
+    plant = followed_plant.plant_of(half.vehicle, half.rail, law.valve.brake.max_torque, numbers, 16)
+    sliding = half.slip * speed - 0.03 * radius
+    state = followed_plant.State(*map(form, (speed, sliding, 0.001, 24e3, 23e3, -1.2, -0.024, 0.99)))
+    for before, after in ((0.0, 0.05), (0.05, 0.0), (0.02, -0.008)):
+        faster, slower = (
+            np.array([x.center[0] for x in arrival.in_band(law, plant, state, settled)])
+            for settled in (before, after)
+        )
+        with ctx.workprec(128):
+            loop, _ = loop_in(half, proof, window)
+            ends = checker.shifts(law_of(law), loop, Fraction(before), Fraction(after))
+            low, high = (np.array([float(each.mid()) for each in end]) for end in ends)
+        moved = slower - faster
+        assert np.all(np.minimum(low, high) - 1e-9 <= moved)
+        assert np.all(moved <= np.maximum(low, high) + 1e-9)
+        assert moved[0] == pytest.approx(before - after)
+        assert abs(moved[2]) > 1e-6
+
+
+# --- the way at a center, with valves that fill and vent at different rates -------------------------------------
+WAYS = (0.003, -0.003)  # rad/s
+LENGTHS = (Fraction(1, 20), Fraction(1, 4))  # of the pulse at the center over the sample time
+
+
+@pytest.fixture(scope="module", params=[("fill", (0.3, 0.4), (0.8, 1.0)), ("vent", (0.8, 1.0), (0.3, 0.4))])
+def valves(request, half, proved):
+    """Problem with one of the valves the faster one, and the loop of a middle window."""
+    _, fill, vent = request.param
+    narrow = {name: (half.nominal(name),) * 2 for name in NAMES}
+    problem = replace(half, bounds=Bounds.of(narrow | {"fill time": fill, "vent time": vent}))
+    found = proved.findings[CELLS].stated.proof
+    window = 6
+    with ctx.workprec(128):
+        each = read(found, len(windows_of(half)))
+        cell = tuple(
+            tuple(Fraction(end) for end in ends)
+            for ends in (narrow | {"fill time": fill, "vent time": vent}).values()
+        )
+        loop = loop_of(
+            problem,
+            law_of(problem.controller),
+            cell,
+            windows_of(problem)[window],
+            each.friction[window],
+            Choice(PULSE, 0, Fraction(0)),
+            Conditions(Fraction(63, 64), Fraction(0), Fraction(0)),
+        )
+    return problem, loop, fill, vent
+
+
+def centered(problem, loop, way):
+    """A center with this way, and the loop about it."""
+    law = law_of(problem.controller)
+    with ctx.workprec(128):
+        zero = [point(0)] * STATES
+        one = [point(0), point(0), point(1), point(0), point(0)]
+        friction = (point(Fraction(way)) - way_at(law, loop, zero)) / (
+            way_at(law, loop, one) - way_at(law, loop, zero)
+        )
+        center = [point(0), point(0), friction, point(0), point(0)]
+        return law, about(law, loop, center, LENGTHS)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_way_at_the_center_has_the_part_of_its_own_side(valves, way):
+    """Against true valves: a pulse of the length that the law asks for, with each of the true times."""
+    problem, loop, fill, vent = valves
+    law, found = centered(problem, loop, way)
+    assumed = [float(each) for each in (law.fill_time, law.vent_time)]
+    h = float(law.sample_time)
+
+    def gone(kind, length):
+        """Parts of a way that both true times go in a pulse of this length over the sample time."""
+        asked = -math.expm1(-length * h / assumed[kind])
+        return [-math.expm1(-length * h / time) / asked for time in (fill, vent)[kind]]
+
+    pairs = [tuple(float(each.mid()) for each in pair) for pair in found.ranges.parts]
+    side, other = (0, 1) if way > 0.0 else (1, 0)
+    here, there = (
+        [part for length in (1e-3, 0.2, 0.5) for part in gone(kind, length)] for kind in (side, other)
+    )
+    centers = [center for _, center in pairs]
+    assert min(centers) <= min(here) <= max(here) <= max(centers)
+    # Ways to this side and to the other, of which the center's goes a part as any on its side.
+    for part, u in [*product(here, (0.3 * way, 2.0 * way)), *product(there, (-0.5 * way, -3.0 * way))]:
+        ends = [rest * (u - way) + center * way for rest, center in pairs]
+        assert min(ends) <= part * u <= max(ends)
+    # The slower side's parts are no bounds for the faster one.
+    assert not min(centers) <= min(there) <= max(there) <= max(centers)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_limits_keep_the_pulse_at_the_center_between_its_lengths(valves, way):
+    problem, loop, *_ = valves
+    law, found = centered(problem, loop, way)
+    limits = found.limits[len(loop.limits) :]
+    assert [each.what.rsplit(" ", 1)[1] for each in limits] == ["long", "short"]
+    side = loop.pulses[0 if way > 0.0 else 1]
+    time = float((law.fill_time if way > 0.0 else law.vent_time) / law.sample_time)
+    lengths = {True: [], False: []}
+    for torque, height in product(np.linspace(-0.6, 0.6, 241), side.height):
+        left = float(height.mid()) + (-torque if way > 0.0 else torque)  # room that is left, or torque
+        if left <= abs(way):
+            continue
+        inside = all(float(each.row[3].mid()) * torque < float(each.bound.mid()) for each in limits)
+        lengths[inside].append(-time * math.log1p(-abs(way) / left))
+    shortest, longest = map(float, LENGTHS)
+    assert shortest <= min(lengths[True]) <= max(lengths[True]) <= longest
+    assert max(lengths[False]) > longest
+    assert min(lengths[False]) < shortest
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_mean_torque_of_the_law_is_between_what_is_seen_of_both_ways(valves, way):
+    """Means of pulses with the nominal times, for heights at which the way at the center takes any length allowed."""
+    problem, loop, *_ = valves
+    law, found = centered(problem, loop, way)
+    h, share = float(law.sample_time), float(law.time_share)
+    times = [float(each) for each in (law.fill_time, law.vent_time)]
+
+    def in_mean(u, heights):
+        """What the law counts of a way in the mean, for the heights of filling and venting."""
+        kind = 0 if u > 0.0 else 1
+        length = -times[kind] / h * math.log1p(-abs(u) / heights[kind])
+        assert length <= float(PULSE) + 1e-9
+        nominal = times[kind] / share
+
+        def gone(t):
+            return heights[kind] * -math.expm1(-min(t, length) * h / nominal)
+
+        return math.copysign(quad(gone, 0.0, 1.0, points=[length], epsabs=1e-13)[0], u)
+
+    side = 0 if way > 0.0 else 1
+    low, high = (float(each.mid()) for each in found.ranges.seen)
+    known = float(found.ranges.seen_center.mid())
+    place = DISTURBANCES.index("mean reference drift")
+    below, above = (
+        float((after - before).mid())
+        for after, before in zip(found.disturbances[place], loop.disturbances[place], strict=True)
+    )
+    further, center = [], []
+    for length in (float(LENGTHS[0]), 0.12, float(LENGTHS[1])):
+        heights = [0.0, 0.0]
+        heights[side] = abs(way) / -math.expm1(-length * h / times[side])
+        heights[1 - side] = 0.1
+        at_center = in_mean(way, heights)
+        center.append(at_center - known * way)
+        ends = [
+            -math.expm1(-float(PULSE) * h / each) * height
+            for each, height in zip(times, heights, strict=True)
+        ]
+        further += [
+            (in_mean(u, heights) - at_center) / (u - way)
+            for u in np.linspace(-ends[1], ends[0], 40)
+            if abs(u - way) > 1e-6
+        ]
+    assert below <= min(center) <= max(center) <= above
+    assert above - below < 0.5 * abs(way)
+    assert low <= min(further) <= max(further) <= high
+    # With half of the longest pulse alone the mean would be taken to see more than it does.
+    mutant = low * (1.0 - float(PULSE) / 2.0) / (1.0 - float(PULSE + LENGTHS[1]) / 2.0)
+    assert min(further) < mutant
+
+
+def test_way_without_a_sign_has_no_numbers_of_its_own(valves):
+    problem, loop, *_ = valves
+    law = law_of(problem.controller)
+    with ctx.workprec(128):
+        wide = [point(0), point(0), point(-1).union(point(1)), point(0), point(0)]
+        assert about(law, loop, wide, LENGTHS) is loop
+
+
+def test_slopes_are_bounded_wherever_a_loop_may_settle():
+    """The secant between two speeds that errors are counted from is one of those in every range."""
+    assert all(near[side] >= SETTLED[side] for near in AROUND for side in (0, 1))
