@@ -38,7 +38,7 @@ AROUND = 97  # of an outline
 SEEN = (0, 3)  # error and torque among the numbers of the state
 STARTS = 4  # runs in an ellipsoid
 ALONG = 121  # points of a run
-BASIN = ("sliding speed above that of the reference [m/s]", "torque above the holding one [kN m]")
+BASIN = ("sliding speed above that of the reference [m/s]", "torque above what holds where it settles [kN m]")
 CELL = (
     "mu0",
     "max torque",
@@ -150,6 +150,7 @@ def _outline(problem: Problem, name: str, each: Ellipsoid) -> Series:
 
     spread = np.array(each.matrix, dtype=float)[np.ix_(SEEN, SEEN)]
     center = np.array(each.center, dtype=float)[list(SEEN)]
+    center[0] += float(each.settled)
     turn = np.linspace(0.0, 2.0 * math.pi, AROUND)
     edge = np.linalg.cholesky(spread) @ np.array([np.cos(turn), np.sin(turn)])
     slide, torque = _scales(problem)
@@ -164,18 +165,20 @@ def _runs(problem: Problem, name: str, each: Ellipsoid, window: Ends) -> Iterato
     at = settled_stop(problem, {**nominal, "speed": window[1]})
     slide, torque = _scales(problem)
     pads = at.vehicle.brake.max_torque / float(_law(problem).full_torque)
+    error_there = float(each.settled)
+    held = _holding(problem, at, window[1], error_there)
     for error, step in _starts(each):
         start = replace(
             at.start,
-            slip=at.start.slip + slide * error / window[1],
-            torque=at.start.torque + 1e3 * torque * pads * step,
+            slip=at.start.slip + slide * (error_there + error) / window[1],
+            torque=held + 1e3 * torque * pads * step,
         )
         scenario = Scenario(rail=at.rail, initial_speed=window[1], start=start)
         run = simulate(at.vehicle, at.law, scenario, plant="quarter")
         shown = np.flatnonzero(run.speed >= window[0])
         shown = shown[:: max(1, len(shown) // ALONG)]
         speeds = run.speed[shown]
-        holding = [_holding(problem, at, float(speed)) for speed in speeds]
+        holding = [_holding(problem, at, float(speed), error_there) for speed in speeds]
         x = (run.slip[shown, 0] - _held(problem, speeds)) * speeds
         yield series(name, *BASIN, x, (run.torque[shown, 0] / pads - np.array(holding) / pads) / 1e3)
 
@@ -195,8 +198,10 @@ def _starts(each: Ellipsoid) -> "Array":
     return starts
 
 
-def _holding(problem: Problem, at: SettledStop, speed: float) -> float:
-    slip = slip_at(_law(problem), speed, at.vehicle.wheel_radius)
+def _holding(problem: Problem, at: SettledStop, speed: float, error: float) -> float:
+    """Torque that holds an error of the wheel speed beside the reference [N m]."""
+    radius = at.vehicle.wheel_radius
+    slip = slip_at(_law(problem), speed, radius) - error * radius / speed
     return holding_torque(at.vehicle, at.rail, slip=slip, speed=speed, braking_time=at.start.braking_time)
 
 

@@ -32,6 +32,7 @@ SPREAD = 0.1  # of the room at the tightest limit, that the coordinates of the i
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
 NEAR = 0.002  # rad/s, of the error at which the loop settles, that is near enough
 SETTLING = 6  # times that it is looked for
+LONGER = 0.04  # of the sample, by which the longest pulse at the center is longer than the shortest at least
 BACK = 0.2  # of the way at the center, to its other side, that there is room for at least
 HEIGHT = (
     0.9  # of what a pulse at the center goes a part of, that may be left of it, or be one over this share
@@ -251,6 +252,8 @@ def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
         -time * math.log1p(-abs(way) / height) if abs(way) < height else longest
         for height in (high / HEIGHT, low * HEIGHT)
     ]
+    # Where pulses are short, a longer one makes little difference, and less supply is asked for.
+    shortest_and_longest[1] = max(shortest_and_longest[1], shortest_and_longest[0] + LONGER)
     way_back = max(float(side.part(loop.ranges.pulse).mid()) * low - 2.0 * abs(way), BACK * abs(way))
     there = float(other.height[0].mid()) + other.rises * float(center[3].mid())
     back = -float(other.time.mid()) * math.log1p(-min(way_back / there, 0.5))

@@ -211,10 +211,10 @@ def loop_of(
     drift += (h * h * damping * turned * braking + h * damping * sliding - inertia * turning) / seen_inertia
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
     lag_drift = slowly * (1 - share / 2)
-    # The part of the change of the speed that the rims take part in changes where the slip falls; settled, the lag is
-    # what drifts over the share.
+    # The part of the change of the speed that the rims take part in changes where the slip falls. Settled, the lag D is
+    # at most (1 - share + bent) D + drift.
     bent = reference.bend * h * braking / reference.turning
-    lag_drift += bent * lag_drift / share * ball(Fraction(-1), Fraction(1))
+    lag_drift += bent * lag_drift / (share - bent) * ball(Fraction(-1), Fraction(1))
     known = sliding + misread_rate
     left_out = (
         h
