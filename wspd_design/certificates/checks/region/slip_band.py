@@ -11,10 +11,10 @@ from wspd_design.certificates.kernel.obligation import Inequality, Obligation
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
+from wspd_design.certificates.search.slip_band.chain import Sought
 from wspd_design.certificates.search.slip_band.disturbed import latest, noisiest
 from wspd_design.certificates.search.slip_band.search import (
     Failed,
-    Sought,
     exactly,
     largest_share,
     with_reserve,
