@@ -278,11 +278,11 @@ def _solve(
 def _inequalities(
     task: _Task, chosen: Sequence[int], faster: Ellipsoid | None, *, beyond: bool
 ) -> "tuple[Array, Array, float] | None":
-    """Minimize the largest error over Q, the shares and the multiplier of the faster ellipsoid.
+    """Minimize what is reached over what limits leave over Q, the shares and the multiplier of the faster ellipsoid.
 
     The unknowns are the entries of Q, one over each share, each share, one over the multiplier t and over 1 - t, and
-    the square of what is reached over what the tightest limit leaves: at most 1, and minimized in place of the error if
-    ``beyond``.
+    the square of what is reached over what the tightest limit leaves: at most 1, and minimized in place of the sum over
+    all limits if ``beyond``.
     """
     import numpy as np
 
@@ -321,11 +321,11 @@ def _inequalities(
         one, other = (last, np.array(FIRST)), (last + 1, np.array(SECOND))
         asked.semidefinite(np.array(CROSS) - np.eye(2), [one, other])
     costs = np.zeros(last + 3)
-    costs[last + 2] = 1.0
-    if not beyond:
-        # A small band counts as well as what is left for slower windows, whose ellipsoids hold this one.
-        row, left = task.limits[-1]
-        costs[:first] = _reached(row / left)
+    if beyond:
+        costs[last + 2] = 1.0
+    else:
+        # Slower windows have less room, and their ellipsoids hold this one.
+        costs[:first] = sum(_reached(row / left) for row, left in task.limits)
     found = asked.minimize(costs, rough=True)
     if found is None or not min(found[first:second]) > 0.0:
         return None
