@@ -19,7 +19,7 @@ CHOICES = tuple(
     for pulse in pulses
 )
 """What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
-FIRST = Choice(Fraction(1, 2), 1)
+FIRST, WIDEST = Choice(Fraction(1, 2), 1), Choice(Fraction(1, 2), 0)
 
 
 class OutOfBudget(Exception):
@@ -93,7 +93,7 @@ def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
     """Return a chain without ellipsoids that counts errors from where the loop settles at the lowest speeds."""
 
     def loop(settled: Fraction) -> Loop:
-        there = sought.in_time(CHOICES[0])._replace(settled=settled)
+        there = sought.in_time(WIDEST)._replace(settled=settled)
         return sought.loops(cell, 0, there)(sought.conditions.supply)
 
     return Chain(choice=choice._replace(settled=settling(sought.law, loop)))
@@ -130,7 +130,10 @@ def next_slower(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Sp
     def tried(choice: Choice) -> Chain | None:
         spent.one()
         loops = sought.loops(cell, window, choice)
-        found = ellipsoid(sought.law, loops, choice, sought.conditions.supply, chain.faster, chain.hints)
+        try:
+            found = ellipsoid(sought.law, loops, choice, sought.conditions.supply, chain.faster, chain.hints)
+        except Refused:  # the loop settles outside of what is reached
+            return None
         if found is None:
             return None
         return Chain(ellipsoids=(*chain.ellipsoids, found[0]), choice=choice, hints=found[1])
@@ -162,9 +165,11 @@ def far(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> 
     if looked_at not in spent.known:
         spent.one()
         loops = sought.loops(cell, window, choice)
-        spent.known[looked_at] = excess(
-            sought.law, loops, sought.conditions.supply, chain.faster, chain.hints
-        )
+        try:
+            found = excess(sought.law, loops, sought.conditions.supply, chain.faster, chain.hints)
+        except Refused:
+            found = math.inf
+        spent.known[looked_at] = found
     return spent.known[looked_at]
 
 
