@@ -20,7 +20,8 @@ from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.band import CELLS, RESERVED, SLIP_BAND
 from wspd_design.certificates.theorems.slip_band.checker import checker, lies_in
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Friction, loop_of
+from wspd_design.certificates.theorems.slip_band.friction import FADINGS, HALVES, REACHES, SLOPES, Friction
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read, write
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 from wspd_design.controllers.observers.sensors import Sensors
@@ -56,8 +57,8 @@ def test_checker_alone_accepts_it(half, proof):
     assert checker(half, half.controller)(proof, Work(PLENTY))["cells"] >= 1
 
 
-SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST = range(1, 6)
-Q, CENTER, ALPHA, OFFSET, SHARES, INSIDE = slice(6, 21), 21, 26, 27, 28, -1
+SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST, BACK = range(1, 7)
+Q, CENTER, ALPHA, OFFSET, SHARES, INSIDE = slice(7, 22), 22, 27, 28, 29, -1
 # Shares of what disturbs without noise, with a constant slip and without dead band
 DRIFTS = tuple(
     SHARES + k
@@ -168,7 +169,7 @@ STILL = [(point(0),) * STATES]  # errors of both ellipsoids are counted from the
 def ellipse(size, center, inside):
     """A ball of this radius about a point on the first axis."""
     matrix = tuple(tuple(Fraction(size) ** 2 * (i == j) for j in range(STATES)) for i in range(STATES))
-    numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset", "longest"), Fraction(1))
+    numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset", "longest", "back"), Fraction(1))
     return Ellipsoid(
         **numbers,
         near=0,
@@ -259,7 +260,7 @@ def test_clip_of_what_is_held_is_that_of_the_reserve(half):
     """Half of the wet box takes up to 69 %; a reserve takes what is beyond off the room for filling, and no more."""
     with ctx.workprec(128):
         law, box = law_of(half.controller), box_of(half, Fraction(1))
-        friction = Friction(*[(-0.2, 0.02)] * 3, (0.86, 0.91), (-0.1, -0.09))
+        friction = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.1, -0.09),) * len(FADINGS))
         exact = Conditions(supply=Fraction(1), delay=Fraction(0), noise=Fraction(0))
         found = {
             reserve: loop_of(
@@ -267,7 +268,7 @@ def test_clip_of_what_is_held_is_that_of_the_reserve(half):
                 law,
                 box,
                 windows_of(half)[0],
-                friction,
+                (friction,) * HALVES,
                 Choice(Fraction(1, 2), 0),
                 exact._replace(reserve=reserve),
             )
@@ -285,14 +286,14 @@ def test_clip_of_what_is_held_is_that_of_the_reserve(half):
 def test_narrower_slope_counts_only_as_far_as_it_is_bounded(half, proof):
     """An error that leaves the narrower range is refused there, whatever the slope is in it."""
     each = proof["ellipsoids"][0]
-    # At 10 km/h the band reaches farther above the reference than the narrowest range, which lies below it.
+    # At 10 km/h the band reaches farther above the reference than the narrowest reach, which lies below it.
     assert float(each[NEAR]) == 1.0
     each[NEAR] = "2.0"
     assert "range in which the slope of the friction is bounded" in refused(half, proof)
     each[NEAR] = "1.0"
     each[Q] = [repr(9.0 * float(number)) for number in each[Q]]
     assert "may" in refused(half, proof)
-    each[NEAR] = "3.0"
+    each[NEAR] = repr(float(len(REACHES)))
     assert "not there" in refused(half, proof)
 
 

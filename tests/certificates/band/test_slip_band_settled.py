@@ -17,12 +17,10 @@ from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.band import CELLS
 from wspd_design.certificates.theorems.slip_band import arrival, checker, followed_plant
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, about, loop_of, way_at
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Lengths, about, loop_of, way_at
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.statement import (
-    AROUND,
     NAMES,
-    SETTLED,
     box_of,
     law_of,
     windows_of,
@@ -31,7 +29,7 @@ from wspd_design.parameters.bounds import Bounds
 
 pytestmark = pytest.mark.slow
 PLENTY = 10**9
-SETTLES, SHORTEST, LONGEST = 3, 4, 5
+SETTLES, SHORTEST, LONGEST, BACK = 3, 4, 5, 6
 PULSE = Fraction(1, 2)
 
 
@@ -54,23 +52,23 @@ def forged(proof, window, place, change):
     return found
 
 
-@pytest.mark.parametrize("window", [0, 5, 13])
+@pytest.mark.parametrize("window", [0, 5, 9])
 @pytest.mark.parametrize("by", [-0.01, 0.01])
 def test_ellipsoid_about_another_error_than_its_own_is_refused(half, proof, window, by):
     assert "may lead out of an ellipsoid" in refused(half, forged(proof, window, SETTLES, lambda e: e + by))
 
 
-@pytest.mark.parametrize("window", [0, 13])
-@pytest.mark.parametrize("settled", [0.0607, -0.0102])
+@pytest.mark.parametrize("window", [0, 9])
+@pytest.mark.parametrize("settled", [0.137, -0.066])
 def test_error_from_where_the_fading_is_not_bounded_is_refused(half, proof, window, settled):
-    """12 per mille below and 2 above the reference at 10 km/h, and wheels of .55 m at most."""
+    """27 per mille below and 13 above the reference at 10 km/h, and wheels of .55 m at most."""
     slowest = half.speeds[0] / half.span("wheel radius")[1]
-    assert not -0.002 * slowest <= settled <= 0.012 * slowest
+    assert not -0.013 * slowest <= settled <= 0.027 * slowest
     reason = refused(half, forged(proof, window, SETTLES, lambda _: settled))
-    assert "where the fading of the friction is not bounded" in reason
+    assert "where the friction is not bounded" in reason
 
 
-@pytest.mark.parametrize("window", [0, 5, 13])
+@pytest.mark.parametrize("window", [0, 5, 9])
 def test_pulses_at_the_center_that_the_torques_do_not_keep_are_refused(half, proof, window):
     assert "too long" in refused(half, forged(proof, window, LONGEST, lambda x: 0.95 * x))
     assert "too short" in refused(half, forged(proof, window, SHORTEST, lambda x: 1.3 * x))
@@ -135,7 +133,7 @@ def loop_in(problem, proof, window):
     ), each
 
 
-@pytest.mark.parametrize("window", [0, 6, 12])
+@pytest.mark.parametrize("window", [0, 4, 8])
 def test_shift_between_windows_is_that_of_a_wheel(half, proof, window):
     """The same wheel in the coordinates of both windows, as the way in knows them."""
     law, speed = half.controller, windows_of(half)[window][1]
@@ -166,7 +164,7 @@ def test_shift_between_windows_is_that_of_a_wheel(half, proof, window):
 
 # --- the way at a center, with valves that fill and vent at different rates -------------------------------------
 WAYS = (0.003, -0.003)  # rad/s
-LENGTHS = (Fraction(1, 20), Fraction(1, 4))  # of the pulse at the center over the sample time
+LENGTHS = Lengths(Fraction(1, 20), Fraction(1, 4), Fraction(1, 2))  # of the pulse at the center over the sample time
 
 
 @pytest.fixture(scope="module", params=[("fill", (0.3, 0.4), (0.8, 1.0)), ("vent", (0.8, 1.0), (0.3, 0.4))])
@@ -315,8 +313,3 @@ def test_way_without_a_sign_has_no_numbers_of_its_own(valves):
     with ctx.workprec(128):
         wide = [point(0), point(0), point(-1).union(point(1)), point(0), point(0)]
         assert about(law, loop, wide, LENGTHS) is loop
-
-
-def test_slopes_are_bounded_wherever_a_loop_may_settle():
-    """The secant between two speeds that errors are counted from is one of those in every range."""
-    assert all(near[side] >= SETTLED[side] for near in AROUND for side in (0, 1))
