@@ -22,7 +22,7 @@ FOLDER = ".certificates"
 PACKAGES = ("crival", "casadi", "cvxpy", "clarabel", "python-flint", "sympy")
 HEARSAY = ("findings", "made_by")
 """Entries of a file that no sentence of a certificate is compared with: one is decided about, the other is idle."""
-MOST_FINDINGS, MOST_NUMBERS = 400, 400
+MOST_FINDINGS, MOST_NUMBERS = 2_000, 2_000
 MOST_BOXES = 10**9
 
 

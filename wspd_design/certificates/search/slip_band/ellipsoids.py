@@ -344,10 +344,11 @@ def _inequalities(
         one, other = (last, np.array(FIRST)), (last + 1, np.array(SECOND))
         asked.semidefinite(np.array(CROSS) - np.eye(2), [one, other])
     costs = np.zeros(last + 3)
-    if beyond:
-        costs[last + 2] = 1.0
-    else:
-        costs[:first] = _reached(task.basis[0] / np.linalg.norm(task.basis[0]))
+    costs[last + 2] = 1.0
+    if not beyond:
+        # A small band counts as well as what is left for slower windows, whose ellipsoids hold this one.
+        row, left = task.limits[-1]
+        costs[:first] = _reached(row / left)
     found = asked.minimize(costs, rough=True)
     if found is None or not min(found[first:second]) > 0.0:
         return None
