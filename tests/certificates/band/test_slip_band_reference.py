@@ -10,7 +10,7 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import LOCO, WET, certificate_of
+from tests.certificates.band.conftest import LOCO, SLOW, WET, certificate_of
 from tests.certificates.band.test_slip_band_departure import polach
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
@@ -317,7 +317,7 @@ def test_reference_that_ends_its_fall_inside_the_range_is_not_spoken_about():
 
 @pytest.mark.slow
 def test_band_around_a_falling_slip_is_proved_and_not_believed_of_another():
-    problem = falling_problem(wd.load_rail("low-adhesion"), 0.25)
+    problem = replace(falling_problem(wd.load_rail("low-adhesion"), 0.25), speeds=SLOW)
     found = certificate_of(problem)
     assert found.status is Status.PROVED
     assert "0.16/sqrt(v)" in found.claim
