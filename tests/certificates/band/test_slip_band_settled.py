@@ -17,7 +17,14 @@ from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, parts_about
 from wspd_design.certificates.theorems.band import CELLS
 from wspd_design.certificates.theorems.slip_band import arrival, checker, followed_plant
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Lengths, about, loop_of, way_at
+from wspd_design.certificates.theorems.slip_band.loop import (
+    Choice,
+    Conditions,
+    Lengths,
+    about,
+    loop_of,
+    way_at,
+)
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.statement import (
     NAMES,
@@ -77,16 +84,15 @@ def test_pulses_at_the_center_that_the_torques_do_not_keep_are_refused(half, pro
 
 @pytest.mark.parametrize(
     ("place", "length"),
-    [(SHORTEST, 0.4), (SHORTEST, -0.001), (LONGEST, 0.001), (LONGEST, 0.9)]
-    + [(BACK, 0.0), (BACK, -0.001), (BACK, 0.9)],
+    [
+        *((SHORTEST, 0.4), (SHORTEST, -0.001), (LONGEST, 0.001), (LONGEST, 0.9)),
+        *((BACK, 0.0), (BACK, -0.001), (BACK, 0.9)),
+    ],
 )
 def test_pulses_at_the_center_in_no_order_are_refused(half, proof, place, length):
     """Longer than the longest one, shorter than the shortest, below 0, and longer than any pulse; so is one back."""
     reason = refused(half, forged(proof, 0, place, lambda _: length))
-    assert (
-        reason
-        == "the pulses of the way at the center, and those back, must be from 0 to the longest one"
-    )
+    assert reason == "the pulses of the way at the center, and those back, must be from 0 to the longest one"
 
 
 @pytest.mark.parametrize("window", [0, 5, 9])
@@ -196,7 +202,9 @@ def test_shift_between_windows_is_that_of_a_wheel(half, proof, window):
 
 # --- the way at a center, with valves that fill and vent at different rates -------------------------------------
 WAYS = (0.003, -0.003)  # rad/s
-LENGTHS = Lengths(Fraction(1, 20), Fraction(1, 4), Fraction(1, 2))  # of the pulse at the center over the sample time
+LENGTHS = Lengths(
+    Fraction(1, 20), Fraction(1, 4), Fraction(1, 2)
+)  # of the pulse at the center over the sample time
 
 
 @pytest.fixture(scope="module", params=[("fill", (0.3, 0.4), (0.8, 1.0)), ("vent", (0.8, 1.0), (0.3, 0.4))])
@@ -297,7 +305,9 @@ def test_ways_to_the_other_side_count_for_their_part_of_the_distance(valves, way
         )
 
     simulated = []
-    for length, height, time in product((0.01, 0.1, float(LENGTHS.back)), (0.1 * full, 0.6 * full, full), times):
+    for length, height, time in product(
+        (0.01, 0.1, float(LENGTHS.back)), (0.1 * full, 0.6 * full, full), times
+    ):
         wanted, gone = (-math.expm1(-length * h / each) * height for each in (assumed, time))
         simulated.append((-math.copysign(wanted, way), -math.copysign(gone, way)))
     assert {center for _, center in pairs} == set(center_parts)

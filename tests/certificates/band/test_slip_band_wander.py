@@ -59,7 +59,9 @@ def test_what_is_asked_of_the_friction_grows_with_the_error_of_the_slip(wander, 
     problem, _ = wander
     asked = {}
     for each in (problem, wandering(tmp_path, error=2.0 * ERROR)):
-        (slipping,) = (x for x in claims(each)[key("level", 0, 0, "<=")].variables if x.name == "sliding speed")
+        (slipping,) = (
+            x for x in claims(each)[key("level", 0, 0, "<=")].variables if x.name == "sliding speed"
+        )
         asked[id(each)] = float(slipping.low), float(slipping.high)
     (low, high), (wider_low, wider_high) = asked.values()
     assert wider_low < low < high < wider_high
