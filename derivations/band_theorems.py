@@ -112,9 +112,9 @@ THEOREMS = (
         "numbers of its own. If Q > 0, shares D > 0 and alpha > 0 with alpha + sum D <= 1 make "
         "Q - A Q A'/alpha - [o Br] D^-1 [o Br]' positive definite at the corners of all numbers of a sample, then no "
         "sample leads out of {(X - c)'Q^-1(X - c) <= 1}, and w - w_r stays within the root of the first entry of Q "
-        "around E plus the first entry of c. If such sets are given for windows of speed, that of a faster window, "
-        "with errors counted as there, inside that of the next slower one, a wheel that is in the set once keeps its "
-        "slip in the band R (w - w_r)/v down to the lowest speed.",
+        "around E plus the first entry of c. If such sets are given for windows of speed, with one E, that of a faster "
+        "window inside that of the next slower one, a wheel that is in the set once keeps its slip in the band "
+        "R (w - w_r)/v down to the lowest speed.",
         hypotheses=(
             "mass, inertia, radius, pads and valve times do not change; there are sets for each cell of their box",
             "(phi, psi) in the polygon of the range of the mean slope of the friction between E and what the band "
@@ -170,7 +170,6 @@ THEOREMS = (
             Identity("a longer pulse counts in the mean from its end on", slip_loop.mean_residual),
             Identity("change of the way over that of the wanted one", slip_loop.rate_residual),
             Identity("the length of a pulse is convex over the wanted way", slip_loop.convex_residual),
-            Identity("another speed that errors are counted from", slip_loop.shift_residual),
             Identity("X+ - c of X+ = A X + B (m + r z)", _centered),
             Identity("what the shares and alpha leave of 1", _budget),
             Identity("what lies between an ellipse and one in it", _nested),

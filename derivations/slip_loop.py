@@ -130,16 +130,6 @@ rate_of_pulse = rate.subs(T_n, T_a / c).subs(P, longest * T_a / h)
 _length = -T_a / h * sp.log(1 - u)  # of the pulse that is wanted, over the part of the room: convex
 convex_residual = sp.simplify(sp.diff(_length, u, 2) - T_a / h / (1 - u) ** 2)
 
-# --- from one speed that errors are counted from to another: t0 moves by the secant between them ----------------------
-_E, _E2, _f, _rate, _y = sp.symbols("E E_2 f rate y_T", real=True)
-_t0_of = (_f - _rate) / g
-_t0_there = (_f + q * (_E2 - _E) - _rate) / g
-_moved_by = sp.Matrix([w - (w_r + _E2), h * (_y - _t0_there)]) - sp.Matrix(
-    [w - (w_r + _E), h * (_y - _t0_of)]
-)
-shift = (_E - _E2) * sp.Matrix([1, h * q / g])
-shift_residual = sp.simplify(sum((_moved_by - shift).applyfunc(sp.Abs)))
-
 # --- what a supply that rises by (8) adds to a pulse that fills: D' = (what the supply has risen by - D)/T_F, so that D
 # is at most as if the supply rose at its first rate and D did not hold it back; a pulse that begins late sees it later.
 # A pulse over T_F of x goes at least the part x - x^2/2 of the room, a share "room" of what the supply lacks ----------

@@ -11,10 +11,10 @@ from wspd_design.certificates.kernel.obligation import Inequality, Obligation
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.settle import enclose, finding
+from wspd_design.certificates.search.slip_band.chain import Sought
 from wspd_design.certificates.search.slip_band.disturbed import latest, noisiest
 from wspd_design.certificates.search.slip_band.search import (
     Failed,
-    Sought,
     exactly,
     largest_share,
     with_reserve,
@@ -37,7 +37,7 @@ from wspd_design.certificates.theorems.slip_band.statement import law_of, window
 from wspd_design.controllers.protection import Protection
 
 TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
-SOUGHT = 240  # ellipsoids for each share of the box, with an effort of 1
+SOUGHT = 500  # ellipsoids for each share of the box, with an effort of 1
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:

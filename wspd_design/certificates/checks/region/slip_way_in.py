@@ -9,7 +9,8 @@ from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
-from wspd_design.certificates.search.slip_band.search import Sought, alone, exactly
+from wspd_design.certificates.search.slip_band.chain import Sought
+from wspd_design.certificates.search.slip_band.search import alone, exactly
 from wspd_design.certificates.search.slip_band.way_in import plan
 from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.proof import write as write_band

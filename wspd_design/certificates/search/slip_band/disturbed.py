@@ -4,13 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from wspd_design.certificates.search.slip_band.search import (
-    Chain,
-    Sought,
-    Spent,
-    alone,
-    next_slower,
-)
+from wspd_design.certificates.search.slip_band.chain import Sought, Spent, begun, next_slower
+from wspd_design.certificates.search.slip_band.search import alone
 from wspd_design.certificates.theorems.slip_band.loop import Conditions
 from wspd_design.certificates.theorems.slip_band.proof import Proof
 from wspd_design.certificates.theorems.slip_band.statement import box_of
@@ -42,7 +37,8 @@ def _most(sought: Sought, found: Proof, harder: Sequence[Conditions]) -> Proof |
         harder_one = replace(sought, conditions=conditions)
         # At the lowest speed slips move fastest, at the highest there is least torque to vent.
         if any(
-            next_slower(harder_one, cell, window, Chain(), Spent()) is None for window in (windows - 1, 0)
+            next_slower(harder_one, cell, window, begun(harder_one, cell), Spent()) is None
+            for window in (windows - 1, 0)
         ):
             break
         borne += 1

@@ -18,7 +18,7 @@ from wspd_design.certificates.setting.slip_loop import (
     numbers_at_corners,
     sample,
 )
-from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in, shifts
+from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Lengths, Loop, about, loop_law, way_at
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
@@ -30,8 +30,8 @@ KEPT = (0.95, 0.92, 0.85)  # of the function after a sample without disturbance;
 FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 8, 8  # of the loop that the inequalities begin with, and are added
 SPREAD = 0.1  # of the room at the tightest limit, that the coordinates of the inequalities reach at least
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
-NEAR = 0.002  # rad/s, of the error at which the loop settles, that is near enough
-SETTLING = 6  # times that it is looked for
+SETTLING = 4  # times that what a loop settles at is looked for
+WITHIN = 0.99  # of the errors between which the fading is bounded
 LONGER = 0.04  # of the sample, by which the longest pulse at the center is longer than the shortest at least
 BACK = 0.2  # of the way at the center, to its other side, that there is room for at least
 HEIGHT = (
@@ -43,8 +43,8 @@ LEAST = 1e-6  # of what disturbs most, as which anything else counts at least
 FIRST, SECOND, CROSS = ((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 1.0), (1.0, 0.0))
 
 
-Loops: TypeAlias = Callable[[Fraction, Fraction], Loop]
-"""Numbers of cell and window for the least share of the full pressure, and the error that errors are counted from."""
+Loops: TypeAlias = Callable[[Fraction], Loop]
+"""Numbers of cell and window for the least share of the full pressure."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,8 +52,6 @@ class _Task:
     """What the inequalities are made of, in coordinates z, X - c = basis z, in which their numbers are near 1."""
 
     maps: "Array"  # [A o Br] at all corners
-    settled: Fraction  # rad/s, E
-    shift: "Array"  # rad/s, ends of what the faster ellipsoid is shifted by, as rows
     center: "Array"
     lengths: Lengths
     basis: "Array"
@@ -82,7 +80,7 @@ def ellipsoid(
     loops : callable
         Returns the numbers of cell and window.
     choice : Choice
-        What they are made for; what errors are counted from is chosen here.
+        What they are made for.
     supply : Fraction
         Share of the full pressure that the search may ask for.
     faster : Ellipsoid or None
@@ -96,7 +94,7 @@ def ellipsoid(
         The ellipsoid, and the corners that mattered.
     """
     for kept in KEPT:
-        task = _task(law, loops, supply, faster, kept)
+        task = _task(law, loops, supply, kept)
         if task is None:
             return None
         solved = _solve(task, faster, hints)
@@ -105,12 +103,11 @@ def ellipsoid(
         q, shares, inside, corners_that_matter = solved
         found = _rounded(task, choice, supply, q, shares, inside)
         found = replace(found, supply=_least_supply(law, loops, supply, found))
-        loop = loops(found.supply, found.settled)
         try:
-            errors(law, loop, found)
+            errors(law, loops(found.supply), found)
         except Refused:
             continue
-        if faster is None or lies_in(faster, found, shifts(law, loop, faster.settled, found.settled)):
+        if faster is None or lies_in(faster, found):
             return found, corners_that_matter
     return None
 
@@ -120,7 +117,7 @@ def excess(
 ) -> float:
     """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
     for kept in KEPT:
-        task = _task(law, loops, supply, faster, kept)
+        task = _task(law, loops, supply, kept)
         solved = None if task is None else _solve(task, faster, hints, beyond=True)
         if task is not None and solved is not None:
             return max(_used(task, solved[0]))
@@ -141,7 +138,7 @@ def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid
         middle = (low + high) // 2
         loop = about(
             law,
-            loops(middle * step, found.settled),
+            loops(middle * step),
             center,
             Lengths(found.shortest, found.longest, found.back),
         )
@@ -152,16 +149,14 @@ def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid
     return high * step
 
 
-def _task(
-    law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None, kept: float
-) -> _Task | None:
+def _task(law: BandLaw, loops: Loops, supply: Fraction, kept: float) -> _Task | None:
     """Set the inequalities up; None if the center is beyond a limit or the loop does not contract so much."""
     import numpy as np
     from scipy.linalg import solve_discrete_lyapunov
 
-    settled, center = _center(law, loops, supply, faster)
+    loop = loops(supply)
+    center = _center(law, loop)
     exact = [point(each) for each in center]
-    loop = loops(supply, settled)
     lengths = _lengths(law, loop, exact)
     loop = about(law, loop, exact, lengths)
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
@@ -179,7 +174,7 @@ def _task(
     # The error, between samples nearly the same.
     reaching += [np.eye(STATES)[0], -np.eye(STATES)[0]]
     rooms += [
-        float(sign * (end - point(settled)).mid()) - sign * float(at[0])
+        float(sign * (end - point(loop.settled)).mid()) - sign * float(at[0])
         for sign, end in zip((1, -1), loop.widest[::-1], strict=True)
     ]
     contracting = max(abs(np.linalg.eigvals(mean))) ** 2 < kept
@@ -195,8 +190,6 @@ def _task(
     back = np.linalg.inv(basis)
     return _Task(
         maps=np.concatenate([back @ state @ basis, back @ columns], axis=2),
-        settled=settled,
-        shift=_shift(law, loop, settled, faster),
         center=at,
         lengths=lengths,
         basis=basis,
@@ -206,39 +199,34 @@ def _task(
     )
 
 
-def _center(
-    law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None
-) -> tuple[Fraction, tuple[Fraction, ...]]:
-    """Return the error at which the loop settles if nothing but the middle of all is there, and its state then.
-
-    If that of the faster window is near, it is kept: there is nothing to shift.
-    """
+def _center(law: BandLaw, loop: Loop) -> tuple[Fraction, ...]:
+    """Return the state in which the loop settles if nothing but the middle of all is there."""
     import numpy as np
 
-    lowest, highest = (0.99 * float(end.mid()) for end in loops(supply, Fraction(0)).settles)
-
-    def within(error: float) -> Fraction:
-        return _short(min(max(error, lowest), highest))
-
-    settled = within(0.0 if faster is None else float(faster.settled))
+    middle = np.array([[float(end.mid()) for end in each] for each in loop.disturbances]).mean(axis=1)
     center: tuple[Fraction, ...] | None = None
     for _ in range(SETTLING):
-        loop = loops(supply, settled)
-        middle = np.array([[float(end.mid()) for end in each] for each in loop.disturbances]).mean(axis=1)
+        # Once the side of the way is known, so are the parts that the valve goes.
+        known = loop
         if center is not None:
-            loop = about(
+            known = about(
                 law, loop, [point(each) for each in center], Lengths(Fraction(0), Fraction(1), Fraction(1))
             )
-        found = _maps(loop_law(law), loop.ranges)[1].mean(axis=0)
+        found = _maps(loop_law(law), known.ranges)[1].mean(axis=0)
         at = np.linalg.solve(np.eye(STATES) - found[:, :STATES], found[:, STATES:] @ middle)
-        first, before = center is None, settled
-        settled = settled if abs(at[0]) < NEAR and not first else within(float(settled) + float(at[0]))
-        at[0] -= float(settled - before)
         center = tuple(_short(float(each)) for each in at)
-        if settled == before and not first:
-            break
     assert center is not None
-    return settled, center
+    return center
+
+
+def settling(law: BandLaw, loops: Callable[[Fraction], Loop]) -> Fraction:
+    """Return the error of the wheel speed at which a loop settles; ``loops`` takes what errors are counted from."""
+    lowest, highest = (WITHIN * float(end.mid()) for end in loops(Fraction(0)).settles)
+    settled = Fraction(0)
+    for _ in range(SETTLING):
+        beside = float(_center(law, loops(settled))[0])
+        settled = _short(min(max(float(settled) + beside, lowest), highest))
+    return settled
 
 
 def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
@@ -262,16 +250,6 @@ def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
         longest=min(_short(shortest_and_longest[1]), Fraction(longest)),
         back=min(_short(back), Fraction(longest)),
     )
-
-
-def _shift(law: BandLaw, loop: Loop, settled: Fraction, faster: Ellipsoid | None) -> "Array":
-    """Ends of what the states of the faster window are shifted by, as rows."""
-    import numpy as np
-
-    if faster is None:
-        return np.zeros((1, STATES))
-    ends = shifts(law, loop, faster.settled, settled)
-    return np.array([[float(each.mid()) for each in end] for end in ends])
 
 
 def _solve(
@@ -300,11 +278,11 @@ def _solve(
 def _inequalities(
     task: _Task, chosen: Sequence[int], faster: Ellipsoid | None, *, beyond: bool
 ) -> "tuple[Array, Array, float] | None":
-    """Minimize the largest error over Q, the shares and the multiplier of the faster ellipsoid.
+    """Minimize what is reached over what limits leave over Q, the shares and the multiplier of the faster ellipsoid.
 
     The unknowns are the entries of Q, one over each share, each share, one over the multiplier t and over 1 - t, and
-    the square of what is reached over what the tightest limit leaves: at most 1, and minimized in place of the error if
-    ``beyond``.
+    the square of what is reached over what the tightest limit leaves: at most 1, and minimized in place of the sum over
+    all limits if ``beyond``.
     """
     import numpy as np
 
@@ -336,19 +314,18 @@ def _inequalities(
     if faster is not None:
         back = np.linalg.inv(task.basis)
         inner = back @ np.array(faster.matrix, dtype=float) @ back.T
-        for shift in task.shift:
-            apart = back @ (np.array(faster.center, dtype=float) + shift - task.center)
-            parts = [(k, (1.0 - SLACK) * unit) for k, unit in enumerate(units)]
-            parts += [(last, -inner), (last + 1, -np.outer(apart, apart))]
-            asked.semidefinite(np.zeros((STATES, STATES)), parts)
+        apart = back @ (np.array(faster.center, dtype=float) - task.center)
+        parts = [(k, (1.0 - SLACK) * unit) for k, unit in enumerate(units)]
+        parts += [(last, -inner), (last + 1, -np.outer(apart, apart))]
+        asked.semidefinite(np.zeros((STATES, STATES)), parts)
         one, other = (last, np.array(FIRST)), (last + 1, np.array(SECOND))
         asked.semidefinite(np.array(CROSS) - np.eye(2), [one, other])
     costs = np.zeros(last + 3)
-    costs[last + 2] = 1.0
-    if not beyond:
-        # A small band counts as well as what is left for slower windows, whose ellipsoids hold this one.
-        row, left = task.limits[-1]
-        costs[:first] = _reached(row / left)
+    if beyond:
+        costs[last + 2] = 1.0
+    else:
+        # Slower windows have less room, and their ellipsoids hold this one.
+        costs[:first] = sum(_reached(row / left) for row, left in task.limits)
     found = asked.minimize(costs, rough=True)
     if found is None or not min(found[first:second]) > 0.0:
         return None
@@ -396,7 +373,7 @@ def _rounded(
         pulse=choice.pulse,
         supply=supply,
         near=choice.near,
-        settled=task.settled,
+        settled=choice.settled,
         shortest=task.lengths.shortest,
         longest=task.lengths.longest,
         back=task.lengths.back,

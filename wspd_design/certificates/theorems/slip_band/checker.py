@@ -8,8 +8,7 @@ numbers of its own. From the ellipsoid the next state has at most alpha + sum of
     Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share
 
 is positive definite at all corners. Windows follow each other from the fastest to the slowest; the ellipsoid of a
-faster one lies in that of the next, with errors counted as there. Between samples the error is bounded by the same
-state, with the torque in between.
+faster one lies in that of the next. Between samples the error is bounded by the same state, with the torque in between.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -111,11 +110,11 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
             loop = loop_of(problem, law, cell, window, friction, choice, conditions)
             bands[k] = _joined(bands[k], errors(law, loop, each))
             supplies[k] = max(supplies[k], each.supply)
-            if slower is not None and not _lies_in_next(law, each, *slower):
+            if slower is not None and not lies_in(each, slower):
                 raise Refused(
                     f"an ellipsoid at {window[1] * 3.6:.0f} km/h does not lie in the next slower one"
                 )
-            slower = each, loop
+            slower = each
     if waiting or next(cells, None) is not None:
         raise Refused("steps and cells do not match")
     radius = point(problem.span("wheel radius")[1])
@@ -249,51 +248,22 @@ def _product(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
     return sum(map(mul, one, other), point(0))
 
 
-def shifts(law: BandLaw, loop: Loop, before: Fraction, after: Fraction) -> list[tuple[Ball, ...]]:
-    """Return between what a state changes if errors are counted from another one, in a window whose loop is given.
-
-    Another speed takes another torque to hold, by the secant of the friction between both.
-    """
-    if before == after:
-        return [(point(0),) * STATES]
-    apart = point(before - after)
-    torques = [
-        point(law.sample_time) * secant / effect
-        for secant, effect in product(loop.ranges.secants, loop.ranges.effects)
-    ]
-    return [
-        tuple(each * apart for each in (point(1), point(0), torque, torque, point(0)))
-        for torque in (least_of(torques), most_of(torques))
-    ]
-
-
-def _lies_in_next(law: BandLaw, faster: Ellipsoid, slower: Ellipsoid, loop: Loop) -> bool:
-    low, high = loop.widest
-    if not low < point(faster.settled) < high:
-        raise Refused("the slope is not bounded where errors of the next faster window are counted from")
-    return lies_in(faster, slower, shifts(law, loop, faster.settled, slower.settled))
-
-
-def lies_in(faster: Ellipsoid, slower: Ellipsoid, shifts: Sequence[Sequence[Ball]]) -> bool:
+def lies_in(faster: Ellipsoid, slower: Ellipsoid) -> bool:
     """Whether one ellipsoid lies in another: 1 - (X-c)'P(X-c) of the slower one is at least t times that of the faster.
 
-    With D the center of the faster one less that of the slower one, that is Qs - Qf/t - D D'/(1 - t) positive definite.
-    If it lies there at both ends of what it is shifted by, it does in between.
+    Both count errors from the same one. With D the center of the faster one less that of the slower one, that is
+    Qs - Qf/t - D D'/(1 - t) positive definite.
     """
     t = slower.inside
-    return 0 < t < 1 and all(
-        is_positive(
+    apart = [a - b for a, b in zip(faster.center, slower.center, strict=True)]
+    return (
+        faster.settled == slower.settled
+        and 0 < t < 1
+        and is_positive(
             [
-                [
-                    point(s - f / t) - one * other / point(1 - t)
-                    for s, f, other in zip(*rows, apart, strict=True)
-                ]
+                [s - f / t - one * other / (1 - t) for s, f, other in zip(*rows, apart, strict=True)]
                 for *rows, one in zip(slower.matrix, faster.matrix, apart, strict=True)
             ]
-        )
-        for apart in (
-            [point(a - b) + by for a, b, by in zip(faster.center, slower.center, shift, strict=True)]
-            for shift in shifts
         )
     )
 

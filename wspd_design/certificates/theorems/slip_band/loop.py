@@ -88,6 +88,7 @@ class Loop:
     limits: tuple[Limit, ...]
     widest: Pair  # rad/s, errors between which the slope is bounded
     settles: Pair  # rad/s, errors between which the fading is bounded
+    settled: Fraction  # rad/s, E
     holding: float  # -, share of the full pressure that holds the reference, at least
     pulses: tuple["Pulses", "Pulses"]  # that fill and that vent
     beside: Pair  # rad/s, what the law wants beside what the state asks for
@@ -260,6 +261,7 @@ def loop_of(
         disturbances=tuple(map(_ends, disturbed)),
         limits=(*(_in_time(law, each, point(pulse), beside) for each in pulses), *limits),
         widest=_errors(reached(choice.near), slowest / widest_radius),
+        settled=choice.settled,
         settles=_errors((FADINGS[0][0], FADINGS[-1][1]), slowest / widest_radius),
         holding=holding,
         pulses=pulses,

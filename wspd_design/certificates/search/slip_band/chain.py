@@ -1,0 +1,185 @@
+"""Ellipsoids of one cell from the fastest window on, each in that of the next slower one; nothing here is trusted."""
+
+import math
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.records import Problem
+from wspd_design.certificates.search.slip_band.ellipsoids import Loops, ellipsoid, excess, settling
+from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more
+from wspd_design.certificates.theorems.slip_band.friction import Halves
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
+from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
+
+CHOICES = tuple(
+    Choice(Fraction(pulse, 4), reach)
+    for reach, pulses in ((2, (4, 3)), (1, (4, 3, 2, 1)), (0, (4, 2, 1)), (3, (4, 3)))
+    for pulse in pulses
+)
+"""What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
+FIRST = Choice(Fraction(1, 2), 1)
+
+
+class OutOfBudget(Exception):
+    """More ellipsoids were sought than may be."""
+
+
+class Spent:
+    """Ellipsoids that were sought, how many may be, and how far those that were looked at go to their limits."""
+
+    def __init__(self, most: float = math.inf) -> None:
+        self.most, self.count = most, 0
+        self.known: dict[object, float] = {}
+
+    def one(self) -> None:
+        """Count one more, or end the search."""
+        self.count += 1
+        if self.count > self.most:
+            raise OutOfBudget
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sought:
+    """What ellipsoids are sought for."""
+
+    problem: Problem
+    law: BandLaw
+    friction: tuple[Halves, ...]  # proved bounds for each window
+    conditions: Conditions
+
+    @property
+    def windows(self) -> tuple[tuple[float, float], ...]:
+        """Windows of speed, the slowest first."""
+        return windows_of(self.problem)
+
+    def loops(self, cell: Cell, window: int, choice: Choice) -> Loops:
+        """Return the loop of a cell and a window for a share of the full pressure."""
+
+        def loop(supply: Fraction) -> Loop:
+            return loop_of(
+                self.problem,
+                self.law,
+                cell,
+                self.windows[window],
+                self.friction[window],
+                choice,
+                self.conditions._replace(supply=supply),
+            )
+
+        return loop
+
+    def in_time(self, choice: Choice) -> Choice:
+        """Shorten pulses so that they end in their sample, however late they begin."""
+        return choice._replace(pulse=min(choice.pulse, 1 - self.conditions.delay))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chain:
+    """Ellipsoids of a cell from the fastest window on, as far as they were found."""
+
+    ellipsoids: tuple[Ellipsoid | None, ...] = ()
+    choice: Choice  # for which the last was found; what errors are counted from is the same in all windows
+    hints: tuple[int, ...] = ()
+
+    @property
+    def faster(self) -> Ellipsoid | None:
+        """Ellipsoid that that of the next slower window must hold."""
+        return self.ellipsoids[-1] if self.ellipsoids else None
+
+
+def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
+    """Return a chain without ellipsoids that counts errors from where the loop settles at the lowest speeds."""
+
+    def loop(settled: Fraction) -> Loop:
+        there = sought.in_time(CHOICES[0])._replace(settled=settled)
+        return sought.loops(cell, 0, there)(sought.conditions.supply)
+
+    return Chain(choice=choice._replace(settled=settling(sought.law, loop)))
+
+
+def continued(sought: Sought, cell: Cell, chain: Chain, spent: Spent) -> Chain:
+    """Go on with the ellipsoids of a cell towards slower windows, as far as there are some."""
+    while len(chain.ellipsoids) < len(sought.windows):
+        window = left_of(sought, chain)
+        if holds_more(
+            sought.problem,
+            sought.law,
+            cell,
+            sought.windows[window],
+            sought.friction[window],
+            sought.conditions.reserve,
+        ):
+            return replace(chain, ellipsoids=(*chain.ellipsoids, *[None] * (window + 1)))
+        found = next_slower(sought, cell, window, chain, spent)
+        if found is None:
+            return chain
+        chain = found
+    return chain
+
+
+def left_of(sought: Sought, chain: Chain) -> int:
+    """Return the window that a chain ends before, the slowest being 0; -1 if it is whole."""
+    return len(sought.windows) - 1 - len(chain.ellipsoids)
+
+
+def next_slower(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> Chain | None:
+    """Add an ellipsoid to those of a cell: for the choice of the last one, or for the one that is best."""
+
+    def tried(choice: Choice) -> Chain | None:
+        spent.one()
+        loops = sought.loops(cell, window, choice)
+        found = ellipsoid(sought.law, loops, choice, sought.conditions.supply, chain.faster, chain.hints)
+        if found is None:
+            return None
+        return Chain(ellipsoids=(*chain.ellipsoids, found[0]), choice=choice, hints=found[1])
+
+    found = tried(sought.in_time(chain.choice))
+    if found is None:
+        choice, left = best(sought, cell, window, chain, spent)
+        found = tried(choice) if left < 1.0 else None
+    return found
+
+
+def best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> tuple[Choice, float]:
+    """Return the choice for which an ellipsoid goes least far to its limits, and how far.
+
+    That of the last ellipsoid is compared with those that have its reach or its pulse.
+    """
+    last = chain.choice
+    near = (each for each in CHOICES if each.near == last.near or each.pulse == last.pulse)
+    tried = dict.fromkeys(sought.in_time(each._replace(settled=last.settled)) for each in (last, *near))
+    found = {each: far(sought, cell, window, replace(chain, choice=each), spent) for each in tried}
+    least = min(found, key=lambda each: found[each])
+    return least, found[least]
+
+
+def far(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> float:
+    """Return by how much an ellipsoid for the choice of a chain would exceed its tightest limit, squared."""
+    choice = sought.in_time(chain.choice)
+    looked_at = cell, window, choice, chain.faster
+    if looked_at not in spent.known:
+        spent.one()
+        loops = sought.loops(cell, window, choice)
+        spent.known[looked_at] = excess(
+            sought.law, loops, sought.conditions.supply, chain.faster, chain.hints
+        )
+    return spent.known[looked_at]
+
+
+def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
+    """Keep the ellipsoids of a larger cell up to the first that the cell does not have.
+
+    The tangents that enclose the numbers of a sample touch elsewhere for a smaller range, and may enclose more.
+    """
+    for number, each in enumerate(chain.ellipsoids):
+        if each is None:
+            continue
+        window = len(sought.windows) - 1 - number
+        loop = sought.loops(cell, window, Choice(each.pulse, each.near, each.settled))(each.supply)
+        try:
+            errors(sought.law, loop, each)
+        except Refused:
+            return replace(chain, ellipsoids=chain.ellipsoids[:number])
+    return chain
