@@ -12,6 +12,8 @@ from wspd_design.design.problem import stability_problem
 from wspd_design.parameters.bounds import Bounds
 
 LOCO, WET = wd.load_vehicle("er24pc"), wd.load_rail("polach-wet")
+SLOW = 10.0 / 3.6, 14.4 / 3.6
+"""Two windows: bounding the friction in each takes the most time of many a proof [m/s]."""
 
 
 def problem_of(share, *, rail=WET, speeds=(10.0 / 3.6, 120.0 / 3.6), **tracking):

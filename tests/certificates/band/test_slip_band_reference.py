@@ -10,13 +10,14 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import LOCO, WET, certificate_of
+from tests.certificates.band.conftest import LOCO, SLOW, WET, certificate_of
 from tests.certificates.band.test_slip_band_departure import polach
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
 from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Friction, loop_of
+from wspd_design.certificates.theorems.slip_band.friction import FADINGS, HALVES, SLOPES, Friction
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held, turning_at
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, law_of, windows_of
 from wspd_design.design.problem import stability_problem
@@ -123,9 +124,8 @@ def friction_at(problem, window, slips):
             slopes.append(-(course.force(v, slip + d) - course.force(v, slip - d)) / (2 * d * v) / weight)
             fade = (course.force(v + d, slip) - course.force(v - d, slip)) / (2 * d) / weight
             fadings.append(fade / slip)
-    return Friction(
-        *((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, slopes, slopes, levels, fadings))
-    )
+    slope, level, fading = ((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, levels, fadings))
+    return Friction((slope,) * len(SLOPES), level, (fading,) * len(FADINGS))
 
 
 def loop_at(problem, law, settled=0.0, *, window=WINDOW, friction=None):
@@ -135,7 +135,7 @@ def loop_at(problem, law, settled=0.0, *, window=WINDOW, friction=None):
         slips = slips_held(law, window, cell[2])
         friction = friction or friction_at(problem, window, (slips[0] - 4e-3, slips[1] + 1e-3))
         choice = Choice(Fraction(1, 2), 0, Fraction(settled))
-        return loop_of(problem, law, cell, window, friction, choice, EXACT)
+        return loop_of(problem, law, cell, window, (friction,) * HALVES, choice, EXACT)
 
 
 def loop_numbers(problem, law, *, told=None, settled=0.0):
@@ -244,13 +244,13 @@ def test_lag_of_the_filter_drifts_within_its_bounds(falling, falls):
     assert abs(settled[1]) > 2.0 * (ends[1] - ends[0])
 
 
-@pytest.mark.parametrize("settled", ["0.061", "-0.0102"])
+@pytest.mark.parametrize("settled", ["0.137", "-0.066"])
 def test_errors_counted_from_where_the_fading_is_not_bounded_are_refused(falling, settled):
-    """12 per mille below and 2 above the reference at 10 km/h, with the largest wheel."""
+    """27 per mille below and 13 above the reference at 10 km/h, with the largest wheel."""
     law = law_of(falling.controller)
     slowest = LAW_SPEEDS[0] / falling.span("wheel radius")[1]
-    assert not -0.002 * slowest < float(settled) < 0.012 * slowest
-    with pytest.raises(Refused, match="fading of the friction is not bounded"):
+    assert not -0.013 * slowest < float(settled) < 0.027 * slowest
+    with pytest.raises(Refused, match="where the friction is not bounded"):
         loop_at(falling, law, Fraction(settled))
 
 
@@ -304,7 +304,7 @@ def test_what_is_asked_of_the_friction_is_about_the_slips_that_are_held():
         windows_of(problem)[-1],
         tuple(map(Fraction, problem.span("wheel radius"))),
     )
-    level = claims(problem)[key("level", len(windows_of(problem)) - 1, "<=")]
+    level = claims(problem)[key("level", 0, len(windows_of(problem)) - 1, "<=")]
     (sliding,) = (each for each in level.variables if each.name == "sliding speed")
     assert float(sliding.low) <= low * windows_of(problem)[-1][0]
     assert float(sliding.high) >= high * windows_of(problem)[-1][1]
@@ -317,7 +317,7 @@ def test_reference_that_ends_its_fall_inside_the_range_is_not_spoken_about():
 
 @pytest.mark.slow
 def test_band_around_a_falling_slip_is_proved_and_not_believed_of_another():
-    problem = falling_problem(wd.load_rail("low-adhesion"), 0.25)
+    problem = replace(falling_problem(wd.load_rail("low-adhesion"), 0.25), speeds=SLOW)
     found = certificate_of(problem)
     assert found.status is Status.PROVED
     assert "0.16/sqrt(v)" in found.claim

@@ -11,18 +11,22 @@ import pytest
 from flint import ctx
 from scipy.integrate import quad
 
-from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused, Work, number
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
+from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, parts_about
 from wspd_design.certificates.theorems.band import CELLS
-from wspd_design.certificates.theorems.slip_band import arrival, checker, followed_plant
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, about, loop_of, way_at
+from wspd_design.certificates.theorems.slip_band import checker
+from wspd_design.certificates.theorems.slip_band.loop import (
+    Choice,
+    Conditions,
+    Lengths,
+    about,
+    loop_of,
+    way_at,
+)
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.statement import (
-    AROUND,
     NAMES,
-    SETTLED,
     box_of,
     law_of,
     windows_of,
@@ -31,7 +35,7 @@ from wspd_design.parameters.bounds import Bounds
 
 pytestmark = pytest.mark.slow
 PLENTY = 10**9
-SETTLES, SHORTEST, LONGEST = 3, 4, 5
+SETTLES, SHORTEST, LONGEST, BACK = 3, 4, 5, 6
 PULSE = Fraction(1, 2)
 
 
@@ -54,59 +58,74 @@ def forged(proof, window, place, change):
     return found
 
 
-@pytest.mark.parametrize("window", [0, 5, 13])
+@pytest.mark.parametrize("window", [0, 5, 9])
 @pytest.mark.parametrize("by", [-0.01, 0.01])
 def test_ellipsoid_about_another_error_than_its_own_is_refused(half, proof, window, by):
     assert "may lead out of an ellipsoid" in refused(half, forged(proof, window, SETTLES, lambda e: e + by))
 
 
-@pytest.mark.parametrize("window", [0, 13])
-@pytest.mark.parametrize("settled", [0.0607, -0.0102])
+@pytest.mark.parametrize("window", [0, 9])
+@pytest.mark.parametrize("settled", [0.137, -0.066])
 def test_error_from_where_the_fading_is_not_bounded_is_refused(half, proof, window, settled):
-    """12 per mille below and 2 above the reference at 10 km/h, and wheels of .55 m at most."""
+    """27 per mille below and 13 above the reference at 10 km/h, and wheels of .55 m at most."""
     slowest = half.speeds[0] / half.span("wheel radius")[1]
-    assert not -0.002 * slowest <= settled <= 0.012 * slowest
+    assert not -0.013 * slowest <= settled <= 0.027 * slowest
     reason = refused(half, forged(proof, window, SETTLES, lambda _: settled))
-    assert "where the fading of the friction is not bounded" in reason
+    assert "where the friction is not bounded" in reason
 
 
-@pytest.mark.parametrize("window", [0, 5, 13])
+@pytest.mark.parametrize("window", [0, 5, 9])
 def test_pulses_at_the_center_that_the_torques_do_not_keep_are_refused(half, proof, window):
-    assert "too long" in refused(half, forged(proof, window, LONGEST, lambda x: 0.95 * x))
-    assert "too short" in refused(half, forged(proof, window, SHORTEST, lambda x: 1.3 * x))
+    shortest, longest = (float(number(proof["ellipsoids"][window][k])) for k in (SHORTEST, LONGEST))
+    assert "too long" in refused(half, forged(proof, window, LONGEST, lambda _: 1.02 * shortest))
+    assert "too short" in refused(half, forged(proof, window, SHORTEST, lambda _: 0.98 * longest))
 
 
 @pytest.mark.parametrize(
-    ("place", "length"), [(SHORTEST, 0.4), (SHORTEST, -0.001), (LONGEST, 0.001), (LONGEST, 0.9)]
+    ("place", "length"),
+    [
+        *((SHORTEST, 0.4), (SHORTEST, -0.001), (LONGEST, 0.001), (LONGEST, 0.9)),
+        *((BACK, 0.0), (BACK, -0.001), (BACK, 0.9)),
+    ],
 )
 def test_pulses_at_the_center_in_no_order_are_refused(half, proof, place, length):
-    """Longer than the longest one, shorter than the shortest, below 0, and longer than any pulse."""
+    """Longer than the longest one, shorter than the shortest, below 0, and longer than any pulse; so is one back."""
     reason = refused(half, forged(proof, 0, place, lambda _: length))
-    assert reason == "the pulses of the way at the center must be from 0 to the longest one"
+    assert reason == "the pulses of the way at the center, and those back, must be from 0 to the longest one"
+
+
+@pytest.mark.parametrize("window", [0, 5, 9])
+def test_pulses_back_that_the_states_do_not_keep_are_refused(half, proof, window):
+    """The states go some way to the other side of 0: no pulse there may be longer than the one that is told."""
+    law = law_of(half.controller)
+    with ctx.workprec(128):
+        loop, each = loop_in(half, proof, window)
+        way = way_at(law, loop, [point(x) for x in each.center])
+        side = "venting" if way > 0 else "filling"
+        told, least = each.back, Fraction(0)
+        while told - least > Fraction(1, 1000):
+            middle = (told + least) / 2
+            try:
+                checker.errors(law, loop, replace(each, back=middle))
+                told = middle
+            except Refused:
+                least = middle
+    reason = refused(half, forged(proof, window, BACK, lambda _: float(least)))
+    assert reason.startswith(f"the state may go beyond what {side}")
+    assert reason.endswith("in its longest pulse")
+    # Not for any length: some are shorter than what the search tells, and are kept to.
+    assert least > 0
+    assert checker.checker(half, half.controller)(
+        forged(proof, window, BACK, lambda _: float(told)), Work(PLENTY)
+    )
 
 
 def test_ellipsoids_lie_in_each_other_only_with_errors_counted_from_the_same(half, proof, monkeypatch):
     """With nothing else asked for: an ellipsoid about another error is not where it seems to be."""
     monkeypatch.setattr(checker, "errors", lambda *_: (point(-0.01), point(0.01)))
-    decide, original = checker.checker(half, half.controller), checker.shifts
-    assert decide(proof, Work(PLENTY))["cells"] == 1.0
-    own = number(proof["ellipsoids"][6][SETTLES])
-    for by in (-0.025, 0.03):
-        shifted = forged(proof, 6, SETTLES, lambda e, by=by: e + by)
-        assert "next slower" in refused(half, shifted)
-        other = number(shifted["ellipsoids"][6][SETTLES])
-
-        def blind(law, loop, before, after, other=other):
-            """As if the ellipsoid were still about its own error."""
-            return original(law, loop, *(own if each == other else each for each in (before, after)))
-
-        with monkeypatch.context() as patch:
-            patch.setattr(checker, "shifts", blind)
-            assert decide(shifted, Work(PLENTY))["cells"] == 1.0
-    # The windows of the proof settle at different errors, and their ellipsoids lie in each other with shifts alone.
-    assert len({each[SETTLES] for each in proof["ellipsoids"]}) > 1
-    monkeypatch.setattr(checker, "shifts", lambda *_: [(point(0),) * STATES])
-    assert "next slower" in refused(half, proof)
+    assert checker.checker(half, half.controller)(proof, Work(PLENTY))["cells"] == 1.0
+    for by in (-1e-6, 0.03):
+        assert "next slower" in refused(half, forged(proof, 6, SETTLES, lambda e, by=by: e + by))
 
 
 def test_band_reaches_as_far_as_the_states_do(half, proved, proof):
@@ -135,38 +154,11 @@ def loop_in(problem, proof, window):
     ), each
 
 
-@pytest.mark.parametrize("window", [0, 6, 12])
-def test_shift_between_windows_is_that_of_a_wheel(half, proof, window):
-    """The same wheel in the coordinates of both windows, as the way in knows them."""
-    law, speed = half.controller, windows_of(half)[window][1]
-    radius = half.vehicle.wheel_radius
-
-    def form(value):
-        return Affine(np.array([value]), np.zeros((1, 32)), np.zeros(1))
-
-    numbers = {name: form(half.nominal(name)) for name in followed_plant.NUMBERS}
-    plant = followed_plant.plant_of(half.vehicle, half.rail, law.valve.brake.max_torque, numbers, 16)
-    sliding = half.slip * speed - 0.03 * radius
-    state = followed_plant.State(*map(form, (speed, sliding, 0.001, 24e3, 23e3, -1.2, -0.024, 0.99)))
-    for before, after in ((0.0, 0.05), (0.05, 0.0), (0.02, -0.008)):
-        faster, slower = (
-            np.array([x.center[0] for x in arrival.in_band(law, plant, state, settled)])
-            for settled in (before, after)
-        )
-        with ctx.workprec(128):
-            loop, _ = loop_in(half, proof, window)
-            ends = checker.shifts(law_of(law), loop, Fraction(before), Fraction(after))
-            low, high = (np.array([float(each.mid()) for each in end]) for end in ends)
-        moved = slower - faster
-        assert np.all(np.minimum(low, high) - 1e-9 <= moved)
-        assert np.all(moved <= np.maximum(low, high) + 1e-9)
-        assert moved[0] == pytest.approx(before - after)
-        assert abs(moved[2]) > 1e-6
-
-
 # --- the way at a center, with valves that fill and vent at different rates -------------------------------------
 WAYS = (0.003, -0.003)  # rad/s
-LENGTHS = (Fraction(1, 20), Fraction(1, 4))  # of the pulse at the center over the sample time
+LENGTHS = Lengths(
+    Fraction(1, 20), Fraction(1, 4), Fraction(1, 2)
+)  # of the pulse at the center over the sample time
 
 
 @pytest.fixture(scope="module", params=[("fill", (0.3, 0.4), (0.8, 1.0)), ("vent", (0.8, 1.0), (0.3, 0.4))])
@@ -236,6 +228,49 @@ def test_way_at_the_center_has_the_part_of_its_own_side(valves, way):
     assert not min(centers) <= min(there) <= max(there) <= max(centers)
 
 
+def counted(side, other, way, most, times=1.0):
+    """Pairs of parts where ways of at most this length to the other side count for their part of the distance."""
+    far = most / (most + times * way)
+    here, there = (tuple(float(end.mid()) for end in each.parts) for each in (side, other))
+    return parts_about(here, tuple(end + far * (each - end) for end, each in zip(here, there, strict=True)))
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_ways_to_the_other_side_count_for_their_part_of_the_distance(valves, way):
+    """Pulses of true valves up to the longest one back, at any torque: half of the distance would be too little."""
+    problem, loop, fill, vent = valves
+    law, found = centered(problem, loop, way)
+    h, full = float(law.sample_time), float(law.sample_time * law.full_torque / law.inertia)
+    kind = 1 if way > 0.0 else 0
+    assumed, times = float((law.fill_time, law.vent_time)[kind]), (fill, vent)[kind]
+    sides = loop.pulses[::-1] if kind == 0 else loop.pulses
+    most = -math.expm1(-float(LENGTHS.back) * h / assumed)
+    most *= sum(float(each.height[1].mid()) for each in loop.pulses)
+    pairs = [tuple(float(each.mid()) for each in pair) for pair in found.ranges.parts]
+    np.testing.assert_allclose(sorted(pairs), sorted(counted(*sides, abs(way), most)), rtol=1e-9)
+    center_parts = [float(end.mid()) for end in sides[0].parts]
+
+    def enclosed(pairs):
+        """Whether each way is a mean of those of the pairs, with any part of the way at the center."""
+        return all(
+            min(ends) <= gone <= max(ends)
+            for u, gone in simulated
+            for ends in ([rest * (u - way) + center * way for rest, center in pairs],)
+        )
+
+    simulated = []
+    for length, height, time in product(
+        (0.01, 0.1, float(LENGTHS.back)), (0.1 * full, 0.6 * full, full), times
+    ):
+        wanted, gone = (-math.expm1(-length * h / each) * height for each in (assumed, time))
+        simulated.append((-math.copysign(wanted, way), -math.copysign(gone, way)))
+    assert {center for _, center in pairs} == set(center_parts)
+    assert enclosed(pairs)
+    # Near 0 the parts are nearly those of the side of the center.
+    assert not enclosed(counted(*sides, abs(way), most, times=2.0))
+    assert not enclosed(counted(*sides, abs(way), 0.0))
+
+
 @pytest.mark.parametrize("way", WAYS)
 def test_limits_keep_the_pulse_at_the_center_between_its_lengths(valves, way):
     problem, loop, *_ = valves
@@ -245,13 +280,13 @@ def test_limits_keep_the_pulse_at_the_center_between_its_lengths(valves, way):
     side = loop.pulses[0 if way > 0.0 else 1]
     time = float((law.fill_time if way > 0.0 else law.vent_time) / law.sample_time)
     lengths = {True: [], False: []}
-    for torque, height in product(np.linspace(-0.6, 0.6, 241), side.height):
+    for torque, height in product(np.linspace(-1.0, 1.0, 801), side.height):
         left = float(height.mid()) + (-torque if way > 0.0 else torque)  # room that is left, or torque
         if left <= abs(way):
             continue
         inside = all(float(each.row[3].mid()) * torque < float(each.bound.mid()) for each in limits)
         lengths[inside].append(-time * math.log1p(-abs(way) / left))
-    shortest, longest = map(float, LENGTHS)
+    shortest, longest, _ = map(float, LENGTHS)
     assert shortest <= min(lengths[True]) <= max(lengths[True]) <= longest
     assert max(lengths[False]) > longest
     assert min(lengths[False]) < shortest
@@ -315,8 +350,3 @@ def test_way_without_a_sign_has_no_numbers_of_its_own(valves):
     with ctx.workprec(128):
         wide = [point(0), point(0), point(-1).union(point(1)), point(0), point(0)]
         assert about(law, loop, wide, LENGTHS) is loop
-
-
-def test_slopes_are_bounded_wherever_a_loop_may_settle():
-    """The secant between two speeds that errors are counted from is one of those in every range."""
-    assert all(near[side] >= SETTLED[side] for near in AROUND for side in (0, 1))
