@@ -42,6 +42,7 @@ BESIDE = {
 }
 """Other numbers that differ between the runs."""
 SUBSTEP = 2e-3  # s, at most
+ROUNDING = 1e-12  # relative, by which a number that was drawn at the end of a range may lie outside
 CHUNK = 5000  # runs at once
 SETTLED = 50  # samples that starts on the boundary are followed
 LONGEST = 200.0  # s, that a stop is followed
@@ -69,8 +70,10 @@ class Sets:
     def cell(self, plant):
         """Number of the cell that each plant lies in."""
         numbers = np.array([getattr(plant, name) for name in BOX.values()])
-        low, high = self.cells[:, :, :1], self.cells[:, :, 1:]
-        return np.argmax(np.all((numbers >= low) & (numbers <= high), axis=1), axis=0)
+        low, high = (1.0 - ROUNDING) * self.cells[:, :, :1], (1.0 + ROUNDING) * self.cells[:, :, 1:]
+        inside = np.all((numbers >= low) & (numbers <= high), axis=1)
+        assert np.all(np.any(inside, axis=0)), "a plant lies in no cell"
+        return np.argmax(inside, axis=0)
 
 
 def sets_of(problem, proof, numbers):
