@@ -16,14 +16,8 @@ from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, parts_about
 from wspd_design.certificates.theorems.band import CELLS
 from wspd_design.certificates.theorems.slip_band import checker
-from wspd_design.certificates.theorems.slip_band.loop import (
-    Choice,
-    Conditions,
-    Lengths,
-    about,
-    loop_of,
-    way_at,
-)
+from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.statement import (
     NAMES,

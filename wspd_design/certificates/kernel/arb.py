@@ -5,6 +5,7 @@ holds.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -48,3 +49,29 @@ def above(value: Ball) -> float:
 def below(value: Ball) -> float:
     """Return a double that nothing in the ball falls short of."""
     return -above(-value)
+
+
+def ends_of(value: Ball) -> tuple[Ball, Ball]:
+    """Return exact numbers that the ball lies between."""
+    return point(Fraction(below(value))), point(Fraction(above(value)))
+
+
+def hull_of(balls: Sequence[Ball]) -> Ball:
+    """Return a ball that contains some balls and what lies between them."""
+    found = balls[0]
+    for each in balls[1:]:
+        found = found.union(each)
+    return found
+
+
+def least_of(balls: Sequence[Ball]) -> Ball:
+    """Enclose the smallest of some numbers."""
+    found = balls[0]
+    for each in balls[1:]:
+        found = found.min(each)
+    return found
+
+
+def most_of(balls: Sequence[Ball]) -> Ball:
+    """Enclose the largest of some numbers."""
+    return -least_of([-each for each in balls])

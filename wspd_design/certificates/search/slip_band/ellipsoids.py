@@ -18,9 +18,11 @@ from wspd_design.certificates.setting.slip_loop import (
     numbers_at_corners,
     sample,
 )
+from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
 from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Lengths, Loop, about, loop_law, way_at
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Loop
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
+from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 
 if TYPE_CHECKING:

@@ -17,23 +17,15 @@ from itertools import product
 from operator import mul
 from typing import Any
 
-from wspd_design.certificates.kernel.arb import Ball, above, point
+from wspd_design.certificates.kernel.arb import Ball, above, least_of, most_of, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Pair, corners, wanted
+from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.friction import Halves
-from wspd_design.certificates.theorems.slip_band.loop import (
-    Choice,
-    Conditions,
-    Lengths,
-    Loop,
-    about,
-    least_of,
-    loop_law,
-    loop_of,
-    most_of,
-)
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, read
+from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
     BandLaw,

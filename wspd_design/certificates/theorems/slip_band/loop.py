@@ -3,26 +3,25 @@
 All of them are worked out in balls from the box and from the proved bounds of the friction, and rounded outwards.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
-from operator import mul
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
-from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
+from wspd_design.certificates.kernel.arb import (
+    Ball,
+    above,
+    ball,
+    below,
+    ends_of,
+    hull_of,
+    least_of,
+    most_of,
+    point,
+)
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.declared_law import LEAST
-from wspd_design.certificates.setting.slip_loop import (
-    DISTURBANCES,
-    LoopLaw,
-    LoopRanges,
-    Pair,
-    parts_about,
-    parts_of,
-    parts_of_longer,
-    wanted,
-)
+from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, wanted
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
     Halves,
@@ -32,6 +31,14 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     mean_slope,
     reached,
     slope_at,
+)
+from wspd_design.certificates.theorems.slip_band.pulses import (
+    Limit,
+    Pulses,
+    in_time,
+    loop_law,
+    pulses_of,
+    seen_of,
 )
 from wspd_design.certificates.theorems.slip_band.reference import held_in
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -44,8 +51,6 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
 from wspd_design.parameters.loading import constants
-
-Row: TypeAlias = tuple[Ball, ...]
 
 RADIUS = NAMES.index("wheel radius")
 ROOM = Fraction(1, 4)  # of what the supply lacks, that the cylinder lacks of the supply at least
@@ -71,15 +76,6 @@ class Choice(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limit:
-    """A linear function of the state and what it must not exceed."""
-
-    what: str
-    row: Row
-    bound: Ball
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
     """The loop in one cell and one window."""
 
@@ -90,42 +86,8 @@ class Loop:
     settles: Pair  # rad/s, errors between which the fading is bounded
     settled: Fraction  # rad/s, E
     holding: float  # -, share of the full pressure that holds the reference, at least
-    pulses: tuple["Pulses", "Pulses"]  # that fill and that vent
+    pulses: tuple[Pulses, Pulses]  # that fill and that vent
     beside: Pair  # rad/s, what the law wants beside what the state asks for
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Pulses:
-    """Pulses of one kind; they go a part of a height: that of the supply above the torque, or of the torque above 0."""
-
-    parts: Pair  # -, rho
-    time: Ball  # -, that the inversion assumes, over the sample time
-    height: Pair  # rad/s, at the torque that holds the reference
-    rises: int  # with Y: 1 or -1
-
-    def part(self, length: Ball) -> Ball:
-        """Part of the height that a pulse of a length over the sample time takes."""
-        return -(-length / self.time).expm1()
-
-
-class Lengths(NamedTuple):
-    """Pulses over the sample time."""
-
-    shortest: Fraction  # of the way at the center, at any torque of the states
-    longest: Fraction
-    back: Fraction  # longest one to the other side
-
-
-def loop_law(law: BandLaw) -> LoopLaw:
-    """Numbers of the law in balls."""
-    h = point(law.sample_time)
-    return LoopLaw(
-        sample_time=h,
-        gain=point(law.approach_rate) * h,
-        ahead=point(law.ahead),
-        pole=(-point(law.observer_rate) * h).exp(),
-        kept=(-h / point(law.acceleration_time)).exp(),
-    )
 
 
 def loop_of(
@@ -182,7 +144,7 @@ def loop_of(
     if conditions.reserve < 1 and friction.level[0] > 0:
         # Nothing is claimed of numbers and speeds at which more is held.
         weight = weight.min((point(conditions.reserve) * full + damped) / point(friction.level[0]))
-        rolled = rolled.min(_upper(weight) * _upper(effect))
+        rolled = rolled.min(ends_of(weight)[1] * ends_of(effect)[1])
     held = weight * ball(*friction.level) - damped + inertia * turned * slowing / seen_inertia
     if conditions.reserve < 1:
         held = held.min(point(conditions.reserve) * full)
@@ -223,7 +185,7 @@ def loop_of(
         * _dead_band(law, slip * (speed + point(conditions.noise)) / radius)
         * ball(Fraction(-1), Fraction(1))
     )
-    low, high = _ends(secants)
+    low, high = ends_of(secants)
     uneven = sliding * most_of([(high * h).exp() - 1, 1 - (low * h).exp(), point(0)])
     # The share of a steady drift that a sample has seen; a later weight sees more of it.
     half_way = (1 - lateness(high * h, 1, 0)).union(1 - lateness(low * h, 1, 0))
@@ -242,24 +204,26 @@ def loop_of(
         lag_drift,
     )
     widest_radius = point(problem.span("wheel radius")[1])
-    pulses = _pulses(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
-    seen = _seen(law, pulse)
+    pulses = pulses_of(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
+    seen = seen_of(law, pulse)
     asked = wanted(loop_law(law))
-    beside = _ends(asked[4] * known + asked[0] * (misread + apart))
+    beside = ends_of(asked[4] * known + asked[0] * (misread + apart))
     limits = _limits(law, choice, conditions.supply, held, turned * slowing, known, misread)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
-            effects=_ends(effect),
-            parts=tuple((end, end) for end in _ends(_hull([end for each in pulses for end in each.parts]))),
+            effects=ends_of(effect),
+            parts=tuple(
+                (end, end) for end in ends_of(hull_of([end for each in pulses for end in each.parts]))
+            ),
             seen=seen,
-            seen_center=_hull(seen),
+            seen_center=hull_of(seen),
             pulse=point(pulse),
             delay=point(conditions.delay),
             added=added,
         ),
-        disturbances=tuple(map(_ends, disturbed)),
-        limits=(*(_in_time(law, each, point(pulse), beside) for each in pulses), *limits),
+        disturbances=tuple(map(ends_of, disturbed)),
+        limits=(*(in_time(law, each, point(pulse), beside) for each in pulses), *limits),
         widest=_errors(reached(choice.near), slowest / widest_radius),
         settled=choice.settled,
         settles=_errors((FADINGS[0][0], FADINGS[-1][1]), slowest / widest_radius),
@@ -304,7 +268,7 @@ def _limits(
         Error of the error of the wheel speed in the law [rad/s].
     """
     h = point(law.sample_time)
-    least_held, most_held = _ends(h * held)
+    least_held, most_held = ends_of(h * held)
     full = h * point(law.full_torque) / point(law.inertia)
     least, room = point(LEAST) * full, point(supply) * full - most_held
     venting, filling = (-h * point(choice.pulse) / point(each) for each in (law.vent_time, law.fill_time))
@@ -314,7 +278,7 @@ def _limits(
         Limit(
             what="the observed friction above 0",
             row=(zero, zero, point(-1), zero, zero),
-            bound=least_held - _upper(h * falling),
+            bound=least_held - ends_of(h * falling)[1],
         ),
         Limit(
             what="the torque that is left",
@@ -341,8 +305,9 @@ def _added(problem: Problem, law: BandLaw, fill: Ball, pulse: Fraction, conditio
     if problem.vehicle.brake.build_up != "main-pipe":
         raise Refused("the supply is that of the full pressure alone")
     rate = point(problem.span("supply rate")[1])
-    fastest, h = _ends(fill)[0], point(law.sample_time)
-    return _upper(added_by_supply(rate, fastest, h, point(pulse), point(conditions.delay), point(ROOM)))
+    fastest, h = ends_of(fill)[0], point(law.sample_time)
+    added = added_by_supply(rate, fastest, h, point(pulse), point(conditions.delay), point(ROOM))
+    return ends_of(added)[1]
 
 
 def _below_the_curve(law: BandLaw, known: Ball, misread: Ball) -> tuple[Limit, ...]:
@@ -357,143 +322,9 @@ def _below_the_curve(law: BandLaw, known: Ball, misread: Ball) -> tuple[Limit, .
         Limit(
             what="the beginning of the braking curve",
             row=(point(1), point(0), ahead, -ahead, ahead),
-            bound=slew - _upper(misread + ahead * known),
+            bound=slew - ends_of(misread + ahead * known)[1],
         ),
     )
-
-
-def _pulses(
-    law: BandLaw, times: tuple[Ball, Ball], pulse: Fraction, added: Ball, supplied: Ball, held: Ball
-) -> tuple[Pulses, Pulses]:
-    """Return pulses that fill and pulses that vent.
-
-    Parameters
-    ----------
-    law : BandLaw
-        Its numbers.
-    times : tuple of ball
-        Of filling and venting [s].
-    pulse : Fraction
-        Longest one over the sample time.
-    added : ball
-        What a rising supply adds to a way that fills, over the way.
-    supplied, held : ball
-        Torque of the supply, and the one that holds, over the inertia of the law [rad/s2].
-    """
-    h, assumed = point(law.sample_time), (law.fill_time, law.vent_time)
-    longest = point(pulse * law.sample_time) / point(min(assumed))
-    filling, venting = (
-        _hull(parts_of(_ends(point(each) / true), longest)) for each, true in zip(assumed, times, strict=True)
-    )
-    fill, vent = (point(each) / h for each in assumed)
-    return (
-        Pulses(
-            parts=_ends(filling.union(filling * (1 + added))),
-            time=fill,
-            height=_ends(h * (supplied - held)),
-            rises=-1,
-        ),
-        Pulses(parts=_ends(venting), time=vent, height=_ends(h * held), rises=1),
-    )
-
-
-def _in_time(law: BandLaw, pulses: Pulses, longest: Ball, beside: Pair) -> Limit:
-    """Keep what is wanted within pulses of a length over the sample time."""
-    asked, part = wanted(loop_law(law)), pulses.part(longest)
-    ways = tuple(each + (part - 1) * (k == 3) for k, each in enumerate(asked))
-    if pulses.rises < 0:
-        return Limit(
-            what="what filling adds in its longest pulse", row=ways, bound=part * pulses.height[0] - beside[1]
-        )
-    return Limit(
-        what="what venting takes off in its longest pulse",
-        row=tuple(-each for each in ways),
-        bound=part * pulses.height[0] + beside[0],
-    )
-
-
-def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) -> Loop:
-    """Return the loop with changes of the torque counted from the one at a center of the states.
-
-    Parameters
-    ----------
-    law : BandLaw
-        Its numbers.
-    loop : Loop
-        As :func:`loop_of` returns it.
-    center : sequence of ball
-        State [rad/s].
-    lengths : Lengths
-        What pulses are kept to.
-    """
-    way = way_at(law, loop, center)
-    if not (way > 0 or way < 0):
-        return loop
-    side, other = loop.pulses if way > 0 else loop.pulses[::-1]
-    share, (shortest, longest, back) = point(law.time_share), map(point, lengths)
-    pulse = loop.ranges.pulse
-    further = parts_of_longer(share, most_of([pulse / each.time for each in loop.pulses]))
-    # The mean over a pulse of what it has reached: a longer one counts from its end on, and ends are convex over ways.
-    seen = _ends((further[0] * (1 - (pulse + longest) / 2)).union(further[1]))
-    least, most = parts_of((share, share), longest / side.time)
-    fading = (
-        -share * longest / side.time
-    ).exp()  # the rate at the end of the pulse over that at its beginning
-    seen_center = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
-    known = point(Fraction(float(seen_center.mid())))
-    disturbances = [low.union(high) for low, high in loop.disturbances]
-    disturbances[DISTURBANCES.index("mean reference drift")] += (seen_center - known) * way
-    # A way to the other side counts for its part of the distance from the center, at most as it does for the longest.
-    most_back = other.part(back) * _upper(loop.pulses[0].height[1] + loop.pulses[1].height[1])
-    far = most_back / (most_back + abs(way))
-    opposite = tuple(end + far * (each - end) for end, each in zip(side.parts, other.parts, strict=True))
-    in_time = (_in_time(law, each, pulse if each is side else back, loop.beside) for each in loop.pulses)
-    return replace(
-        loop,
-        ranges=replace(
-            loop.ranges, parts=parts_about(side.parts, _ends(_hull(opposite))), seen=seen, seen_center=known
-        ),
-        disturbances=tuple(map(_ends, disturbances)),
-        limits=(*in_time, *loop.limits[2:], *_center_in_time(side, abs(way), (shortest, longest))),
-    )
-
-
-def way_at(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Ball:
-    """Return the wanted change of the torque at a center, what disturbs being in its middle [rad/s]."""
-    known, command = ((low + high) / 2 for low, high in loop.disturbances[:2])
-    asked = wanted(loop_law(law))
-    return sum(map(mul, asked, center), command + asked[4] * known - center[3])
-
-
-def _center_in_time(side: Pulses, way: Ball, lengths: tuple[Ball, Ball]) -> Iterator[Limit]:
-    """Keep the torque where the way at the center takes no shorter and no longer a pulse."""
-    least, most = way.lower(), way.upper()
-    shortest, longest = map(side.part, lengths)
-
-    def row(sign: int) -> Row:
-        return (point(0), point(0), point(0), point(sign * side.rises), point(0))
-
-    if not longest > 0:
-        raise Refused("the pulses of the way at the center must be from 0 to the longest one")
-    yield Limit(
-        what="the torque at which the way at the center is too long",
-        row=row(-1),
-        bound=side.height[0] - most / longest,
-    )
-    if shortest > 0:
-        yield Limit(
-            what="the torque at which the way at the center is too short",
-            row=row(1),
-            bound=least / shortest - side.height[1],
-        )
-
-
-def _seen(law: BandLaw, pulse: Fraction) -> Pair:
-    """Return the part of the wanted way in the mean torque, which the law works out with the nominal times."""
-    longest = point(pulse * law.sample_time) / point(min(law.fill_time, law.vent_time))
-    share = point(law.time_share)
-    low, high = parts_of((share, share), longest)
-    return _ends(_hull((low * (1 - point(pulse) / 2), high)))  # the way is gone at least evenly
 
 
 def _dead_band(law: BandLaw, sliding: Ball) -> Ball:
@@ -510,31 +341,3 @@ def _resistance(problem: Problem, speed: Ball, order: int = 0) -> Ball:
         for name in ("constant", "linear", "quadratic")
     )
     return linear + 2 * square * speed if order else constant + linear * speed + square * speed**2
-
-
-def _ends(value: Ball) -> Pair:
-    return point(Fraction(below(value))), point(Fraction(above(value)))
-
-
-def _upper(value: Ball) -> Ball:
-    return point(Fraction(above(value)))
-
-
-def _hull(balls: Sequence[Ball]) -> Ball:
-    found = balls[0]
-    for each in balls[1:]:
-        found = found.union(each)
-    return found
-
-
-def least_of(balls: Sequence[Ball]) -> Ball:
-    """Enclose the smallest of some numbers."""
-    found = balls[0]
-    for each in balls[1:]:
-        found = found.min(each)
-    return found
-
-
-def most_of(balls: Sequence[Ball]) -> Ball:
-    """Enclose the largest of some numbers."""
-    return -least_of([-each for each in balls])
