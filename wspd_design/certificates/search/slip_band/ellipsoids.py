@@ -36,9 +36,7 @@ SETTLING = 4  # times that what a loop settles at is looked for
 WITHIN = 0.99  # of the errors between which the fading is bounded
 LONGER = 0.04  # of the sample, by which the longest pulse at the center is longer than the shortest at least
 BACK = 0.2  # of the way at the center, to its other side, that there is room for at least
-HEIGHT = (
-    0.9  # of what a pulse at the center goes a part of, that may be left of it, or be one over this share
-)
+HEIGHT = 0.9  # of the height that a pulse at the center goes a part of: it may fall to this, or rise to one over it
 DIGITS = 7  # of the numbers in the proof
 LEAST = 1e-6  # of what disturbs most, as which anything else counts at least
 # [[x, 1], [1, y]] = x FIRST + y SECOND + CROSS is positive semidefinite if y is at least 1/x.
