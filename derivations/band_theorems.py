@@ -75,9 +75,8 @@ THEOREMS = (
         "form in symbols between -1 and 1, of which two stand for the friction and the supply rate of a strip. What a "
         "sample makes of the forms encloses what it makes of the numbers; if a form of the slip s/v stays below a "
         "number, also between samples, for strips that cover both ranges, no wheel slips more on its way. If the forms "
-        "of e, p, N and Y lie in the ellipsoid of a band at the end, the error of the filtered acceleration within "
-        "its bounds, and the supply has what the band asks for then and when the train gets to each slower window, "
-        "the wheels stay in the band down to the lowest speed.",
+        "of e, p, N, Y and D lie in the ellipsoid of a band at the end, and the supply has what the band asks for then "
+        "and when the train gets to each slower window, the wheels stay in the band down to the lowest speed.",
         hypotheses=(
             "friction and supply rate as stated, everything else at its nominal value",
             "the law that is followed is the one that runs, compared at points in doubles",

@@ -138,7 +138,7 @@ def _rest_of_the_stop(problem: Problem, strips: Finding) -> str:
         return "What comes after is not shown."
     low, told = problem.speeds[0] * KMH, band.bands(windows_of(around(problem)), strips)
     return (
-        "The wheels are then in the ellipsoid of a band, the filter of the acceleration has settled, and the supply "
+        "The wheels, with the filter of the acceleration, are then in the ellipsoid of a band, and the supply "
         f"has what the band asks for. From there down to {low:.3g} km/h: {told}"
     )
 
