@@ -4,12 +4,13 @@ from dataclasses import fields, replace
 from unittest.mock import patch
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given, reject, settings
 from hypothesis import strategies as st
 
 from wspd_design.certificates.kernel.checker import Work
 from wspd_design.certificates.search import adhesion_peaks as peak_search
 from wspd_design.certificates.theorems.shortest_stop import adhesion_peaks
+from wspd_design.certificates.theorems.shortest_stop.adhesion_limit import NoBound
 from wspd_design.certificates.theorems.shortest_stop.extremes import exactly
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import load_rail, load_vehicle
@@ -122,7 +123,11 @@ def test_what_is_proved_lies_below_ideal_stops(rail, vehicle, kmh):
     """The search finds peaks and cuts that the checker accepts on every rail, for every vehicle."""
     plant = exactly(vehicle, rail), kmh / 3.6
     with patch.object(peak_search, "SPEEDS", 40):
-        found, _ = adhesion_peaks.decide(*plant, peak_search.search(*plant), Work())
+        try:
+            found, _ = adhesion_peaks.decide(*plant, peak_search.search(*plant), Work())
+        except NoBound:  # with such a resistance a wheel could outrun the train
+            assert vehicle != DAMPED
+            reject()
     ideal = ideal_stop(vehicle, Scenario(rail=rail, initial_speed=kmh / 3.6), plant="quarter")
     assert 0.5 * ideal.distance < found.distance < ideal.distance
     assert found.time < ideal.stopping_time

@@ -12,6 +12,7 @@ from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
+from wspd_design.parameters.errors import WspdError
 
 CHOICES = tuple(
     Choice(Fraction(pulse, 4), reach)
@@ -22,7 +23,7 @@ CHOICES = tuple(
 FIRST, WIDEST = Choice(Fraction(1, 2), 1), Choice(Fraction(1, 2), 0)
 
 
-class OutOfBudget(Exception):
+class OutOfBudget(WspdError):
     """More ellipsoids were sought than may be."""
 
 
