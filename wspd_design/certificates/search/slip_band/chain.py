@@ -93,11 +93,18 @@ class Chain:
 def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
     """Return a chain without ellipsoids that counts errors from where the loop settles at the lowest speeds."""
 
-    def loop(settled: Fraction) -> Loop:
-        there = sought.in_time(WIDEST)._replace(settled=settled)
-        return sought.loops(cell, 0, there)(sought.conditions.supply)
+    def settled(like: Choice) -> Fraction:
+        there = sought.in_time(like)
+        return settling(
+            sought.law,
+            lambda error: sought.loops(cell, 0, there._replace(settled=error))(sought.conditions.supply),
+        )
 
-    return Chain(choice=choice._replace(settled=settling(sought.law, loop)))
+    try:
+        error = settled(CHOICES[0])
+    except Refused:  # it settles outside of that reach
+        error = settled(WIDEST)
+    return Chain(choice=choice._replace(settled=error))
 
 
 def continued(sought: Sought, cell: Cell, chain: Chain, spent: Spent) -> Chain:
