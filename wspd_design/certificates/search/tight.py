@@ -7,7 +7,6 @@ block of memory, whose address is known, and the functions are called with addre
 
 import ctypes
 from collections.abc import Callable
-from functools import lru_cache
 from typing import Any, TypeAlias
 
 import ival
@@ -112,19 +111,13 @@ def _of_one(function: Callable[..., None], x: Interval) -> Interval:
 def _of_two(function: Callable[..., None], x: Interval, y: Interval) -> Interval:
     shape = x.ends.shape
     if shape != y.ends.shape:
-        shape = _common(shape, y.ends.shape)
+        shape = (2, *np.broadcast_shapes(shape[1:], y.ends.shape[1:]))
         x, y = _spread(x, shape), _spread(y, shape)
     found = _made(np.empty(shape))
     size = found.ends.nbytes // 2
     a, b, c = x.address, y.address, found.address
     function(a, a + size, b, b + size, c, c + size, size // 8)
     return found
-
-
-@lru_cache(maxsize=1024)  # a program asks for the same few again and again
-def _common(x: tuple[int, ...], y: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the shape of the ends that both become when NumPy broadcasts them."""
-    return (2, *np.broadcast_shapes(x[1:], y[1:]))
 
 
 def _spread(x: Interval, shape: tuple[int, ...]) -> Interval:
