@@ -30,7 +30,14 @@ from wspd_design.certificates.theorems.slip_band.departure import (
     holding_share,
     place_ranges,
 )
-from wspd_design.certificates.theorems.slip_band.friction import HALVES, Friction, Halves, halves_of, strip_of
+from wspd_design.certificates.theorems.slip_band.friction import (
+    FRICTION,
+    HALVES,
+    Friction,
+    Halves,
+    halves_of,
+    strip_of,
+)
 from wspd_design.certificates.theorems.slip_band.friction import NAMES as BOUNDS
 from wspd_design.certificates.theorems.slip_band.reference import (
     reference_text,
@@ -53,7 +60,6 @@ from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.bounds import Bounds, Ends
 from wspd_design.parameters.units import KMH
 
-FRICTION = "mu0"
 CELLS = "ellipsoids"
 RESERVED = "ellipsoids with a reserve of the brake"
 LATE = "ellipsoids with late pulses"

@@ -12,8 +12,9 @@ from wspd_design.certificates.quantities import CONTACT, RAIL
 from wspd_design.certificates.records import Certificate, Point, Problem, Range, Status
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems import band
+from wspd_design.certificates.theorems.slip_band.friction import FRICTION
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, windows_of
-from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, VARIED, around, checker
+from wspd_design.certificates.theorems.slip_band.way_in import VARIED, around, checker
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import ConstantSlip

@@ -93,8 +93,9 @@ def ellipsoid(
     tuple of Ellipsoid and corners, or None
         The ellipsoid, and the corners that mattered.
     """
+    there = _centered(law, loops(supply))
     for kept in KEPT:
-        task = _task(law, loops, supply, kept)
+        task = _task(law, *there, kept)
         if task is None:
             return None
         solved = _solve(task, faster, hints)
@@ -116,8 +117,9 @@ def excess(
     law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None, hints: Sequence[int]
 ) -> float:
     """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
+    there = _centered(law, loops(supply))
     for kept in KEPT:
-        task = _task(law, loops, supply, kept)
+        task = _task(law, *there, kept)
         solved = None if task is None else _solve(task, faster, hints, beyond=True)
         if task is not None and solved is not None:
             return max(_used(task, solved[0]))
@@ -149,16 +151,21 @@ def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid
     return high * step
 
 
-def _task(law: BandLaw, loops: Loops, supply: Fraction, kept: float) -> _Task | None:
+def _centered(law: BandLaw, loop: Loop) -> tuple[Loop, tuple[Fraction, ...], Lengths]:
+    """Return the loop about where it settles, that state, and the lengths of pulses there."""
+    center = _center(law, loop)
+    exact = [point(each) for each in center]
+    lengths = _lengths(law, loop, exact)
+    return about(law, loop, exact, lengths), center, lengths
+
+
+def _task(
+    law: BandLaw, loop: Loop, center: tuple[Fraction, ...], lengths: Lengths, kept: float
+) -> _Task | None:
     """Set the inequalities up; None if the center is beyond a limit or the loop does not contract so much."""
     import numpy as np
     from scipy.linalg import solve_discrete_lyapunov
 
-    loop = loops(supply)
-    center = _center(law, loop)
-    exact = [point(each) for each in center]
-    lengths = _lengths(law, loop, exact)
-    loop = about(law, loop, exact, lengths)
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
     middle, spread = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2.0
     used = tuple(int(k) for k in np.flatnonzero(spread > 0.0))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import plant_with
-from wspd_design.certificates.theorems.slip_band.way_in import FRICTION, SUPPLY, Piece, followed
+from wspd_design.certificates.theorems.slip_band.friction import FRICTION
+from wspd_design.certificates.theorems.slip_band.way_in import SUPPLY, Piece, followed
 from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.records import Rail, Vehicle
 

@@ -50,6 +50,7 @@ class Friction(NamedTuple):
         return cls(bounds[:count], bounds[count], bounds[count + 1 :])
 
 
+FRICTION = "mu0"
 HALVES = 2  # of the range of mu0, for which the friction is bounded alone
 
 Halves: TypeAlias = tuple[Friction, ...]

@@ -24,6 +24,7 @@ from wspd_design.certificates.setting.declared_law import LEAST
 from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, wanted
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
+    FRICTION,
     Halves,
     Strip,
     bounds_for,
@@ -100,8 +101,8 @@ def loop_of(
     conditions: Conditions,
 ) -> Loop:
     """Work out the loop of a cell in a window of speed, with bounds of the friction there."""
-    low, high = map(Fraction, problem.span("mu0"))
-    friction = bounds_for(bounds, (low, high), cell[NAMES.index("mu0")])
+    low, high = map(Fraction, problem.span(FRICTION))
+    friction = bounds_for(bounds, (low, high), cell[NAMES.index(FRICTION)])
     pulse = choice.pulse
     if pulse + conditions.delay > 1:
         raise Refused("a pulse may go on into the next sample")

@@ -17,7 +17,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
 from wspd_design.certificates.theorems.slip_band.checker import inverse
-from wspd_design.certificates.theorems.slip_band.friction import SLOPES
+from wspd_design.certificates.theorems.slip_band.friction import FRICTION, SLOPES
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
 from wspd_design.certificates.theorems.slip_band.statement import windows_of
 from wspd_design.controllers.protection import Protection
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 FORMAT = "wspd-way-in/2"
-FRICTION, SUPPLY = "mu0", "supply rate"
+SUPPLY = "supply rate"
 VARIED = (FRICTION, SUPPLY)
 MOST_STRIPS, MOST_SAMPLES, MOST_LETTERS = 20_000, 2_000, 60  # of a proof, of a strip, of a number
 AT_ONCE = 256  # strips that are followed together
