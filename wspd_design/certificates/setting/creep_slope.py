@@ -12,8 +12,10 @@ wheel with kA = mu0 = slip = N = 1, C = z and kS = k at the speed s, on which th
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
+from itertools import pairwise, product
 
-from wspd_design.certificates.kernel.arb import above, below, point
+from wspd_design.certificates.kernel.arb import Ball, above, below, point
 from wspd_design.certificates.kernel.checker import Ends as Balls
 from wspd_design.certificates.kernel.checker import add, inverse, mul, power
 from wspd_design.certificates.kernel.claim import Claim, Expression, Relation, variable
@@ -22,13 +24,16 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting import domain
 from wspd_design.certificates.setting.plant import EXPONENT, Values, forces
 from wspd_design.model.adhesion import contact_stiffness
-from wspd_design.model.generated.adhesion import creep_force_speed_derivative
+from wspd_design.model.generated.adhesion import creep_force, creep_force_speed_derivative
 from wspd_design.model.number import Number
 from wspd_design.model.slip import slip_dynamics, static_wheel_load, wheels
 from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
+BITS = 128  # of the balls that the bend of the force is enclosed in
+PARTS = 4  # of each range, in which the bend of the force is enclosed
+REDUCTIONS = "slip reduction", "adhesion reduction"
 STEEPNESS, RATIO, SLIDING, NORMAL_MASS = "steepness", "kS/kA", "sliding speed", "normal mass"
 USED = (
     "speed",
@@ -90,6 +95,59 @@ def fading_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fract
     return _claim(problem, slips, name, expression, relation, bound, "s/m")
 
 
+@lru_cache(maxsize=1000)
+def bend(problem: Problem, slip: float, beside: Ends) -> Ends:
+    """Enclose the second derivative of the creep force over mu0 Q in the train speed [s2/m2].
+
+    The wheel slides slower than at a slip by a speed that does not change, from a range [m/s]. The derivative is that
+    of power series in balls, over parts of the ranges.
+    """
+    from flint import ctx
+
+    with ctx.workprec(BITS):
+        ratio = _quotient(problem, *REDUCTIONS)
+        found = [
+            _bent(problem, slip, (*parts, ratio[0].union(ratio[1])))
+            for parts in product(
+                _parts(_span(problem, "speed")),
+                _parts(_wide(beside)),
+                _parts(_steepness(problem, (1.0, 1.0))),
+            )
+        ]
+        return min(map(below, found)), max(map(above, found))
+
+
+def _bent(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball, Ball]) -> Ball:
+    """Second derivative for balls of speed, of what the wheel slides slower, of the modulus for slip 1, and of kS/kA."""
+    from flint import arb_series
+
+    at, less, steepness, ratio = numbers
+    speed = arb_series([at, 1], prec=3)
+    sliding = speed * point(slip) - less
+    values = {name: problem.nominal(name) for name in HELD} | {NORMAL_MASS: 1.0, RATIO: ratio}
+    vehicle, rail = _normal(problem, values | {STEEPNESS: steepness * (point(slip) - less / speed)})
+    load = static_wheel_load(vehicle)
+    force = creep_force(
+        1.0,
+        sliding,
+        load,
+        rail.mu0,
+        rail.friction_ratio,
+        rail.friction_decay,
+        rail.adhesion_reduction,
+        rail.slip_reduction,
+        contact_stiffness(vehicle.contact, load),
+    )
+    return 2 * (force / load)[2]
+
+
+def _parts(ends: Balls) -> tuple[Ball, ...]:
+    """Divide a range into balls."""
+    low, high = ends
+    edges = [low + (high - low) * k / PARTS for k in range(PARTS + 1)]
+    return tuple(one.union(other) for one, other in pairwise(edges))
+
+
 def _claim(
     problem: Problem,
     slips: Ends,
@@ -106,7 +164,7 @@ def _claim(
         name=name,
         variables=(
             variable(STEEPNESS, _doubles(_steepness(problem, slips)), "Pa"),
-            variable(RATIO, _doubles(_quotient(problem, "slip reduction", "adhesion reduction")), "-"),
+            variable(RATIO, _doubles(_quotient(problem, *REDUCTIONS)), "-"),
             *(variable(held, problem.nominal(held), QUANTITIES[held].unit) for held in HELD),
             variable(NORMAL_MASS, 1.0, "kg"),
             variable(SLIDING, _doubles(mul(_wide(slips), _span(problem, "speed"))), "m/s"),

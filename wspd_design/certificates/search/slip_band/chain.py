@@ -6,10 +6,10 @@ from fractions import Fraction
 
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.search.slip_band.ellipsoids import Loops, ellipsoid, excess, settling
+from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, ellipsoid, excess, settling
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more
 from wspd_design.certificates.theorems.slip_band.friction import Halves
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
 from wspd_design.parameters.errors import WspdError
@@ -81,13 +81,15 @@ class Chain:
     """Ellipsoids of a cell from the fastest window on, as far as they were found."""
 
     ellipsoids: tuple[Ellipsoid | None, ...] = ()
+    steady: Steady | None = None  # drift in the window of the last
     choice: Choice  # for which the last was found; what errors are counted from is the same in all windows
     hints: tuple[int, ...] = ()
 
     @property
-    def faster(self) -> Ellipsoid | None:
+    def faster(self) -> Faster:
         """Ellipsoid that that of the next slower window must hold."""
-        return self.ellipsoids[-1] if self.ellipsoids else None
+        last = self.ellipsoids[-1] if self.ellipsoids else None
+        return None if last is None or self.steady is None else (last, self.steady)
 
 
 def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
@@ -144,7 +146,10 @@ def next_slower(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Sp
             return None
         if found is None:
             return None
-        return Chain(ellipsoids=(*chain.ellipsoids, found[0]), choice=choice, hints=found[1])
+        ellipsoid_found, steady, hints = found
+        return Chain(
+            ellipsoids=(*chain.ellipsoids, ellipsoid_found), steady=steady, choice=choice, hints=hints
+        )
 
     found = tried(sought.in_time(chain.choice))
     if found is None:
@@ -186,6 +191,7 @@ def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
 
     The tangents that enclose the numbers of a sample touch elsewhere for a smaller range, and may enclose more.
     """
+    steady = None
     for number, each in enumerate(chain.ellipsoids):
         if each is None:
             continue
@@ -194,5 +200,6 @@ def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
         try:
             errors(sought.law, loop, each)
         except Refused:
-            return replace(chain, ellipsoids=chain.ellipsoids[:number])
-    return chain
+            return replace(chain, ellipsoids=chain.ellipsoids[:number], steady=steady)
+        steady = loop.steady
+    return replace(chain, steady=steady)

@@ -19,8 +19,14 @@ from wspd_design.certificates.setting.slip_loop import (
     sample,
 )
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
-from wspd_design.certificates.theorems.slip_band.checker import beyond_limit, errors, lies_in
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Loop
+from wspd_design.certificates.theorems.slip_band.checker import (
+    Set,
+    beyond_limit,
+    drifting,
+    errors,
+    lies_in,
+)
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Loop, Steady
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
@@ -43,6 +49,8 @@ LEAST = 1e-6  # of what disturbs most, as which anything else counts at least
 FIRST, SECOND, CROSS = ((1.0, 0.0), (0.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((0.0, 1.0), (1.0, 0.0))
 
 
+Faster: TypeAlias = tuple[Ellipsoid, Steady] | None
+"""Ellipsoid of the next faster window with the steady drift there."""
 Loops: TypeAlias = Callable[[Fraction], Loop]
 """Numbers of cell and window for the least share of the full pressure."""
 
@@ -51,8 +59,10 @@ Loops: TypeAlias = Callable[[Fraction], Loop]
 class _Task:
     """What the inequalities are made of, in coordinates z, X - c = basis z, in which their numbers are near 1."""
 
-    maps: "Array"  # [A o Br] at all corners
+    maps: "Array"  # [A o Br] at all corners, with what the steady drift adds as last columns
     center: "Array"
+    moves: "Array"  # of the center with the steady drift
+    steady: Steady
     lengths: Lengths
     basis: "Array"
     limits: tuple[tuple["Array", float], ...]  # rows, and what is left beside the center
@@ -65,9 +75,9 @@ def ellipsoid(
     loops: Loops,
     choice: Choice,
     supply: Fraction,
-    faster: Ellipsoid | None,
+    faster: Faster,
     hints: Sequence[int],
-) -> tuple[Ellipsoid, tuple[int, ...]] | None:
+) -> tuple[Ellipsoid, Steady, tuple[int, ...]] | None:
     """Find an ellipsoid with a small band around that of the next faster window, or none.
 
     It is sought with the room that this share of the full pressure leaves; then the least share is found in which its
@@ -83,15 +93,15 @@ def ellipsoid(
         What they are made for.
     supply : Fraction
         Share of the full pressure that the search may ask for.
-    faster : Ellipsoid or None
+    faster : tuple of Ellipsoid and Steady, or None
         Of the next faster window.
     hints : sequence of int
         Corners of the loop that mattered in another window or cell.
 
     Returns
     -------
-    tuple of Ellipsoid and corners, or None
-        The ellipsoid, and the corners that mattered.
+    tuple of Ellipsoid, Steady and corners, or None
+        The ellipsoid, the steady drift there, and the corners that mattered.
     """
     there = _centered(law, loops(supply))
     for kept in KEPT:
@@ -104,17 +114,18 @@ def ellipsoid(
         q, shares, inside, corners_that_matter = solved
         found = _rounded(task, choice, supply, q, shares, inside)
         found = replace(found, supply=_least_supply(law, loops, supply, found))
+        loop = loops(found.supply)
         try:
-            errors(law, loops(found.supply), found)
+            errors(law, loop, found)
         except Refused:
             continue
-        if faster is None or lies_in(faster, found):
-            return found, corners_that_matter
+        if faster is None or lies_in(faster, (found, loop.steady)):
+            return found, loop.steady, corners_that_matter
     return None
 
 
 def excess(
-    law: BandLaw, loops: Loops, supply: Fraction, faster: Ellipsoid | None, hints: Sequence[int]
+    law: BandLaw, loops: Loops, supply: Fraction, faster: Faster, hints: Sequence[int]
 ) -> float:
     """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
     there = _centered(law, loops(supply))
@@ -130,9 +141,9 @@ def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid
     """Return the least share of the full pressure, in steps of what this one lacks, that the states have room in."""
     if supply == 1:
         return supply
-    q, center = (
+    q, center, moves = (
         [[point(each) for each in row] for row in found.matrix],
-        [point(each) for each in found.center],
+        *([point(each) for each in row] for row in (found.center, found.moves)),
     )
     step = 1 - supply
     low, high = 1, int(supply / step)
@@ -144,7 +155,7 @@ def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid
             center,
             Lengths(found.shortest, found.longest, found.back),
         )
-        if beyond_limit(loop, q, center):
+        if beyond_limit(loop, Set(q, center, [each * loop.steady.spread for each in moves])):
             low = middle + 1
         else:
             high = middle
@@ -167,22 +178,35 @@ def _task(
     from scipy.linalg import solve_discrete_lyapunov
 
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
-    middle, spread = ends.mean(axis=1), (ends[:, 1] - ends[:, 0]) / 2.0
+    spread = (ends[:, 1] - ends[:, 0]) / 2.0
     used = tuple(int(k) for k in np.flatnonzero(spread > 0.0))
     maps, at_center = _maps(loop_law(law), loop.ranges)
     state, disturbed = maps[:, :, :STATES], maps[:, :, STATES:]
     mean, at = state.mean(axis=0), np.array(center, dtype=float)
-    offset = at_center[:, :, :STATES] @ at - at + at_center[:, :, STATES:] @ middle
-    columns = np.concatenate([offset[:, :, None], disturbed[:, :, used] * spread[list(used)]], axis=2)
+    offset = at_center[:, :, :STATES] @ at - at + at_center[:, :, STATES:] @ _middle(loop)
+    columns = [offset[:, :, None], disturbed[:, :, used] * spread[list(used)]]
+    far, change = (float(each.mid()) for each in (loop.steady.spread, loop.steady.change))
+    moves = np.zeros(STATES)
+    if far > 0.0:
+        # The center goes to where the loop settles with another drift.
+        drifted = disturbed @ _drifting(loop)
+        moves = np.array([float(_short(x)) for x in np.linalg.solve(np.eye(STATES) - mean, drifted.mean(axis=0))])
+        left = state @ moves + drifted - moves
+        columns += [left[:, :, None] * far, np.broadcast_to(moves * change, left.shape)[:, :, None]]
+    columns = np.concatenate(columns, axis=2)
     reaching = [np.array([float(each.mid()) for each in limit.row]) for limit in loop.limits]
-    rooms = [
-        float(limit.bound.mid()) - float(row @ at) for row, limit in zip(reaching, loop.limits, strict=True)
-    ]
     # The error, between samples nearly the same.
     reaching += [np.eye(STATES)[0], -np.eye(STATES)[0]]
-    rooms += [
-        float(sign * (end - point(loop.settled)).mid()) - sign * float(at[0])
-        for sign, end in zip((1, -1), loop.widest[::-1], strict=True)
+    bounds = [
+        *(float(limit.bound.mid()) for limit in loop.limits),
+        *(
+            float(sign * (end - point(loop.settled)).mid())
+            for sign, end in zip((1, -1), loop.widest[::-1], strict=True)
+        ),
+    ]
+    rooms = [
+        bound - float(row @ at) - far * abs(float(row @ moves))
+        for row, bound in zip(reaching, bounds, strict=True)
     ]
     contracting = max(abs(np.linalg.eigvals(mean))) ** 2 < kept
     if min(rooms) <= 0.0 or not contracting:
@@ -198,6 +222,8 @@ def _task(
     return _Task(
         maps=np.concatenate([back @ state @ basis, back @ columns], axis=2),
         center=at,
+        moves=moves,
+        steady=loop.steady,
         lengths=lengths,
         basis=basis,
         limits=tuple((row @ basis, room) for row, room in zip(reaching, rooms, strict=True)),
@@ -210,7 +236,7 @@ def _center(law: BandLaw, loop: Loop) -> tuple[Fraction, ...]:
     """Return the state in which the loop settles if nothing but the middle of all is there."""
     import numpy as np
 
-    middle = np.array([[float(end.mid()) for end in each] for each in loop.disturbances]).mean(axis=1)
+    middle = _middle(loop)
     center: tuple[Fraction, ...] | None = None
     for _ in range(SETTLING):
         # Once the side of the way is known, so are the parts that the valve goes.
@@ -224,6 +250,20 @@ def _center(law: BandLaw, loop: Loop) -> tuple[Fraction, ...]:
         center = tuple(_short(float(each)) for each in at)
     assert center is not None
     return center
+
+
+def _middle(loop: Loop) -> "Array":
+    """Middle of what disturbs, the steady drift among it."""
+    import numpy as np
+
+    ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
+    return ends.mean(axis=1) + float(loop.steady.middle.mid()) * _drifting(loop)
+
+
+def _drifting(loop: Loop) -> "Array":
+    import numpy as np
+
+    return np.array([float(each.mid()) for each in drifting(loop.steady)])
 
 
 def settling(law: BandLaw, loops: Callable[[Fraction], Loop]) -> Fraction:
@@ -260,7 +300,7 @@ def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
 
 
 def _solve(
-    task: _Task, faster: Ellipsoid | None, hints: Sequence[int], *, beyond: bool = False
+    task: _Task, faster: Faster, hints: Sequence[int], *, beyond: bool = False
 ) -> "tuple[Array, Array, float, tuple[int, ...]] | None":
     """Solve for some corners, and add those that are not met."""
     import numpy as np
@@ -283,7 +323,7 @@ def _solve(
 
 
 def _inequalities(
-    task: _Task, chosen: Sequence[int], faster: Ellipsoid | None, *, beyond: bool
+    task: _Task, chosen: Sequence[int], faster: Faster, *, beyond: bool
 ) -> "tuple[Array, Array, float] | None":
     """Minimize what is reached over what limits leave over Q, the shares and the multiplier of the faster ellipsoid.
 
@@ -295,7 +335,7 @@ def _inequalities(
 
     kept = task.kept
 
-    units, count = unit_matrices(STATES), len(task.used) + 1
+    units, count = unit_matrices(STATES), task.maps.shape[2] - STATES
     first, second, last = len(units), len(units) + count, len(units) + 2 * count
     sizes = np.linalg.norm(task.maps[:, :, STATES:], axis=1).max(axis=0)
     sizes += LEAST * sizes.max()  # what the shares are counted in, so that their numbers are near each other
@@ -320,11 +360,12 @@ def _inequalities(
         asked.at_most(np.eye(last + 3)[last + 2 :], np.ones(1))
     if faster is not None:
         back = np.linalg.inv(task.basis)
-        inner = back @ np.array(faster.matrix, dtype=float) @ back.T
-        apart = back @ (np.array(faster.center, dtype=float) - task.center)
-        parts = [(k, (1.0 - SLACK) * unit) for k, unit in enumerate(units)]
-        parts += [(last, -inner), (last + 1, -np.outer(apart, apart))]
-        asked.semidefinite(np.zeros((STATES, STATES)), parts)
+        inner = back @ np.array(faster[0].matrix, dtype=float) @ back.T
+        for each in _apart(task, faster):
+            apart = back @ each
+            parts = [(k, (1.0 - SLACK) * unit) for k, unit in enumerate(units)]
+            parts += [(last, -inner), (last + 1, -np.outer(apart, apart))]
+            asked.semidefinite(np.zeros((STATES, STATES)), parts)
         one, other = (last, np.array(FIRST)), (last + 1, np.array(SECOND))
         asked.semidefinite(np.array(CROSS) - np.eye(2), [one, other])
     costs = np.zeros(last + 3)
@@ -338,6 +379,22 @@ def _inequalities(
         return None
     inside = 1.0 / float(found[last]) if faster is not None else 0.5
     return np.tensordot(found[:first], units, 1), sizes / found[first:second], inside
+
+
+def _apart(task: _Task, faster: tuple[Ellipsoid, Steady]) -> "list[Array]":
+    """Center of the faster ellipsoid less the one that is sought, at the least and at the largest common drift."""
+    import numpy as np
+
+    (inner, other), own = faster, task.steady
+    center, moves = (np.array(each, dtype=float) for each in (inner.center, inner.moves))
+    middles = [float(each.middle.mid()) for each in (other, own)]
+    ends = (
+        max(float(each.low.mid()) for each in (other, own)),
+        min(float(each.high.mid()) for each in (other, own)),
+    )
+    return [
+        center + moves * (end - middles[0]) - task.center - task.moves * (end - middles[1]) for end in ends
+    ]
 
 
 def _used(task: _Task, q: "Array") -> list[float]:
@@ -373,9 +430,11 @@ def _rounded(
 ) -> Ellipsoid:
 
     shares = shares * min(1.0, (1.0 - task.kept - 1e-7) / float(shares.sum()))  # where the solver gave up
-    every = [Fraction(0)] * len(DISTURBANCES)
-    for k, share in zip(task.used, shares[1:], strict=True):
+    every = [Fraction(0)] * (len(DISTURBANCES) + 2)
+    last = (len(DISTURBANCES), len(DISTURBANCES) + 1)[: len(shares) - 1 - len(task.used)]
+    for k, share in zip((*task.used, *last), shares[1:], strict=True):
         every[k] = _short(float(share))
+    *every, steady, change = every
     return Ellipsoid(
         pulse=choice.pulse,
         supply=supply,
@@ -386,9 +445,12 @@ def _rounded(
         back=task.lengths.back,
         matrix=tuple(tuple(_short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(_short(float(each)) for each in task.center),
+        moves=tuple(_short(float(each)) for each in task.moves),
         alpha=Fraction(task.kept),
         offset=_short(float(shares[0])),
         shares=tuple(every),
+        steady=steady,
+        change=change,
         inside=_short(inside),
     )
 

@@ -3,27 +3,30 @@
 For each cell and window the proof states a center c, Q, alpha, a share for the way of the center and one for each
 disturbance; the ellipsoid is (X - c)'Q^-1(X - c) <= 1. What disturbs lies between two bounds, so d = m + r z with
 -1 <= z <= 1, and X+ - c = A (X - c) + o + B r z with o = A_c c - c + B_c m: the change of the torque at the center has
-numbers of its own. From the ellipsoid the next state has at most alpha + sum of the shares <= 1 if
+numbers of its own. The drift s of the torque that comes from the fading friction is nearly the same in the next sample;
+the center moves with it, c + b (s - middle), which adds A b + B_s - b times s - middle, and b times what s changes by.
+From the ellipsoid the next state has at most alpha + sum of the shares <= 1 if
 
     Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share
 
-is positive definite at all corners. Windows follow each other from the fastest to the slowest; the ellipsoid of a
-faster one lies in that of the next. Between samples the error is bounded by the same state, with the torque in between.
+is positive definite at all corners, with the columns of s among them. Windows follow each other from the fastest to the
+slowest; the ellipsoid of a faster one lies in that of the next. Between samples the error is bounded by the same state,
+with the torque in between.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from operator import mul
-from typing import Any
+from typing import Any, NamedTuple
 
 from wspd_design.certificates.kernel.arb import Ball, above, least_of, most_of, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.slip_loop import STATES, LoopLaw, Pair, corners, wanted
+from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, Pair, corners, wanted
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.friction import Halves
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, read
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -86,7 +89,7 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
         ellipsoids = next(cells, None)
         if ellipsoids is None:
             raise Refused("a cell has no ellipsoids")
-        slower = None
+        slower: tuple[Ellipsoid, Steady] | None = None
         for k, (window, friction, each) in enumerate(zip(windows, found.friction, ellipsoids, strict=True)):
             work.spend(WORK)
             if each is None:
@@ -102,11 +105,11 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
             loop = loop_of(problem, law, cell, window, friction, choice, conditions)
             bands[k] = _joined(bands[k], errors(law, loop, each))
             supplies[k] = max(supplies[k], each.supply)
-            if slower is not None and not lies_in(each, slower):
+            if slower is not None and not lies_in((each, loop.steady), slower):
                 raise Refused(
                     f"an ellipsoid at {window[1] * 3.6:.0f} km/h does not lie in the next slower one"
                 )
-            slower = each
+            slower = each, loop.steady
     if waiting or next(cells, None) is not None:
         raise Refused("steps and cells do not match")
     radius = point(problem.span("wheel radius")[1])
@@ -162,37 +165,60 @@ def _unknown() -> Sequence[Any]:
 
 def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     """Return between what the error of the wheel speed stays, also between samples [rad/s], or refuse the ellipsoid."""
-    q, center = (
-        [[point(each) for each in row] for row in found.matrix],
-        [point(each) for each in found.center],
-    )
+    q, center = _balls(found.matrix), [point(each) for each in found.center]
     if not is_positive(q):
         raise Refused("a matrix Q is not positive definite")
     loop = about(law, loop, center, Lengths(found.shortest, found.longest, found.back))
     spread = [(high - low) / 2 for low, high in loop.disturbances]
-    shares = (found.offset, *found.shares)
+    steady, moves = loop.steady, [point(each) for each in found.moves]
+    shares = (found.offset, *found.shares, found.steady, found.change)
     if found.alpha <= 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:
         raise Refused(
             "alpha and the shares of the disturbances add up to more than 1, or alpha is not positive"
         )
     if found.offset == 0 or any(
-        s == 0 and not r.is_zero() for s, r in zip(found.shares, spread, strict=True)
+        s == 0 and not r.is_zero()
+        for s, r in zip(shares[1:], [*spread, steady.spread, steady.change], strict=True)
     ):
         raise Refused("a disturbance has no share")
     blocks = [[each / point(found.alpha) for each in row] for row in q]
     blocks += [
         [point(0) if r.is_zero() else r * r / point(s)] for s, r in zip(found.shares, spread, strict=True)
     ]
-    settled = [*center, *((low + high) / 2 for low, high in loop.disturbances)]
+    drifts = [each * steady.middle for each in drifting(steady)]
+    settled = [*center, *((low + high) / 2 + s for (low, high), s in zip(loop.disturbances, drifts, strict=True))]
     if not all(is_positive(each) for each in _left_over(law, loop, found, q, settled, blocks)):
         raise Refused("a sample may lead out of an ellipsoid")
-    beyond = beyond_limit(loop, q, center)
+    there = Set(q, center, [each * steady.spread for each in moves])
+    beyond = beyond_limit(loop, there)
     if beyond:
         raise Refused(f"the state may go beyond {beyond}")
-    lowest, highest = (point(found.settled) + each for each in _within(loop_law(law), loop, q, center))
+    lowest, highest = (point(found.settled) + each for each in _within(loop_law(law), loop, there))
     if not highest < loop.widest[1] or not loop.widest[0] < lowest:
         raise Refused("the error may leave the range in which the slope of the friction is bounded")
     return lowest, highest
+
+
+class Set(NamedTuple):
+    """States of an ellipsoid, its center anywhere on a line."""
+
+    matrix: Sequence[Sequence[Ball]]  # Q
+    center: Sequence[Ball]  # in the middle of the line
+    moved: Sequence[Ball]  # from there to either end
+
+    def at(self, row: Sequence[Ball]) -> Ball:
+        """Return the value of a linear function in the middle."""
+        return _product(row, self.center)
+
+    def reach(self, row: Sequence[Ball]) -> Ball:
+        """Return by how much its largest value is more, and its smallest one less."""
+        return reaches(self.matrix, row) + abs(_product(row, self.moved))
+
+
+def drifting(steady: Steady) -> list[Ball]:
+    """Return what the disturbances have of a steady drift of 1."""
+    share = {"torque drift": point(1), "mean torque drift": steady.share}
+    return [share.get(name, point(0)) for name in DISTURBANCES]
 
 
 def _left_over(
@@ -210,6 +236,9 @@ def _left_over(
     from flint import arb_mat
 
     size = len(settled)
+    moves, steady = [point(each) for each in found.moves], loop.steady
+    with_drift = arb_mat([[each] for each in (*moves, *drifting(steady))])
+    b = arb_mat([[each] for each in moves])
     diagonal = arb_mat(size, size)
     for i, row in enumerate(blocks):
         for j, each in enumerate(row):
@@ -220,13 +249,19 @@ def _left_over(
     for rest, of_center in corners(loop_law(law), loop.ranges, units):
         ab = arb_mat([row.entries() for row in rest])
         o = arb_mat([[(row * at)[0, 0]] for row in of_center]) - center
-        yield (whole - ab * diagonal * ab.transpose() - o * o.transpose() / point(found.offset)).tolist()
+        left = whole - ab * diagonal * ab.transpose() - o * o.transpose() / point(found.offset)
+        if found.steady:
+            drifted = (ab * with_drift - b) * steady.spread
+            left -= drifted * drifted.transpose() / point(found.steady)
+        if found.change:
+            left -= b * b.transpose() * (steady.change * steady.change / point(found.change))
+        yield left.tolist()
 
 
-def beyond_limit(loop: Loop, q: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> str:
-    """Return which limit a state of the ellipsoid may exceed, or nothing."""
+def beyond_limit(loop: Loop, states: Set) -> str:
+    """Return which limit a state may exceed, or nothing."""
     for limit in loop.limits:
-        if not _product(limit.row, center) + reaches(q, limit.row) < limit.bound:
+        if not states.at(limit.row) + states.reach(limit.row) < limit.bound:
             return limit.what
     return ""
 
@@ -240,32 +275,51 @@ def _product(one: Sequence[Ball], other: Sequence[Ball]) -> Ball:
     return sum(map(mul, one, other), point(0))
 
 
-def lies_in(faster: Ellipsoid, slower: Ellipsoid) -> bool:
+def lies_in(faster: tuple[Ellipsoid, Steady], slower: tuple[Ellipsoid, Steady]) -> bool:
     """Whether one ellipsoid lies in another: 1 - (X-c)'P(X-c) of the slower one is at least t times that of the faster.
 
-    Both count errors from the same one. With D the center of the faster one less that of the slower one, that is
-    Qs - Qf/t - D D'/(1 - t) positive definite.
+    Both count errors from the same one, and where both hold there is one steady drift. With D the center of the faster
+    one less that of the slower one, that is Qs - Qf/t - D D'/(1 - t) positive definite, at both ends of that drift.
     """
-    t = slower.inside
-    apart = [a - b for a, b in zip(faster.center, slower.center, strict=True)]
+    (inner, _), (outer, _) = faster, slower
+    t = outer.inside
     return (
-        faster.settled == slower.settled
+        inner.settled == outer.settled
         and 0 < t < 1
-        and is_positive(
-            [
-                [s - f / t - one * other / (1 - t) for s, f, other in zip(*rows, apart, strict=True)]
-                for *rows, one in zip(slower.matrix, faster.matrix, apart, strict=True)
-            ]
+        and all(
+            is_positive(
+                [
+                    [s - f / point(t) - one * other / (1 - point(t)) for s, f, other in zip(*rows, apart, strict=True)]
+                    for *rows, one in zip(_balls(outer.matrix), _balls(inner.matrix), apart, strict=True)
+                ]
+            )
+            for apart in centers_apart(faster, slower)
         )
     )
 
 
-def _within(law: LoopLaw, loop: Loop, q: Sequence[Sequence[Ball]], center: Sequence[Ball]) -> Pair:
+def centers_apart(faster: tuple[Ellipsoid, Steady], slower: tuple[Ellipsoid, Steady]) -> Iterator[list[Ball]]:
+    """Yield the center of one ellipsoid less that of another at the least and the largest drift that both know."""
+    steadies = faster[1], slower[1]
+    for drift in (most_of([each.low for each in steadies]), least_of([each.high for each in steadies])):
+        one, other = (
+            [point(c) + point(b) * (drift - steady.middle) for c, b in zip(found.center, found.moves, strict=True)]
+            for found, steady in (faster, slower)
+        )
+        yield [a - b for a, b in zip(one, other, strict=True)]
+
+
+def _balls(matrix: Sequence[Sequence[Fraction]]) -> list[list[Ball]]:
+    return [[point(each) for each in row] for row in matrix]
+
+
+def _within(law: LoopLaw, loop: Loop, states: Set) -> Pair:
     """Bound the error at every instant of a sample, by parts of it in which phi and psi are enclosed."""
     h, (low, high) = law.sample_time, loop.ranges.secants
-    asked, lowest, highest = wanted(law), center[0], center[0]
+    asked, lowest, highest = wanted(law), states.center[0], states.center[0]
     farthest = most_of([end for each in loop.pulses for end in each.parts])
     known, command, _, mean, _, _, moved, uneven, *_ = (a.union(b) for a, b in loop.disturbances)
+    mean += loop.steady.share * loop.steady.low.union(loop.steady.high)
     for part in range(PARTS):
         begin, end = h * part / PARTS, h * (part + 1) / PARTS
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]
@@ -278,8 +332,8 @@ def _within(law: LoopLaw, loop: Loop, q: Sequence[Sequence[Ball]], center: Seque
             # A part of the sample has seen at most the drift of the whole one.
             disturbed = -g * psi * (gone * (asked[4] * known + command) - mean.union(point(0)))
             disturbed += (moved + uneven).union(point(0))
-            there = _product(row, center) + disturbed
-            reach = reaches(q, row)
+            there = states.at(row) + disturbed
+            reach = states.reach(row)
             lowest, highest = lowest.min(there - reach), highest.max(there + reach)
     return lowest, highest
 

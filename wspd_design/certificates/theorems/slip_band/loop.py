@@ -3,7 +3,7 @@
 All of them are worked out in balls from the box and from the proved bounds of the friction, and rounded outwards.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -20,6 +20,7 @@ from wspd_design.certificates.kernel.arb import (
 )
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.creep_slope import bend
 from wspd_design.certificates.setting.declared_law import LEAST
 from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, wanted
 from wspd_design.certificates.theorems.slip_band.friction import (
@@ -76,12 +77,32 @@ class Choice(NamedTuple):
     settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
 
 
+class Steady(NamedTuple):
+    """Drift of the torque that comes from the fading friction: hardly another one in the next sample."""
+
+    low: Ball  # rad/s, over a sample
+    high: Ball
+    change: Ball  # rad/s, from one sample to the next, at most
+    share: Ball  # -, of the drift, that its mean over a sample counts
+
+    @property
+    def middle(self) -> Ball:
+        """Drift that the center of the states belongs to [rad/s]."""
+        return (self.low + self.high) / 2
+
+    @property
+    def spread(self) -> Ball:
+        """Distance of the ends from the middle [rad/s]."""
+        return (self.high - self.low) / 2
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
     """The loop in one cell and one window."""
 
     ranges: LoopRanges
-    disturbances: tuple[Pair, ...]  # lowest and highest [rad/s]
+    disturbances: tuple[Pair, ...]  # lowest and highest, beside the steady drift of the torque [rad/s]
+    steady: Steady
     limits: tuple[Limit, ...]
     widest: Pair  # rad/s, errors between which the slope is bounded
     settles: Pair  # rad/s, errors between which the fading is bounded
@@ -171,8 +192,26 @@ def loop_of(
     # The slip at w_r + E is E R/v less, and falls with the speed.
     there = (slip - apart * radius / speed) * fades_there
     there -= slope_at(friction, settled) * apart * radius / speed
-    drift = -h * h * weight * (there * braking + moved_there)
-    drift += (h * h * damping * turned * braking + h * damping * sliding - inertia * turning) / seen_inertia
+    # The share of a steady drift that a sample has seen; a later weight sees more of it.
+    low, high = ends_of(secants)
+    half_way = (1 - lateness(high * h, 1, 0)).union(1 - lateness(low * h, 1, 0))
+    drift = -h * h * weight * moved_there + (h * damping * sliding - inertia * turning) / seen_inertia
+    fading_torque = weight * there - damping * turned / seen_inertia  # of the reference, over the train speed
+    steadily, share_seen = -h * h * fading_torque * braking, point(Fraction(float(half_way.mid())))
+    if law.falls or law.slip_error:
+        steady = Steady(none, none, none, share_seen)
+        drift += steadily
+        mean_drift = drift * half_way
+    else:
+        less = apart * radius  # m/s, that the wheel slides slower
+        bent_force = bend(replace(problem, speeds=window), float(law.slip), (below(less), above(less)))
+        change = h**3 * (weight * ball(*bent_force) * braking**2 + fading_torque * jerk)
+        change = most_of([abs(change.lower()), abs(change.upper())])
+        steady = Steady(*ends_of(steadily), change, share_seen)
+        mean_drift = drift * half_way + steadily * (half_way - share_seen)
+        # It is that at the begin of the sample, and within it hardly another.
+        drift += change / 2 * ball(Fraction(-1), Fraction(1))
+        mean_drift += change / 2 * ball(Fraction(-1), Fraction(1))
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
     lag_drift = slowly * (1 - share / 2)
     # The part of the change of the speed that the rims take part in changes where the slip falls. Settled, the lag D is
@@ -186,17 +225,14 @@ def loop_of(
         * _dead_band(law, slip * (speed + point(conditions.noise)) / radius)
         * ball(Fraction(-1), Fraction(1))
     )
-    low, high = ends_of(secants)
     uneven = sliding * most_of([(high * h).exp() - 1, 1 - (low * h).exp(), point(0)])
-    # The share of a steady drift that a sample has seen; a later weight sees more of it.
-    half_way = (1 - lateness(high * h, 1, 0)).union(1 - lateness(low * h, 1, 0))
     added = _added(problem, law, fill, pulse, conditions)
     left_out += loop_law(law).gain * (misread + apart)
     disturbed = (
         known,
         left_out,
         drift,
-        drift * half_way,
+        mean_drift,
         turning,
         turning / 2,
         sliding,
@@ -224,6 +260,7 @@ def loop_of(
             added=added,
         ),
         disturbances=tuple(map(ends_of, disturbed)),
+        steady=steady,
         limits=(*(in_time(law, each, point(pulse), beside) for each in pulses), *limits),
         widest=_errors(reached(choice.near), slowest / widest_radius),
         settled=choice.settled,

@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, REACHES, Friction, Halves
 
-FORMAT = "wspd-slip-band/6"
+FORMAT = "wspd-slip-band/7"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -31,10 +31,13 @@ class Ellipsoid:
     longest: Fraction  # -, the same, at most
     back: Fraction  # -, longest pulse to the other side over the sample time
     matrix: Square  # Q [rad2/s2]
-    center: tuple[Fraction, ...]  # c [rad/s]
+    center: tuple[Fraction, ...]  # c [rad/s], for the middle of the steady drift
+    moves: tuple[Fraction, ...]  # b [-], by how much the center moves with the steady drift
     alpha: Fraction  # of the function that is left after a sample
     offset: Fraction  # what the way of the center adds at most
     shares: tuple[Fraction, ...]  # what each disturbance adds at most, in the order of the disturbances
+    steady: Fraction  # what the steady drift adds at most
+    change: Fraction  # what its change does
     inside: Fraction  # multiplier that shows that the ellipsoid of the next faster window lies in this one
 
 
@@ -90,9 +93,12 @@ def _written(each: Ellipsoid) -> list[str]:
         each.back,
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
+        *each.moves,
         each.alpha,
         each.offset,
         *each.shares,
+        each.steady,
+        each.change,
     )
     return [text(value) for value in (*numbers, each.inside)]
 
@@ -129,7 +135,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + STATES + 3 + len(DISTURBANCES))) for each in ellipsoids
+        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + 2 * STATES + 5 + len(DISTURBANCES))) for each in ellipsoids
     ]
     return Proof(
         share=share,
@@ -176,7 +182,8 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         )
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
-    center, rest = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
+    center, moves = (numbers[len(ENTRIES) + k * STATES :][:STATES] for k in range(2))
+    alpha, offset, *shares, steady, change, inside = numbers[len(ENTRIES) + 2 * STATES :]
     return Ellipsoid(
         pulse=pulse,
         supply=supply,
@@ -187,10 +194,13 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         back=back,
         matrix=rows,
         center=tuple(center),
-        alpha=rest[0],
-        offset=rest[1],
-        shares=tuple(rest[2:-1]),
-        inside=rest[-1],
+        moves=tuple(moves),
+        alpha=alpha,
+        offset=offset,
+        shares=tuple(shares),
+        steady=steady,
+        change=change,
+        inside=inside,
     )
 
 
