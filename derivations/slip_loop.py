@@ -171,6 +171,11 @@ lateness_residual = sp.simplify(
     + sp.integrate((1 - (u - delay) / pulse) * _weight, (u, delay, delay + pulse))
     - lateness * sp.integrate(_weight, (u, 0, 1))
 )
+part_left = sp.Symbol("part_left", positive=True)  # of the sample
+share_after = (sp.exp(m * part_left) - 1) / (sp.exp(m) - 1)
+share_after_residual = sp.simplify(
+    sp.integrate(_weight, (u, 1 - part_left, 1)) - share_after * sp.integrate(_weight, (u, 0, 1))
+)
 seen_of_drift = 1 - lateness.subs(
     {pulse: 1, delay: 0}
 )  # share of a steady drift in its mean with the same weight
@@ -213,6 +218,7 @@ _STATE = {
     "longest": "Longest pulse over the assumed time of the valve [-]",
     "m": "Secant times sample time, not 0 [-]",
     "pulse": "Longest pulse over the sample time [-]",
+    "part_left": "Part of the sample that is left [-]",
     "delay": "Time from the sample to the latest beginning of a pulse, over the sample time [-]",
     "supply_rate": "Rate of the supply, eq. (8) [1/s]",
     "fill_time": "Time constant of filling [s]",
@@ -272,6 +278,13 @@ FUNCTIONS = (
         (m, pulse, delay),
         lateness,
         "Largest share of the sample that can see the torque before the pulse",
+        "Share [-]",
+    ),
+    _function(
+        "share_after",
+        (m, part_left),
+        share_after,
+        "Share of a change that is there for the last part of the sample, with the weight of an error that grows",
         "Share [-]",
     ),
     _function(

@@ -58,11 +58,10 @@ class LoopRanges:
     parts: tuple[
         Pair, ...
     ]  # -, rho of the rest of a wanted way, and of the way at the center; corners of both
-    seen: Pair  # -, share of the rest in the mean torque of the law
-    seen_center: Number  # -, share of the way at the center
-    pulse: Number  # -, longest pulse over the sample time
-    delay: Number  # -, latest beginning of a pulse over the sample time
-    added: Number  # -, what a rising supply adds to a way at most, over the way
+    shares: tuple[
+        Pair, ...
+    ]  # -, of the sample that sees the torque before the rest, and of the rest in the mean torque of the law; corners
+    shares_center: Pair  # -, the same of the way at the center
 
 
 def polygon(secants: Pair, sample_time: Number) -> tuple[Pair, ...]:
@@ -123,6 +122,33 @@ def parts_about(side: Pair, other: Pair) -> tuple[Pair, ...]:
     return (low, low), (high, high), (minimum(other_low, low), low), (maximum(other_high, high), high)
 
 
+def shares_together(left: Pair, true: Pair, law: Pair) -> tuple[Pair, ...]:
+    """Return the late share and the share in the mean torque of the law that go together, as corners.
+
+    The later a pulse ends, the less of it counts in either mean: a part l of it, from the same range for both, times
+    numbers that hardly differ from pulse to pulse. Corners of a parallelogram enclose (l a, l b): with a = A (1 + x) and
+    b = B (1 + y), A and B in the middle of their ranges, the points are ((l + u) A, (l + w) B), where u and w are
+    at most the spreads of a and b; half of their sum goes along with l, and half of their difference aside.
+
+    Parameters
+    ----------
+    left : tuple of number
+        Smallest and largest l [-].
+    true : tuple of number
+        Smallest and largest a, of the true change [-].
+    law : tuple of number
+        Smallest and largest b, of the one that the law works out [-].
+    """
+    low, high = left
+    (a, spread_a), (b, spread_b) = (((x + y) / 2, (y - x) / (x + y)) for x, y in (true, law))
+    aside = (spread_a + spread_b) / 2 * high
+    return tuple(
+        (1 - a * (along + sign * aside), b * (along - sign * aside))
+        for along in (low - aside, high + aside)
+        for sign in (1.0, -1.0)
+    )
+
+
 def _ends(numbers: Sequence[Number]) -> Pair:
     return reduce(minimum, numbers), reduce(maximum, numbers)
 
@@ -131,16 +157,13 @@ def numbers_at_corners(
     law: LoopLaw, ranges: LoopRanges
 ) -> Iterator[tuple[tuple[Number, ...], tuple[Number, ...]]]:
     """Return phi, psi/h, g, rho, and both shares of the sample at all corners, for the rest and for the center."""
-    latest = generated.lateness(ranges.secants[1] * law.sample_time, ranges.pulse, ranges.delay)
-    latest = (latest + ranges.added) / (1.0 + ranges.added)  # what the supply adds may come last
-    for slide, g, (rho, rho_center), late, seen in product(
+    for slide, g, (rho, rho_center), shares in product(
         polygon(ranges.secants, law.sample_time),
         dict.fromkeys(ranges.effects),
         dict.fromkeys(ranges.parts),
-        (0.0, latest),
-        dict.fromkeys(ranges.seen),
+        dict.fromkeys(ranges.shares),
     ):
-        yield (*slide, g, rho, late, seen), (*slide, g, rho_center, late, ranges.seen_center)
+        yield (*slide, g, rho, *shares), (*slide, g, rho_center, *ranges.shares_center)
 
 
 def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[tuple[Matrix, Matrix]]:

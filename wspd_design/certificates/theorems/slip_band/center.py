@@ -3,21 +3,27 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 from operator import mul
 from typing import NamedTuple
 
-from wspd_design.certificates.kernel.arb import Ball, ends_of, hull_of, most_of, point
+from wspd_design.certificates.kernel.arb import Ball, ends_of, hull_of, least_of, most_of, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.setting.slip_loop import (
     DISTURBANCES,
+    Pair,
     parts_about,
     parts_of,
     parts_of_longer,
+    shares_together,
     wanted,
 )
 from wspd_design.certificates.theorems.slip_band.loop import Loop
 from wspd_design.certificates.theorems.slip_band.pulses import Limit, Pulses, Row, in_time, loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
+from wspd_design.model.generated.slip_loop import share_after
+
+LEVEL = 1e-9  # growth of errors over a sample that counts as none
 
 
 class Lengths(NamedTuple):
@@ -46,35 +52,91 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
     if not (way > 0 or way < 0):
         return loop
     side, other = loop.pulses if way > 0 else loop.pulses[::-1]
-    share, (shortest, longest, back) = point(law.time_share), map(point, lengths)
-    pulse = loop.ranges.pulse
-    further = parts_of_longer(share, most_of([pulse / each.time for each in loop.pulses]))
-    # The mean over a pulse of what it has reached: a longer one counts from its end on, and ends are convex over ways.
-    seen = ends_of((further[0] * (1 - (pulse + longest) / 2)).union(further[1]))
-    least, most = parts_of((share, share), longest / side.time)
-    fading = (
-        -share * longest / side.time
-    ).exp()  # the rate at the end of the pulse over that at its beginning
-    seen_center = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
-    known = point(Fraction(float(seen_center.mid())))
-    disturbances = [low.union(high) for low, high in loop.disturbances]
-    disturbances[DISTURBANCES.index("mean reference drift")] += (seen_center - known) * way
+    pulse, (shortest, longest, back) = loop.pulse, map(point, lengths)
     # A way to the other side counts for its part of the distance from the center, at most as it does for the longest.
     most_back = other.part(back) * ends_of(loop.pulses[0].height[1] + loop.pulses[1].height[1])[1]
     far = most_back / (most_back + abs(way))
     opposite = tuple(end + far * (each - end) for end, each in zip(side.parts, other.parts, strict=True))
+    shares, (late, seen) = _shares(law, loop, (side, other), (shortest, longest), far)
+    disturbances = [low.union(high) for low, high in loop.disturbances]
+    known = tuple(point(Fraction(float(each.mid()))) for each in (late, seen))
+    disturbances[DISTURBANCES.index("mean reference drift")] += (seen - known[1]) * way
+    most = most_of([end for each in loop.pulses for end in each.parts]) * ends_of(loop.ranges.effects[1])[1]
+    steepest = most_of([loop.ranges.secants[1] * point(law.sample_time), point(LEVEL)])
+    disturbances[DISTURBANCES.index("uneven slip drift")] += (
+        (late - known[0]) * way * most * steepest.expm1() / steepest
+    )
     within = (in_time(law, each, pulse if each is side else back, loop.beside) for each in loop.pulses)
     return replace(
         loop,
         ranges=replace(
             loop.ranges,
             parts=parts_about(side.parts, ends_of(hull_of(opposite))),
-            seen=seen,
-            seen_center=known,
+            shares=shares,
+            shares_center=known,
         ),
         disturbances=tuple(map(ends_of, disturbances)),
         limits=(*within, *loop.limits[2:], *_center_in_time(side, abs(way), (shortest, longest))),
     )
+
+
+def _shares(
+    law: BandLaw, loop: Loop, sides: tuple[Pulses, Pulses], at_center: tuple[Ball, Ball], far: Ball
+) -> tuple[tuple[Pair, ...], tuple[Ball, Ball]]:
+    """Return the late share and the share in the mean torque of the law, of the rest as corners and of the center.
+
+    What a longer pulse changes counts in a mean over the sample from its end on. So a part l of the rest counts in the
+    mean torque that the law works out, times the rate of the way that it goes by its nominal times; and nearly the same
+    part in what the wheel sees, which is weighted by how errors grow, comes later with a late pulse, and goes by the
+    true times. Lengths are convex over ways: l is at least as large as halfway between the center and the longest one.
+
+    Parameters
+    ----------
+    law : BandLaw
+        Its numbers.
+    loop : Loop
+        As :func:`loop_of` returns it.
+    sides : tuple of Pulses
+        To the side of the way at the center, and to the other one.
+    at_center : tuple of ball
+        Shortest and longest pulse of the way at the center, over the sample time.
+    far : ball
+        Part of the distance from the center that a way to the other side has there at most.
+    """
+    h, share, (side, other) = point(law.sample_time), point(law.time_share), sides
+    shortest, longest = at_center
+    low, high = loop.ranges.secants
+    slowest, fastest = least_of([low * h, point(-LEVEL)]), most_of([high * h, point(LEVEL)])
+    further = parts_of_longer(share, most_of([loop.pulse / each.time for each in sides]))
+    # Rates of a way differ by so much from the part that is gone.
+    uneven = most_of(
+        [(abs(1 - end) * loop.pulse / each.time).exp() for each in sides for end in each.speedups]
+    )
+    # To the other side the valve is another one: what is gone there has another weight in the late share.
+    ratio = most_of(
+        [
+            most_of([there / here, here / there]).sqrt()
+            for here, there in product(side.speedups, other.speedups)
+        ]
+    )
+    aside = least_of([far * (ratio**2 - 1), (ratio - 1) / (ratio + 1)])
+    left = 1 - (loop.pulse + longest) / 2
+    added = loop.added
+    later = (
+        most_of([share_after(fastest, left - loop.delay), point(0)]) / left / uneven / (1 + added) - aside / left
+    )
+    earlier = (share_after(slowest, left) * uneven + added) / (1 + added) / left + aside / left
+    shares = shares_together((left, point(1)), (later, earlier), ends_of(hull_of(further)))
+    # Of the center itself.
+    least, most = parts_of((share, share), longest / side.time)
+    fading = (
+        -share * longest / side.time
+    ).exp()  # the rate at the end of the pulse over that at its beginning
+    seen = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
+    faster = (-most_of(list(side.speedups)) * longest / side.time).exp()
+    last = most_of([share_after(fastest, 1 - longest / 2 - loop.delay), point(0)]) / uneven / (1 + added)
+    first = (share_after(slowest, 1 - faster * shortest / 2) * uneven + added) / (1 + added)
+    return shares, (1 - last.union(first), seen)
 
 
 def way_at(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Ball:

@@ -5,6 +5,7 @@ All of them are worked out in balls from the box and from the proved bounds of t
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 from typing import NamedTuple
 
 from wspd_design.certificates.kernel.arb import (
@@ -108,6 +109,9 @@ class Loop:
     settles: Pair  # rad/s, errors between which the fading is bounded
     settled: Fraction  # rad/s, E
     holding: float  # -, share of the full pressure that holds the reference, at least
+    pulse: Ball  # -, longest pulse over the sample time
+    delay: Ball  # -, latest beginning of a pulse over the sample time
+    added: Ball  # -, what a rising supply adds to a way at most, over the way
     pulses: tuple[Pulses, Pulses]  # that fill and that vent
     beside: Pair  # rad/s, what the law wants beside what the state asks for
 
@@ -242,7 +246,9 @@ def loop_of(
     )
     widest_radius = point(problem.span("wheel radius")[1])
     pulses = pulses_of(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
-    seen = seen_of(law, pulse)
+    latest = lateness(high * h, point(pulse), point(conditions.delay))
+    latest = (latest + added) / (1 + added)  # what the supply adds may come last
+    late, seen = point(0).union(latest), seen_of(law, pulse)
     asked = wanted(loop_law(law))
     beside = ends_of(asked[4] * known + asked[0] * (misread + apart))
     limits = _limits(law, choice, conditions.supply, held, turned * slowing, known, misread)
@@ -253,11 +259,8 @@ def loop_of(
             parts=tuple(
                 (end, end) for end in ends_of(hull_of([end for each in pulses for end in each.parts]))
             ),
-            seen=seen,
-            seen_center=hull_of(seen),
-            pulse=point(pulse),
-            delay=point(conditions.delay),
-            added=added,
+            shares=tuple(product(ends_of(late), seen)),
+            shares_center=(late, hull_of(seen)),
         ),
         disturbances=tuple(map(ends_of, disturbed)),
         steady=steady,
@@ -266,6 +269,9 @@ def loop_of(
         settled=choice.settled,
         settles=_errors((FADINGS[0][0], FADINGS[-1][1]), slowest / widest_radius),
         holding=holding,
+        pulse=point(pulse),
+        delay=point(conditions.delay),
+        added=added,
         pulses=pulses,
         beside=beside,
     )

@@ -25,6 +25,7 @@ class Pulses:
     """Pulses of one kind; they go a part of a height: that of the supply above the torque, or of the torque above 0."""
 
     parts: Pair  # -, rho
+    speedups: Pair  # -, assumed over true time of the valve
     time: Ball  # -, that the inversion assumes, over the sample time
     height: Pair  # rad/s, at the torque that holds the reference
     rises: int  # with Y: 1 or -1
@@ -66,19 +67,20 @@ def pulses_of(
     """
     h, assumed = point(law.sample_time), (law.fill_time, law.vent_time)
     longest = point(pulse * law.sample_time) / point(min(assumed))
-    filling, venting = (
-        hull_of(parts_of(ends_of(point(each) / true), longest))
-        for each, true in zip(assumed, times, strict=True)
-    )
+    speedups = [ends_of(point(each) / true) for each, true in zip(assumed, times, strict=True)]
+    filling, venting = (hull_of(parts_of(each, longest)) for each in speedups)
     fill, vent = (point(each) / h for each in assumed)
     return (
         Pulses(
             parts=ends_of(filling.union(filling * (1 + added))),
+            speedups=speedups[0],
             time=fill,
             height=ends_of(h * (supplied - held)),
             rises=-1,
         ),
-        Pulses(parts=ends_of(venting), time=vent, height=ends_of(h * held), rises=1),
+        Pulses(
+            parts=ends_of(venting), speedups=speedups[1], time=vent, height=ends_of(h * held), rises=1
+        ),
     )
 
 
