@@ -4,11 +4,14 @@ What limits such a law: a sample and the lag of the valve for the rate of approa
 the braking curve.
 """
 
+from typing import NamedTuple
+
 from wspd_design.analysis.stopping import demanded_adhesion
 from wspd_design.design.protection_gains import PEAK_POINTS, protection_gains
 from wspd_design.design.records import Gain, Specification
 from wspd_design.model.slip import static_wheel_load
 from wspd_design.parameters.records import Rail, Vehicle
+from wspd_design.parameters.units import KMH
 from wspd_design.simulation.peak import peak_adhesion
 
 LAG_PART = 6.0  # part of the lag of the valve that the approach takes longer than a sample
@@ -18,6 +21,10 @@ DEAD_BAND_SHARE = 0.03  # of the full torque
 DEAD_BAND_SLIP_SHARE = 0.2  # of the desired slip
 INTEGRAL_SHARE = 0.5
 SURFACE_SHARE = 0.6
+CURVE_SHARE = 0.25
+"""Of the torque rate that the slowest valve can vent, for a braking curve beyond the peak. The friction falls while the
+wheel slides on, the observer lags and the torque has errors: with all of the rate wheels run beyond their reference."""
+BEYOND_PEAK = 2.0  # least slip of the reference over that of the peak for this share
 
 
 def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -> tuple[Gain, ...]:
@@ -80,8 +87,21 @@ def tracking_gains(vehicle: Vehicle, rail: Rail, specification: Specification) -
     )
 
 
-def torque_slew(vehicle: Vehicle, rail: Rail, specification: Specification) -> Gain:
-    """Choose the slew of the braking curve: what venting lets out at the torque that the rail holds."""
+class VentedRate(NamedTuple):
+    """Torque rate that the slowest valve can vent at the least torque that the rail carries."""
+
+    torque: float  # N m
+    slowest: float  # s
+    why: str
+
+    @property
+    def rate(self) -> float:
+        """T/tau [N m/s]."""
+        return self.torque / self.slowest
+
+
+def vented_rate(vehicle: Vehicle, rail: Rail, specification: Specification) -> VentedRate:
+    """Return the torque rate that venting lets out for sure; parameters as :func:`tracking_gains`."""
     import numpy as np
 
     brake = vehicle.brake
@@ -89,12 +109,36 @@ def torque_slew(vehicle: Vehicle, rail: Rail, specification: Specification) -> G
     speeds = np.geomspace(*specification.speeds, PEAK_POINTS)
     adhesion = min(float(peak_adhesion(vehicle, rail, speeds)[1].min()), demanded_adhesion(vehicle))
     torque = 2.0 * float(static_wheel_load(vehicle)) * adhesion * vehicle.wheel_radius
+    why = (
+        f"at T/tau the slowest valve, tau = {slowest:g} s, vents the {torque / 1e3:.3g} kN m that {rail.name} carries "
+        "per wheelset at its worst"
+    )
+    return VentedRate(torque, slowest, why)
+
+
+def torque_slew(vehicle: Vehicle, rail: Rail, specification: Specification) -> Gain:
+    """Choose the slew of the braking curve, a share of what venting lets out; parameters as :func:`tracking_gains`."""
+    import numpy as np
+
+    vented, fastest = vented_rate(vehicle, rail, specification), specification.speeds[1]
+    peak = float(peak_adhesion(vehicle, rail, np.array([fastest]))[0][0])
+    if specification.reference == "constant" and specification.slip >= BEYOND_PEAK * peak:
+        share, name = CURVE_SHARE, f"{CURVE_SHARE:g} T/tau"
+        reason = (
+            "the rest is for the lag of the observer, errors of the torque and the friction, which falls while the "
+            f"wheel slides on beyond its peak at slip {peak:.2g}"
+        )
+    else:
+        share, name = 1.0, "T/tau"
+        reason = (
+            f"only a constant reference beyond {BEYOND_PEAK:g} times the slip of the peak, {peak:.2g} at "
+            f"{fastest * KMH:.3g} km/h, takes less of it: up to the peak a slower curve builds up the brake later"
+        )
     return Gain(
         name="torque_slew",
-        value=torque / slowest,
+        value=share * vented.rate,
         unit="N m/s",
-        why=f"T/tau: {rail.name} carries {torque / 1e3:.3g} kN m per wheelset at its worst, and the slowest valve, "
-        f"tau = {slowest:g} s, vents it at this rate; on the braking curve the pull falls no faster",
+        why=f"{name}, and on the braking curve the pull falls no faster: {vented.why}; {reason}",
     )
 
 
@@ -155,14 +199,12 @@ def _rate(gains: tuple[Gain, ...]) -> float:
 
 
 def _layer(vehicle: Vehicle, rail: Rail, specification: Specification, rate: float) -> Gain:
-    """Width of the layer: the error from which the braking curve of the valve begins, s/k^2."""
-    slew = torque_slew(vehicle, rail, specification)
-    assert isinstance(slew.value, float)
-    value = slew.value / vehicle.wheelset_inertia / rate**2 * vehicle.wheel_radius
+    """Width of the layer: the error from which on the valve is too slow for k e, s/k^2 with all that it can vent."""
+    vented = vented_rate(vehicle, rail, specification)
     return Gain(
         name="layer",
-        value=value,
+        value=vented.rate / vehicle.wheelset_inertia / rate**2 * vehicle.wheel_radius,
         unit="m/s",
         why=f"Phi = R s/k^2: beyond it the valve cannot let the pull fall as fast as k e would; s = "
-        f"{slew.value / 1e3:.3g} kN m/s over the inertia: {slew.why}",
+        f"{vented.rate / 1e3:.3g} kN m/s over the inertia: {vented.why}",
     )

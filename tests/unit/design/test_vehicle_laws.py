@@ -13,6 +13,7 @@ from wspd_design.controllers.references import ConstantSlip, FallingSlip, SlipTa
 from wspd_design.design.file import design_text, read_design, write_design
 from wspd_design.design.records import Specification
 from wspd_design.design.selection import design_controller
+from wspd_design.design.tracking_gains import CURVE_SHARE, vented_rate
 from wspd_design.parameters.errors import UserError
 from wspd_design.parameters.files import available
 from wspd_design.parameters.loading import load_rail, load_vehicle
@@ -114,3 +115,28 @@ def test_a_slower_sample_and_valve_make_a_slower_approach(er24pc):
     slow = replace(er24pc, brake=replace(er24pc.brake, vent_time=1.2))
     assert rate(er24pc, 0.02) > rate(er24pc, 0.1)
     assert rate(er24pc, 0.02) > rate(slow, 0.02)
+
+
+@pytest.mark.parametrize(
+    ("rail", "changes", "share"),
+    [
+        ("polach-wet", {"reference": "constant"}, CURVE_SHARE),
+        ("polach-wet", {"reference": "constant", "slip": 0.1}, 1.0),  # the peak is at .055
+        ("polach-wet", {"reference": "constant", "speeds": (10.0 / 3.6, 40.0 / 3.6)}, 1.0),  # and there at .1
+        ("table10-wet", {"reference": "constant"}, 1.0),  # which has no peak
+        ("eurosprinter127", {}, 1.0),  # beside the peak
+        ("eurosprinter127", {"reference": "peak"}, 1.0),
+        ("eurosprinter127", {"reference": "seeking"}, 1.0),
+    ],
+)
+def test_only_a_constant_reference_far_beyond_the_peak_leaves_a_part_of_the_vented_rate(
+    er24pc, rail, changes, share
+):
+    vented = vented_rate(er24pc, load_rail(rail), Specification(**changes)).rate
+    made = designed(er24pc, rail=rail, **changes)
+    assert made.gain("torque_slew") == share * vented
+    why = next(gain.why for gain in made.gains if gain.name == "torque_slew")
+    assert why.startswith("0.25 T/tau, " if share == CURVE_SHARE else "T/tau, ")
+    wide = designed(er24pc, "super-twisting", rail=rail, **changes)
+    whole = vented / er24pc.wheelset_inertia / wide.gain("approach_rate") ** 2 * er24pc.wheel_radius
+    assert wide.gain("layer") == pytest.approx(whole, rel=1e-12)  # a layer takes all of it
