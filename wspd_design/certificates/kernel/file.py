@@ -41,8 +41,12 @@ def certificate_text(certificate: Certificate) -> str:
         "findings": {key: each for key, each in found.items() if each},
         "made_by": versions(),
     }
-    lines = [f"{json.dumps(key)}: {json.dumps(entry, ensure_ascii=False)}" for key, entry in content.items()]
+    lines = [f"{_json(key)}: {_json(entry)}" for key, entry in content.items()]
     return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _json(entry: object) -> str:
+    return json.dumps(entry, ensure_ascii=False, separators=(",", ":"))
 
 
 def sentences(certificate: Certificate) -> dict[str, Any]:
@@ -98,7 +102,8 @@ def _stated(stated: Stated) -> dict[str, Any]:
         "proof": stated.proof,
         "place": {name: text(Fraction(at)) for name, at in stated.place.items()},
         "numbers": {name: text(Fraction(at)) for name, at in stated.numbers.items()},
-        "effort": {"boxes": effort.boxes, "undecided": effort.undecided, "cut": effort.cut},
+        "effort": {"boxes": effort.boxes, "undecided": effort.undecided, "cut": effort.cut}
+        | ({"ended": effort.ended} if effort.ended else {}),
     }
     if effort == Effort():
         del content["effort"]
@@ -135,14 +140,17 @@ def _doubles(table: object) -> dict[str, float]:
 def _effort(table: object) -> Effort:
     if table is None:
         return Effort()
-    if not isinstance(table, dict) or table.keys() != {"boxes", "undecided", "cut"}:
+    if not isinstance(table, dict) or table.keys() - {"ended"} != {"boxes", "undecided", "cut"}:
         raise Refused("a finding does not say how hard the search tried")
     boxes, undecided, cut = table["boxes"], table["undecided"], table["cut"]
     if not (type(boxes) is int and 0 <= boxes <= MOST_BOXES and type(cut) is bool):
         raise Refused("a finding does not say how hard the search tried")
     if not (type(undecided) in (int, float) and isfinite(undecided) and 0 <= undecided <= 1):
         raise Refused("a finding does not say which share of the box is undecided")
-    return Effort(boxes=boxes, undecided=float(undecided), cut=cut)
+    ended = table.get("ended", {})
+    if not isinstance(ended, dict):
+        raise Refused("a finding does not say where the search ended")
+    return Effort(boxes=boxes, undecided=float(undecided), cut=cut, ended=ended)
 
 
 def versions() -> dict[str, str]:
