@@ -38,6 +38,7 @@ AROUND = 97  # of an outline
 SEEN = (0, 3)  # error and torque among the numbers of the state
 STARTS = 4  # runs in an ellipsoid
 ALONG = 121  # points of a run
+LITTLE = Fraction(1, 4)  # share of the box whose cells could not be told apart within the stated ranges
 BASIN = ("sliding speed above that of the reference [m/s]", "torque above what holds where it settles [kN m]")
 FIRST = "utmirfv"  # letters of ranges over which cells are shown, if halved as often: friction and pads before others
 REMARK = (
@@ -208,8 +209,8 @@ def _cells(problem: Problem, proof: Proof | None, attempt: Attempt | None) -> It
     if attempt is None and (proof is None or (len(proof.cells) == 1 and proof.share == 1)):
         return  # the box itself
     letters = _halved_most("".join(each.steps for each in (proof, attempt) if each is not None))
-    whole = box_of(problem, Fraction(1))
-    yield _rectangle("stated ranges", letters, whole)
+    if attempt is None or attempt.share > LITTLE:
+        yield _rectangle("stated ranges", letters, box_of(problem, Fraction(1)))
     if proof is not None:
         for cell in _seen(letters, cells_of(box_of(problem, proof.share), proof.steps)[0]):
             yield _rectangle("cells with ellipsoids", letters, cell)
