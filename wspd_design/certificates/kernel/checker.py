@@ -48,6 +48,7 @@ Slopes: TypeAlias = dict[int, Ends]  # derivatives by the number of the variable
 Box: TypeAlias = list[tuple[Any, Any]]  # exact ends of every variable (fmpq)
 Formula: TypeAlias = Sequence[Sequence[Any]]
 ZERO, ONE, MINUS = ((arb(n), arb(n)) for n in (0, 1, -1))
+RISING = {"exp": arb.exp, "log": arb.log, "atan": arb.atan}
 
 
 class Refused(ValueError):
@@ -152,10 +153,9 @@ def _replay(given: _Inequality, tree: str, work: Work) -> int:
     if given.form is not given.model and not same(given.form, given.model, work):
         raise Refused("the arranged form of the formula is not the model's")
     program = Program(given.form, given.variables, work)
-    letters = {chr(ord("a") + k): k for k in range(len(given.free))}
+    letters, leaves = {chr(ord("a") + k): k for k in range(len(given.free))}, 0
     root: Box = [(fmpq(*a.as_integer_ratio()), fmpq(*b.as_integer_ratio())) for _, a, b in given.free]
     waiting: list[tuple[Box, int, list[Ends] | None]] = [(root, 0, None)]
-    leaves = 0
     for position, step in enumerate(tree):
         if not waiting:
             raise Refused(f"the tree goes on after its last leaf, at step {position}")
@@ -281,7 +281,7 @@ def _apply(name: str, operands: list[tuple[Ends, Slopes]], exponent: Any) -> tup
 
 def rising(name: str, x: Ends) -> Ends:
     """Return a rising function of an interval."""
-    return getattr(x[0], name)(), getattr(x[1], name)()
+    return RISING[name](x[0]), RISING[name](x[1])
 
 
 def add(x: Ends, y: Ends) -> Ends:
