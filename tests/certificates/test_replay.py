@@ -186,7 +186,7 @@ def test_a_file_cannot_stand_for_another_check(files):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "{", "[]", "null", "{}", '{"schema": "wspd-certificate/2"}', "[" * 100_000, "\x00"]
+    "text", ["", "{", "[]", "null", "{}", '{"schema": "wspd-certificate/3"}', "[" * 100_000, "\x00"]
 )
 def test_what_is_not_a_certificate_is_refused(settled, text):
     problem, _ = settled

@@ -182,7 +182,7 @@ def test_the_name_of_a_file_is_escaped_too(wspd, proved):
     assert not {"\x1b", "\x07", "\r"} & set(done.out + done.err)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "null", "{}", '{"schema": "wspd-certificate/2"}', "[" * 100_000])
+@pytest.mark.parametrize("text", ["", "[]", "null", "{}", '{"schema": "wspd-certificate/3"}', "[" * 100_000])
 def test_what_is_not_a_certificate_is_refused(wspd, proved, text):
     proved.write_text(text)
     done = wspd("check", proved)

@@ -64,7 +64,7 @@ def test_a_schema_of_another_name_is_not_a_newer_one():
 
 
 def test_an_older_certificate_is_refused_with_what_to_do():
-    with pytest.raises(Refused, match="not a certificate of this version, wspd-certificate/2; make it again"):
+    with pytest.raises(Refused, match="not a certificate of this version, wspd-certificate/3; make it again"):
         read_certificate('{"schema": "wspd-certificate/1", "check": "reaching"}')
 
 

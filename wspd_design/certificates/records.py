@@ -149,6 +149,8 @@ class Role(Enum):
     CURVE = "curve"
     LIMIT = "limit that curves must respect, or reference"
     OUTLINE = "edge of a region"
+    TRIED = "edge of a region about which nothing is proved"
+    FAILED = "edge of a region at which a search ended"
     LYAPUNOV = "Lyapunov function over time"
     LOOP_GAIN = "gain inside the boundary layer"
 

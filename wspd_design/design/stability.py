@@ -5,10 +5,12 @@ In doubles, at corners of the box and at two speeds: what a search needs, and no
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from fractions import Fraction
 from itertools import product
 from typing import Any
 
 from wspd_design.certificates.search.common_quadratic import contraction
+from wspd_design.certificates.search.slip_band.search import usual
 from wspd_design.certificates.setting.slip_loop import (
     DISTURBANCES,
     STATES,
@@ -18,9 +20,11 @@ from wspd_design.certificates.setting.slip_loop import (
     corners,
     parts_of,
 )
+from wspd_design.certificates.theorems.slip_band.loop import ROOM, Conditions
 from wspd_design.controllers.observer_smc import ObserverSmc
 from wspd_design.controllers.protection import Protection
 from wspd_design.design.problem import stated_bounds
+from wspd_design.model.generated.slip_loop import added_by_supply
 from wspd_design.model.number import exp
 from wspd_design.model.slip import slip_dynamics
 from wspd_design.parameters.bounds import Ends
@@ -40,7 +44,8 @@ def closes(law: Any, vehicle: Vehicle, rail: Rail, *, speeds: Ends, share: float
     """Look for quadratic functions that fall along the sampled loop, whatever the friction does within its secants.
 
     One function for each corner of valve times, pads, inertia and friction, at the lowest speed and at the geometric
-    mean of both; the valve is not saturated and opens without dead time, the supply is full, pressures are measured.
+    mean of both; the valve is not saturated, its pulses begin up to its dead time late and end in their sample, the
+    supply is as full as it gets, pressures are measured.
     The functions are found in doubles on sampled friction: a constraint for a search, not a proof.
 
     Parameters
@@ -64,12 +69,15 @@ def closes(law: Any, vehicle: Vehicle, rail: Rail, *, speeds: Ends, share: float
     """
     if not isinstance(law, Protection) or not isinstance(law.core, ObserverSmc):
         return None
+    conditions = usual(vehicle, Fraction(law.sample_time))
+    if conditions.delay >= 1:  # no pulse ends in its sample
+        return None
     loop = loop_of(law, law.core)
     box = _box(vehicle, rail, share)
     worst = 0.0
     for speed in (speeds[0], (speeds[0] * speeds[1]) ** 0.5):
         around = SLIP_AROUND * speeds[0] / speed
-        for apart in _corners(law, vehicle, rail, box, speed, around):
+        for apart in _corners(law, vehicle, rail, box, speed, around, conditions):
             found = _worst_of(loop, apart)
             if found is None:
                 return None
@@ -87,6 +95,7 @@ def _box(vehicle: Vehicle, rail: Rail, share: float) -> dict[str, Ends]:
         "max torque": brake.max_torque,
         "fill time": brake.fill_time,
         "vent time": brake.vent_time,
+        "supply rate": brake.supply_rate,
     }
     ends = {name: bounds.around(name, value) for name, value in nominal.items()}
     return {
@@ -125,21 +134,34 @@ def _contraction(loop: LoopLaw, ranges: LoopRanges) -> float | None:
 
 
 def _corners(
-    law: Protection, vehicle: Vehicle, rail: Rail, box: Mapping[str, Ends], speed: float, around: float
+    law: Protection,
+    vehicle: Vehicle,
+    rail: Rail,
+    box: Mapping[str, Ends],
+    speed: float,
+    around: float,
+    conditions: Conditions,
 ) -> Iterator[tuple[LoopRanges, LoopRanges]]:
     """Ranges of the loop at the corners of pads, inertia and valve, with the least and the most friction."""
     inertias, torques = box["wheelset inertia"], box["max torque"]
     fills, vents = box["fill time"], box["vent time"]
     share, modeled = law.valve.time_share, law.valve.brake
     assumed = share * modeled.fill_time, share * modeled.vent_time
-    longest = law.sample_time / min(assumed)
+    delay, pulse = float(conditions.delay), float(1 - conditions.delay)
+    longest = pulse * law.sample_time / min(assumed)
     seen = parts_of((share, share), longest)
     times = ((fills[0], vents[0]), (fills[1], vents[1]), (fills[0], vents[1]), (fills[1], vents[0]))
     slip = float(law.reference.at(speed, 1.0).slip)
     for (inertia, torque), (fill, vent) in product(zip(inertias, reversed(torques), strict=True), times):
         effect = torque / vehicle.brake.max_torque * law.wheelset_inertia / inertia
-        speedups = sorted((assumed[0] / fill, assumed[1] / vent))
-        parts = parts_of((speedups[0], speedups[1]), longest)
+        added = 0.0
+        if conditions.supply < 1:
+            rate = box["supply rate"][1]
+            added = added_by_supply(rate, fill, law.sample_time, pulse, delay, float(ROOM))
+        filling, venting = (
+            parts_of((each, each), longest) for each in (assumed[0] / fill, assumed[1] / vent)
+        )
+        parts = min(filling[0], venting[0]), max(filling[1] * (1.0 + added), venting[1])
         ranges = [
             LoopRanges(
                 secants=_secants(
@@ -151,11 +173,11 @@ def _corners(
                 ),
                 effects=(effect, effect),
                 parts=tuple((end, end) for end in parts),
-                seen=(0.5 * seen[0], seen[1]),
+                seen=((1.0 - 0.5 * pulse) * seen[0], seen[1]),
                 seen_center=seen[1],  # nothing is asked about what disturbs
-                pulse=1.0,
-                delay=0.0,
-                added=0.0,
+                pulse=pulse,
+                delay=delay,
+                added=added,
             )
             for mass, mu0 in zip(box["mass"], box["mu0"], strict=True)
         ]

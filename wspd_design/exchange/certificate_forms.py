@@ -21,6 +21,11 @@ CERTIFICATE = Form(
         Key(name="reference", kind="text", meaning="where the argument stands"),
         Key(name="model_sha256", kind="text", meaning="fingerprint of all that the verdict rests on"),
         Key(
+            name="formulas",
+            kind="value",
+            meaning="formulas of several statements in the findings, which name them by their place from 0",
+        ),
+        Key(
             name="findings",
             kind="value",
             meaning="object with a finding for each obligation of the theorem, see docs/certificates.md",

@@ -244,6 +244,7 @@ class Scenario:
     ----------
     rail : Rail
     initial_speed : float [m/s]
+        An ``int`` above 200 km/h is a warning; a float there may be a speed in km/h that was converted.
     start : Start
     seed : int
     axle_rails : tuple[Rail, ...] or None

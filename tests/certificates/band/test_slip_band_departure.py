@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.records import Status
-from wspd_design.certificates.search.slip_band.search import Failed
+from wspd_design.certificates.search.slip_band.search import Attempt
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.band import CELLS, DEPARTURE, SLIP_BAND
 from wspd_design.certificates.theorems.slip_band import departure
@@ -63,8 +64,8 @@ def euro(euro_case):
 def no_ellipsoids(monkeypatch):
     """Leave the long search for ellipsoids out: it finds none here."""
 
-    nothing = Failed(share=1, cell=(), window=0, tried=1, cut=False)
-    monkeypatch.setattr(slip_band, "largest_share", lambda *_: nothing)
+    nothing = Attempt(share=Fraction(1), steps="", window=0, tried=1, cut=False)
+    monkeypatch.setattr(slip_band, "largest_share", lambda *_: (None, nothing))
 
 
 def decided(problem, place):
@@ -165,7 +166,7 @@ def test_nothing_is_sought_where_the_whole_box_is_shown(dry, monkeypatch):
     class Whole:
         share = 1
 
-    monkeypatch.setattr(slip_band, "largest_share", lambda *_: Whole())
+    monkeypatch.setattr(slip_band, "largest_share", lambda *_: (Whole(), None))
     monkeypatch.setattr(slip_band, "write", lambda _: {})
     monkeypatch.setattr(slip_band, "_disturbed", lambda *_: {})
     stated = slip_band.search(dry)

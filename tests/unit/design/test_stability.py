@@ -39,6 +39,29 @@ def test_gain_that_is_too_high_does_not(law):
     assert closes(with_gains(law, approach_rate=300.0), LOCO, WET, speeds=SPEEDS, share=0.0) is None
 
 
+def test_dead_time_of_the_valve_counts(law):
+    quick = with_gains(law, approach_rate=60.0)
+
+    def found(dead_time):
+        vehicle = replace(LOCO, brake=replace(LOCO.brake, dead_time=dead_time))
+        return closes(quick, vehicle, WET, speeds=SPEEDS, share=0.0)
+
+    assert found(0.0) < found(0.01) < 1.0
+    assert found(0.019) is None
+    assert found(0.02) is None  # no pulse ends in its sample
+
+
+def test_supply_that_rises_counts(law):
+    quick = with_gains(law, approach_rate=60.0)
+
+    def found(**supply):
+        vehicle = replace(LOCO, brake=replace(LOCO.brake, **supply))
+        return closes(quick, vehicle, WET, speeds=SPEEDS, share=0.0)
+
+    assert found(build_up="direct") < found() < 1.0
+    assert found(supply_rate=10.0) is None
+
+
 def test_smaller_box_is_not_harder(law):
     shares = [
         closes(law, LOCO, wd.load_rail("polach-dry"), speeds=SPEEDS, share=each) for each in (0.0, 0.25, 1.0)

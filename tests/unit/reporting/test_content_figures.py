@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from tests.unit.reporting.sample_dossier import certificate, estimating, sample_dossier
 from tests.unit.reporting.test_maps import SHOWN
 from wspd_design.certificates.records import Role, Series, Status
 from wspd_design.reporting.blocks import Figure
-from wspd_design.reporting.figure_style import INK, figure_style, new_figure
+from wspd_design.reporting.figure_style import INK, MUTED, SERIES, figure_style, new_figure
 from wspd_design.reporting.figures.comparison import distance_bars, distances_alt, slip_of_all
 from wspd_design.reporting.figures.drawing import picture, thinned
 from wspd_design.reporting.figures.estimate import estimate_alt, estimate_panels
@@ -23,6 +24,7 @@ from wspd_design.reporting.figures.further_brakes import further_brakes, panels
 from wspd_design.reporting.figures.phase import phase_planes
 from wspd_design.reporting.figures.poles import pole_map, pole_map_alt
 from wspd_design.reporting.figures.series import (
+    HATCH,
     axis_label,
     certificate_curves,
     series_alt,
@@ -272,6 +274,22 @@ def test_an_outline_becomes_a_region():
     assert patch.get_extents().width > 0.0
     assert axes.get_lines()[1].get_color() == INK
     assert "closed region with slip from 0.1 to 0.2" in series_alt((square,))
+
+
+def test_a_region_that_failed_is_hatched_and_one_that_was_tried_is_empty():
+    """Neither has the color of something that is shown, whatever stands before it."""
+    corners = (0.1, 0.2, 0.2, 0.1, 0.1), (1.0, 1.0, 2.0, 2.0, 1.0)
+    roles = Role.OUTLINE, Role.TRIED, Role.FAILED
+    squares = [_series(each.name, "torque [kN m]", "slip [-]", *corners, role=each) for each in roles]
+    axes = _curves(*squares).axes[0]
+    filled, failed = axes.patches
+    assert (failed.get_hatch(), failed.get_facecolor()[-1]) == (HATCH, 0.0)
+    assert filled.get_hatch() is None
+    assert filled.get_facecolor()[-1] > 0.0
+    assert to_hex(failed.get_edgecolor()) == INK
+    assert [line.get_color() for line in axes.get_lines()] == [SERIES[0], MUTED]
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [each.name for each in roles]
+    assert series_caption("Check", squares) == "Check: torque over slip; hatched: FAILED."
 
 
 def test_long_labels_stay_inside_and_units_are_set():

@@ -9,7 +9,7 @@ An *inequality* states a formula, exact ranges of its variables, a relation and 
 each made of earlier ones: ``["x", name]``, ``["n", number]``, ``["add", i, j, ...]``, ``["mul", i, j, ...]``,
 ``["pow", i, exponent]``, ``["abs", i]``, ``["exp", i]``, ``["atan", i]``; the last step is the result. ``model`` is the
 formula as the program computes it; ``form``, if it is there, the same function arranged so that its variables stand
-in it as few times as possible. The proof is a tree in preorder, one character per step:
+in it as few times as possible (a number: see ``formulas``). The proof is a tree in preorder, one character per step:
 
 * ``a``, ``b``, ...: the box is halved along the first, second, ... variable with a range; the lower half comes first;
 * ``A``, ``B``, ...: the formula is monotone in this variable on the box, which is reduced to its worst face;
@@ -32,7 +32,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 from flint import arb, ctx, fmpq
 
-FORMAT = "wspd-proof/2"
+FORMAT, FORMULAS = "wspd-proof/2", ("model", "form")
 PRECISION, PRIME = 80, 2**255 - 19  # bits of a ball; of the field of identities
 MOST_BYTES, MOST_DIGITS = 20_000_000, 2_000  # of a file, of a fraction
 MOST_FREE, MOST_HALVINGS = 26, 400  # variables with a range, one letter each; of one box
@@ -47,6 +47,8 @@ Ends: TypeAlias = tuple[Any, Any]  # balls around both ends of an interval: a ba
 Slopes: TypeAlias = dict[int, Ends]  # derivatives by the number of the variable, unless they are zero
 Box: TypeAlias = list[tuple[Any, Any]]  # exact ends of every variable (fmpq)
 Formula: TypeAlias = Sequence[Sequence[Any]]
+ZERO, ONE, MINUS = ((arb(n), arb(n)) for n in (0, 1, -1))
+RISING = {"exp": arb.exp, "log": arb.log, "atan": arb.atan}
 
 
 class Refused(ValueError):
@@ -151,10 +153,9 @@ def _replay(given: _Inequality, tree: str, work: Work) -> int:
     if given.form is not given.model and not same(given.form, given.model, work):
         raise Refused("the arranged form of the formula is not the model's")
     program = Program(given.form, given.variables, work)
-    letters = {chr(ord("a") + k): k for k in range(len(given.free))}
+    letters, leaves = {chr(ord("a") + k): k for k in range(len(given.free))}, 0
     root: Box = [(fmpq(*a.as_integer_ratio()), fmpq(*b.as_integer_ratio())) for _, a, b in given.free]
     waiting: list[tuple[Box, int, list[Ends] | None]] = [(root, 0, None)]
-    leaves = 0
     for position, step in enumerate(tree):
         if not waiting:
             raise Refused(f"the tree goes on after its last leaf, at step {position}")
@@ -225,16 +226,11 @@ class Program:
         free = {name: k for k, name in enumerate(name for name, low, high in variables if low < high)}
         for place, (name, *operands) in enumerate(formula):
             extra: Any = None
-            if name == "x":
-                if operands[0] in fixed:
-                    self.known[place] = exactly(fixed[operands[0]])
-                    continue
-                operands, extra = [], free[operands[0]]
-            elif name == "n":
-                self.known[place] = exactly(operands[0])
+            if name == "n" or (name == "x" and operands[0] in fixed):
+                self.known[place] = exactly(operands[0] if name == "n" else fixed[operands[0]])
                 continue
-            elif name == "pow":
-                operands, extra = operands[:1], operands[1]
+            if name in ("x", "pow"):
+                operands, extra = ([], free[operands[0]]) if name == "x" else (operands[:1], operands[1])
             if operands and all(k in self.known for k in operands):
                 self.known[place], _ = _apply(name, [(self.known[k], {}) for k in operands], extra)
             else:
@@ -281,10 +277,6 @@ def _apply(name: str, operands: list[tuple[Ends, Slopes]], exponent: Any) -> tup
     else:
         x, dx = rising("atan", x), _times(dx, inverse(add(ONE, sqr(x))))
     return x, dx
-
-
-ZERO, ONE, MINUS = ((arb(n), arb(n)) for n in (0, 1, -1))
-RISING = {"exp": arb.exp, "log": arb.log, "atan": arb.atan}
 
 
 def rising(name: str, x: Ends) -> Ends:
@@ -463,16 +455,24 @@ def _typed(stated: object, kind: type, what: str) -> Any:
 
 
 def read(text: str) -> Mapping[str, Any]:
-    """Read one JSON object in which no name stands twice, or refuse."""
+    """Read one JSON object in which no name stands twice, with formulas in place of their numbers, or refuse."""
+    found: list[dict[str, Any]] = []
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        if len(dict(pairs)) < len(pairs):
+        found.append(dict(pairs))
+        if len(found[-1]) < len(pairs):
             raise Refused("a name stands twice in the file")
-        return dict(pairs)
+        return found[-1]
 
     try:
         if len(text) <= MOST_BYTES:
-            return dict(_typed(json.loads(text, object_pairs_hook=once), dict, "JSON object"))
+            content = _typed(json.loads(text, object_pairs_hook=once), dict, "JSON object")
+            formulas = dict(enumerate(_typed(content.pop("formulas", []), list, "table of formulas")))
+            for each, key in (
+                (each, key) for each in found for key in FORMULAS if type(each.get(key)) is int
+            ):
+                each[key] = formulas.get(each[key])
+            return dict(content)
     except (ValueError, RecursionError) as error:
         raise (error if isinstance(error, Refused) else Refused("the file is not complete JSON")) from None
     raise Refused("the file is too long")

@@ -5,18 +5,21 @@ and the findings, and compares it with the file word for word.
 """
 
 import json
+from collections import Counter
 from collections.abc import Mapping
 from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from math import isfinite
 from typing import Any
 
-from wspd_design.certificates.kernel.checker import Refused, number, read
+from wspd_design.certificates.kernel.checker import FORMAT, FORMULAS, Refused, number, read
 from wspd_design.certificates.kernel.finding import Effort, Stated
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Certificate, Point, Status
 
-SCHEMA = "wspd-certificate/2"
+SCHEMA = "wspd-certificate/3"
+OLDER = ("wspd-certificate/2",)
+"""Versions that are read as well: theirs has no table of formulas."""
 FOLDER = ".certificates"
 """Ending of the folder of certificates beside a design."""
 PACKAGES = ("crival", "casadi", "cvxpy", "clarabel", "python-flint", "sympy")
@@ -34,15 +37,39 @@ def file_name(certificate: Certificate) -> str:
 def certificate_text(certificate: Certificate) -> str:
     """Write a certificate with what was found as JSON, one entry a line.
 
-    Times are left out, so that the same design gives the same file. Floats are written without loss.
+    Times are left out, so that the same design gives the same file. Floats are written without loss. A formula that
+    several statements have is written once.
     """
     found = {key: _stated(each.stated) for key, each in certificate.findings.items()}
+    times = Counter(_json(each) for finding in found.values() for each in _formulas(finding).values())
+    numbers = {formula: k for k, formula in enumerate(each for each in times if times[each] > 1)}
     content = sentences(certificate) | {
-        "findings": {key: each for key, each in found.items() if each},
+        "formulas": list(map(json.loads, numbers)),
+        "findings": {key: _shortened(each, numbers) for key, each in found.items() if each},
         "made_by": versions(),
     }
-    lines = [f"{json.dumps(key)}: {json.dumps(entry, ensure_ascii=False)}" for key, entry in content.items()]
+    lines = [f"{_json(key)}: {_json(entry)}" for key, entry in content.items()]
     return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+def _formulas(finding: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the formulas of the statement that a finding proves, by their keys."""
+    proof = finding.get("proof", {})
+    statement = proof["statement"] if proof.get("format") == FORMAT else {}
+    return {key: statement[key] for key in FORMULAS if key in statement}
+
+
+def _shortened(finding: dict[str, Any], numbers: Mapping[str, int]) -> dict[str, Any]:
+    """Put the numbers of formulas in place of those that the table has."""
+    named = {key: numbers.get(_json(each), each) for key, each in _formulas(finding).items()}
+    if not named:
+        return finding
+    proof = finding["proof"]
+    return finding | {"proof": proof | {"statement": proof["statement"] | named}}
+
+
+def _json(entry: object) -> str:
+    return json.dumps(entry, ensure_ascii=False, separators=(",", ":"))
 
 
 def sentences(certificate: Certificate) -> dict[str, Any]:
@@ -71,7 +98,7 @@ def sentences(certificate: Certificate) -> dict[str, Any]:
 def read_certificate(written: str) -> tuple[str, Mapping[str, Any]]:
     """Return the name of the check that a file is about, and its content; or refuse it."""
     content = read(written)
-    if content.get("schema") != SCHEMA:
+    if content.get("schema") not in (SCHEMA, *OLDER):
         raise Refused(
             f"the file is not a certificate of this version, {SCHEMA}; make it again with wspd certify"
         )
@@ -80,7 +107,7 @@ def read_certificate(written: str) -> tuple[str, Mapping[str, Any]]:
         raise Refused("the file names no check")
     if not isinstance(status, str) or status not in Status.__members__:
         raise Refused("the file states no status")
-    return check, content
+    return check, {**content, "schema": SCHEMA}
 
 
 def stated_findings(content: Mapping[str, Any]) -> dict[str, Stated]:
@@ -98,7 +125,8 @@ def _stated(stated: Stated) -> dict[str, Any]:
         "proof": stated.proof,
         "place": {name: text(Fraction(at)) for name, at in stated.place.items()},
         "numbers": {name: text(Fraction(at)) for name, at in stated.numbers.items()},
-        "effort": {"boxes": effort.boxes, "undecided": effort.undecided, "cut": effort.cut},
+        "effort": {"boxes": effort.boxes, "undecided": effort.undecided, "cut": effort.cut}
+        | ({"ended": effort.ended} if effort.ended else {}),
     }
     if effort == Effort():
         del content["effort"]
@@ -135,14 +163,17 @@ def _doubles(table: object) -> dict[str, float]:
 def _effort(table: object) -> Effort:
     if table is None:
         return Effort()
-    if not isinstance(table, dict) or table.keys() != {"boxes", "undecided", "cut"}:
+    if not isinstance(table, dict) or table.keys() - {"ended"} != {"boxes", "undecided", "cut"}:
         raise Refused("a finding does not say how hard the search tried")
     boxes, undecided, cut = table["boxes"], table["undecided"], table["cut"]
     if not (type(boxes) is int and 0 <= boxes <= MOST_BOXES and type(cut) is bool):
         raise Refused("a finding does not say how hard the search tried")
     if not (type(undecided) in (int, float) and isfinite(undecided) and 0 <= undecided <= 1):
         raise Refused("a finding does not say which share of the box is undecided")
-    return Effort(boxes=boxes, undecided=float(undecided), cut=cut)
+    ended = table.get("ended", {})
+    if not isinstance(ended, dict):
+        raise Refused("a finding does not say where the search ended")
+    return Effort(boxes=boxes, undecided=float(undecided), cut=cut, ended=ended)
 
 
 def versions() -> dict[str, str]:

@@ -23,6 +23,7 @@ class Effort:
     boxes: int = 0
     undecided: float = 0.0  # share of the box that was left open
     cut: bool = False  # whether its budget ended it
+    ended: Mapping[str, Any] = field(default_factory=dict)  # JSON, where it ended, as its check writes it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

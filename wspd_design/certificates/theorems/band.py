@@ -11,6 +11,7 @@ from functools import partial
 from itertools import product
 
 from wspd_design.certificates.kernel.arb import above, below, point
+from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.kernel.finding import Finding, Place
 from wspd_design.certificates.kernel.obligation import Inequality, Obligation, Special
@@ -22,6 +23,7 @@ from wspd_design.certificates.setting.assumptions import BUILT_UP, Assumption
 from wspd_design.certificates.setting.declared_law import not_declared
 from wspd_design.certificates.setting.plant import place
 from wspd_design.certificates.setting.written_protection import not_written
+from wspd_design.certificates.theorems.slip_band.attempt import attempt_of, told_attempt
 from wspd_design.certificates.theorems.slip_band.checker import checker
 from wspd_design.certificates.theorems.slip_band.departure import (
     LIMIT,
@@ -256,6 +258,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     explanation, margin = f"No ellipsoids were found. {_dead_band(problem)}.", None
     worst: tuple[Point, ...] = ()
     status = all_of(cells)
+    failed = attempt_of(problem, findings[CELLS].effort)
     if cells.status is Status.PROVED:
         share = cells.numbers["share"]
         explanation = (
@@ -283,6 +286,10 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             worst = (Point(name="slip", value=slip, unit="-"),)
     elif borne:
         explanation = borne.strip()
+    if failed is not None:
+        if cells.status is Status.PROVED and not failed.share > cells.numbers["share"]:
+            raise Refused("a search for a share of the box ended that the proof covers")
+        explanation += f" {told_attempt(problem, failed)}"
     away = findings[DEPARTURE]
     if away.status is Status.REFUTED and away.stated is not None:
         status, margin = Status.REFUTED, None

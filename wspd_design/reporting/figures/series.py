@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.records import Role, Series
-from wspd_design.reporting.figure_style import INK, LINE_STYLES, SERIES
+from wspd_design.reporting.figure_style import INK, LINE_STYLES, MUTED, SERIES
 from wspd_design.reporting.figures.drawing import curve
 from wspd_design.reporting.numbers import MINUS, listing, significant, unit
 
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 LOGARITHMIC_SPAN = {Role.LYAPUNOV: 1e3, Role.LOOP_GAIN: 10.0}
 """A positive Lyapunov function or gain of the layer that spans more is drawn on a logarithmic scale."""
 
+REGIONS = (Role.OUTLINE, Role.TRIED, Role.FAILED)
 FRAME_HEIGHT, PANEL_HEIGHT, STACKED_HEIGHT, REGION_HEIGHT = 0.5, 2.0, 1.55, 3.0  # in
+HATCH = "////"  # of a region at which a search ended
 LABEL_WIDTH = 22  # characters of a label beside an axis
 LEGEND_WIDTH, HANDLE_WIDTH = 105, 10  # characters of a line of the legend, and of what stands before a name
 
@@ -48,7 +50,7 @@ def panels(series: Sequence[Series]) -> dict[tuple[str, str], list[Series]]:
 def curves_height(series: Sequence[Series]) -> float:
     """Return the height of the figure of :func:`certificate_curves` [in]."""
     groups = panels(series)
-    if any(each.role is Role.OUTLINE for each in series):
+    if any(each.role in REGIONS for each in series):
         return FRAME_HEIGHT + REGION_HEIGHT * len(groups)
     return FRAME_HEIGHT + (STACKED_HEIGHT if _stacked(groups) else PANEL_HEIGHT) * len(groups)
 
@@ -101,7 +103,8 @@ def series_caption(title: str, series: Sequence[Series]) -> str:
     shown = [
         f"{listing([y for _, y in group])} over {x}" for x, group in groupby(axes, key=lambda pair: pair[0])
     ]
-    return f"{title}: {listing(shown)}."
+    ended = dict.fromkeys(each.name for each in series if each.role is Role.FAILED)
+    return f"{title}: {listing(shown)}{''.join(f'; hatched: {name}' for name in ended)}."
 
 
 def axis_label(label: str) -> str:
@@ -125,7 +128,7 @@ def _words(each: Series) -> str:
         )
         return f"{each.name}: a line at {place}"
     extremes = f"lowest {significant(min(each.y), 3)}, highest {significant(max(each.y), 3)}"
-    if each.role is Role.OUTLINE:
+    if each.role in REGIONS:
         return (
             f"{each.name}: a closed region with {x} from {significant(min(each.x), 3)} to "
             f"{significant(max(each.x), 3)}, {y} {extremes}"
@@ -155,6 +158,12 @@ def _panel(axes: "Axes", group: Sequence[Series]) -> None:
         # Curves of one name look alike, and stand in the legend once.
         name = "_nolegend_" if each.name in indices else plain_symbols(each.name)
         index = indices.setdefault(each.name, len(indices))
+        if each.role is Role.TRIED:
+            axes.plot(x, y, color=MUTED, linestyle=LINE_STYLES[index], linewidth=0.7, label=name)
+            continue
+        if each.role is Role.FAILED:
+            axes.fill(x, y, facecolor="none", edgecolor=INK, hatch=HATCH, linewidth=1.3, label=name, zorder=3)
+            continue
         if each.role is Role.LIMIT:
             axes.plot(x, y, color=INK, linestyle=LINE_STYLES[index], linewidth=1.0, label=name)
             continue

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from itertools import product
 
 from wspd_design.certificates.checks.frame import Check
@@ -14,7 +15,6 @@ from wspd_design.certificates.search.settle import enclose, finding
 from wspd_design.certificates.search.slip_band.chain import Sought
 from wspd_design.certificates.search.slip_band.disturbed import latest, noisiest
 from wspd_design.certificates.search.slip_band.search import (
-    Failed,
     exactly,
     largest_share,
     with_reserve,
@@ -30,6 +30,7 @@ from wspd_design.certificates.theorems.band import (
     key,
     proved_friction,
 )
+from wspd_design.certificates.theorems.slip_band.attempt import effort_of
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
 from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, Halves
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
@@ -50,21 +51,21 @@ def search(problem: Problem) -> Mapping[str, Stated]:
         }
     law = law_of(problem.controller)
     sought = Sought(problem=problem, law=law, friction=friction, conditions=exactly(problem, law))
-    found = largest_share(sought, SOUGHT * budget().effort)
-    if isinstance(found, Failed):
-        failed = Stated(effort=Effort(boxes=found.tried, undecided=1.0, cut=found.cut))
+    found, failed = largest_share(sought, SOUGHT * budget().effort)
+    effort = effort_of(failed, proved=found.share if found else Fraction(0)) if failed else Effort()
+    if found is None:
         others = {
             RESERVED: _reserved(sought),
             LATE: Stated(),
             NOISY: Stated(),
             DEPARTURE: _departure(problem),
         }
-        return stated | others | {CELLS: failed}
+        return stated | others | {CELLS: Stated(effort=effort)}
     # What is shown on the whole box needs no look for what would deny it.
     away = Stated() if found.share == 1 else _departure(problem)
     reserved = Stated() if found.share == 1 else _reserved(sought)
     others = _disturbed(sought, found) | {RESERVED: reserved, DEPARTURE: away}
-    return stated | others | {CELLS: Stated(proof=write(found))}
+    return stated | others | {CELLS: Stated(proof=write(found), effort=effort)}
 
 
 def bounded_friction(

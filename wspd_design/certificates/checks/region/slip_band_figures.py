@@ -7,8 +7,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import Figures, series
+from wspd_design.certificates.quantities import QUANTITIES
 from wspd_design.certificates.records import Certificate, Problem, Role, Series, Status
 from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.theorems.slip_band.attempt import Attempt, attempt_of, cells_of, how_it_ended
 from wspd_design.certificates.theorems.slip_band.departure import SettledStop, settled_stop
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read
 from wspd_design.certificates.theorems.slip_band.reference import slip_at
@@ -17,9 +19,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     NAMES,
     BandLaw,
     Cell,
-    Interval,
     box_of,
-    halved,
     law_of,
     windows_of,
 )
@@ -33,31 +33,38 @@ from wspd_design.simulation.stop import simulate
 if TYPE_CHECKING:
     from wspd_design.certificates.search.matrix_inequalities import Array
 
-SHOWN = 33  # points of a reference that falls
+POINTS = 33  # points of a reference that falls
 AROUND = 97  # of an outline
 SEEN = (0, 3)  # error and torque among the numbers of the state
 STARTS = 4  # runs in an ellipsoid
 ALONG = 121  # points of a run
+LITTLE = Fraction(1, 4)  # share of the box whose cells could not be told apart within the stated ranges
 BASIN = ("sliding speed above that of the reference [m/s]", "torque above what holds where it settles [kN m]")
-CELL = (
-    "mu0",
-    "max torque",
-)  # numbers over which cells are shown: friction and pads decide how much room there is
+FIRST = "utmirfv"  # letters of ranges over which cells are shown, if halved as often: friction and pads before others
 REMARK = (
     "The ellipsoids are those of the nominal numbers, as error and torque see them; the runs are simulated stops of "
-    "the quarter model that begin on them with settled observers. Cells of the proof are seen along all other "
-    "numbers; where there are none, nothing is shown."
+    "the quarter model that begin on them with settled observers."
 )
-CELL_AXES = ("mu0 [-]", "torque at full pressure [kN m]")
+CELLS_REMARK = (
+    "Cells are shown over the two numbers whose ranges were halved most often, and seen along all others, so that they "
+    "may cover each other."
+)
+TRIED_REMARK = (
+    "Of the larger share what the search says of itself is shown: no checker decided about its cells, and the one at "
+    "which it ended is hatched."
+)
+UNKNOWN_REMARK = "Where the search for a larger share ended is not known."
 
 
 def figures(problem: Problem, certificate: Certificate) -> Figures:
-    """Band over speed; where there are proofs, ellipsoids of the nominal numbers with runs, and the cells."""
+    """Band over speed; with a proof, ellipsoids of the nominal numbers with runs; cells, and the one that failed."""
     finding = certificate.findings[CELLS]
-    if finding.status is not Status.PROVED or finding.stated is None or finding.stated.proof is None:
-        return Figures(series=(_reference(problem),))
+    attempt = attempt_of(problem, finding.effort)
+    if finding.status is not Status.PROVED or finding.stated.proof is None:
+        shown = tuple(_cells(problem, None, attempt))
+        return Figures(series=(_reference(problem), *shown), remark=_remark(attempt, shown, whole=False))
     proof = read(finding.stated.proof, len(windows_of(problem)))
-    cells = tuple(leaves(box_of(problem, proof.share), proof.steps))
+    cells = cells_of(box_of(problem, proof.share), proof.steps)[0]
     nominal = tuple(Fraction(problem.nominal(name)) for name in NAMES)
     inside = (all(low <= x <= high for x, (low, high) in zip(nominal, cell, strict=True)) for cell in cells)
     ellipsoids = next(
@@ -65,25 +72,17 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
         for cell, holds in zip(proof.cells, inside, strict=True)
         if holds
     )
+    shown = tuple(_cells(problem, proof, attempt))
     return Figures(
-        series=(
-            *_band(problem, finding.numbers),
-            *_basin(problem, ellipsoids),
-            *_cells(problem, cells, proof),
-        ),
-        remark=REMARK,
+        series=(*_band(problem, finding.numbers), *_basin(problem, ellipsoids), *shown),
+        remark=f"{REMARK} {_remark(attempt, shown, whole=proof.share == 1)}".strip(),
     )
 
 
-def leaves(box: Cell, steps: str) -> Iterator[Cell]:
-    """Yield the cells of a box, in the order of the proof."""
-    waiting = [box]
-    for step in steps:
-        cell = waiting.pop()
-        if step in LETTERS:
-            waiting += halved(cell, step)[::-1]
-        else:
-            yield cell
+def _remark(attempt: Attempt | None, cells: Sequence[Series], *, whole: bool) -> str:
+    """Say how cells are seen, and what is known of a search that ended."""
+    ended = TRIED_REMARK if attempt is not None else "" if whole else UNKNOWN_REMARK
+    return " ".join(filter(None, (CELLS_REMARK if cells else "", ended)))
 
 
 def _law(problem: Problem) -> BandLaw:
@@ -103,7 +102,7 @@ _SLIP = ("speed [km/h]", "slip [-]")
 def _reference(problem: Problem) -> Series:
     import numpy as np
 
-    speeds = np.linspace(*problem.speeds, SHOWN if _law(problem).falls else 2)
+    speeds = np.linspace(*problem.speeds, POINTS if _law(problem).falls else 2)
     return series("reference", *_SLIP, speeds * KMH, _held(problem, speeds))
 
 
@@ -205,20 +204,51 @@ def _holding(problem: Problem, at: SettledStop, speed: float, error: float) -> f
     return holding_torque(at.vehicle, at.rail, slip=slip, speed=speed, braking_time=at.start.braking_time)
 
 
-def _cells(problem: Problem, cells: Sequence[Cell], proof: Proof) -> Iterator[Series]:
-    """Yield the stated ranges of friction and pads, and the cells of the proof as seen along all other numbers."""
-    if len(cells) == 1 and proof.share == 1:
+def _cells(problem: Problem, proof: Proof | None, attempt: Attempt | None) -> Iterator[Series]:
+    """Yield the stated ranges, the cells of the proof, and those of a larger share with the one at which it ended."""
+    if attempt is None and (proof is None or (len(proof.cells) == 1 and proof.share == 1)):
         return  # the box itself
-    places = [NAMES.index(name) for name in CELL]
-    yield _rectangle("stated ranges", [box_of(problem, Fraction(1))[place] for place in places])
-    seen = dict.fromkeys(tuple(cell[place] for place in places) for cell in cells)
-    for each in seen:
-        yield _rectangle("cells with ellipsoids", each)
+    letters = _halved_most("".join(each.steps for each in (proof, attempt) if each is not None))
+    if attempt is None or attempt.share > LITTLE:
+        yield _rectangle("stated ranges", letters, box_of(problem, Fraction(1)))
+    if proof is not None:
+        for cell in _seen(letters, cells_of(box_of(problem, proof.share), proof.steps)[0]):
+            yield _rectangle("cells with ellipsoids", letters, cell)
+    if attempt is None:
+        return
+    tried, box = f"{100.0 * float(attempt.share):.3g} % of each range", box_of(problem, attempt.share)
+    closed, waiting = cells_of(box, attempt.steps)
+    if attempt.share < 1:
+        yield _rectangle(f"tried: {tried}", letters, box, Role.TRIED)
+    for cell in _seen(letters, closed):
+        yield _rectangle(f"closed by the search on {tried}, not proved", letters, cell, Role.TRIED)
+    yield _rectangle(f"{how_it_ended(problem, attempt)} on {tried}", letters, waiting[-1], Role.FAILED)
 
 
-def _rectangle(name: str, sides: Sequence[Interval]) -> Series:
+def _halved_most(steps: str) -> tuple[str, str]:
+    """Letters of the two ranges that steps halve most often, in the order of the table."""
+    first, second, *_ = sorted(FIRST, key=lambda letter: -steps.count(letter))
+    return (first, second) if LETTERS.index(first) < LETTERS.index(second) else (second, first)
+
+
+def _seen(letters: tuple[str, str], cells: Sequence[Cell]) -> Iterator[Cell]:
+    """Yield one of all cells that look alike."""
+    places = [LETTERS.index(letter) for letter in letters]
+    yield from {tuple(cell[place] for place in places): cell for cell in cells}.values()
+
+
+def _rectangle(name: str, letters: tuple[str, str], cell: Cell, role: Role = Role.OUTLINE) -> Series:
+    """Return what a cell looks like over two of its ranges."""
     import numpy as np
 
-    (left, right), (low, high) = (map(float, ends) for ends in sides)
+    ((left, right), x_label), ((low, high), y_label) = (_side(LETTERS.index(each), cell) for each in letters)
     x, y = np.array([left, right, right, left, left]), np.array([low, low, high, high, low])
-    return series(name, *CELL_AXES, x, y / 1e3, Role.OUTLINE)
+    return series(name, x_label, y_label, x, y, role)
+
+
+def _side(place: int, cell: Cell) -> tuple[tuple[float, float], str]:
+    """Ends of a range of a cell in the unit of the plot, and the label of the axis."""
+    unit = QUANTITIES[NAMES[place]].unit
+    factor, shown = (1e-3, "kN m") if unit == "N m" else (1.0, unit)
+    low, high = (factor * float(end) for end in cell[place])
+    return (low, high), f"{NAMES[place]} [{shown}]"

@@ -32,11 +32,12 @@ class Spent:
 
     def __init__(self, most: float = math.inf) -> None:
         self.most, self.count = most, 0
+        self.window = 0  # in which one was sought last
         self.known: dict[object, float] = {}
 
-    def one(self) -> None:
-        """Count one more, or end the search."""
-        self.count += 1
+    def one(self, window: int) -> None:
+        """Count one more in a window, or end the search."""
+        self.count, self.window = self.count + 1, window
         if self.count > self.most:
             raise OutOfBudget
 
@@ -138,7 +139,7 @@ def next_slower(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Sp
     """Add an ellipsoid to those of a cell: for the choice of the last one, or for the one that is best."""
 
     def tried(choice: Choice) -> Chain | None:
-        spent.one()
+        spent.one(window)
         loops = sought.loops(cell, window, choice)
         try:
             found = ellipsoid(sought.law, loops, choice, sought.conditions.supply, chain.faster, chain.hints)
@@ -176,7 +177,7 @@ def far(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> 
     choice = sought.in_time(chain.choice)
     looked_at = cell, window, choice, chain.faster
     if looked_at not in spent.known:
-        spent.one()
+        spent.one(window)
         loops = sought.loops(cell, window, choice)
         try:
             found = excess(sought.law, loops, sought.conditions.supply, chain.faster, chain.hints)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from wspd_design.certificates.records import Problem
@@ -19,10 +19,12 @@ from wspd_design.certificates.search.slip_band.chain import (
     left_of,
     still_holding,
 )
+from wspd_design.certificates.theorems.slip_band.attempt import Attempt
 from wspd_design.certificates.theorems.slip_band.checker import least_delay
 from wspd_design.certificates.theorems.slip_band.loop import Conditions
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof
 from wspd_design.certificates.theorems.slip_band.statement import LETTERS, BandLaw, Cell, box_of, halved
+from wspd_design.parameters.records import Vehicle
 
 NARROWEST = 1.02  # ratio of the ends of a range that is not worth halving
 SHARES = tuple(Fraction(k, 8) for k in range(1, 9))
@@ -33,23 +35,11 @@ MATTERS = {"m": 1.0, "i": 1.0, "r": 2.0, "u": 1.0, "t": 1.0, "f": 0.3, "v": 0.3}
 """How much the logarithm of a range spreads the loop."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Failed:
-    """A cell that is not worth halving, or the one at which the budget ended."""
-
-    share: Fraction  # of the box
-    cell: Cell
-    window: int  # in which no ellipsoid was found, the slowest being 0
-    tried: int  # ellipsoids
-    cut: bool  # whether the budget ended the search
-
-
-def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
+def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Attempt:
     """Find ellipsoids for a share of each range of the box, around its nominal value."""
-    cell = box_of(sought.problem, share)
-    waiting: list[tuple[Cell, Chain | None]] = [(cell, None)]
+    waiting: list[tuple[Cell, Chain | None]] = [(box_of(sought.problem, share), None)]
     cells: list[tuple[Ellipsoid | None, ...]] = []
-    steps, window = "", 0
+    steps = ""
     try:
         while waiting:
             cell, inherited = waiting.pop()
@@ -64,11 +54,11 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Failed:
             if _middle_has(sought, cell, window, anew, spent):
                 letter = _letter(sought, cell, window, anew, spent)
             if letter is None:
-                return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=False)
+                return Attempt(share=share, steps=steps, window=window, tried=spent.count, cut=False)
             steps += letter
             waiting += [(half, chain) for half in halved(cell, letter)[::-1]]
     except OutOfBudget:
-        return Failed(share=share, cell=cell, window=window, tried=spent.count, cut=True)
+        return Attempt(share=share, steps=steps, window=spent.window, tried=spent.count, cut=True)
     return proof_of(sought, share, steps, cells)
 
 
@@ -128,8 +118,10 @@ def _without(cell: Cell, letter: str) -> Cell:
     return (*cell[:k], (middle, middle), *cell[k + 1 :])
 
 
-def largest_share(sought: Sought, most: float) -> Proof | Failed:
+def largest_share(sought: Sought, most: float) -> tuple[Proof | None, Attempt | None]:
     """Find ellipsoids for the largest share of the box, in steps of :data:`SHARES`; none below the first.
+
+    The smallest share that was tried in vain is returned beside it.
 
     Parameters
     ----------
@@ -138,18 +130,18 @@ def largest_share(sought: Sought, most: float) -> Proof | Failed:
     most : float
         Ellipsoids that may be sought for each share.
     """
-    largest = cover(sought, SHARES[-1], Spent(most))
-    low, high = 0, len(SHARES) - 1  # numbers of shares: one that is covered, and one that may be
-    while not isinstance(largest, Proof) or largest.share < 1:
-        if low == high:
-            break
-        number = (low + high + 1) // 2
+    largest: Proof | None = None
+    failed: Attempt | None = None
+    low, high = 0, len(SHARES)  # numbers of shares: one that is covered, and one that may be
+    number = high
+    while low < high:
         found = cover(sought, SHARES[number - 1], Spent(most))
         if isinstance(found, Proof):
             low, largest = number, found
         else:
-            high = number - 1
-    return largest
+            high, failed = number - 1, found
+        number = (low + high + 1) // 2
+    return largest, failed
 
 
 def with_reserve(sought: Sought, most: float) -> Proof | None:
@@ -181,9 +173,14 @@ def proof_of(
 
 
 def exactly(problem: Problem, law: BandLaw) -> Conditions:
+    """Return a stop of the vehicle and law with exact speeds."""
+    return usual(problem.vehicle, law.sample_time)
+
+
+def usual(vehicle: Vehicle, sample_time: Fraction) -> Conditions:
     """Return a stop with the vehicle's dead time and exact speeds.
 
     The pressure of a main pipe comes close to the full one and never reaches it.
     """
-    supply = Fraction(63, 64) if problem.vehicle.brake.build_up == "main-pipe" else Fraction(1)
-    return Conditions(supply=supply, delay=least_delay(problem, law), noise=Fraction(0))
+    supply = Fraction(63, 64) if vehicle.brake.build_up == "main-pipe" else Fraction(1)
+    return Conditions(supply=supply, delay=least_delay(vehicle, sample_time), noise=Fraction(0))

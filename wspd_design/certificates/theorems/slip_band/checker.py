@@ -40,6 +40,7 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 )
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import Law
+from wspd_design.parameters.records import Vehicle
 
 DIGITS = 128  # bits of the balls
 WORK = 10_000  # operations on intervals that an ellipsoid is worth
@@ -68,7 +69,7 @@ def checker(
 def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Work) -> dict[str, float]:
     law, windows = law_of(controller), windows_of(problem)
     found = read(proof, len(windows))
-    if found.delay < least_delay(problem, law):
+    if found.delay < least_delay(problem.vehicle, law.sample_time):
         raise Refused("the valves of the vehicle begin later than the proof allows")
     if found.noise and not isinstance(controller, Protection):
         raise Refused("the law was compared with what it declares for speeds without noise")
@@ -150,9 +151,9 @@ def holds_more(
     return reserve < 1 and loop.holding > reserve
 
 
-def least_delay(problem: Problem, law: BandLaw) -> Fraction:
+def least_delay(vehicle: Vehicle, sample_time: Fraction) -> Fraction:
     """Dead time of the vehicle's valves, over the sample time."""
-    return Fraction(problem.vehicle.brake.dead_time) / law.sample_time
+    return Fraction(vehicle.brake.dead_time) / sample_time
 
 
 def _joined(one: Pair | None, other: Pair) -> Pair:
