@@ -18,6 +18,7 @@ from wspd_design.certificates.setting.slip_loop import (
     LoopRanges,
     Pair,
     corners,
+    latest_share,
     parts_of,
 )
 from wspd_design.certificates.theorems.slip_band.loop import ROOM, Conditions
@@ -162,25 +163,26 @@ def _corners(
             parts_of((each, each), longest) for each in (assumed[0] / fill, assumed[1] / vent)
         )
         parts = min(filling[0], venting[0]), max(filling[1] * (1.0 + added), venting[1])
-        ranges = [
-            LoopRanges(
-                secants=_secants(
-                    replace(vehicle, mass=mass, wheelset_inertia=inertia),
-                    replace(rail, mu0=mu0),
-                    slip,
-                    speed,
-                    around,
-                ),
-                effects=(effect, effect),
-                parts=tuple((end, end) for end in parts),
-                seen=((1.0 - 0.5 * pulse) * seen[0], seen[1]),
-                seen_center=seen[1],  # nothing is asked about what disturbs
-                pulse=pulse,
-                delay=delay,
-                added=added,
+        ranges = []
+        for mass, mu0 in zip(box["mass"], box["mu0"], strict=True):
+            secants = _secants(
+                replace(vehicle, mass=mass, wheelset_inertia=inertia),
+                replace(rail, mu0=mu0),
+                slip,
+                speed,
+                around,
             )
-            for mass, mu0 in zip(box["mass"], box["mu0"], strict=True)
-        ]
+            late = latest_share(secants[1] * law.sample_time, pulse, delay, added)
+            mean = (1.0 - 0.5 * pulse) * seen[0], seen[1]
+            ranges.append(
+                LoopRanges(
+                    secants=secants,
+                    effects=(effect, effect),
+                    parts=tuple((end, end) for end in parts),
+                    shares=tuple(product((0.0, late), mean)),
+                    shares_center=(0.0, seen[1]),  # nothing is asked about what disturbs
+                )
+            )
         yield ranges[0], ranges[1]
 
 

@@ -122,6 +122,21 @@ def parts_about(side: Pair, other: Pair) -> tuple[Pair, ...]:
     return (low, low), (high, high), (minimum(other_low, low), low), (maximum(other_high, high), high)
 
 
+def latest_share(growth: Number, pulse: Number, delay: Number, added: Number) -> Number:
+    """Return the largest share of a sample that sees the torque before a pulse.
+
+    Parameters
+    ----------
+    growth : number
+        Largest secant times the sample time [-].
+    pulse, delay : number
+        Longest pulse and its latest beginning, over the sample time [-].
+    added : number
+        What a rising supply adds to a way at most, over the way; it may come last [-].
+    """
+    return (generated.lateness(growth, pulse, delay) + added) / (1.0 + added)
+
+
 def shares_together(left: Pair, true: Pair, law: Pair) -> tuple[Pair, ...]:
     """Return the late share and the share in the mean torque of the law that go together, as corners.
 
@@ -161,7 +176,7 @@ def numbers_at_corners(
         polygon(ranges.secants, law.sample_time),
         dict.fromkeys(ranges.effects),
         dict.fromkeys(ranges.parts),
-        dict.fromkeys(ranges.shares),
+        ranges.shares,
     ):
         yield (*slide, g, rho, *shares), (*slide, g, rho_center, *ranges.shares_center)
 

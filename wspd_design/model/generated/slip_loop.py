@@ -216,6 +216,24 @@ def lateness(m: Number, pulse: Number, delay: Number) -> Number:
     return (1.0 - (1.0 - exp(-m * pulse)) * exp(-delay * m) / (m * pulse)) / (1.0 - exp(-m))
 
 
+def share_after(m: Number, part_left: Number) -> Number:
+    """Share of a change that is there for the last part of the sample, with the weight of an error that grows, docs/theory.md#band.
+
+    Parameters
+    ----------
+    m : Number
+        Secant times sample time, not 0 [-].
+    part_left : Number
+        Part of the sample that is left [-].
+
+    Returns
+    -------
+    Number
+        Share [-].
+    """
+    return (exp(m * part_left) - 1.0) / (exp(m) - 1.0)
+
+
 def added_by_supply(
     supply_rate: Number, fill_time: Number, h: Number, pulse: Number, delay: Number, room: Number
 ) -> Number:

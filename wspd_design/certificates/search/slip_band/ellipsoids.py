@@ -281,7 +281,7 @@ def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
     way = float(way_at(law, loop, center).mid())
     side, other = loop.pulses if way > 0.0 else loop.pulses[::-1]
     torque, time = side.rises * float(center[3].mid()), float(side.time.mid())
-    longest = float(loop.ranges.pulse.mid())
+    longest = float(loop.pulse.mid())
     low, high = (float(end.mid()) + torque for end in side.height)
     shortest_and_longest = [
         -time * math.log1p(-abs(way) / height) if abs(way) < height else longest
@@ -289,7 +289,7 @@ def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
     ]
     # Where pulses are short, a longer one makes little difference, and less supply is asked for.
     shortest_and_longest[1] = max(shortest_and_longest[1], shortest_and_longest[0] + LONGER)
-    way_back = max(float(side.part(loop.ranges.pulse).mid()) * low - 2.0 * abs(way), BACK * abs(way))
+    way_back = max(float(side.part(loop.pulse).mid()) * low - 2.0 * abs(way), BACK * abs(way))
     there = float(other.height[0].mid()) + other.rises * float(center[3].mid())
     back = -float(other.time.mid()) * math.log1p(-min(way_back / there, 0.5))
     return Lengths(

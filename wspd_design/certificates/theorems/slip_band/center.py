@@ -7,14 +7,13 @@ from itertools import product
 from operator import mul
 from typing import NamedTuple
 
-from wspd_design.certificates.kernel.arb import Ball, ends_of, hull_of, least_of, most_of, point
+from wspd_design.certificates.kernel.arb import Ball, ball, ends_of, hull_of, least_of, most_of, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.setting.slip_loop import (
     DISTURBANCES,
     Pair,
     parts_about,
     parts_of,
-    parts_of_longer,
     shares_together,
     wanted,
 )
@@ -57,14 +56,18 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
     most_back = other.part(back) * ends_of(loop.pulses[0].height[1] + loop.pulses[1].height[1])[1]
     far = most_back / (most_back + abs(way))
     opposite = tuple(end + far * (each - end) for end, each in zip(side.parts, other.parts, strict=True))
-    shares, (late, seen) = _shares(law, loop, (side, other), (shortest, longest), far)
+    shares, (late, seen) = _shares(law, loop, (side, other), (shortest, longest))
     disturbances = [low.union(high) for low, high in loop.disturbances]
     known = tuple(point(Fraction(float(each.mid()))) for each in (late, seen))
     disturbances[DISTURBANCES.index("mean reference drift")] += (seen - known[1]) * way
-    most = most_of([end for each in loop.pulses for end in each.parts]) * ends_of(loop.ranges.effects[1])[1]
+    effect = loop.ranges.effects[1]
+    most = most_of([end for each in loop.pulses for end in each.parts]) * effect
     steepest = most_of([loop.ranges.secants[1] * point(law.sample_time), point(LEVEL)])
+    # To the other side the valve is another one: a part of what is gone there has not the late share of the way there.
+    mixed = most_of([abs(here - there) for here, there in product(side.parts, other.parts)])
+    mixed *= most_of([back, longest]) / 2 * ball(Fraction(-1), Fraction(1))
     disturbances[DISTURBANCES.index("uneven slip drift")] += (
-        (late - known[0]) * way * most * steepest.expm1() / steepest
+        ((late - known[0]) * most + mixed * effect) * way * steepest.expm1() / steepest
     )
     within = (in_time(law, each, pulse if each is side else back, loop.beside) for each in loop.pulses)
     return replace(
@@ -81,7 +84,7 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
 
 
 def _shares(
-    law: BandLaw, loop: Loop, sides: tuple[Pulses, Pulses], at_center: tuple[Ball, Ball], far: Ball
+    law: BandLaw, loop: Loop, sides: tuple[Pulses, Pulses], at_center: tuple[Ball, Ball]
 ) -> tuple[tuple[Pair, ...], tuple[Ball, Ball]]:
     """Return the late share and the share in the mean torque of the law, of the rest as corners and of the center.
 
@@ -100,43 +103,48 @@ def _shares(
         To the side of the way at the center, and to the other one.
     at_center : tuple of ball
         Shortest and longest pulse of the way at the center, over the sample time.
-    far : ball
-        Part of the distance from the center that a way to the other side has there at most.
     """
     h, share, (side, other) = point(law.sample_time), point(law.time_share), sides
     shortest, longest = at_center
     low, high = loop.ranges.secants
     slowest, fastest = least_of([low * h, point(-LEVEL)]), most_of([high * h, point(LEVEL)])
-    further = parts_of_longer(share, most_of([loop.pulse / each.time for each in sides]))
-    # Rates of a way differ by so much from the part that is gone.
-    uneven = most_of(
-        [(abs(1 - end) * loop.pulse / each.time).exp() for each in sides for end in each.speedups]
+    reach, none = loop.pulse / side.time, point(0)
+    # The part gone on the way from the center differs by so much from that on the way from none.
+    begun = side.part(longest) / side.part(loop.pulse)
+
+    def uneven(speedup: Ball) -> Ball:
+        return 1 + ((abs(1 - speedup) * reach).exp() - 1) * begun
+
+    uneven_true = most_of([uneven(end) for end in side.speedups])
+    # Parts l of the true change have other weights than those of the law.
+    weights = most_of(
+        [(abs(end - share) * loop.pulse / each.time).exp() for each in sides for end in each.speedups]
+    ).sqrt()
+    aside = loop.pulse * (weights - 1) / (weights + 1)
+    left, added = 1 - (loop.pulse + longest) / 2, loop.added
+    later = most_of([share_after(fastest, left - aside - loop.delay), none])
+    earlier = share_after(slowest, left + aside) * uneven_true
+    least, most = parts_of((share, share), most_of([loop.pulse / each.time for each in sides]))
+    shares = shares_together(
+        (left, point(1)),
+        (later / uneven_true / (1 + added) / left, (earlier + added) / (1 + added) / left),
+        ends_of((least / uneven(share)).union(most * uneven(share))),
     )
-    # To the other side the valve is another one: what is gone there has another weight in the late share.
-    ratio = most_of(
-        [
-            most_of([there / here, here / there]).sqrt()
-            for here, there in product(side.speedups, other.speedups)
-        ]
-    )
-    aside = least_of([far * (ratio**2 - 1), (ratio - 1) / (ratio + 1)])
-    left = 1 - (loop.pulse + longest) / 2
-    added = loop.added
-    later = (
-        most_of([share_after(fastest, left - loop.delay), point(0)]) / left / uneven / (1 + added) - aside / left
-    )
-    earlier = (share_after(slowest, left) * uneven + added) / (1 + added) / left + aside / left
-    shares = shares_together((left, point(1)), (later, earlier), ends_of(hull_of(further)))
-    # Of the center itself.
+    # Of the center itself, over the part that is gone on the whole way.
     least, most = parts_of((share, share), longest / side.time)
     fading = (
         -share * longest / side.time
     ).exp()  # the rate at the end of the pulse over that at its beginning
     seen = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
-    faster = (-most_of(list(side.speedups)) * longest / side.time).exp()
-    last = most_of([share_after(fastest, 1 - longest / 2 - loop.delay), point(0)]) / uneven / (1 + added)
-    first = (share_after(slowest, 1 - faster * shortest / 2) * uneven + added) / (1 + added)
-    return shares, (1 - last.union(first), seen)
+    differs = [
+        most_of([excess * loop.pulse, abs(1 - end) * longest]) / side.time
+        for sign, end in zip((1, -1), side.speedups, strict=True)
+        for excess in (sign * (1 - end),)
+    ]
+    faster = (-side.speedups[1] * longest / side.time).exp()
+    last = most_of([share_after(fastest, 1 - longest / 2 - loop.delay), none]) * (-differs[0]).exp()
+    first = share_after(slowest, 1 - faster * shortest / 2) * differs[1].exp()
+    return shares, (1 - (last / (1 + added)).union((first + added) / (1 + added)), seen)
 
 
 def way_at(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Ball:

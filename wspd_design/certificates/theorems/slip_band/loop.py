@@ -23,7 +23,7 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.creep_slope import bend
 from wspd_design.certificates.setting.declared_law import LEAST
-from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, wanted
+from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, latest_share, wanted
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
     FRICTION,
@@ -246,9 +246,8 @@ def loop_of(
     )
     widest_radius = point(problem.span("wheel radius")[1])
     pulses = pulses_of(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
-    latest = lateness(high * h, point(pulse), point(conditions.delay))
-    latest = (latest + added) / (1 + added)  # what the supply adds may come last
-    late, seen = point(0).union(latest), seen_of(law, pulse)
+    late = point(0).union(latest_share(high * h, point(pulse), point(conditions.delay), added))
+    seen = seen_of(law, pulse)
     asked = wanted(loop_law(law))
     beside = ends_of(asked[4] * known + asked[0] * (misread + apart))
     limits = _limits(law, choice, conditions.supply, held, turned * slowing, known, misread)
