@@ -147,7 +147,7 @@ def test_what_is_closed_and_what_is_left_fill_the_box(problem):
 def test_end_that_is_not_stated_is_none(problem):
     assert attempt_of(problem, Effort(boxes=3)) is None
     attempt = search.Attempt(share=Fraction(3, 8), steps="u.", window=1, tried=3, cut=True)
-    effort = effort_of(attempt, proved=Fraction(0))
+    effort = effort_of(problem, attempt, proved=Fraction(0))
     assert attempt_of(problem, effort) == attempt
     with pytest.raises(Refused):
         attempt_of(problem, replace(effort, ended={**effort.ended, "share": 1}))

@@ -89,7 +89,7 @@ def ends(cell):
 def test_cell_at_which_a_larger_share_ended_is_shown_beside_those_that_closed(half, proved, share, cut, how):
     """The upper half of the pads, in the lower half of mu0, after the lower half of the pads has closed."""
     tried = Attempt(share=Fraction(share), steps="ut.", window=2, tried=9, cut=cut)
-    certificate = with_two_cells(proved, effort_of(tried, proved=Fraction(1, 2)))
+    certificate = with_two_cells(proved, effort_of(half, tried, proved=Fraction(1, 2)))
     found = slip_band_figures.figures(half, certificate)
     cells = panels(found.series)[CELL_AXES]
     assert [each.role for each in cells[:3]] == [Role.OUTLINE] * 3
@@ -116,7 +116,7 @@ def test_cell_at_which_a_larger_share_ended_is_shown_beside_those_that_closed(ha
 
 def test_ranges_that_were_halved_most_often_are_the_axes(half, proved):
     tried = Attempt(share=Fraction(1), steps="mvm.v", window=0, tried=9, cut=False)
-    certificate = with_two_cells(proved, effort_of(tried, proved=Fraction(1, 2)))
+    certificate = with_two_cells(proved, effort_of(half, tried, proved=Fraction(1, 2)))
     assert ("mass [kg]", "vent time [s]") in shown(half, certificate)
 
 

@@ -55,7 +55,7 @@ def certificate_text(certificate: Certificate) -> str:
 def _formulas(finding: Mapping[str, Any]) -> dict[str, Any]:
     """Return the formulas of the statement that a finding proves, by their keys."""
     proof = finding.get("proof", {})
-    statement = proof["statement"] if proof.get("format") == FORMAT else {}
+    statement = proof.get("statement", {}) if proof.get("format") == FORMAT else {}
     return {key: statement[key] for key in FORMULAS if key in statement}
 
 

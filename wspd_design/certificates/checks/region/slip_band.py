@@ -52,7 +52,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     law = law_of(problem.controller)
     sought = Sought(problem=problem, law=law, friction=friction, conditions=exactly(problem, law))
     found, failed = largest_share(sought, SOUGHT * budget().effort)
-    effort = effort_of(failed, proved=found.share if found else Fraction(0)) if failed else Effort()
+    effort = effort_of(problem, failed, proved=found.share if found else Fraction(0)) if failed else Effort()
     if found is None:
         others = {
             RESERVED: _reserved(sought),

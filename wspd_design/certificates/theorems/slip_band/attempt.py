@@ -31,11 +31,12 @@ class Attempt:
     cut: bool  # whether the budget ended it
 
 
-def effort_of(attempt: Attempt, *, proved: Fraction) -> Effort:
-    """Write an attempt as the effort of a search that proved another share of the box, or none."""
+def effort_of(problem: Problem, attempt: Attempt, *, proved: Fraction) -> Effort:
+    """Write an attempt as the effort of a search that proved another share of each range, or none."""
+    wide = sum(low < high for low, high in box_of(problem, Fraction(1)))
     return Effort(
         boxes=attempt.tried,
-        undecided=1.0 - float(proved) ** len(NAMES),
+        undecided=1.0 - float(proved) ** wide,
         cut=attempt.cut,
         ended={"share": text(attempt.share), "steps": attempt.steps, "window": attempt.window},
     )
@@ -86,9 +87,10 @@ def told_attempt(problem: Problem, attempt: Attempt) -> str:
     """Say which cell was the last one, in numbers."""
     closed, waiting = cells_of(box_of(problem, attempt.share), attempt.steps)
     ended = "was cut by its budget" if attempt.cut else "found no ellipsoid"
+    count = "1 cell" if len(closed) == 1 else f"{len(closed)} cells"
     low, high = (speed * KMH for speed in windows_of(problem)[attempt.window])
     return (
-        f"On {100.0 * float(attempt.share):.3g} % of each range the search closed {len(closed)} cells, and {ended} at "
+        f"On {100.0 * float(attempt.share):.3g} % of each range the search closed {count}, and {ended} at "
         f"{low:.0f} to {high:.0f} km/h, where {_ranges(waiting[-1])}; that proves nothing."
     )
 
