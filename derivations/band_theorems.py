@@ -36,6 +36,19 @@ _centered = sp.expand(
     (_A * _X + _B * (_m + _r * _z) - _c) - (_A * (_X - _c) + (_A * _c - _c + _B * _m) + _B * _r * _z)
 )
 
+# --- a center that moves with a steady drift: c + b (s - n), n the middle of its range; the next is s + y -----------
+_b, _sigma, _n, _y, _B_s = sp.symbols("b s n y B_s", real=True)
+_moving_center = sp.expand(
+    (_A * _X + _B * (_m + _r * _z) + _B_s * _sigma - _c - _b * (_sigma + _y - _n))
+    - (
+        _A * (_X - _c - _b * (_sigma - _n))
+        + (_A * _c - _c + _B * _m + _B_s * _n)
+        + (_A * _b + _B_s - _b) * (_sigma - _n)
+        - _b * _y
+        + _B * _r * _z
+    )
+)
+
 # --- the way in: a wheel in the sliding speed s = v - R w ------------------------------------------------------------
 _v, _s, _R, _l, _h, _theta, _tau, _T, _J, _r, _w1, _o = sp.symbols(
     "v s R lambda h theta tau T J r w_1 o", real=True
@@ -109,12 +122,15 @@ THEOREMS = (
         "X+ = A X + B (m + r z) with -1 <= z <= 1, where m + r z is what disturbs. About a center c that is "
         "X+ - c = A (X - c) + o + B r z, "
         "o = A_c c - c + B_c m: what the valve makes of the change of the torque that is wanted at the center has "
-        "numbers of its own. If Q > 0, shares D > 0 and alpha > 0 with alpha + sum D <= 1 make "
-        "Q - A Q A'/alpha - [o Br] D^-1 [o Br]' positive definite at the corners of all numbers of a sample, then no "
-        "sample leads out of {(X - c)'Q^-1(X - c) <= 1}, and w - w_r stays within the root of the first entry of Q "
-        "around E plus the first entry of c. If such sets are given for windows of speed, with one E, that of a faster "
-        "window inside that of the next slower one, a wheel that is in the set once keeps its slip in the band "
-        "R (w - w_r)/v down to the lowest speed.",
+        "numbers of its own. The drift s of the torque that comes from the fading friction lies between bounds about"
+        " n, and changes by little from one sample to the next; for a vector b the state less c + b (s - n) goes on "
+        "as above, with (A b + B_s - b)(s - n) and b times the change of s among what disturbs, and n in its middle."
+        " If Q > 0, shares D > 0 and alpha > 0 with alpha + sum D <= 1 make Q - A Q A'/alpha - [o Br] D^-1 [o Br]' "
+        "positive definite at the corners of all numbers of a sample, then no sample leads out of that ellipsoid "
+        "about c + b (s - n), and w - w_r stays within the root of the first entry of Q around E plus the first "
+        "entry of c + b (s - n). If such sets are given for windows of speed, with one E, that of a faster window "
+        "inside that of the next slower one, a wheel that is in the set once keeps its slip in the band R (w - "
+        "w_r)/v down to the lowest speed.",
         hypotheses=(
             "mass, inertia, radius, pads and valve times do not change; there are sets for each cell of their box",
             "(phi, psi) in the polygon of the range of the mean slope of the friction between E and what the band "
@@ -128,16 +144,19 @@ THEOREMS = (
             "drift of torque and reference, and of the error of the filtered acceleration, between their bounds: while "
             "the train slows down, the friction at the reference rises; where the slip falls as c/sqrt(v), the filter "
             "has settled",
+            "where the slip is constant, the change of the steady drift from enclosures of the second derivative of "
+            "the friction along the speeds w_r + E, and from the jerk; else there is no steady drift, b = 0",
         ),
         sketch="In deviations from the torque that holds the reference, pads, inertia and friction drop out of what "
         "is constant: the observer estimates the torque that explains the motion. What is asked of Q is by Schur "
         "complements that diag(alpha P, D) - [A o Br]' P [A o Br] is positive definite, P = Q^-1, so that the next "
         "state has at most alpha + sum D. A valve that is inverted with wrong times goes the part rho of the wanted "
-        "way; a way to the side of that at the center has a rho of this side, and one to the other side counts for its "
-        "part of the distance from the center. The mean torque that the law works out grows with a longer pulse only "
-        "from its end on. The map is affine in each of (phi, psi), g, rho, the late share and the share in the mean "
-        "torque, so that a convex function of its values is largest at corners. Between "
-        "samples e has the same form with a part of the change of the torque.",
+        "way; a way to the side of that at the center has a rho of this side, and one to the other side counts for "
+        "its part of the distance from the center. What a longer pulse changes counts in a mean over the sample only"
+        " from its end on, in the true torque as in the one that the law works out: the late share and the share in "
+        "the mean torque go together, but for rates of the valve, weights and late pulses. The map is affine in "
+        "(phi, psi), in g, in rho, and in both shares, so that a convex function of its values is largest at "
+        "corners. Between samples e has the same form with a part of the change of the torque.",
         not_said="How a wheel gets into the set; what happens where a pulse goes on into the next sample, or with a "
         "brake that is the limit.",
         identities=(
@@ -165,12 +184,14 @@ THEOREMS = (
             Identity(
                 "share of a steady drift in its mean with the same weight", slip_loop.seen_of_drift_residual
             ),
+            Identity("share of the last part of a sample with that weight", slip_loop.share_after_residual),
             Identity("error of the filtered acceleration", slip_loop.filter_residual),
             Identity("rho_a (u - u_c) + rho_c u_c = rho u", slip_loop.about_residual),
             Identity("a longer pulse counts in the mean from its end on", slip_loop.mean_residual),
             Identity("change of the way over that of the wanted one", slip_loop.rate_residual),
             Identity("the length of a pulse is convex over the wanted way", slip_loop.convex_residual),
             Identity("X+ - c of X+ = A X + B (m + r z)", _centered),
+            Identity("and of the state less c + b (s - n), with a drift s that changes by y", _moving_center),
             Identity("what the shares and alpha leave of 1", _budget),
             Identity("what lies between an ellipse and one in it", _nested),
             Identity(

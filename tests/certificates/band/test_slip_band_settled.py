@@ -307,8 +307,8 @@ def test_mean_torque_of_the_law_is_between_what_is_seen_of_both_ways(valves, way
         return math.copysign(quad(gone, 0.0, 1.0, points=[length], epsabs=1e-13)[0], u)
 
     side = 0 if way > 0.0 else 1
-    low, high = (float(each.mid()) for each in found.ranges.seen)
-    known = float(found.ranges.seen_center.mid())
+    seen = [float(each.mid()) for _, each in found.ranges.shares]
+    known = float(found.ranges.shares_center[1].mid())
     place = DISTURBANCES.index("mean reference drift")
     below, above = (
         float((after - before).mid())
@@ -332,10 +332,9 @@ def test_mean_torque_of_the_law_is_between_what_is_seen_of_both_ways(valves, way
         ]
     assert below <= min(center) <= max(center) <= above
     assert above - below < 0.5 * abs(way)
-    assert low <= min(further) <= max(further) <= high
+    assert min(seen) <= min(further) <= max(further) <= max(seen)
     # With half of the longest pulse alone the mean would be taken to see more than it does.
-    mutant = low * (1.0 - float(PULSE) / 2.0) / (1.0 - float(PULSE + LENGTHS[1]) / 2.0)
-    assert min(further) < mutant
+    assert min(further) < share * (1.0 - float(PULSE) / 2.0)
 
 
 def test_way_without_a_sign_has_no_numbers_of_its_own(valves):
@@ -344,3 +343,100 @@ def test_way_without_a_sign_has_no_numbers_of_its_own(valves):
     with ctx.workprec(128):
         wide = [point(0), point(0), point(-1).union(point(1)), point(0), point(0)]
         assert about(law, loop, wide, LENGTHS) is loop
+
+
+# --- what counts in the mean of a sample, of the true torque and of the one that the law works out ---------------
+GROWTHS = (-0.3, 0.4)  # of errors over a sample
+
+
+def in_means(law, u, heights, true_times, growth, delay):
+    """What of a way is gone at the end of a sample, in its weighted mean, and in the mean of the law."""
+    kind = 0 if u > 0.0 else 1
+    h, assumed = float(law.sample_time), float((law.fill_time, law.vent_time)[kind])
+    length = -assumed / h * math.log1p(-abs(u) / heights[kind])
+
+    def gone(t, time):
+        return math.copysign(heights[kind] * -math.expm1(-min(max(t, 0.0), length) * h / time), u)
+
+    def weighed(t):
+        return gone(t - delay, true_times[kind]) * math.exp(growth * (1.0 - t))
+
+    breaks = sorted({min(each, 1.0) for each in (delay, delay + length, length)})
+    weighted = quad(weighed, 0.0, 1.0, points=breaks, epsabs=1e-14)[0] * growth / math.expm1(growth)
+    nominal = assumed / float(law.time_share)
+    mean = quad(lambda t: gone(t, nominal), 0.0, 1.0, points=breaks, epsabs=1e-14)[0]
+    return gone(delay + length, true_times[kind]), weighted, mean
+
+
+def shares_needed(problem, loop, way, delay, *, faulty=None, left_out=1.0):
+    """How far pairs of shares that simulated ways need lie outside of the corners of the loop; 0 inside."""
+    with ctx.workprec(128):
+        low, high = (point(Fraction(each) / Fraction(law_of(problem.controller).sample_time)) for each in GROWTHS)
+        ranges = replace(loop.ranges, secants=(low, high))
+        law, found = centered(problem, replace(loop, ranges=ranges, delay=point(Fraction(delay))), way)
+    corners = np.array([[float(each.mid()) for each in pair] for pair in found.ranges.shares])
+    if faulty is not None:
+        corners = faulty(corners)
+    known = [float(each.mid()) for each in found.ranges.shares_center]
+    effect = float(found.ranges.effects[1].mid())
+    slack = [
+        max(
+            abs(float((after - before).mid()))
+            for after, before in zip(found.disturbances[k], loop.disturbances[k], strict=True)
+        )
+        for k in map(DISTURBANCES.index, ("uneven slip drift", "mean reference drift"))
+    ]
+    slack[0] *= left_out * GROWTHS[1] / math.expm1(GROWTHS[1]) / effect  # of a mean, from a disturbance of the error
+    side, outside = 0 if way > 0.0 else 1, 0.0
+    assumed, h = [float(each) for each in (law.fill_time, law.vent_time)], float(law.sample_time)
+    fill, vent = (problem.span(name) for name in ("fill time", "vent time"))
+    for times, growth, length in product(product(fill, vent), GROWTHS, (float(LENGTHS[0]), float(LENGTHS[1]))):
+        heights = [0.1, 0.1]
+        heights[side] = abs(way) / -math.expm1(-length * h / assumed[side])
+        at_center = in_means(law, way, heights, times, growth, delay)
+        longest = [float(PULSE), float(PULSE)]
+        longest[1 - side] = float(LENGTHS.back)
+        ends = [
+            -math.expm1(-each * h / time) * height
+            for each, time, height in zip(longest, assumed, heights, strict=True)
+        ]
+        for u in np.linspace(-0.999 * ends[1], 0.999 * ends[0], 7):
+            gone, weighted, mean = in_means(law, u, heights, times, growth, delay)
+            own = u * way > 0.0
+            part_center = gone / u if own else at_center[0] / way
+            part = gone / u if own else (gone - at_center[0]) / (u - way)
+            late = 1.0 - (weighted - (1.0 - known[0]) * part_center * way) / (part * (u - way))
+            seen = (mean - known[1] * way) / (u - way)
+            room = slack[0] / abs(part * (u - way)), slack[1] / abs(u - way)
+            outside = max(outside, beyond((late, seen), corners, room))
+    return outside
+
+
+def beyond(pair, corners, room):
+    """How far a pair lies outside of a parallelogram, its sides and its coordinates given, less what is allowed."""
+    a, b, c, _ = corners
+    sides = np.array([b - a, c - a]).T
+    middle = corners.mean(axis=0)
+    apart = np.linalg.solve(sides, np.array(pair) - middle)
+    allowed = np.abs(np.linalg.inv(sides)) @ np.array(room)
+    return max(float(np.max(np.abs(apart) - 0.5 - allowed)), 0.0)
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("delay", [0.0, 0.2])
+def test_shares_of_simulated_ways_lie_between_their_corners(valves, way, delay):
+    """Against integrals over the sample: weights that grow or fall, both ends of the times, ways to both sides."""
+    problem, loop, *_ = valves
+    assert shares_needed(problem, loop, way, delay) < 1e-9
+
+
+@pytest.mark.parametrize("way", WAYS[:1])
+def test_shares_that_go_together_too_closely_leave_ways_out(valves, way):
+    """Mutants: longest pulses of half the length, and nothing for the other valve to the other side."""
+    problem, loop, *_ = valves
+
+    def shorter(corners):
+        return np.array([*(0.5 * (corners[:2] + corners[2:])), *corners[2:]])
+
+    assert shares_needed(problem, loop, way, 0.0, faulty=shorter) > 0.1
+    assert shares_needed(problem, loop, way, 0.0, left_out=0.0) > 0.1

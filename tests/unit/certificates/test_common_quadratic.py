@@ -1,23 +1,28 @@
 """Common quadratic functions of a sampled loop: found where they exist, and never where a corner is unstable."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
 
 from wspd_design.certificates.search.common_quadratic import contraction
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, LoopRanges, corners
+from wspd_design.certificates.setting.slip_loop import (
+    DISTURBANCES,
+    STATES,
+    LoopLaw,
+    LoopRanges,
+    corners,
+    latest_share,
+)
 
 UNITS = list(np.eye(STATES + len(DISTURBANCES)))
 STEADY = LoopRanges(
     secants=(-3.0, 1.0),
     effects=(0.8, 0.8),
     parts=((0.55, 0.55), (0.65, 0.65)),
-    seen=(0.3, 0.62),
-    seen_center=0.5,
-    pulse=1.0,
-    delay=0.0,
-    added=0.0,
+    shares=tuple(product((0.0, latest_share(0.02, 1.0, 0.0, 0.0)), (0.3, 0.62))),
+    shares_center=(0.0, 0.5),
 )
 
 
@@ -36,10 +41,10 @@ def test_factor_is_one_by_which_products_of_the_corners_fall():
     assert factor is not None
     assert factor < 1.0
     random, steps = np.random.default_rng(5), 400
-    product = np.eye(STATES)
+    together = np.eye(STATES)
     for number in random.integers(len(maps), size=steps):
-        product = maps[number] @ product
-    assert np.linalg.norm(product, 2) < 1e3 * factor**steps
+        together = maps[number] @ together
+    assert np.linalg.norm(together, 2) < 1e3 * factor**steps
 
 
 @pytest.mark.parametrize("gain", [0.16, 3.0])

@@ -118,7 +118,7 @@ def bend(problem: Problem, slip: float, beside: Ends) -> Ends:
 
 
 def _bent(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball, Ball]) -> Ball:
-    """Second derivative for balls of speed, of what the wheel slides slower, of the modulus for slip 1, and of kS/kA."""
+    """Return it for balls of speed, of what the wheel slides slower, of the modulus for slip 1, and of kS/kA."""
     from flint import arb_series
 
     at, less, steepness, ratio = numbers

@@ -55,12 +55,10 @@ class LoopRanges:
 
     secants: Pair  # 1/s, of the friction over the wheel speed, over the inertia; neither end 0
     effects: Pair  # -, g
-    parts: tuple[
-        Pair, ...
-    ]  # -, rho of the rest of a wanted way, and of the way at the center; corners of both
-    shares: tuple[
-        Pair, ...
-    ]  # -, of the sample that sees the torque before the rest, and of the rest in the mean torque of the law; corners
+    parts: tuple[Pair, ...]
+    """Corners of rho of the rest of a wanted way, and of the way at the center [-]."""
+    shares: tuple[Pair, ...]
+    """Corners of the late share of the rest, and of its share in the mean torque of the law [-]."""
     shares_center: Pair  # -, the same of the way at the center
 
 
@@ -140,10 +138,9 @@ def latest_share(growth: Number, pulse: Number, delay: Number, added: Number) ->
 def shares_together(left: Pair, true: Pair, law: Pair) -> tuple[Pair, ...]:
     """Return the late share and the share in the mean torque of the law that go together, as corners.
 
-    The later a pulse ends, the less of it counts in either mean: a part l of it, from the same range for both, times
-    numbers that hardly differ from pulse to pulse. Corners of a parallelogram enclose (l a, l b): with a = A (1 + x) and
-    b = B (1 + y), A and B in the middle of their ranges, the points are ((l + u) A, (l + w) B), where u and w are
-    at most the spreads of a and b; half of their sum goes along with l, and half of their difference aside.
+    The later a pulse ends, the less of it counts in either mean: l a of what the wheel sees and l b of what the law
+    works out, with one l and numbers a and b that hardly differ from pulse to pulse. With a = A (1 + x), b = B (1 + y),
+    A and B in the middle of their ranges, l x and l y are (l x + l y)/2 along with l, and (l x - l y)/2 aside.
 
     Parameters
     ----------

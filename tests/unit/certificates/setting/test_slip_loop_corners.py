@@ -13,12 +13,14 @@ from wspd_design.certificates.setting.slip_loop import (
     LoopLaw,
     LoopRanges,
     corners,
+    latest_share,
     numbers_at_corners,
     parts_about,
     parts_of,
     parts_of_longer,
     polygon,
     sample,
+    shares_together,
     wanted,
 )
 
@@ -70,11 +72,8 @@ def test_corners_in_balls_are_those_in_doubles():
             secants=(number(-7.0), number(1.0)),
             effects=(number(0.75), number(1.25)),
             parts=((number(0.5), number(0.5)), (number(1.125), number(1.125)), (number(0.25), number(0.5))),
-            seen=(number(0.25), number(0.625)),
-            seen_center=number(0.375),
-            pulse=number(0.5),
-            delay=number(0.25),
-            added=number(0.0),
+            shares=((number(0.0), number(0.625)), (number(0.5), number(0.25))),
+            shares_center=(number(0.125), number(0.375)),
         )
 
     law = LoopLaw(
@@ -93,7 +92,7 @@ def test_corners_in_balls_are_those_in_doubles():
         dtype=float,
     )
     wanted_ones = np.array(list(corners(LAW, ranges(float), UNITS)), dtype=float)
-    assert found.shape == (6 * 2 * 3 * 2 * 2, 2, STATES, STATES + len(DISTURBANCES))
+    assert found.shape == (6 * 2 * 3 * 2, 2, STATES, STATES + len(DISTURBANCES))
     np.testing.assert_allclose(found, wanted_ones, rtol=1e-9, atol=1e-12)
 
 
@@ -103,11 +102,8 @@ def test_constant_errors_are_at_rest():
         secants=(-3.0, 1.0),
         effects=(0.7, 1.3),
         parts=((0.4, 0.4), (1.2, 1.2)),
-        seen=(0.3, 0.6),
-        seen_center=0.5,
-        pulse=1.0,
-        delay=0.0,
-        added=0.0,
+        shares=((0.0, 0.3), (0.5, 0.6)),
+        shares_center=(0.1, 0.5),
     )
     for matrix in (each for both in corners(LAW, ranges, UNITS) for each in both):
         rest = np.array(matrix)[:, :STATES] - np.eye(STATES)
@@ -120,20 +116,14 @@ def test_center_has_its_own_part_and_share_and_all_else_of_the_sample():
         secants=(-3.0, 1.0),
         effects=(0.7, 1.3),
         parts=((0.4, 0.6), (1.2, 0.9)),
-        seen=(0.3, 0.6),
-        seen_center=0.5,
-        pulse=0.5,
-        delay=0.25,
-        added=0.0,
+        shares=((0.0, 0.6), (0.5, 0.3)),
+        shares_center=(0.1, 0.5),
     )
     found = list(numbers_at_corners(LAW, ranges))
     assert {(rest[3], center[3]) for rest, center in found} == {(0.4, 0.6), (1.2, 0.9)}
-    assert {(rest[5], center[5]) for rest, center in found} == {(0.3, 0.5), (0.6, 0.5)}
-    assert all((*rest[:3], rest[4]) == (*center[:3], center[4]) for rest, center in found)
-    latest = {rest[4] for rest, _ in found}
-    # Of a steady rise over half of the sample after a quarter of it, half is gone at half of the sample.
-    assert min(latest) == 0.0
-    assert max(latest) == pytest.approx(0.5, abs=0.01)
+    assert {rest[4:] for rest, _ in found} == {(0.0, 0.6), (0.5, 0.3)}
+    assert {center[4:] for _, center in found} == {(0.1, 0.5)}
+    assert all(rest[:3] == center[:3] for rest, center in found)
     for (rest, center), maps in zip(found, corners(LAW, ranges, UNITS), strict=True):
         for numbers, one in zip((rest, center), maps, strict=True):
             np.testing.assert_array_equal(np.array(one), np.array(sample(LAW, numbers, UNITS)))
@@ -180,3 +170,28 @@ def test_part_of_the_way_is_the_assumed_time_over_the_true_one_for_short_pulses(
     assert low == pytest.approx(0.4)
     assert high == pytest.approx(1.2)
     assert parts_of((2.0, 2.0), float(Fraction(1, 2)))[0] < 2.0
+
+
+def test_a_pulse_sees_the_torque_before_it_until_it_has_begun_and_half_of_it_is_gone():
+    """A steady rise over half of the sample after a quarter of it; what the supply adds may come last."""
+    assert latest_share(1e-4, 0.5, 0.25, 0.0) == pytest.approx(0.5, abs=1e-3)
+    assert latest_share(1e-4, 0.5, 0.25, 0.25) == pytest.approx(0.6, abs=1e-3)
+    assert latest_share(0.5, 0.5, 0.25, 0.0) > 0.5  # earlier changes count more where errors grow
+
+
+def test_shares_that_go_together_lie_between_their_corners():
+    """All (1 - l a, l b) with one l; corners without what goes along with l, or aside, leave some out."""
+    left, true, law = (0.4, 1.0), (0.9, 1.02), (0.58, 0.62)
+    random = np.random.default_rng(3)
+    points = [
+        (1.0 - part * random.choice(true), part * random.choice(law))
+        for part in (*left, *random.uniform(*left, 200))
+    ]
+    points += [(1.0 - part * a, part * b) for part in left for a in true for b in law]
+    outline = shares_together(left, true, law)
+    assert len(outline) == 4
+    assert all(inside(each, list(outline)) for each in points)
+    for narrower in (((0.55, 1.0), true, law), (left, true, (0.6, 0.6)), (left, (0.96, 0.96), law)):
+        assert not all(inside(each, list(shares_together(*narrower))) for each in points)
+    # Apart from each other they may be anything.
+    assert not inside((0.0, 0.3), list(outline))

@@ -124,9 +124,7 @@ def ellipsoid(
     return None
 
 
-def excess(
-    law: BandLaw, loops: Loops, supply: Fraction, faster: Faster, hints: Sequence[int]
-) -> float:
+def excess(law: BandLaw, loops: Loops, supply: Fraction, faster: Faster, hints: Sequence[int]) -> float:
     """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
     there = _centered(law, loops(supply))
     for kept in KEPT:
@@ -190,7 +188,9 @@ def _task(
     if far > 0.0:
         # The center goes to where the loop settles with another drift.
         drifted = disturbed @ _drifting(loop)
-        moves = np.array([float(_short(x)) for x in np.linalg.solve(np.eye(STATES) - mean, drifted.mean(axis=0))])
+        moves = np.array(
+            [float(_short(x)) for x in np.linalg.solve(np.eye(STATES) - mean, drifted.mean(axis=0))]
+        )
         left = state @ moves + drifted - moves
         columns += [left[:, :, None] * far, np.broadcast_to(moves * change, left.shape)[:, :, None]]
     columns = np.concatenate(columns, axis=2)

@@ -104,7 +104,7 @@ def _shares(
     at_center : tuple of ball
         Shortest and longest pulse of the way at the center, over the sample time.
     """
-    h, share, (side, other) = point(law.sample_time), point(law.time_share), sides
+    h, share, side = point(law.sample_time), point(law.time_share), sides[0]
     shortest, longest = at_center
     low, high = loop.ranges.secants
     slowest, fastest = least_of([low * h, point(-LEVEL)]), most_of([high * h, point(LEVEL)])
@@ -116,9 +116,13 @@ def _shares(
         return 1 + ((abs(1 - speedup) * reach).exp() - 1) * begun
 
     uneven_true = most_of([uneven(end) for end in side.speedups])
-    # Parts l of the true change have other weights than those of the law.
+    # Parts l of the true change have other weights than those of the law, which differ by side.
     weights = most_of(
-        [(abs(end - share) * loop.pulse / each.time).exp() for each in sides for end in each.speedups]
+        [
+            ((abs(end - share) + abs(1 - share)) * loop.pulse / each.time).exp()
+            for each in sides
+            for end in each.speedups
+        ]
     ).sqrt()
     aside = loop.pulse * (weights - 1) / (weights + 1)
     left, added = 1 - (loop.pulse + longest) / 2, loop.added

@@ -187,7 +187,10 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
         [point(0) if r.is_zero() else r * r / point(s)] for s, r in zip(found.shares, spread, strict=True)
     ]
     drifts = [each * steady.middle for each in drifting(steady)]
-    settled = [*center, *((low + high) / 2 + s for (low, high), s in zip(loop.disturbances, drifts, strict=True))]
+    settled = [
+        *center,
+        *((low + high) / 2 + s for (low, high), s in zip(loop.disturbances, drifts, strict=True)),
+    ]
     if not all(is_positive(each) for each in _left_over(law, loop, found, q, settled, blocks)):
         raise Refused("a sample may lead out of an ellipsoid")
     there = Set(q, center, [each * steady.spread for each in moves])
@@ -290,7 +293,10 @@ def lies_in(faster: tuple[Ellipsoid, Steady], slower: tuple[Ellipsoid, Steady]) 
         and all(
             is_positive(
                 [
-                    [s - f / point(t) - one * other / (1 - point(t)) for s, f, other in zip(*rows, apart, strict=True)]
+                    [
+                        s - f / point(t) - one * other / (1 - point(t))
+                        for s, f, other in zip(*rows, apart, strict=True)
+                    ]
                     for *rows, one in zip(_balls(outer.matrix), _balls(inner.matrix), apart, strict=True)
                 ]
             )
@@ -304,7 +310,10 @@ def centers_apart(faster: tuple[Ellipsoid, Steady], slower: tuple[Ellipsoid, Ste
     steadies = faster[1], slower[1]
     for drift in (most_of([each.low for each in steadies]), least_of([each.high for each in steadies])):
         one, other = (
-            [point(c) + point(b) * (drift - steady.middle) for c, b in zip(found.center, found.moves, strict=True)]
+            [
+                point(c) + point(b) * (drift - steady.middle)
+                for c, b in zip(found.center, found.moves, strict=True)
+            ]
             for found, steady in (faster, slower)
         )
         yield [a - b for a, b in zip(one, other, strict=True)]

@@ -135,7 +135,8 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + 2 * STATES + 5 + len(DISTURBANCES))) for each in ellipsoids
+        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + 2 * STATES + 5 + len(DISTURBANCES)))
+        for each in ellipsoids
     ]
     return Proof(
         share=share,

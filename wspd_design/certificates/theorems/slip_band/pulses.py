@@ -78,9 +78,7 @@ def pulses_of(
             height=ends_of(h * (supplied - held)),
             rises=-1,
         ),
-        Pulses(
-            parts=ends_of(venting), speedups=speedups[1], time=vent, height=ends_of(h * held), rises=1
-        ),
+        Pulses(parts=ends_of(venting), speedups=speedups[1], time=vent, height=ends_of(h * held), rises=1),
     )
 
 
