@@ -201,3 +201,17 @@ class Affine:
 def constant(value: float, like: Affine) -> Affine:
     """Return a number that depends on nothing, for the boxes and symbols of another form."""
     return Affine(np.full_like(like.center, value), np.zeros_like(like.slopes), np.zeros_like(like.error))
+
+
+def between(low: Array, high: Array, like: Affine) -> Affine:
+    """Return anything between two numbers, for the boxes and symbols of another form."""
+    return constant(0.0, like).line(0.0, 0.5 * (low + high), 0.5 * (high - low))
+
+
+def chosen(where: Array, one: Affine, other: Affine) -> Affine:
+    """Return one form for the boxes where it is wanted, and another one for the rest."""
+    return Affine(
+        np.where(where, one.center, other.center),
+        np.where(where[:, None], one.slopes, other.slopes),
+        np.where(where, one.error, other.error),
+    )

@@ -52,7 +52,7 @@ def follow(
     middle, spread = boxes
     count = len(middle)
     centers, symbols = start(speed, count)
-    fresh_ones = 5 + 2 + 2 * max(1, round(law.sample_time / STEP))
+    fresh_ones = 6 + 2 + 2 * max(1, round(law.sample_time / STEP))
     full = law.valve.brake.max_torque
     while True:
         columns = np.concatenate([symbols, np.zeros((count, STATES, 1 + fresh_ones))], axis=2)

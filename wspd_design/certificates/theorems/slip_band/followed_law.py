@@ -1,12 +1,12 @@
 """What the protection makes of a sample of a wheelset that is followed from rolling, in affine forms."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from wspd_design.certificates.kernel.affine import Affine, Array, constant
+from wspd_design.certificates.kernel.affine import Affine, Array, between, chosen, constant
 from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
 from wspd_design.controllers.observer_smc import approach
 from wspd_design.controllers.protection import Protection
@@ -23,6 +23,8 @@ class Decided(NamedTuple):
     friction: Affine  # N m
     acceleration: Affine  # m/s2
     innovation: Affine  # m/s, of the next sample, but for the way of the wheel
+    way: Affine  # N m, that is asked of the valve, at most what it can go in a sample
+    either: Array  # whether it is open that the valve fills or vents
 
 
 def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine], Affine]) -> Decided:
@@ -53,22 +55,41 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
     left_out, pulse = tracking.dead_band, valve.least_pulse / h
     share = partial(_share, left_out=left_out, pulse=pulse)
     room = (available - state.torque).at_least(least)
-    fill = fresh(share(up, room, valve.time_share * valve.brake.fill_time / h, least))
-    vent = fresh(
-        share(down, state.torque.at_least(least), valve.time_share * valve.brake.vent_time / h, least)
+    lengths = [valve.time_share * each / h for each in (valve.brake.fill_time, valve.brake.vent_time)]
+    speeds = [h / each for each in (valve.brake.fill_time, valve.brake.vent_time)]
+    fill = share(up, room, lengths[0], least)
+    vent = share(down, state.torque.at_least(least), lengths[1], least)
+    # Where it is open whether the valve fills or vents, the way is one number, and its change nearly in proportion.
+    rooms, either = (available - state.torque, state.torque), (way.low < 0.0) & (way.high > 0.0)
+    for each, length in zip(rooms, lengths, strict=True):
+        either &= each.low > least * np.exp(1.0 / length)
+    either &= not (left_out or pulse)
+    asked = fresh(_asked(way, rooms, lengths))
+    ends = asked.high, -asked.low
+    most = [
+        -length * np.log1p(-np.clip(end / np.maximum(each.low, least), 0.0, -np.expm1(-1.0 / length)))
+        for end, each, length in zip(ends, rooms, lengths, strict=True)
+    ]
+    fill, vent = (
+        fresh(chosen(either, between(0.0 * end, end, like=each), each))
+        for end, each in zip(most, (fill, vent), strict=True)
     )
-    rise, fall = moved(
-        available, state.torque, fill, vent, h / valve.brake.fill_time, h / valve.brake.vent_time
+    rise, fall = moved(available, state.torque, fill, vent, *speeds)
+    mean = state.torque + rise - _missed(rise, fill, speeds[0]) - fall + _missed(fall, vent, speeds[1])
+    powers = [constant(length * speed, way) for length, speed in zip(lengths, speeds, strict=True)]
+    change = went(asked, rooms, powers, lengths, 0.0)
+    late = (
+        0.5 * np.maximum(end, 0.0) * share
+        for end, share in zip((change.high, -change.low), most, strict=True)
     )
-    mean = state.torque + rise - _missed(rise, fill, h / valve.brake.fill_time)
-    mean = mean - fall + _missed(fall, vent, h / valve.brake.vent_time)
+    mean = chosen(either, (state.torque + change).widened(*late), mean)
     innovation = (
         state.sliding
         - state.speed
         + state.innovation * pole**2
         - (friction - mean) * plant.radius * (h / inertia)
     )
-    return Decided(fill, vent, friction, acceleration, innovation)
+    return Decided(fill, vent, friction, acceleration, innovation, asked, either)
 
 
 def known_acceleration(law: Protection, state: State) -> Affine:
@@ -130,6 +151,55 @@ def moved(
     rise = (supply - torque) * (1.0 - (-(fill * filling)).exp())
     fall = (torque + rise) * (1.0 - (-(vent * venting)).exp())
     return rise, fall
+
+
+def _asked(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float]) -> Affine:
+    """Way to the target, at most what fills or vents over the whole sample."""
+    longest, least = (
+        room * float(-np.expm1(-1.0 / length)) for room, length in zip(rooms, lengths, strict=True)
+    )
+    return way.at_most(longest).at_least(-least)
+
+
+def went(
+    asked: Affine,
+    rooms: Sequence[Affine],
+    powers: Sequence[Affine],
+    lengths: Sequence[float],
+    more: Array | float,
+) -> Affine:
+    """Change of the torque over a sample for a way that is asked, up or down, by filling and by venting.
+
+    Of a room the pulse goes 1 - (1 - y)^p for y that is asked, with the power p the times of the inversion over those
+    of the valve: p y, but for a factor that lies between 1 and its value at the largest y.
+
+    Parameters
+    ----------
+    asked : form
+        Way, with its sign [N m].
+    rooms : sequence of form
+        To the full torque, and to none.
+    powers : sequence of form
+        p of filling and venting.
+    lengths : sequence of float
+        Times of the inversion over the sample.
+    more : array or float
+        What the supply may have more or less than the room says [N m].
+    """
+    ends = np.maximum(asked.high, 0.0), np.maximum(-asked.low, 0.0)
+    outward = []
+    for end, room, power, length, extra in zip(ends, rooms, powers, lengths, (more, 0.0), strict=True):
+        y = np.clip(end / room.low, 1e-9, -np.expm1(-1.0 / length))
+        factors = [-np.expm1(p * np.log1p(-y)) / (p * y) for p in (power.low, power.high)]
+        beside = extra / room.low
+        lowest = np.minimum(np.minimum(*factors), 1.0) * (1.0 - beside)
+        highest = np.maximum(np.maximum(*factors), 1.0) * (1.0 + beside)
+        outward.append((power.high * end * (1.0 - lowest), power.high * end * (highest - 1.0)))
+    (short, far), (short_down, far_down) = outward
+    mean = (powers[0] + powers[1]) * 0.5
+    unlike = (powers[0] - powers[1]) * 0.5
+    turned = np.maximum(np.abs(unlike.low), np.abs(unlike.high)) * np.maximum(*ends)
+    return (asked * mean).widened(np.maximum(short, far_down) + turned, np.maximum(far, short_down) + turned)
 
 
 def _missed(whole: Affine, share: Affine, speed: float) -> Affine:
