@@ -24,7 +24,9 @@ class Decided(NamedTuple):
     acceleration: Affine  # m/s2
     innovation: Affine  # m/s, of the next sample, but for the way of the wheel
     way: Affine  # N m, that is asked of the valve, at most what it can go in a sample
-    either: Array  # whether it is open that the valve fills or vents
+    even: Array  # whether the torque goes that way nearly in proportion
+    filling: Array  # whether it may be upwards
+    across: Array  # whether it is open that the valve fills or vents
 
 
 def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine], Affine]) -> Decided:
@@ -59,37 +61,30 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
     speeds = [h / each for each in (valve.brake.fill_time, valve.brake.vent_time)]
     fill = share(up, room, lengths[0], least)
     vent = share(down, state.torque.at_least(least), lengths[1], least)
-    # Where it is open whether the valve fills or vents, the way is one number, and its change nearly in proportion.
-    rooms, either = (available - state.torque, state.torque), (way.low < 0.0) & (way.high > 0.0)
-    for each, length in zip(rooms, lengths, strict=True):
-        either &= each.low > least * np.exp(1.0 / length)
-    either &= not (left_out or pulse)
+    rooms = available - state.torque, state.torque
     asked = fresh(_asked(way, rooms, lengths))
-    ends = asked.high, -asked.low
-    most = [
-        -length * np.log1p(-np.clip(end / np.maximum(each.low, least), 0.0, -np.expm1(-1.0 / length)))
-        for end, each, length in zip(ends, rooms, lengths, strict=True)
-    ]
-    fill, vent = (
-        fresh(chosen(either, between(0.0 * end, end, like=each), each))
-        for end, each in zip(most, (fill, vent), strict=True)
-    )
-    rise, fall = moved(available, state.torque, fill, vent, *speeds)
-    mean = state.torque + rise - _missed(rise, fill, speeds[0]) - fall + _missed(fall, vent, speeds[1])
+    even = _even(way, rooms, lengths, least) & (not (left_out or pulse))
+    filling = way.high > 0.0
+    across = even & filling & (way.low < 0.0)
+    parts = _shares(asked, rooms, lengths, least)
+    fill, vent = (fresh(chosen(even, one, other)) for one, other in zip(parts, (fill, vent), strict=True))
     powers = [constant(length * speed, way) for length, speed in zip(lengths, speeds, strict=True)]
     change = went(asked, rooms, powers, lengths, 0.0)
+    rise, fall = moved(available, state.torque, fill, vent, *speeds)
+    rise, fall = apart(change, rise, fall, even, filling)
+    mean = state.torque + rise - _missed(rise, fill, speeds[0]) - fall + _missed(fall, vent, speeds[1])
     late = (
-        0.5 * np.maximum(end, 0.0) * share
-        for end, share in zip((change.high, -change.low), most, strict=True)
+        0.5 * np.maximum(end, 0.0) * share.high
+        for end, share in zip((change.high, -change.low), parts, strict=True)
     )
-    mean = chosen(either, (state.torque + change).widened(*late), mean)
+    mean = chosen(across, (state.torque + change).widened(*late), mean)
     innovation = (
         state.sliding
         - state.speed
         + state.innovation * pole**2
         - (friction - mean) * plant.radius * (h / inertia)
     )
-    return Decided(fill, vent, friction, acceleration, innovation, asked, either)
+    return Decided(fill, vent, friction, acceleration, innovation, asked, even, filling, across)
 
 
 def known_acceleration(law: Protection, state: State) -> Affine:
@@ -155,10 +150,47 @@ def moved(
 
 def _asked(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float]) -> Affine:
     """Way to the target, at most what fills or vents over the whole sample."""
-    longest, least = (
-        room * float(-np.expm1(-1.0 / length)) for room, length in zip(rooms, lengths, strict=True)
-    )
+    longest, least = (_longest(room, length) for room, length in zip(rooms, lengths, strict=True))
     return way.at_most(longest).at_least(-least)
+
+
+def _even(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float], least: float) -> Array:
+    """Whether a way is taken as one number, whose change is nearly in proportion to it.
+
+    Not where the valve fills or vents all of the sample for sure, and not where there is too little room.
+    """
+    found = (_longest(rooms[0], lengths[0]) - way).high > 0.0
+    found &= (way + _longest(rooms[1], lengths[1])).high > 0.0
+    for each, length in zip(rooms, lengths, strict=True):
+        found &= each.low > least * np.exp(1.0 / length)
+    return found
+
+
+def _longest(room: Affine, length: float) -> Affine:
+    """Way that is asked of a valve that does all of the sample what it does."""
+    return room * float(-np.expm1(-1.0 / length))
+
+
+def _shares(
+    asked: Affine, rooms: Sequence[Affine], lengths: Sequence[float], least: float
+) -> tuple[Affine, ...]:
+    """Shares of the sample that go the way, for filling and for venting, as nothing but ranges."""
+    found = []
+    for way, room, length in zip((asked, -asked), rooms, lengths, strict=True):
+        longest = float(-np.expm1(-1.0 / length))
+        ends = way.low / np.maximum(room.high, least), way.high / np.maximum(room.low, least)
+        low, high = (-length * np.log1p(-np.clip(end, 0.0, longest)) for end in ends)
+        found.append(between(low, high, asked))
+    return tuple(found)
+
+
+def apart(change: Affine, rise: Affine, fall: Affine, even: Array, filling: Array) -> tuple[Affine, Affine]:
+    """What filling adds and venting takes off, where they are even; all of it by filling where that is open."""
+    none = constant(0.0, change)
+    return (
+        chosen(even, chosen(filling, change, none), rise),
+        chosen(even, chosen(filling, none, -change), fall),
+    )
 
 
 def went(

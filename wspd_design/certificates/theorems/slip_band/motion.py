@@ -8,8 +8,8 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from wspd_design.certificates.kernel.affine import ROUNDING, Affine, Array, between, chosen, constant
-from wspd_design.certificates.theorems.slip_band.followed_law import Decided, moved, went
+from wspd_design.certificates.kernel.affine import ROUNDING, Affine, Array, between, chosen
+from wspd_design.certificates.theorems.slip_band.followed_law import Decided, apart, moved, went
 from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
 from wspd_design.controllers.protection import Protection
 from wspd_design.model.generated import adhesion
@@ -57,12 +57,8 @@ def motion(
     ]
     powers = [filling * lengths[0], venting * lengths[1]]
     rooms = state.supply * full - state.torque, state.torque
-    either = decided.either
     change = went(decided.way, rooms, powers, lengths, 0.5 * most * decided.fill.high + unsure)
-    # Where filling or venting is open, one number is all of the change.
-    rise, fall = (
-        fresh(chosen(either, one, other)) for one, other in ((change, rise), (constant(0.0, fall), fall))
-    )
+    rise, fall = (fresh(each) for each in apart(change, rise, fall, decided.even, decided.filling))
     # A change within a pulse is even but for 1/8 of the largest second derivative, times the square of its length.
     steepest = most * (1.0 + plant.supply_rate.high * h)
     quick = np.maximum(steepest, ((supply - state.torque).high + most) * filling.high) * filling.high
@@ -74,7 +70,7 @@ def motion(
     ahead = _with_brake(plant, (speed, sliding), state.torque * effect)
     for part in range(count):
         gone = (_gone(each, part, count, time) for each in (decided.fill, decided.vent))
-        pulled = _on_the_way(state.torque, rise, fall, either, *gone).widened(bend, bend) * effect
+        pulled = _on_the_way(state.torque, rise, fall, decided.across, *gone).widened(bend, bend) * effect
         ahead = _enclosed(plant, (speed, sliding), ahead, pulled, step)
         at_any_time = (
             _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), ahead, strict=True)
@@ -85,7 +81,7 @@ def motion(
             _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), ahead, strict=True)
         )
         gone = (_gone_in_the_mean(each, part, count) for each in (decided.fill, decided.vent))
-        pulled = _on_the_way(state.torque, rise, fall, either, *gone).widened(bend, bend) * effect
+        pulled = _on_the_way(state.torque, rise, fall, decided.across, *gone).widened(bend, bend) * effect
         means = [rate.without(time) for rate in _with_brake(plant, at_any_time, pulled)]
         speed, sliding = fresh(speed + means[0] * step), fresh(sliding + means[1] * step)
         top = np.maximum(top, np.maximum(highest, sliding.high) / speed.low)
@@ -93,14 +89,14 @@ def motion(
 
 
 def _on_the_way(
-    torque: Affine, rise: Affine, fall: Affine, either: Array, filled: Affine, vented: Affine
+    torque: Affine, rise: Affine, fall: Affine, across: Array, filled: Affine, vented: Affine
 ) -> Affine:
     """Torque when parts of its changes are done; where it is open which it is, the rise holds both with their sign."""
     lacking = (
         np.maximum(end, 0.0) * np.maximum(1.0 - part.low, 0.0)
         for end, part in ((rise.high, filled), (-rise.low, vented))
     )
-    return chosen(either, (torque + rise).widened(*lacking), torque + rise * filled - fall * vented)
+    return chosen(across, (torque + rise).widened(*lacking), torque + rise * filled - fall * vented)
 
 
 def rates(plant: Plant, speed: Affine, sliding: Affine) -> tuple[Affine, Affine]:
