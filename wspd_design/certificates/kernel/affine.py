@@ -24,19 +24,21 @@ _THIN = 1e-9  # relative width below which a secant is nothing but rounding
 class Affine:
     """An array of affine forms over the same symbols, one for each box."""
 
-    __slots__ = ("center", "error", "slopes")
+    __slots__ = ("_radius", "center", "error", "slopes")
     __array_priority__ = 1000  # so that an array times a form is a form
 
     def __init__(self, center: Array, slopes: Array, error: Array) -> None:
         self.center = center  # (boxes,)
         self.slopes = slopes  # (boxes, symbols)
         self.error = error  # (boxes,)
+        self._radius: Array | None = None
 
     @property
     def radius(self) -> Array:
-        """Largest distance from the center."""
-        found: Array = (np.abs(self.slopes).sum(axis=1) + self.error) * (1.0 + ROUNDING)
-        return found
+        """Largest distance from the center; summed up once, so that no number of a form may be changed."""
+        if self._radius is None:
+            self._radius = (np.abs(self.slopes).sum(axis=1) + self.error) * (1.0 + ROUNDING)
+        return self._radius
 
     @property
     def low(self) -> Array:

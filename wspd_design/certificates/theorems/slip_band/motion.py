@@ -215,8 +215,9 @@ def _gone(share: Affine, part: int, count: int, time: int) -> Affine:
         np.where(straight, 0.5 * (middle + middle_last) + spread, last_most),
         share,
     )
-    found.slopes[:, time] += np.where(straight, 0.5 * (middle_last - middle), 0.0)
-    return found
+    slopes = found.slopes.copy()
+    slopes[:, time] += np.where(straight, 0.5 * (middle_last - middle), 0.0)
+    return Affine(found.center, slopes, found.error)
 
 
 def _gone_in_the_mean(share: Affine, part: int, count: int) -> Affine:
