@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal value
-HALVES = (0.035, 0.025, 0.018, 0.0125, 0.009, 0.0065, 0.0045)
+HALVES = (0.04, 0.032, 0.025, 0.02, 0.016, 0.0125, 0.01, 0.008, 0.0063, 0.005, 0.004)
 """Relative half widths of a piece of the friction."""
-WIDTH = 1.6  # relative width of a strip over its supply rate, over that half width
+WIDTH = 2.4  # relative width of a strip over its supply rate, over that half width
 ROWS = 4  # of the supply rate; a slower one rises for longer, and wheels of a strip come further apart
-MARGIN = 1.1  # by which a strip that is tried is wider
-MOST = 600  # strips, with an effort of 1
+MARGIN = 1.06  # by which a strip that is tried is wider
+MOST = 400  # strips, with an effort of 1
 SETTLED = 0.004  # slip beside the reference
 LATER = {
     False: 0.3,
