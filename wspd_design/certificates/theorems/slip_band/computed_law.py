@@ -1,7 +1,5 @@
 """Whether the law that is followed from rolling is the one that runs: both at the same points, in doubles."""
 
-from dataclasses import replace
-
 from wspd_design.certificates.kernel.checker import PRIME, element
 from wspd_design.certificates.records import Problem
 from wspd_design.controllers.observers.protocol import TRAIN_ACCELERATION
@@ -65,7 +63,7 @@ def unlike(problem: Problem, law: Protection) -> str:
             demand=float(supply[k]),
             reservoir=pressure,
         )
-        rolling = replace(measured, wheel_speeds=(float(speed[k] / radius),) * law.wheelsets, demand=0.0)
+        rolling = measured._replace(wheel_speeds=(float(speed[k] / radius),) * law.wheelsets, demand=0.0)
         known = dict(zip(law.memory, law.start(rolling), strict=True))
         if abs(known["speed_scale"] - scale) > DIGITS:
             return (
