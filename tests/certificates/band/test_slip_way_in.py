@@ -127,7 +127,7 @@ def stop():
     """The whole stop at the nominal friction, down to a speed above which there are few windows."""
     problem = problem_of(1.0, rail=LOW)
     ends = {name: problem.span(name) for name in NEAR} | {SUPPLY: (0.75, 0.756)}
-    nominal = replace(problem, bounds=type(problem.bounds).of(ends), speeds=(40.0 / 3.6, problem.speeds[1]))
+    nominal = replace(problem, bounds=type(problem.bounds).of(ends), speeds=(80.0 / 3.6, problem.speeds[1]))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(search, "HALVES", (0.005,))
         patch.setattr(search, "ROWS", 1)
@@ -139,8 +139,8 @@ def test_whole_stop_is_shown(stop):
     nominal, found = stop
     assert found.status is Status.PROVED
     assert "never above 0.1" in found.explanation
-    assert "down to 40 km/h: The slip stays within" in found.explanation
-    assert "stays in a band around it down to 40 km/h" in found.claim
+    assert "down to 80 km/h: The slip stays within" in found.explanation
+    assert "stays in a band around it down to 80 km/h" in found.claim
     numbers = found.findings[STRIPS].numbers
     assert numbers["band 0 below"] < 0.002
     assert numbers["time"] < 4.5
@@ -149,7 +149,7 @@ def test_whole_stop_is_shown(stop):
 
 def test_verdict_says_how_far_other_numbers_lie_from_their_nominal_values(stop):
     _, found = stop
-    assert found.findings[STRIPS].numbers["share"] == LARGEST_SHARE
+    assert found.findings[STRIPS].numbers["share"] == float(LARGEST_SHARE)
     words = "each of mass, wheelset inertia, wheel radius, max torque, fill time and vent time no farther from its "
     words += "nominal value than 5 % of the way to either end of its range, and all other numbers"
     assert words in found.claim
@@ -235,9 +235,9 @@ def told(problem, numbers):
 
 
 def test_verdict_says_what_was_shown(low, numbers):
-    whole = dict(zip(("friction low", "friction high"), low.span(FRICTION), strict=True))
+    whole = dict(zip(("friction low", "friction high"), low.span(FRICTION), strict=True)) | {"share": 0.02}
     assert told(low, numbers | whole).status is Status.PROVED
-    part = told(low, numbers | {"friction low": 0.08, "friction high": 0.08})
+    part = told(low, numbers | whole | {"friction low": 0.08, "friction high": 0.08})
     assert part.status is Status.UNDECIDED
     assert part.explanation.startswith("Shown for mu0 = 0.08 alone.")
     assert part.margin is None
@@ -283,15 +283,15 @@ def test_end_before_the_reference_does_not_count_as_there(low, piece):
 def slow():
     """A slow supply and the best friction, with all numbers in their ranges; and a strip that bears a small share."""
     problem = problem_of(1.0, rail=LOW)
-    middle, supply = 0.097, (0.378, 0.39)
-    friction = (0.98 * middle, 1.02 * middle)
+    middle, supply = 0.099, (0.378, 0.38)
+    friction = (0.99 * middle, 1.01 * middle)
     ends = {name: problem.span(name) for name in NEAR} | {FRICTION: friction, SUPPLY: supply}
     problem = replace(problem, bounds=type(problem.bounds).of(ends))
     slope = search._slope(problem, problem.controller, middle)
     shift = slope * 0.5 * (friction[1] - friction[0])
     borders = (supply[0] - shift - 1e-6, supply[1] + shift + 1e-6)
     alone = Piece(friction=friction, slope=slope, borders=borders, samples=(1,))
-    return problem, replace(alone, samples=search._samples(problem, problem.controller, alone, 0.3))
+    return problem, replace(alone, samples=(120,))
 
 
 def test_a_larger_share_than_strips_bear_is_refused(slow):
@@ -321,8 +321,8 @@ def test_stops_with_numbers_at_the_ends_of_the_share_are_enclosed(slow):
     """In the box of the share, and not in that of the nominal numbers."""
     problem, wide = slow
     near, law = around(problem, Fraction(1, 50)), problem.controller
-    mu0, supply = wide.middle, 0.384
-    narrow = Strip(Piece(friction=(mu0, mu0), slope=0.0, borders=(0.3839, 0.3841), samples=(190,)), 0)
+    mu0, supply = wide.middle, 0.379
+    narrow = Strip(Piece(friction=(mu0, mu0), slope=0.0, borders=(0.3789, 0.3791), samples=(190,)), 0)
     box, bare = (enclosed(each, narrow, 190) for each in (near, around(problem, NONE)))
     outside = 0
     for side in (0, 1):

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
+Where: TypeAlias = NDArray[np.bool_]
 
 ROUNDING = 1e-13  # relative
 _THIN = 1e-9  # relative width below which a secant is nothing but rounding
@@ -210,7 +211,7 @@ def between(low: Array, high: Array, like: Affine) -> Affine:
     return constant(0.0, like).line(0.0, 0.5 * (low + high), 0.5 * (high - low))
 
 
-def chosen(where: Array, one: Affine, other: Affine) -> Affine:
+def chosen(where: Where, one: Affine, other: Affine) -> Affine:
     """Return one form for the boxes where it is wanted, and another one for the rest."""
     return Affine(
         np.where(where, one.center, other.center),

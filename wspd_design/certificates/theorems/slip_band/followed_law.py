@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wspd_design.certificates.kernel.affine import Affine, Array, between, chosen, constant
+from wspd_design.certificates.kernel.affine import Affine, Array, Where, between, chosen, constant
 from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
 from wspd_design.controllers.observer_smc import approach
 from wspd_design.controllers.protection import Protection
@@ -24,9 +24,9 @@ class Decided(NamedTuple):
     acceleration: Affine  # m/s2
     innovation: Affine  # m/s, of the next sample, but for the way of the wheel
     way: Affine  # N m, that is asked of the valve, at most what it can go in a sample
-    even: Array  # whether the torque goes that way nearly in proportion
-    filling: Array  # whether it may be upwards
-    across: Array  # whether it is open that the valve fills or vents
+    even: Where  # whether the torque goes that way nearly in proportion
+    filling: Where  # whether it may be upwards
+    across: Where  # whether it is open that the valve fills or vents
 
 
 def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine], Affine]) -> Decided:
@@ -63,7 +63,9 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
     vent = share(down, state.torque.at_least(least), lengths[1], least)
     rooms = available - state.torque, state.torque
     asked = fresh(_asked(way, rooms, lengths))
-    even = _even(way, rooms, lengths, least) & (not (left_out or pulse))
+    even = _even(way, rooms, lengths, least)
+    if left_out or pulse:  # some of the way is left out
+        even = np.zeros_like(even)
     filling = way.high > 0.0
     across = even & filling & (way.low < 0.0)
     parts = _shares(asked, rooms, lengths, least)
@@ -154,7 +156,7 @@ def _asked(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float]) -> Af
     return way.at_most(longest).at_least(-least)
 
 
-def _even(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float], least: float) -> Array:
+def _even(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float], least: float) -> Where:
     """Whether a way is taken as one number, whose change is nearly in proportion to it.
 
     Not where the valve fills or vents all of the sample for sure, and not where there is too little room.
@@ -184,7 +186,7 @@ def _shares(
     return tuple(found)
 
 
-def apart(change: Affine, rise: Affine, fall: Affine, even: Array, filling: Array) -> tuple[Affine, Affine]:
+def apart(change: Affine, rise: Affine, fall: Affine, even: Where, filling: Where) -> tuple[Affine, Affine]:
     """What filling adds and venting takes off, where they are even; all of it by filling where that is open."""
     none = constant(0.0, change)
     return (
@@ -221,9 +223,10 @@ def went(
     ends = np.maximum(asked.high, 0.0), np.maximum(-asked.low, 0.0)
     outward = []
     for end, room, power, length, extra in zip(ends, rooms, powers, lengths, (more, 0.0), strict=True):
-        y = np.clip(end / room.low, 1e-9, -np.expm1(-1.0 / length))
+        narrowest = np.maximum(room.low, 1.0)  # less than any room in which this counts
+        y = np.clip(end / narrowest, 1e-9, -np.expm1(-1.0 / length))
         factors = [-np.expm1(p * np.log1p(-y)) / (p * y) for p in (power.low, power.high)]
-        beside = extra / room.low
+        beside = extra / narrowest
         lowest = np.minimum(np.minimum(*factors), 1.0) * (1.0 - beside)
         highest = np.maximum(np.maximum(*factors), 1.0) * (1.0 + beside)
         outward.append((power.high * end * (1.0 - lowest), power.high * end * (highest - 1.0)))

@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from wspd_design.certificates.kernel.affine import ROUNDING, Affine, Array, between, chosen
+from wspd_design.certificates.kernel.affine import ROUNDING, Affine, Array, Where, between, chosen
 from wspd_design.certificates.theorems.slip_band.followed_law import Decided, apart, moved, went
 from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
 from wspd_design.controllers.protection import Protection
@@ -89,7 +89,7 @@ def motion(
 
 
 def _on_the_way(
-    torque: Affine, rise: Affine, fall: Affine, across: Array, filled: Affine, vented: Affine
+    torque: Affine, rise: Affine, fall: Affine, across: Where, filled: Affine, vented: Affine
 ) -> Affine:
     """Torque when parts of its changes are done; where it is open which it is, the rise holds both with their sign."""
     lacking = (
