@@ -255,6 +255,10 @@ def test_gaps_are_refused(low, piece):
     assert "do not follow" in refused(low, apart)
     falling = write(rows(replace(piece, borders=(0.756, 0.75))), NONE)
     assert "do not rise" in refused(low, falling)
+    reversed_row = write(rows(piece, supply=(0.756, 0.75)), NONE)
+    assert "of a row do not rise" in refused(low, reversed_row)
+    no_band = write(rows(replace(piece, samples=(2,))), NONE) | {"band": []}
+    assert "no object" in refused(low, no_band)
     part = write(rows(piece, supply=(0.75, 0.755)), NONE)
     assert "rows do not cover" in refused(low, part)
     gap = write([*rows(piece, supply=(0.75, 0.752)), *rows(piece, supply=(0.753, 0.756))], NONE)

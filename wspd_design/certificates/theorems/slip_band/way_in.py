@@ -133,6 +133,8 @@ def _row(written: object) -> Row:
     if not isinstance(supply, list) or len(supply) != 2 or not isinstance(pieces, list) or not pieces:
         raise Refused("a row needs two ends of the supply rate, and pieces")
     low, high = (_double(end) for end in supply)
+    if not low < high:
+        raise Refused("the ends of the supply rate of a row do not rise")
     return Row(supply=(low, high), pieces=tuple(_piece(each) for each in pieces))
 
 
@@ -179,6 +181,8 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
         band: dict[str, float] = {}
         asked: Asked | None = None
         if proof["band"] is not None:
+            if not isinstance(proof["band"], dict):
+                raise Refused("the proof of the band is no object")
             band = checker_of_band(near, law)(proof["band"], work)
             asked = asked_of(near, proof["band"])
         found = followed(near, law, strips_of(rows), asked)
