@@ -84,7 +84,7 @@ def plan(
 def _number(friction: float, supply: float, half: float) -> float:
     """Strips of a half width for a ratio of the friction and one of the supply rate; slopes add some."""
     pieces = max(1, math.ceil(math.log(friction) / (2.0 * half)))
-    return pieces * (math.log(supply) / (WIDTH * half) + 4.0)
+    return pieces * (math.log(supply) / (WIDTH * half) + 2.5)
 
 
 def _tried(
