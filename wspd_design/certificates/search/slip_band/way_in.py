@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION
-from wspd_design.certificates.theorems.slip_band.way_in import SUPPLY, Piece, Row, Strip, courses
+from wspd_design.certificates.theorems.slip_band.way_in import (
+    SUPPLY,
+    Piece,
+    Row,
+    Strip,
+    courses,
+    strips_of,
+)
 from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -28,10 +35,7 @@ ROWS = 4  # of the supply rate; a slower one rises for longer, and wheels of a s
 MARGIN = 1.06  # by which a strip that is tried is wider
 MOST = 400  # strips, with an effort of 1
 SETTLED = 0.004  # slip beside the reference
-LATER = {
-    False: 0.3,
-    True: 1.5,
-}  # s, what is followed from there at most, and until the filters have settled as well
+LATER = {False: 0.3, True: 1.5}  # s, what is followed from there, and at most until filters have settled
 STEPS = 8  # strips between two stops that tell how long they are followed
 SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does
@@ -58,7 +62,7 @@ def plan(
         Of the range of the friction about its nominal value.
     """
     most, nominal = MOST * effort, problem.nominal(FRICTION)
-    low, high = (nominal + share * (end - nominal) for end in problem.span(FRICTION))
+    low, high = (end if share == 1.0 else nominal + share * (end - nominal) for end in problem.span(FRICTION))
     slowest, fastest = problem.span(SUPPLY)
     edges = [slowest * (fastest / slowest) ** (k / ROWS) for k in range(ROWS)] + [fastest]
     tried = [
@@ -69,22 +73,21 @@ def plan(
     ]
     strips = [_tried(problem, law, (low, high), row, half, asked is not None) for row, half in tried]
     found = courses(problem, law, strips, asked)
-    rows, number = [], 0.0
+    rows: list[Row] = []
     for row in pairwise(edges):
         held = [half for (at, half), there in zip(tried, found.there, strict=True) if at == row and there]
         if not held:
             return None
-        number += _number(high / low, row[1] / row[0], held[0])
-        if number > most:
+        rows.append(_row(problem, law, (low, high), row, held[0], asked is not None))
+        if len(strips_of(rows)) > most:
             return None
-        rows.append((row, held[0]))
-    return tuple(_row(problem, law, (low, high), row, half, asked is not None) for row, half in rows)
+    return tuple(rows)
 
 
 def _number(friction: float, supply: float, half: float) -> float:
-    """Strips of a half width for a ratio of the friction and one of the supply rate; slopes add some."""
+    """Strips of a half width for a ratio of the friction and one of the supply rate, at least; slopes add some."""
     pieces = max(1, math.ceil(math.log(friction) / (2.0 * half)))
-    return pieces * (math.log(supply) / (WIDTH * half) + 2.5)
+    return pieces * math.log(supply) / (WIDTH * half)
 
 
 def _tried(
