@@ -180,14 +180,15 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
             raise Refused(difference)
         band: dict[str, float] = {}
         asked: Asked | None = None
-        if proof["band"] is not None:
-            if not isinstance(proof["band"], dict):
+        of_band: Any = proof["band"]
+        if of_band is not None:
+            if not isinstance(of_band, dict):
                 raise Refused("the proof of the band is no object")
-            band = checker_of_band(near, law)(proof["band"], work)
-            asked = asked_of(near, proof["band"])
+            band = checker_of_band(near, law)(of_band, work)
+            asked = asked_of(near, of_band)
         found = followed(near, law, strips_of(rows), asked)
         if asked is not None:
-            _supply_rises(near, proof["band"], found["supply"], found["speed"])
+            _supply_rises(near, of_band, found["supply"], found["speed"])
         return {**band, "share": float(share), "friction low": low, "friction high": high, **found}
 
     return check
