@@ -56,7 +56,7 @@ def test_stops_from_rolling_enter_and_stay(half, sets, stops):
     seen = stopped(half, sets, stops)
     assert seen.entered.all()
     assert not seen.left.any()
-    assert 0.14 < seen.way_in.max() < 0.17
+    assert 0.14 < seen.way_in.max() < 0.143
 
 
 def test_sets_that_are_too_small_are_left(half, sets):
