@@ -66,6 +66,13 @@ _mean = sp.integrate((1 - sp.exp(-_t1)) / (1 - sp.exp(-_x)), (_t1, 0, _x)) / _x
 _lacks_residual = sp.simplify(1 - _mean - _lacks)
 _lacks_at_zero = sp.limit(_lacks, _x, 0) - sp.Rational(1, 2)
 _lacks_slope = sp.limit((_lacks - sp.Rational(1, 2)) / _x, _x, 0) + sp.Rational(1, 12)
+# A pulse for the share y of a room, by a valve with q times the rate of the inversion, goes 1 - (1 - y)^q of it; over
+# q y that is the mean of (1 - u)^(q - 1) for u from 0 to y, between 1 and what it is at the largest y.
+_y, _q, _rate, _L = sp.symbols("y q r L", positive=True)
+_left = sp.Symbol("1 - y", positive=True)
+_pulse = -_L * sp.log(_left)
+_way_gone = sp.simplify(1 - sp.exp(-_rate * _pulse) - (1 - _left ** (_rate * _L)))
+_way_mean = sp.simplify(sp.diff(1 - (1 - _y) ** _q, _y) - _q * (1 - _y) ** (_q - 1))
 # The force over the load and mu0 is that of a wheel with both 1 and the stiffness over their product.
 _scaled = adhesion.force_of_gradient.subs(adhesion.gradient, adhesion.gradient_of_slip)
 _unit = _scaled.subs(
@@ -85,24 +92,33 @@ THEOREMS = (
         statement="A train rolls, and the brake is demanded. Its loop has eight numbers at a sample: the speed v, the "
         "sliding speed s = v - R w, the innovation r of the observer, its friction torque, the braking torque, the "
         "filtered acceleration, the change of v over the last sample, and the supply. Each is enclosed by an affine "
-        "form in symbols between -1 and 1, of which two stand for the friction and the supply rate of a strip. What a "
-        "sample makes of the forms encloses what it makes of the numbers; if a form of the slip s/v stays below a "
-        "number, also between samples, for strips that cover both ranges, no wheel slips more on its way. If the forms "
-        "of e, p, N, Y and D lie in the ellipsoid of a band at the end, and the supply has what the band asks for then "
-        "and when the train gets to each slower window, the wheels stay in the band down to the lowest speed.",
+        "form in symbols between -1 and 1, of which two stand for the friction and the supply rate of a strip, and "
+        "six for mass, inertia, radius, pads and both valve times, each within a share of the way from its nominal "
+        "value to either end of its range. What a sample makes of the forms encloses what it makes of the numbers; if "
+        "a form of the slip s/v stays below a number, also between samples, for strips that cover both ranges, no "
+        "wheel slips more on its way. If the forms of e, p, N, Y and D lie at a sample in the ellipsoid of a band for "
+        "the same share, and the supply has what the band asks for then and when the train gets to each slower "
+        "window, the wheels stay in the band down to the lowest speed.",
         hypotheses=(
-            "friction and supply rate as stated, everything else at its nominal value",
+            "friction and supply rate as stated, six numbers within the stated share, everything else at its nominal "
+            "value, and the scale of the train speed found while rolling",
             "the law that is followed is the one that runs, compared at points in doubles",
             "IEEE 754, with exp, log, arctan and square root within 8 units in the last place",
         ),
         sketch="What is not affine is replaced by its secant and the largest distance from it. Within a part of a "
         "sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in it, then the "
         "rates there with the time as a symbol, whose mean counts. The torque goes from one sample to the next as the "
-        "valve does, evenly but for h^2/8 of its second derivative. A sum of symbols lies in an ellipsoid if the "
-        "lengths of center and symbols, in its coordinates, add up to less than 1. The supply lacks at most exp(-r t) "
-        "of what it lacked, and t is at least the speed that is lost over the largest deceleration.",
-        not_said="Other masses, inertias, radii, pads and valve times; noise and dead time.",
+        "valve does, evenly but for h^2/8 of its second derivative. Where it is open whether a valve fills or vents, "
+        "or for how long, the way x is one number from the longest venting to the longest filling: with the power q "
+        "of the times of the inversion over those of the valve, its change is q x but for a factor between 1 and (1 - "
+        "(1 - y)^q)/(q y) at the largest share y of the room, which is a mean of (1 - u)^(q - 1). A sum of symbols "
+        "lies in an ellipsoid if the lengths of center and symbols, in its coordinates, add up to less than 1. The "
+        "supply lacks at most exp(-r t) of what it lacked, and t is at least the speed that is lost over the largest "
+        "deceleration.",
+        not_said="Masses, inertias, radii, pads and valve times farther from the nominal ones; noise and dead time.",
         identities=(
+            Identity("part of its room that a pulse for the share y goes", _way_gone),
+            Identity("it is the integral of q (1 - u)^(q - 1) from 0 to y", _way_mean),
             Identity("R (w - w_r) = lambda v - s", _error_residual),
             Identity("innovation of the next sample", _innovation_residual),
             Identity("what the mean over a pulse lacks of an exponential change", _lacks_residual),

@@ -371,7 +371,9 @@ def in_means(law, u, heights, true_times, growth, delay):
 def shares_needed(problem, loop, way, delay, *, faulty=None, left_out=1.0):
     """How far pairs of shares that simulated ways need lie outside of the corners of the loop; 0 inside."""
     with ctx.workprec(128):
-        low, high = (point(Fraction(each) / Fraction(law_of(problem.controller).sample_time)) for each in GROWTHS)
+        low, high = (
+            point(Fraction(each) / Fraction(law_of(problem.controller).sample_time)) for each in GROWTHS
+        )
         ranges = replace(loop.ranges, secants=(low, high))
         law, found = centered(problem, replace(loop, ranges=ranges, delay=point(Fraction(delay))), way)
     corners = np.array([[float(each.mid()) for each in pair] for pair in found.ranges.shares])
@@ -386,11 +388,15 @@ def shares_needed(problem, loop, way, delay, *, faulty=None, left_out=1.0):
         )
         for k in map(DISTURBANCES.index, ("uneven slip drift", "mean reference drift"))
     ]
-    slack[0] *= left_out * GROWTHS[1] / math.expm1(GROWTHS[1]) / effect  # of a mean, from a disturbance of the error
+    slack[0] *= (
+        left_out * GROWTHS[1] / math.expm1(GROWTHS[1]) / effect
+    )  # of a mean, from a disturbance of the error
     side, outside = 0 if way > 0.0 else 1, 0.0
     assumed, h = [float(each) for each in (law.fill_time, law.vent_time)], float(law.sample_time)
     fill, vent = (problem.span(name) for name in ("fill time", "vent time"))
-    for times, growth, length in product(product(fill, vent), GROWTHS, (float(LENGTHS[0]), float(LENGTHS[1]))):
+    for times, growth, length in product(
+        product(fill, vent), GROWTHS, (float(LENGTHS[0]), float(LENGTHS[1]))
+    ):
         heights = [0.1, 0.1]
         heights[side] = abs(way) / -math.expm1(-length * h / assumed[side])
         at_center = in_means(law, way, heights, times, growth, delay)

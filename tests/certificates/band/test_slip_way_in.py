@@ -2,6 +2,8 @@
 
 import json
 from dataclasses import replace
+from fractions import Fraction
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -16,17 +18,24 @@ from wspd_design.certificates.kernel.finding import Finding, Stated
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.slip_band import way_in as search
+from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.slip_band import (
     approach,
     arrival,
     computed_law,
     followed_law,
     followed_plant,
+    motion,
 )
 from wspd_design.certificates.theorems.slip_band.way_in import (
     FRICTION,
+    LARGEST_SHARE,
+    NEAR,
     SUPPLY,
     Piece,
+    Row,
+    Strip,
+    _boxes,
     _supply_rises,
     around,
     checker,
@@ -61,7 +70,14 @@ def piece(low):
 
 @pytest.fixture(scope="module")
 def numbers(low, piece):
-    return followed(low, low.controller, [piece])
+    return followed(low, low.controller, [Strip(piece, 0)])
+
+
+def rows(*pieces, supply=(0.75, 0.756)):
+    return [Row(supply=supply, pieces=pieces)]
+
+
+NONE = Fraction(0)
 
 
 def refused(problem, proof):
@@ -78,7 +94,9 @@ def test_no_wheel_goes_beyond_the_reference(low, numbers):
 
 def test_simulated_stops_are_enclosed(low, piece, numbers):
     """Stops of the engine with supply rates in the strip, at the samples and in between."""
-    course = approach.follow(low.controller, low.vehicle, low.rail, _boxes(low, piece), low.speeds[1])
+    course = approach.follow(
+        low.controller, low.vehicle, low.rail, _boxes(low, [Strip(piece, 0)]), low.speeds[1]
+    )
     enclosed = []
     for (top, state, _), _ in zip(course, range(piece.samples[0]), strict=False):
         slip = state.sliding / state.speed
@@ -95,30 +113,24 @@ def test_simulated_stops_are_enclosed(low, piece, numbers):
         assert run.slip[before_end].max() <= numbers["largest slip"]
 
 
-def _boxes(problem, *pieces):
-    from wspd_design.certificates.theorems.slip_band.way_in import _boxes
-
-    return _boxes(problem, [(each, 0) for each in pieces])
-
-
 SHORT = 20  # samples, after which no wheel slides yet
 
 
 def test_proof_is_accepted_and_told(low, piece):
-    proof = write([replace(piece, samples=(SHORT,))])
+    proof = write(rows(replace(piece, samples=(SHORT,))), NONE)
     found = checker(low, low.controller)(json.loads(json.dumps(proof)), Work(PLENTY))
     assert found["friction low"] == found["friction high"] == low.nominal(FRICTION)
 
 
 @pytest.fixture(scope="module")
-def stop(low):
+def stop():
     """The whole stop at the nominal friction, down to a speed above which there are few windows."""
-    nominal = replace(
-        low, bounds=type(low.bounds).of({SUPPLY: (0.75, 0.756)}), speeds=(40.0 / 3.6, low.speeds[1])
-    )
+    problem = problem_of(1.0, rail=LOW)
+    ends = {name: problem.span(name) for name in NEAR} | {SUPPLY: (0.75, 0.756)}
+    nominal = replace(problem, bounds=type(problem.bounds).of(ends), speeds=(80.0 / 3.6, problem.speeds[1]))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search, "WIDTHS", ((0.01, 0.01),))
-        patch.setattr(search, "_corners_hold", lambda *_: True)
+        patch.setattr(search, "HALVES", (0.005,))
+        patch.setattr(search, "ROWS", 1)
         (found,) = suite.verify(nominal, only=["slip_way_in"], figures=False)
     return nominal, found
 
@@ -127,24 +139,40 @@ def test_whole_stop_is_shown(stop):
     nominal, found = stop
     assert found.status is Status.PROVED
     assert "never above 0.1" in found.explanation
-    assert "down to 40 km/h: The slip stays within" in found.explanation
-    assert "stays in a band around it down to 40 km/h" in found.claim
+    assert "down to 80 km/h: The slip stays within" in found.explanation
+    assert "stays in a band around it down to 80 km/h" in found.claim
     numbers = found.findings[STRIPS].numbers
     assert numbers["band 0 below"] < 0.002
+    assert numbers["time"] < 4.5
     assert replay(nominal, certificate_text(found)).accepted
+
+
+def test_verdict_says_how_far_other_numbers_lie_from_their_nominal_values(stop):
+    _, found = stop
+    assert found.findings[STRIPS].numbers["share"] == float(LARGEST_SHARE)
+    words = "each of mass, wheelset inertia, wheel radius, max torque, fill time and vent time no farther from its "
+    words += "nominal value than 5 % of the way to either end of its range, and all other numbers"
+    assert words in found.claim
+    assert words in found.assumptions[0]
+    within = {each.name: (each.low, each.high) for each in found.domain.varied}
+    assert within.keys() == {SUPPLY, *NEAR}
+    assert within["fill time"] == pytest.approx((0.585, 0.615))
+    assert within["wheel radius"] == pytest.approx((0.548, 0.55))
+    assert found.varied == (SUPPLY,)  # over all of its range
+    assert {*NEAR} <= {*found.held}
 
 
 def test_end_before_the_filters_have_settled_is_refused(stop):
     nominal, found = stop
     proof = json.loads(json.dumps(found.findings[STRIPS].stated.proof))
-    proof["pieces"][0]["samples"] = [count - 45 for count in proof["pieces"][0]["samples"]]
+    proof["rows"][0]["pieces"][0]["samples"] = [150]
     assert "not in the ellipsoid" in refused(nominal, proof)
 
 
 def test_forged_band_is_refused(stop):
     nominal, found = stop
     proof = json.loads(json.dumps(found.findings[STRIPS].stated.proof))
-    proof["pieces"][0]["samples"] = [2]
+    proof["rows"][0]["pieces"][0]["samples"] = [2]
     each = proof["band"]["ellipsoids"][-1]
     each[6:21] = [repr(0.01 * float(number)) for number in each[6:21]]
     assert "may" in refused(nominal, proof)
@@ -207,9 +235,9 @@ def told(problem, numbers):
 
 
 def test_verdict_says_what_was_shown(low, numbers):
-    whole = dict(zip(("friction low", "friction high"), low.span(FRICTION), strict=True))
+    whole = dict(zip(("friction low", "friction high"), low.span(FRICTION), strict=True)) | {"share": 0.02}
     assert told(low, numbers | whole).status is Status.PROVED
-    part = told(low, numbers | {"friction low": 0.08, "friction high": 0.08})
+    part = told(low, numbers | whole | {"friction low": 0.08, "friction high": 0.08})
     assert part.status is Status.UNDECIDED
     assert part.explanation.startswith("Shown for mu0 = 0.08 alone.")
     assert part.margin is None
@@ -219,24 +247,97 @@ def test_verdict_says_what_was_shown(low, numbers):
 
 
 def test_gaps_are_refused(low, piece):
-    narrow = write([replace(piece, borders=(0.751, 0.756))])
+    narrow = write(rows(replace(piece, borders=(0.751, 0.756))), NONE)
     assert "do not cover" in refused(low, narrow)
-    tilted = write([replace(piece, friction=(0.079, 0.081), slope=1.0)])
+    tilted = write(rows(replace(piece, friction=(0.079, 0.081), slope=1.0)), NONE)
     assert "do not cover" in refused(low, tilted)
-    apart = write([replace(piece, friction=(0.06, 0.07)), replace(piece, friction=(0.0701, 0.1))])
+    apart = write(rows(replace(piece, friction=(0.06, 0.07)), replace(piece, friction=(0.0701, 0.1))), NONE)
     assert "do not follow" in refused(low, apart)
-    falling = write([replace(piece, borders=(0.756, 0.75))])
+    falling = write(rows(replace(piece, borders=(0.756, 0.75))), NONE)
     assert "do not rise" in refused(low, falling)
+    reversed_row = write(rows(piece, supply=(0.756, 0.75)), NONE)
+    assert "of a row do not rise" in refused(low, reversed_row)
+    no_band = write(rows(replace(piece, samples=(2,))), NONE) | {"band": []}
+    assert "no object" in refused(low, no_band)
+    part = write(rows(piece, supply=(0.75, 0.755)), NONE)
+    assert "rows do not cover" in refused(low, part)
+    gap = write([*rows(piece, supply=(0.75, 0.752)), *rows(piece, supply=(0.753, 0.756))], NONE)
+    assert "rows of the supply rate do not follow" in refused(low, gap)
+
+
+def test_only_the_friction_of_all_rows_counts(low, piece):
+    one = replace(piece, friction=(0.0795, 0.0805), borders=(0.749, 0.757), samples=(2,))
+    other = replace(piece, friction=(0.08, 0.081), borders=(0.749, 0.757), samples=(2,))
+    both = write([*rows(one, supply=(0.75, 0.753)), *rows(other, supply=(0.753, 0.756))], NONE)
+    found = checker(low, low.controller)(both, Work(PLENTY))
+    assert (found["friction low"], found["friction high"]) == (0.08, 0.0805)
 
 
 def test_too_wide_a_strip_is_lost(low, piece):
     wide = replace(piece, friction=(0.06, 0.1), borders=(0.7, 0.8))
-    assert "lost" in refused(low, write([wide]))
+    assert "lost" in refused(low, write(rows(wide), NONE))
 
 
 def test_end_before_the_reference_does_not_count_as_there(low, piece):
-    early = followed(low, low.controller, [replace(piece, samples=(30,))])
+    early = followed(low, low.controller, [Strip(replace(piece, samples=(30,)), 0)])
     assert early["below"] > 0.05
+
+
+@pytest.fixture(scope="module")
+def slow():
+    """A slow supply and the best friction, with all numbers in their ranges; and a strip that bears a small share."""
+    problem = problem_of(1.0, rail=LOW)
+    middle, supply = 0.099, (0.378, 0.38)
+    friction = (0.99 * middle, 1.01 * middle)
+    ends = {name: problem.span(name) for name in NEAR} | {FRICTION: friction, SUPPLY: supply}
+    problem = replace(problem, bounds=type(problem.bounds).of(ends))
+    slope = search._slope(problem, problem.controller, middle)
+    shift = slope * 0.5 * (friction[1] - friction[0])
+    borders = (supply[0] - shift - 1e-6, supply[1] + shift + 1e-6)
+    alone = Piece(friction=friction, slope=slope, borders=borders, samples=(1,))
+    return problem, replace(alone, samples=(120,))
+
+
+def test_a_larger_share_than_strips_bear_is_refused(slow):
+    """A checker that ignores the share accepts both, and this test fails."""
+    problem, wide = slow
+    rows_of = rows(wide, supply=problem.span(SUPPLY))
+    found = checker(problem, problem.controller)(write(rows_of, Fraction(1, 200)), Work(PLENTY))
+    assert found["share"] == 1 / 200
+    assert "lost" in refused(problem, write(rows_of, Fraction(1, 20)))
+    assert "between 0 and 1/20" in refused(problem, write(rows_of, Fraction(1, 10)))
+    assert "between 0 and 1/20" in refused(problem, write(rows_of, Fraction(-1, 100)))
+
+
+def enclosed(problem, strip, samples):
+    """Ends of slip and torque at the samples of a strip."""
+    course = approach.follow(
+        problem.controller, problem.vehicle, problem.rail, _boxes(problem, [strip]), problem.speeds[1]
+    )
+    found = []
+    for _, state, _ in islice(course, samples):
+        slip = state.sliding / state.speed
+        found.append((slip.low[0], slip.high[0]))
+    return np.array(found)
+
+
+def test_stops_with_numbers_at_the_ends_of_the_share_are_enclosed(slow):
+    """In the box of the share, and not in that of the nominal numbers."""
+    problem, wide = slow
+    near, law = around(problem, Fraction(1, 50)), problem.controller
+    mu0, supply = wide.middle, 0.379
+    narrow = Strip(Piece(friction=(mu0, mu0), slope=0.0, borders=(0.3789, 0.3791), samples=(190,)), 0)
+    box, bare = (enclosed(each, narrow, 190) for each in (near, around(problem, NONE)))
+    outside = 0
+    for side in (0, 1):
+        numbers = {name: near.span(name)[side if k % 2 else 1 - side] for k, name in enumerate(NEAR)}
+        vehicle, rail = plant_with(problem, numbers | {FRICTION: mu0})
+        vehicle = replace(vehicle, brake=replace(vehicle.brake, supply_rate=supply))
+        run = simulate(vehicle, law, Scenario(rail=rail, initial_speed=near.speeds[1]), plant="quarter")
+        slips = np.interp([law.sample_time * (k + 1) for k in range(190)], run.time, run.slip[:, 0])
+        assert np.all((box[:, 0] - 2e-5 <= slips) & (slips <= box[:, 1] + 2e-5))
+        outside += np.count_nonzero((bare[:, 0] - 2e-5 > slips) | (slips > bare[:, 1] + 2e-5))
+    assert outside > 100
 
 
 def test_another_law_is_noticed(low, monkeypatch):
@@ -244,7 +345,8 @@ def test_another_law_is_noticed(low, monkeypatch):
     original = followed_law._pull
     monkeypatch.setattr(followed_law, "_pull", lambda error, rate, slew: original(error, rate, 1.001 * slew))
     assert "computes another" in computed_law.unlike(low, low.controller)
-    proof = write([Piece(friction=(0.08, 0.08), slope=0.0, borders=(0.75, 0.756), samples=(5,))])
+    alone = Piece(friction=(0.08, 0.08), slope=0.0, borders=(0.75, 0.756), samples=(5,))
+    proof = write(rows(alone), NONE)
     assert "computes another" in refused(low, proof)
 
 
@@ -258,3 +360,64 @@ def test_laws_that_are_not_followed(low):
     assert "constant" in reason(replace(law, pressure_sensors=False))
     falling = FallingSlip(slip=0.16, largest=0.35)
     assert "holds no constant slip" in reason(replace(law, reference=falling))
+
+
+def test_scale_of_the_train_speed_counts(low):
+    """Worn wheels: the law takes the scale of its speed from them while they roll."""
+    worn = replace(low, bounds=type(low.bounds).of({"wheel radius": (0.53, 0.55)}))
+    assert computed_law.unlike(worn, low.controller) == ""
+    source = replace(low.controller.source, largest_scale_error=0.01)
+    assert "scale" in computed_law.unlike(worn, replace(low.controller, source=source))
+
+
+def test_a_change_that_is_not_in_proportion_is_noticed(low, monkeypatch):
+    original = followed_law.went
+    monkeypatch.setattr(followed_law, "went", lambda *given: original(*given) * 1.001)
+    assert "computes another" in computed_law.unlike(low, low.controller)
+
+
+# Around a way of none, around the longest way of filling, and between both.
+TORQUES = [(22_000.0, 1_500.0), (21_300.0, 600.0), (21_700.0, 150.0)]
+
+
+def a_sample(problem, torques, numbers, count):
+    """What decide and motion make of a state with these torques, all else known, and of these numbers of the plant."""
+    law, size = problem.controller, 64
+    free = iter(range(24, size))
+
+    def form(value, half=0.0, symbol=None):
+        slopes = np.zeros((count, size))
+        if symbol is not None:
+            slopes[:, symbol] = half
+        return Affine(np.broadcast_to(value, (count,)).astype(float), slopes, np.zeros(count))
+
+    names = followed_plant.NUMBERS
+    given = {name: form(value, half, names.index(name)) for name, (value, half) in numbers.items()}
+    plant = followed_plant.plant_of(problem.vehicle, problem.rail, law.valve.brake.max_torque, given, 8)
+    middle, half = torques
+    state = followed_plant.State(
+        *map(form, (32.0, 3.0, 0.0, 17_000.0)), form(middle, half, 16), *map(form, (-0.7, -0.0145, 0.42))
+    )
+    decided = followed_law.decide(law, plant, state, lambda each: each.named(next(free)))
+    return decided, motion.motion(plant, law, state, decided, 23, lambda each: each.named(next(free)))
+
+
+@pytest.mark.parametrize("torques", TORQUES)
+def test_a_wide_state_encloses_its_points(low, torques):
+    """Torques about that at which the valve neither fills nor vents, and valve times in a range."""
+    rng, count = np.random.default_rng(5), 400
+    halves = {"fill time": 0.02, "vent time": 0.02}
+    names = {name: (low.nominal(name), halves.get(name, 0.0)) for name in followed_plant.NUMBERS}
+    wide, moved = a_sample(low, torques, names, 1)
+    (middle, half) = torques
+    drawn = {name: (v + h * rng.uniform(-1, 1, count), 0.0) for name, (v, h) in names.items()}
+    points, there = a_sample(low, (middle + half * rng.uniform(-1, 1, count), 0.0), drawn, count)
+    assert wide.even[0]
+    for one, other in ((wide, points), (moved, there)):
+        for name in ("fill", "vent", "friction", "acceleration", "innovation", "speed", "sliding", "torque"):
+            if hasattr(one, name):
+                box, inside = getattr(one, name), getattr(other, name)
+                slack = 1e-9 * (1.0 + np.abs(inside.center))
+                assert np.all(inside.low >= box.low[0] - slack), name
+                assert np.all(inside.high <= box.high[0] + slack), name
+    assert np.all(there.top <= moved.top[0] + 1e-12)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
+Where: TypeAlias = NDArray[np.bool_]
 
 ROUNDING = 1e-13  # relative
 _THIN = 1e-9  # relative width below which a secant is nothing but rounding
@@ -24,19 +25,21 @@ _THIN = 1e-9  # relative width below which a secant is nothing but rounding
 class Affine:
     """An array of affine forms over the same symbols, one for each box."""
 
-    __slots__ = ("center", "error", "slopes")
+    __slots__ = ("_radius", "center", "error", "slopes")
     __array_priority__ = 1000  # so that an array times a form is a form
 
     def __init__(self, center: Array, slopes: Array, error: Array) -> None:
         self.center = center  # (boxes,)
         self.slopes = slopes  # (boxes, symbols)
         self.error = error  # (boxes,)
+        self._radius: Array | None = None
 
     @property
     def radius(self) -> Array:
-        """Largest distance from the center."""
-        found: Array = (np.abs(self.slopes).sum(axis=1) + self.error) * (1.0 + ROUNDING)
-        return found
+        """Largest distance from the center; summed up once, so that no number of a form may be changed."""
+        if self._radius is None:
+            self._radius = (np.abs(self.slopes).sum(axis=1) + self.error) * (1.0 + ROUNDING)
+        return self._radius
 
     @property
     def low(self) -> Array:
@@ -201,3 +204,17 @@ class Affine:
 def constant(value: float, like: Affine) -> Affine:
     """Return a number that depends on nothing, for the boxes and symbols of another form."""
     return Affine(np.full_like(like.center, value), np.zeros_like(like.slopes), np.zeros_like(like.error))
+
+
+def between(low: Array, high: Array, like: Affine) -> Affine:
+    """Return anything between two numbers, for the boxes and symbols of another form."""
+    return constant(0.0, like).line(0.0, 0.5 * (low + high), 0.5 * (high - low))
+
+
+def chosen(where: Where, one: Affine, other: Affine) -> Affine:
+    """Return one form for the boxes where it is wanted, and another one for the rest."""
+    return Affine(
+        np.where(where, one.center, other.center),
+        np.where(where[:, None], one.slopes, other.slopes),
+        np.where(where, one.error, other.error),
+    )

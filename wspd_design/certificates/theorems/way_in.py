@@ -3,6 +3,8 @@
 See :mod:`wspd_design.certificates.theorems.slip_band` for motion, proof and checker.
 """
 
+from fractions import Fraction
+from math import floor
 from typing import cast
 
 from wspd_design.certificates.kernel.finding import Finding
@@ -14,7 +16,12 @@ from wspd_design.certificates.setting import domain
 from wspd_design.certificates.theorems import band
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, windows_of
-from wspd_design.certificates.theorems.slip_band.way_in import VARIED, around, checker
+from wspd_design.certificates.theorems.slip_band.way_in import (
+    NEAR,
+    VARIED,
+    around,
+    checker,
+)
 from wspd_design.certificates.theorems.theorem import Findings, Theorem, all_of, hypothesis
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import ConstantSlip
@@ -56,9 +63,9 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
         *(Inequality(key=name, claim=claim) for name, claim in band.claims(around(problem)).items()),
         Special(
             key=STRIPS,
-            text="strips of friction and supply rate cover both ranges, and of each the loop is enclosed from rolling "
-            "until the slip has reached its reference, "
-            "and the wheels are in the ellipsoid of a band where one is given",
+            text="strips of friction and supply rate cover both ranges, and of each, with the other numbers anywhere "
+            "within a share of their ranges about the nominal values, the loop is enclosed from rolling until the slip "
+            "has reached its reference, and the wheels are in the ellipsoid of a band where one is given",
             check=checker(problem, law),
         ),
     )
@@ -67,11 +74,12 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
 def _tell(problem: Problem, findings: Findings) -> Certificate:
     strips, held = _after(problem, findings), held_names(problem)
     low, high = problem.span(FRICTION)
-    speed = problem.speeds[1] * KMH
+    speed, share = problem.speeds[1] * KMH, _share(strips)
+    near = around(problem, share)
     claim = (
         f"From rolling at {speed:.4g} km/h, the brake demanded and its cylinders empty, the slip of every wheelset "
         f"comes to its reference {problem.slip:g} and goes beyond it no further than is told; for every supply rate "
-        f"and every mu0 in their ranges, all other numbers at their nominal values; sampled every "
+        f"and every mu0 in their ranges, {_others(share)}; sampled every "
         f"{problem.sample_time * 1e3:g} ms."
     )
     if BAND in strips.numbers:
@@ -109,13 +117,16 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         worst_point=worst,
         hypotheses=(hypothesis(strips.asked, strips),),
         assumptions=(
-            "mass, inertia, radius, pads, valve times and resistance are the nominal ones, and so are contact and "
-            "shape of the friction; nothing changes on the way",
-            "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time",
+            f"{_others(share)}; resistance, contact and shape of the friction are the nominal ones; nothing changes on "
+            "the way",
+            "wheel speed, cylinder pressure and train speed are measured exactly, without noise and dead time; the "
+            "scale of the train speed was found while rolling",
             "all axles at static load and alike; pulses begin with the sample; the law computes with real numbers",
             "for the band: while the train slows down the deceleration rises as slip_band assumes",
         ),
-        domain=domain.domain_of(problem, VARIED, held),
+        domain=domain.domain_of(
+            near, (*VARIED, *_near(near)), [name for name in held if name not in _near(near)]
+        ),
         varied=VARIED,
         held=held,
         method="affine arithmetic in doubles with outward rounding, Picard's iteration between samples; the law that "
@@ -123,6 +134,29 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
         "units in the last place",
         reference="docs/theory.md#way-in",
     )
+
+
+def _share(strips: Finding) -> Fraction:
+    """Share of the ranges of the other numbers that was shown; none if nothing was."""
+    shown = strips.status is Status.PROVED
+    return Fraction(strips.numbers["share"]) if shown else Fraction(0)
+
+
+def _others(share: Fraction) -> str:
+    """Say where the numbers beside friction and supply rate are."""
+    names = f"{', '.join(NEAR[:-1])} and {NEAR[-1]}"
+    percent = floor(share * 10**6) / 10**4
+    if not share:
+        return f"{names}, and all other numbers, at their nominal values"
+    return (
+        f"each of {names} no farther from its nominal value than {percent:g} % of the way to either "
+        "end of its range, and all other numbers at their nominal values"
+    )
+
+
+def _near(near: Problem) -> tuple[str, ...]:
+    """Names of the numbers that lie within a share of their ranges."""
+    return tuple(name for name in domain.uncertain(near) if name in NEAR)
 
 
 def _after(problem: Problem, findings: Findings) -> Finding:

@@ -1,16 +1,21 @@
 """Search for strips of friction and supply rate that cover the way from rolling; nothing here is trusted."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION
-from wspd_design.certificates.theorems.slip_band.way_in import SUPPLY, Piece, followed
+from wspd_design.certificates.theorems.slip_band.way_in import (
+    SUPPLY,
+    Piece,
+    Row,
+    Strip,
+    courses,
+    strips_of,
+)
 from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.records import Rail, Vehicle
 
@@ -18,59 +23,114 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from wspd_design.certificates.theorems.slip_band.arrival import Asked
+
     Array = NDArray[np.float64]
 
 SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal value
-WIDTHS = ((0.025, 0.01), (0.018, 0.008), (0.0125, 0.006), (0.006, 0.003))
-"""Relative half width of a piece of the friction, and width of a strip over its supply rate."""
+HALVES = (0.04, 0.032, 0.025, 0.02, 0.016, 0.0125, 0.01, 0.008, 0.0063, 0.005, 0.004)
+"""Relative half widths of a piece of the friction."""
+WIDTH = 2.4  # relative width of a strip over its supply rate, over that half width
+ROWS = 4  # of the supply rate; a slower one rises for longer, and wheels of a strip come further apart
+MARGIN = 1.06  # by which a strip that is tried is wider
 MOST = 400  # strips, with an effort of 1
 SETTLED = 0.004  # slip beside the reference
-LATER = {False: 0.3, True: 1.7}  # s, what is followed from there, and until the filters have settled as well
+LATER = {False: 0.3, True: 1.5}  # s, what is followed from there, and at most until filters have settled
 STEPS = 8  # strips between two stops that tell how long they are followed
 SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does
 
 
-def plan(problem: Problem, law: Protection, effort: float, *, settled: bool) -> tuple[Piece, ...] | None:
-    """Choose pieces and strips that the budget can follow, for the largest share of the friction; None if none can.
+def plan(
+    problem: Problem, law: Protection, effort: float, asked: "Asked | None", share: float = 1.0
+) -> tuple[Row, ...] | None:
+    """Choose rows, pieces and strips of a share of the friction that the budget can follow; None if none can.
 
-    The outer strips are tried; the checker follows all.
+    The widest strips that hold are taken, as tried at the slow end of each row and the highest friction.
+
+    Parameters
+    ----------
+    problem : Problem
+        The box around the nominal numbers.
+    law : Protection
+        Sliding mode of relative degree two.
+    effort : float
+        Of the budget.
+    asked : Asked, optional
+        What a band asks for.
+    share : float
+        Of the range of the friction about its nominal value.
     """
-    for share in SHARES:
-        for half, width in WIDTHS:
-            pieces = _pieces(problem, law, share, (half, width), MOST * effort, LATER[settled])
-            if pieces is not None and _corners_hold(problem, law, pieces):
-                return pieces
-    return None
+    most, nominal = MOST * effort, problem.nominal(FRICTION)
+    low, high = (end if share == 1.0 else nominal + share * (end - nominal) for end in problem.span(FRICTION))
+    slowest, fastest = problem.span(SUPPLY)
+    edges = [slowest * (fastest / slowest) ** (k / ROWS) for k in range(ROWS)] + [fastest]
+    tried = [
+        (row, half)
+        for row in pairwise(edges)
+        for half in HALVES
+        if _number(high / low, row[1] / row[0], half) <= most
+    ]
+    strips = [_tried(problem, law, (low, high), row, half, asked is not None) for row, half in tried]
+    found = courses(problem, law, strips, asked)
+    rows: list[Row] = []
+    for row in pairwise(edges):
+        held = [half for (at, half), there in zip(tried, found.there, strict=True) if at == row and there]
+        if not held:
+            return None
+        rows.append(_row(problem, law, (low, high), row, held[0], asked is not None))
+        if len(strips_of(rows)) > most:
+            return None
+    return tuple(rows)
 
 
-def _pieces(
+def _number(friction: float, supply: float, half: float) -> float:
+    """Strips of a half width for a ratio of the friction and one of the supply rate, at least; slopes add some."""
+    pieces = max(1, math.ceil(math.log(friction) / (2.0 * half)))
+    return pieces * math.log(supply) / (WIDTH * half)
+
+
+def _tried(
     problem: Problem,
     law: Protection,
-    share: float,
-    widths: tuple[float, float],
-    most: float,
-    later: float,
-) -> tuple[Piece, ...] | None:
-    """Divide a share of the friction into pieces with strips, unless they are too many."""
-    (half, width), nominal = widths, problem.nominal(FRICTION)
-    low, high = problem.span(FRICTION)
-    low, high = nominal + share * (low - nominal), nominal + share * (high - nominal)
+    friction: tuple[float, float],
+    row: tuple[float, float],
+    half: float,
+    settled: bool,
+) -> Strip:
+    """Return a strip at the slow end of a row and the highest friction, wider than it has to be."""
+    low, high = friction
+    piece = (low, high)
+    if math.log(high / low) > 2.0 * half:
+        piece = (high * math.exp(-2.0 * half * MARGIN), high)
+    slope = _slope(problem, law, 0.5 * (piece[0] + piece[1])) if low < high else 0.0
+    borders = (row[0], row[0] * math.exp(WIDTH * half * MARGIN))
+    alone = Piece(friction=piece, slope=slope, borders=borders, samples=(1,))
+    return Strip(replace(alone, samples=_samples(problem, law, alone, LATER[settled])), 0)
+
+
+def _row(
+    problem: Problem,
+    law: Protection,
+    friction: tuple[float, float],
+    row: tuple[float, float],
+    half: float,
+    settled: bool,
+) -> Row:
+    """Divide the friction into pieces, and each piece into strips of the supply rates of a row."""
+    (low, high), (slowest, fastest) = friction, row
     count = max(1, math.ceil(math.log(high / low) / (2.0 * half)))
     edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
-    slowest, fastest = problem.span(SUPPLY)
-    if count * math.log(fastest / slowest) / width > most:
-        return None
     found = []
     for one, other in pairwise(edges):
-        slope = _slope(problem, law, 0.5 * (one + other)) if share else 0.0
+        slope = _slope(problem, law, 0.5 * (one + other)) if low < high else 0.0
         shift = abs(slope) * 0.5 * (other - one) * (1.0 + 1e-9) + 1e-9 * slowest
         first, last = slowest - shift, fastest + shift
-        number = max(1, math.ceil(math.log(last / first) / width))
+        number = max(1, math.ceil(math.log(last / first) / (WIDTH * half)))
         borders = tuple(first * (last / first) ** (k / number) for k in range(number + 1))
         piece = Piece(friction=(one, other), slope=slope, borders=borders, samples=(1,) * number)
-        found.append(replace(piece, samples=_samples(problem, law, piece, later)))
-    return tuple(found) if sum(len(each.samples) for each in found) <= most else None
+        found.append(replace(piece, samples=_samples(problem, law, piece, LATER[settled])))
+    return Row(supply=row, pieces=tuple(found))
 
 
 def _stop(problem: Problem, law: Protection, friction: float, supply: float) -> "tuple[Array, Array]":
@@ -121,17 +181,3 @@ def _samples(problem: Problem, law: Protection, piece: Piece, later: float) -> t
         settled = float(time[reached[0]]) if reached.size else float(time[-1])
         found += [math.ceil((settled + later) / law.sample_time)] * min(STEPS, len(piece.samples) - first)
     return tuple(found)
-
-
-def _corners_hold(problem: Problem, law: Protection, pieces: Sequence[Piece]) -> bool:
-    """Follow the slowest and the fastest strip of the outer pieces."""
-    chosen = [
-        replace(each, borders=each.borders[k : k + 2], samples=each.samples[k : k + 1])
-        for each in {0: pieces[0], len(pieces) - 1: pieces[-1]}.values()
-        for k in sorted({0, len(each.samples) - 1})
-    ]
-    try:
-        followed(problem, law, chosen)
-    except Refused:
-        return False
-    return True

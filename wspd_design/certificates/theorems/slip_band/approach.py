@@ -1,6 +1,6 @@
 """The way from rolling to the slip reference, one sample after the other, in affine forms over boxes of the rail."""
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.records import Rail, Vehicle
 
 PARAMETERS = 16  # symbols that stand for the numbers of a box and their combinations, and are kept
-KEPT = 48  # symbols at the beginning of a sample
+KEPT = 160  # symbols at the beginning of a sample
 STATES = len(State._fields)
 
 
@@ -29,8 +29,8 @@ def follow(
     rail: Rail,
     boxes: tuple[Array, Array],
     speed: float,
-) -> Iterator[tuple[Array, State, Plant]]:
-    """Follow the loop from rolling, sample by sample, for many boxes.
+) -> Generator[tuple[Array, State, Plant], Array | None, None]:
+    """Follow the loop from rolling, sample by sample, for many boxes, or for those that it is sent.
 
     Parameters
     ----------
@@ -39,8 +39,7 @@ def follow(
     vehicle, rail : Vehicle, Rail
         Nominal numbers.
     boxes : tuple of two arrays
-        Centers and half widths (boxes, 2, symbols 2) of friction and supply rate: the rows say how each of them
-        depends on the two symbols.
+        Centers (boxes, numbers) of :data:`NUMBERS`, and what the symbols do to them (boxes, numbers, symbols).
     speed : float
         At the beginning [m/s].
 
@@ -52,7 +51,7 @@ def follow(
     middle, spread = boxes
     count = len(middle)
     centers, symbols = start(speed, count)
-    fresh_ones = 5 + 2 + 2 * max(1, round(law.sample_time / STEP))
+    fresh_ones = 6 + 2 + 2 * max(1, round(law.sample_time / STEP))
     full = law.valve.brake.max_torque
     while True:
         columns = np.concatenate([symbols, np.zeros((count, STATES, 1 + fresh_ones))], axis=2)
@@ -79,9 +78,12 @@ def follow(
             change=moved.speed - state.speed,
             supply=moved.supply,
         )
-        yield moved.top, following, plant
+        kept = yield moved.top, following, plant
         centers = np.stack([each.center for each in following], axis=1)
         symbols = _fewer(following)
+        if kept is not None:
+            centers, symbols, middle, spread = (each[kept] for each in (centers, symbols, middle, spread))
+            count = len(middle)
 
 
 def _fewer(state: State) -> Array:

@@ -21,6 +21,7 @@ class Asked(NamedTuple):
     settled: float  # rad/s, error of the wheel speed that errors are counted from
     matrix: Sequence[Sequence[float]]  # P of (X - c)'P(X - c) <= 1 [s2/rad2]
     center: Sequence[float]  # c [rad/s]
+    moved: Sequence[float]  # by how much the center is elsewhere at either end of the steady drift [rad/s]
     supply: float  # -, of the full pressure, at least
 
 
@@ -45,6 +46,7 @@ def arrived(law: Protection, plant: Plant, state: State, asked: Asked) -> Array:
     length = np.linalg.norm(centers @ root.T, axis=1)
     length = length + np.linalg.norm(np.einsum("ij,bjs->bis", root, symbols), axis=1).sum(axis=1)
     length = length + np.linalg.norm(errors @ np.abs(root).T, axis=1)
+    length = length + np.linalg.norm(root @ np.asarray(asked.moved, dtype=float))
     slow, fast = asked.speeds
     inside: Array = (
         (length < 1.0 - INWARD)

@@ -27,7 +27,7 @@ from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, Loo
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, read
+from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
@@ -101,9 +101,7 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
                         "in a window without ellipsoids holding the reference may take less than is claimed"
                     )
                 continue
-            conditions = Conditions(each.supply, found.delay, found.noise, found.reserve)
-            choice = Choice(each.pulse, each.near, each.settled)
-            loop = loop_of(problem, law, cell, window, friction, choice, conditions)
+            loop = _loop(problem, law, found, (cell, k), each)
             bands[k] = _joined(bands[k], errors(law, loop, each))
             supplies[k] = max(supplies[k], each.supply)
             if slower is not None and not lies_in((each, loop.steady), slower):
@@ -135,6 +133,30 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
             for end, value in zip(("low", "high"), ends, strict=True)
         },
     }
+
+
+def _loop(problem: Problem, law: BandLaw, found: Proof, at: tuple[Cell, int], each: Ellipsoid) -> Loop:
+    """Work out the loop of an ellipsoid in a cell and a window."""
+    cell, k = at
+    conditions = Conditions(each.supply, found.delay, found.noise, found.reserve)
+    choice = Choice(each.pulse, each.near, each.settled)
+    return loop_of(problem, law, cell, windows_of(problem)[k], found.friction[k], choice, conditions)
+
+
+def moved(problem: Problem, found: Proof) -> list[float]:
+    """Return how far the center of the states in the fastest window moves to either end of the steady drift [rad/s].
+
+    The proof is one of a single cell.
+    """
+    from flint import ctx
+
+    k = len(found.friction) - 1
+    each = found.cells[0][k]
+    if each is None:
+        raise Refused("the proof has no ellipsoid in the fastest window")
+    with ctx.workprec(DIGITS):
+        loop = _loop(problem, law_of(problem.controller), found, (box_of(problem, found.share), k), each)
+        return [float((point(b) * loop.steady.spread).mid()) for b in each.moves]
 
 
 def holds_more(

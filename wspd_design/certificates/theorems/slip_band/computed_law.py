@@ -15,7 +15,7 @@ def unlike(problem: Problem, law: Protection) -> str:
     Parameters
     ----------
     problem : Problem
-        Highest speed, slip and plant.
+        Highest speed, slip and plant, with the range of the radius.
     law : Protection
         The law that runs.
     """
@@ -42,11 +42,15 @@ def unlike(problem: Problem, law: Protection) -> str:
         return Affine(values, np.zeros((POINTS, 32)), np.zeros(POINTS))
 
     state = State(*map(form, (speed, sliding, innovation, friction, torque, acceleration, change, supply)))
+    low, high = problem.span("wheel radius")
+    radii = low + (high - low) * shares("radius")
     numbers = {name: form(np.full(POINTS, problem.nominal(name))) for name in NUMBERS}
+    numbers["wheel radius"] = form(radii)
     plant = plant_of(problem.vehicle, problem.rail, full, numbers, 16)
     decided = decide(law, plant, state, lambda each: each)
-    radius = law.wheel_radius
     for k in range(POINTS):
+        radius = float(radii[k])
+        scale = law.wheel_radius / radius  # of the train speed, that the law takes from rolling wheels
         wheel = (speed[k] - sliding[k]) / radius
         expected = wheel - innovation[k] / radius
         measured = VehicleMeasurement(
@@ -59,10 +63,15 @@ def unlike(problem: Problem, law: Protection) -> str:
             demand=float(supply[k]),
             reservoir=pressure,
         )
-        known = dict(zip(law.memory, law.start(measured), strict=True)) | {
-            TRAIN_SPEED: float(speed[k] - change[k]),
-            TRAIN_ACCELERATION: float(acceleration[k]),
-            "speed_scale": 1.0,
+        rolling = measured._replace(wheel_speeds=(float(speed[k] / radius),) * law.wheelsets, demand=0.0)
+        known = dict(zip(law.memory, law.start(rolling), strict=True))
+        if abs(known["speed_scale"] - scale) > DIGITS:
+            return (
+                f"the law does not take the scale of the train speed from wheels of {radius:.6g} m that roll"
+            )
+        known |= {
+            TRAIN_SPEED: float(speed[k] - change[k]) * scale,
+            TRAIN_ACCELERATION: float(acceleration[k]) * scale,
         }
         for axle in range(1, law.wheelsets + 1):
             known[f"observed_speed_{axle}"] = float(expected)
@@ -76,7 +85,7 @@ def unlike(problem: Problem, law: Protection) -> str:
             "share that fills": (decided.fill, commands[0].fill),
             "share that vents": (decided.vent, commands[0].vent),
             "observed friction": (decided.friction, after_named["friction_torque_1"]),
-            "acceleration": (decided.acceleration, after_named[TRAIN_ACCELERATION]),
+            "acceleration": (decided.acceleration, after_named[TRAIN_ACCELERATION] / scale),
             "innovation": (decided.innovation, -radius * next_expected),
         }
         for name, (enclosure, value) in computed.items():

@@ -1,12 +1,12 @@
 """What the protection makes of a sample of a wheelset that is followed from rolling, in affine forms."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from wspd_design.certificates.kernel.affine import Affine, Array, constant
+from wspd_design.certificates.kernel.affine import Affine, Array, Where, between, chosen, constant
 from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
 from wspd_design.controllers.observer_smc import approach
 from wspd_design.controllers.protection import Protection
@@ -23,6 +23,10 @@ class Decided(NamedTuple):
     friction: Affine  # N m
     acceleration: Affine  # m/s2
     innovation: Affine  # m/s, of the next sample, but for the way of the wheel
+    way: Affine  # N m, that is asked of the valve, at most what it can go in a sample
+    even: Where  # whether the torque goes that way nearly in proportion
+    filling: Where  # whether it may be upwards
+    across: Where  # whether it is open that the valve fills or vents
 
 
 def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine], Affine]) -> Decided:
@@ -53,22 +57,36 @@ def decide(law: Protection, plant: Plant, state: State, fresh: Callable[[Affine]
     left_out, pulse = tracking.dead_band, valve.least_pulse / h
     share = partial(_share, left_out=left_out, pulse=pulse)
     room = (available - state.torque).at_least(least)
-    fill = fresh(share(up, room, valve.time_share * valve.brake.fill_time / h, least))
-    vent = fresh(
-        share(down, state.torque.at_least(least), valve.time_share * valve.brake.vent_time / h, least)
+    lengths = [valve.time_share * each / h for each in (valve.brake.fill_time, valve.brake.vent_time)]
+    speeds = [h / each for each in (valve.brake.fill_time, valve.brake.vent_time)]
+    fill = share(up, room, lengths[0], least)
+    vent = share(down, state.torque.at_least(least), lengths[1], least)
+    rooms = available - state.torque, state.torque
+    asked = fresh(_asked(way, rooms, lengths))
+    even = _even(way, rooms, lengths, least)
+    if left_out or pulse:  # some of the way is left out
+        even = np.zeros_like(even)
+    filling = way.high > 0.0
+    across = even & filling & (way.low < 0.0)
+    parts = _shares(asked, rooms, lengths, least)
+    fill, vent = (fresh(chosen(even, one, other)) for one, other in zip(parts, (fill, vent), strict=True))
+    powers = [constant(length * speed, way) for length, speed in zip(lengths, speeds, strict=True)]
+    change = went(asked, rooms, powers, lengths, 0.0)
+    rise, fall = moved(available, state.torque, fill, vent, *speeds)
+    rise, fall = apart(change, rise, fall, even, filling)
+    mean = state.torque + rise - _missed(rise, fill, speeds[0]) - fall + _missed(fall, vent, speeds[1])
+    late = (
+        0.5 * np.maximum(end, 0.0) * share.high
+        for end, share in zip((change.high, -change.low), parts, strict=True)
     )
-    rise, fall = moved(
-        available, state.torque, fill, vent, h / valve.brake.fill_time, h / valve.brake.vent_time
-    )
-    mean = state.torque + rise - _missed(rise, fill, h / valve.brake.fill_time)
-    mean = mean - fall + _missed(fall, vent, h / valve.brake.vent_time)
+    mean = chosen(across, (state.torque + change).widened(*late), mean)
     innovation = (
         state.sliding
         - state.speed
         + state.innovation * pole**2
         - (friction - mean) * plant.radius * (h / inertia)
     )
-    return Decided(fill, vent, friction, acceleration, innovation)
+    return Decided(fill, vent, friction, acceleration, innovation, asked, even, filling, across)
 
 
 def known_acceleration(law: Protection, state: State) -> Affine:
@@ -130,6 +148,93 @@ def moved(
     rise = (supply - torque) * (1.0 - (-(fill * filling)).exp())
     fall = (torque + rise) * (1.0 - (-(vent * venting)).exp())
     return rise, fall
+
+
+def _asked(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float]) -> Affine:
+    """Way to the target, at most what fills or vents over the whole sample."""
+    longest, least = (_longest(room, length) for room, length in zip(rooms, lengths, strict=True))
+    return way.at_most(longest).at_least(-least)
+
+
+def _even(way: Affine, rooms: Sequence[Affine], lengths: Sequence[float], least: float) -> Where:
+    """Whether a way is taken as one number, whose change is nearly in proportion to it.
+
+    Not where the valve fills or vents all of the sample for sure, and not where there is too little room.
+    """
+    found = (_longest(rooms[0], lengths[0]) - way).high > 0.0
+    found &= (way + _longest(rooms[1], lengths[1])).high > 0.0
+    for each, length in zip(rooms, lengths, strict=True):
+        found &= each.low > least * np.exp(1.0 / length)
+    return found
+
+
+def _longest(room: Affine, length: float) -> Affine:
+    """Way that is asked of a valve that does all of the sample what it does."""
+    return room * float(-np.expm1(-1.0 / length))
+
+
+def _shares(
+    asked: Affine, rooms: Sequence[Affine], lengths: Sequence[float], least: float
+) -> tuple[Affine, ...]:
+    """Shares of the sample that go the way, for filling and for venting, as nothing but ranges."""
+    found = []
+    for way, room, length in zip((asked, -asked), rooms, lengths, strict=True):
+        longest = float(-np.expm1(-1.0 / length))
+        ends = way.low / np.maximum(room.high, least), way.high / np.maximum(room.low, least)
+        low, high = (-length * np.log1p(-np.clip(end, 0.0, longest)) for end in ends)
+        found.append(between(low, high, asked))
+    return tuple(found)
+
+
+def apart(change: Affine, rise: Affine, fall: Affine, even: Where, filling: Where) -> tuple[Affine, Affine]:
+    """What filling adds and venting takes off, where they are even; all of it by filling where that is open."""
+    none = constant(0.0, change)
+    return (
+        chosen(even, chosen(filling, change, none), rise),
+        chosen(even, chosen(filling, none, -change), fall),
+    )
+
+
+def went(
+    asked: Affine,
+    rooms: Sequence[Affine],
+    powers: Sequence[Affine],
+    lengths: Sequence[float],
+    more: Array | float,
+) -> Affine:
+    """Change of the torque over a sample for a way that is asked, up or down, by filling and by venting.
+
+    Of a room the pulse goes 1 - (1 - y)^p for y that is asked, with the power p the times of the inversion over those
+    of the valve: p y, but for a factor that lies between 1 and its value at the largest y.
+
+    Parameters
+    ----------
+    asked : form
+        Way, with its sign [N m].
+    rooms : sequence of form
+        To the full torque, and to none.
+    powers : sequence of form
+        p of filling and venting.
+    lengths : sequence of float
+        Times of the inversion over the sample.
+    more : array or float
+        What the supply may have more or less than the room says [N m].
+    """
+    ends = np.maximum(asked.high, 0.0), np.maximum(-asked.low, 0.0)
+    outward = []
+    for end, room, power, length, extra in zip(ends, rooms, powers, lengths, (more, 0.0), strict=True):
+        narrowest = np.maximum(room.low, 1.0)  # less than any room in which this counts
+        y = np.clip(end / narrowest, 1e-9, -np.expm1(-1.0 / length))
+        factors = [-np.expm1(p * np.log1p(-y)) / (p * y) for p in (power.low, power.high)]
+        beside = extra / narrowest
+        lowest = np.minimum(np.minimum(*factors), 1.0) * (1.0 - beside)
+        highest = np.maximum(np.maximum(*factors), 1.0) * (1.0 + beside)
+        outward.append((power.high * end * (1.0 - lowest), power.high * end * (highest - 1.0)))
+    (short, far), (short_down, far_down) = outward
+    mean = (powers[0] + powers[1]) * 0.5
+    unlike = (powers[0] - powers[1]) * 0.5
+    turned = np.maximum(np.abs(unlike.low), np.abs(unlike.high)) * np.maximum(*ends)
+    return (asked * mean).widened(np.maximum(short, far_down) + turned, np.maximum(far, short_down) + turned)
 
 
 def _missed(whole: Affine, share: Affine, speed: float) -> Affine:

@@ -8,8 +8,8 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from wspd_design.certificates.kernel.affine import ROUNDING, Affine, Array, constant
-from wspd_design.certificates.theorems.slip_band.followed_law import Decided, moved
+from wspd_design.certificates.kernel.affine import ROUNDING, Affine, Array, Where, between, chosen
+from wspd_design.certificates.theorems.slip_band.followed_law import Decided, apart, moved, went
 from wspd_design.certificates.theorems.slip_band.followed_plant import Plant, State
 from wspd_design.controllers.protection import Protection
 from wspd_design.model.generated import adhesion
@@ -51,7 +51,14 @@ def motion(
     unsure = most * (filling.high / 12.0 + plant.supply_rate.high * h / 8.0)
     supply = (state.supply * full + growth * (decided.fill * 0.5)).widened(unsure, unsure)
     way = supply, state.torque, decided.fill, decided.vent
-    rise, fall = (fresh(each) for each in moved(*way, filling, venting))
+    rise, fall = moved(*way, filling, venting)
+    lengths = [
+        law.valve.time_share * each / h for each in (law.valve.brake.fill_time, law.valve.brake.vent_time)
+    ]
+    powers = [filling * lengths[0], venting * lengths[1]]
+    rooms = state.supply * full - state.torque, state.torque
+    change = went(decided.way, rooms, powers, lengths, 0.5 * most * decided.fill.high + unsure)
+    rise, fall = (fresh(each) for each in apart(change, rise, fall, decided.even, decided.filling))
     # A change within a pulse is even but for 1/8 of the largest second derivative, times the square of its length.
     steepest = most * (1.0 + plant.supply_rate.high * h)
     quick = np.maximum(steepest, ((supply - state.torque).high + most) * filling.high) * filling.high
@@ -62,8 +69,8 @@ def motion(
     top = sliding.high / speed.low
     ahead = _with_brake(plant, (speed, sliding), state.torque * effect)
     for part in range(count):
-        filled, vented = (_gone(each, part, count, time) for each in (decided.fill, decided.vent))
-        pulled = (state.torque + rise * filled - fall * vented).widened(bend, bend) * effect
+        gone = (_gone(each, part, count, time) for each in (decided.fill, decided.vent))
+        pulled = _on_the_way(state.torque, rise, fall, decided.across, *gone).widened(bend, bend) * effect
         ahead = _enclosed(plant, (speed, sliding), ahead, pulled, step)
         at_any_time = (
             _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), ahead, strict=True)
@@ -73,12 +80,23 @@ def motion(
         at_any_time = (
             _over_time(x, rate, step, time) for x, rate in zip((speed, sliding), ahead, strict=True)
         )
-        filled, vented = (_gone_in_the_mean(each, part, count) for each in (decided.fill, decided.vent))
-        pulled = (state.torque + rise * filled - fall * vented).widened(bend, bend) * effect
+        gone = (_gone_in_the_mean(each, part, count) for each in (decided.fill, decided.vent))
+        pulled = _on_the_way(state.torque, rise, fall, decided.across, *gone).widened(bend, bend) * effect
         means = [rate.without(time) for rate in _with_brake(plant, at_any_time, pulled)]
         speed, sliding = fresh(speed + means[0] * step), fresh(sliding + means[1] * step)
         top = np.maximum(top, np.maximum(highest, sliding.high) / speed.low)
     return Moved(speed, sliding, state.torque + rise - fall, after, top)
+
+
+def _on_the_way(
+    torque: Affine, rise: Affine, fall: Affine, across: Where, filled: Affine, vented: Affine
+) -> Affine:
+    """Torque when parts of its changes are done; where it is open which it is, the rise holds both with their sign."""
+    lacking = (
+        np.maximum(end, 0.0) * np.maximum(1.0 - part.low, 0.0)
+        for end, part in ((rise.high, filled), (-rise.low, vented))
+    )
+    return chosen(across, (torque + rise).widened(*lacking), torque + rise * filled - fall * vented)
 
 
 def rates(plant: Plant, speed: Affine, sliding: Affine) -> tuple[Affine, Affine]:
@@ -192,13 +210,14 @@ def _gone(share: Affine, part: int, count: int, time: int) -> Affine:
     straight = (low >= end) | (high <= begin)
     middle, middle_last = 0.5 * (first + first_most), 0.5 * (last + last_most)
     spread = 0.5 * np.maximum(first_most - first, last_most - last)
-    found = _between(
-        share,
+    found = between(
         np.where(straight, 0.5 * (middle + middle_last) - spread, first),
         np.where(straight, 0.5 * (middle + middle_last) + spread, last_most),
+        share,
     )
-    found.slopes[:, time] += np.where(straight, 0.5 * (middle_last - middle), 0.0)
-    return found
+    slopes = found.slopes.copy()
+    slopes[:, time] += np.where(straight, 0.5 * (middle_last - middle), 0.0)
+    return Affine(found.center, slopes, found.error)
 
 
 def _gone_in_the_mean(share: Affine, part: int, count: int) -> Affine:
@@ -212,8 +231,4 @@ def _gone_in_the_mean(share: Affine, part: int, count: int) -> Affine:
         return found
 
     low, high = np.clip(share.low, 0.0, 1.0), np.clip(share.high, 0.0, 1.0)
-    return _between(share, mean(high), mean(low))
-
-
-def _between(like: Affine, low: Array, high: Array) -> Affine:
-    return constant(0.0, like).line(0.0, 0.5 * (low + high), 0.5 * (high - low))
+    return between(mean(high), mean(low), share)

@@ -2,24 +2,25 @@
 
 How fast the supply rises decides when a wheel begins to slide, and so does the friction. A box is therefore a strip: a
 range of the friction, and a supply rate that changes with the friction so that its wheels slide at the same time. The
-strips of a piece of the friction lie side by side and cover all supply rates.
+strips of a piece of the friction lie side by side and cover the supply rates of a row; the slower the supply, the
+narrower they have to be. All other numbers of the box lie within a share of their ranges in every strip.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, exp, inf
-from typing import TYPE_CHECKING, Any
+from math import exp
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
-from wspd_design.certificates.theorems.slip_band.checker import inverse
+from wspd_design.certificates.theorems.slip_band.checker import inverse, moved
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION, SLOPES
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
-from wspd_design.certificates.theorems.slip_band.statement import windows_of
+from wspd_design.certificates.theorems.slip_band.statement import NAMES, windows_of
 from wspd_design.controllers.protection import Protection
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Bounds
@@ -34,13 +35,15 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-FORMAT = "wspd-way-in/2"
+FORMAT = "wspd-way-in/3"
 SUPPLY = "supply rate"
 VARIED = (FRICTION, SUPPLY)
+NEAR = tuple(name for name in NAMES if name not in VARIED)
+"""Numbers that stay near their nominal values: within a share of the way to either end of their ranges."""
+LARGEST_SHARE = Fraction(1, 20)  # for which the friction of the band is bounded
 MOST_STRIPS, MOST_SAMPLES, MOST_LETTERS = 20_000, 2_000, 60  # of a proof, of a strip, of a number
 AT_ONCE = 256  # strips that are followed together
 WORK = 25  # operations that a sample of a strip is worth
-AT_END = 0.1  # s, at the end of what is followed, over which the slip is told
 OUTWARD = 1e-12  # relative, by which a strip is widened so that rounding leaves no gap
 
 
@@ -59,34 +62,80 @@ class Piece:
         return 0.5 * (self.friction[0] + self.friction[1])
 
 
-def write(pieces: Sequence[Piece], band: Mapping[str, Any] | None = None) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """A range of the supply rate, with pieces of all of the friction."""
+
+    supply: tuple[float, float]  # 1/s
+    pieces: tuple[Piece, ...]
+
+
+class Strip(NamedTuple):
+    """A strip of a piece, by its number."""
+
+    piece: Piece
+    number: int
+
+    @property
+    def samples(self) -> int:
+        """For which it is followed at most."""
+        return self.piece.samples[self.number]
+
+
+def strips_of(rows: Sequence[Row]) -> list[Strip]:
+    """All strips of some rows."""
+    return [Strip(piece, k) for row in rows for piece in row.pieces for k in range(len(piece.samples))]
+
+
+def write(rows: Sequence[Row], share: Fraction, band: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Write a proof as JSON, with that of the band that the wheels get into, if there is one."""
     return {
         "format": FORMAT,
+        "share": text(share),
         "band": band,
-        "pieces": [
+        "rows": [
             {
-                "friction": [text(Fraction(end)) for end in each.friction],
-                "slope": text(Fraction(each.slope)),
-                "borders": [text(Fraction(border)) for border in each.borders],
-                "samples": list(each.samples),
+                "supply": [text(Fraction(end)) for end in row.supply],
+                "pieces": [
+                    {
+                        "friction": [text(Fraction(end)) for end in each.friction],
+                        "slope": text(Fraction(each.slope)),
+                        "borders": [text(Fraction(border)) for border in each.borders],
+                        "samples": list(each.samples),
+                    }
+                    for each in row.pieces
+                ],
             }
-            for each in pieces
+            for row in rows
         ],
     }
 
 
-def read(proof: Mapping[str, Any]) -> tuple[Piece, ...]:
-    """Read a proof, or refuse it."""
-    if proof.keys() != {"format", "band", "pieces"} or proof["format"] != FORMAT:
+def read(proof: Mapping[str, Any]) -> tuple[Fraction, tuple[Row, ...]]:
+    """Read the share and the rows of a proof, or refuse it."""
+    if proof.keys() != {"format", "share", "band", "rows"} or proof["format"] != FORMAT:
         raise Refused(f"the proof does not have the format {FORMAT}")
-    pieces = proof["pieces"]
-    if not isinstance(pieces, list) or not pieces:
-        raise Refused("the proof has no pieces")
-    found = tuple(_piece(each) for each in pieces)
-    if sum(len(each.samples) for each in found) > MOST_STRIPS:
+    share, rows = _short(proof["share"]), proof["rows"]
+    if not 0 <= share <= LARGEST_SHARE:
+        raise Refused(f"the share of the ranges is not between 0 and {LARGEST_SHARE}")
+    if not isinstance(rows, list) or not rows:
+        raise Refused("the proof has no rows")
+    found = tuple(_row(each) for each in rows)
+    if len(strips_of(found)) > MOST_STRIPS:
         raise Refused(f"the proof has more than {MOST_STRIPS} strips")
-    return found
+    return share, found
+
+
+def _row(written: object) -> Row:
+    if not isinstance(written, dict) or written.keys() != {"supply", "pieces"}:
+        raise Refused("a row lacks its supply rates or pieces")
+    supply, pieces = written["supply"], written["pieces"]
+    if not isinstance(supply, list) or len(supply) != 2 or not isinstance(pieces, list) or not pieces:
+        raise Refused("a row needs two ends of the supply rate, and pieces")
+    low, high = (_double(end) for end in supply)
+    if not low < high:
+        raise Refused("the ends of the supply rate of a row do not rise")
+    return Row(supply=(low, high), pieces=tuple(_piece(each) for each in pieces))
 
 
 def _piece(written: object) -> Piece:
@@ -107,61 +156,72 @@ def _piece(written: object) -> Piece:
 
 
 def _double(written: object) -> float:
+    return float(_short(written))
+
+
+def _short(written: object) -> Fraction:
     if len(str(written)) > MOST_LETTERS:
         raise Refused(f"a number of the proof has more than {MOST_LETTERS} letters")
-    return float(number(written))
+    return number(written)
 
 
 def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], Work], dict[str, float]]:
     """Return what decides about a proof and tells its numbers, those of the band among them."""
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
-        pieces = read(proof)
-        low, high = _covered(problem, pieces)
-        work.spend(WORK * sum(sum(each.samples) for each in pieces))
+        share, rows = read(proof)
+        low, high = _covered(problem, rows)
+        near = around(problem, share)
+        work.spend(WORK * sum(each.samples for each in strips_of(rows)))
         from wspd_design.certificates.theorems.slip_band.computed_law import unlike
 
-        difference = unlike(problem, law)
+        difference = unlike(near, law)
         if difference:
             raise Refused(difference)
         band: dict[str, float] = {}
         asked: Asked | None = None
-        if proof["band"] is not None:
-            band, asked = _band(around(problem), law, proof["band"], work)
-        found = followed(problem, law, pieces, asked)
+        of_band: Any = proof["band"]
+        if of_band is not None:
+            if not isinstance(of_band, dict):
+                raise Refused("the proof of the band is no object")
+            band = checker_of_band(near, law)(of_band, work)
+            asked = asked_of(near, of_band)
+        found = followed(near, law, strips_of(rows), asked)
         if asked is not None:
-            _supply_rises(around(problem), proof["band"], found["supply"], found["speed"])
-        return {**band, "friction low": low, "friction high": high, **found}
+            _supply_rises(near, of_band, found["supply"], found["speed"])
+        return {**band, "share": float(share), "friction low": low, "friction high": high, **found}
 
     return check
 
 
-def around(problem: Problem) -> Problem:
-    """Return the problem with nothing but friction and supply rate uncertain."""
-    return replace(problem, bounds=Bounds.of({name: problem.span(name) for name in VARIED}))
+def around(problem: Problem, share: Fraction = LARGEST_SHARE) -> Problem:
+    """Return the problem with all of friction and supply rate, and of other numbers a share of their ranges."""
+    ends = {name: problem.span(name) for name in VARIED}
+    for name in NEAR if share else ():
+        nominal = problem.nominal(name)
+        low, high = (nominal + float(share) * (end - nominal) for end in problem.span(name))
+        ends[name] = (low, high)
+    return replace(problem, bounds=Bounds.of(ends))
 
 
-def _band(problem: Problem, law: Protection, proof: object, work: Work) -> "tuple[dict[str, float], Asked]":
-    """Decide about the band, and return its numbers and what it asks for at the highest speeds."""
+def asked_of(problem: Problem, proof: Mapping[str, Any]) -> "Asked":
+    """Return what an accepted proof of a band asks for at the highest speeds, or refuse a band of more than a cell."""
     from wspd_design.certificates.theorems.slip_band.arrival import Asked
 
-    if not isinstance(proof, dict):
-        raise Refused("the proof of the band is no object")
-    numbers = checker_of_band(problem, law)(proof, work)
     windows = windows_of(problem)
     found = read_band(proof, len(windows))
     if found.share != 1 or len(found.cells) != 1:
         raise Refused("the band must be that of one cell, which is the whole box")
     begin = found.cells[0][-1]
     assert begin is not None  # without a reserve no window is left out
-    asked = Asked(
+    return Asked(
         speeds=windows[-1],
         settled=float(begin.settled),
         matrix=inverse(begin.matrix),
         center=[float(each) for each in begin.center],
+        moved=moved(problem, found),
         supply=float(begin.supply),
     )
-    return numbers, asked
 
 
 def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, speed: float) -> None:
@@ -170,7 +230,7 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
     Parameters
     ----------
     problem : Problem
-        With nothing but friction and supply rate uncertain.
+        Around the nominal numbers.
     proof : mapping
         Of the band.
     supply, speed : float
@@ -197,11 +257,22 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
             )
 
 
-def _covered(problem: Problem, pieces: Sequence[Piece]) -> tuple[float, float]:
+def _covered(problem: Problem, rows: Sequence[Row]) -> tuple[float, float]:
     """Range of the friction for which all supply rates are covered, or refuse."""
     slowest, fastest = problem.span(SUPPLY)
-    end = pieces[0].friction[0]
-    for each in pieces:
+    if any(one.supply[1] != other.supply[0] for one, other in pairwise(rows)):
+        raise Refused("the rows of the supply rate do not follow each other")
+    if rows[0].supply[0] > slowest or rows[-1].supply[1] < fastest:
+        raise Refused("the rows do not cover all supply rates")
+    ranges = [_friction_of(row) for row in rows]
+    return max(low for low, _ in ranges), min(high for _, high in ranges)
+
+
+def _friction_of(row: Row) -> tuple[float, float]:
+    """Range of the friction for which all supply rates of a row are covered, or refuse."""
+    slowest, fastest = row.supply
+    end = row.pieces[0].friction[0]
+    for each in row.pieces:
         if each.friction[0] != end:
             raise Refused("the pieces of the friction do not follow each other")
         end = each.friction[1]
@@ -211,25 +282,25 @@ def _covered(problem: Problem, pieces: Sequence[Piece]) -> tuple[float, float]:
             raise Refused("the strips of a piece do not cover all supply rates")
         if not each.borders[0] + min(shifts) > 0.0:
             raise Refused("a strip holds a supply rate that is not positive")
-    low = pieces[0].friction[0]
+    low = row.pieces[0].friction[0]
     if not low > 0.0:
         raise Refused("a piece holds a friction that is not positive")
     return low, end
 
 
 def followed(
-    problem: Problem, law: Protection, pieces: Sequence[Piece], asked: "Asked | None" = None
+    problem: Problem, law: Protection, strips: Sequence[Strip], asked: "Asked | None" = None
 ) -> dict[str, float]:
     """Follow all strips, and return the largest slip, when they end and how near to the reference they are then.
 
     Parameters
     ----------
     problem : Problem
-        Nominal numbers, and the speed at which the brake is demanded: the highest of the range.
+        The box around the nominal numbers, and the speed at which the brake is demanded: the highest of the range.
     law : Protection
         Sliding mode of relative degree two.
-    pieces : sequence of Piece
-        Strips.
+    strips : sequence of Strip
+        What is followed.
     asked : Asked, optional
         What the wheels must have at the end of what is followed.
 
@@ -238,65 +309,102 @@ def followed(
     Refused
         If the enclosure of a strip is lost, or its wheels lack what is asked.
     """
-    strips = sorted(
-        ((count, k, strip) for k, each in enumerate(pieces) for strip, count in enumerate(each.samples)),
-        key=lambda each: each[0],
+    found = courses(problem, law, strips, asked)
+    if found.lost.any():
+        raise Refused("the enclosure of a strip is lost")
+    if not found.there.all():
+        raise Refused("wheels of a strip are not in the ellipsoid of the band at its end")
+    return {
+        "largest slip": float(found.top.max()),
+        "time": float(found.samples.max()) * law.sample_time,
+        "above": float(found.high.max()) - problem.slip,
+        "below": problem.slip - float(found.low.min()),
+        "supply": float(found.supply.min()),
+        "speed": float(found.speed.min()),
+    }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Courses:
+    """How strips went; each is followed until its wheels have what is asked, or for its samples."""
+
+    lost: "NDArray[np.bool_]"  # whether the enclosure was lost
+    there: "NDArray[np.bool_]"  # whether the wheels have what is asked at the end
+    samples: "NDArray[np.int_]"  # that were followed
+    top: "Array"  # -, largest slip
+    low: "Array"  # -, slip at the end
+    high: "Array"
+    supply: "Array"  # -, of the full pressure at the end, at least
+    speed: "Array"  # m/s, at the end, at least
+
+
+def courses(
+    problem: Problem, law: Protection, strips: Sequence[Strip], asked: "Asked | None" = None
+) -> Courses:
+    """Follow strips, whatever becomes of them; parameters as of :func:`followed`."""
+    import numpy as np
+
+    count = len(strips)
+    found = Courses(
+        lost=np.zeros(count, dtype=bool),
+        there=np.zeros(count, dtype=bool),
+        samples=np.zeros(count, dtype=int),
+        **{name: np.zeros(count) for name in ("top", "low", "high", "supply", "speed")},
     )
-    found = {"largest slip": 0.0, "time": 0.0, "above": -inf, "below": -inf, "supply": inf, "speed": inf}
-    for first in range(0, len(strips), AT_ONCE):
-        _follow(problem, law, pieces, strips[first : first + AT_ONCE], found, asked)
+    order = np.argsort([each.samples for each in strips], kind="stable")
+    for first in range(0, count, AT_ONCE):
+        _follow(problem, law, strips, order[first : first + AT_ONCE], found, asked)
     return found
 
 
 def _follow(
     problem: Problem,
     law: Protection,
-    pieces: Sequence[Piece],
-    strips: Sequence[tuple[int, int, int]],
-    found: dict[str, float],
+    strips: Sequence[Strip],
+    going: "NDArray[np.int_]",
+    found: Courses,
     asked: "Asked | None",
 ) -> None:
+    """Follow some strips together."""
     import numpy as np
 
     from wspd_design.certificates.theorems.slip_band.approach import follow
     from wspd_design.certificates.theorems.slip_band.arrival import arrived
 
-    ends = np.array([count for count, _, _ in strips])
-    boxes = _boxes(problem, [(pieces[k], strip) for _, k, strip in strips])
-    last, told = int(ends.max()), max(1, ceil(AT_END / law.sample_time))
+    ends = np.array([each.samples for each in strips])
+    boxes = _boxes(problem, [strips[k] for k in going])
+    course = follow(law, problem.vehicle, problem.rail, boxes, problem.speeds[1])
+    sample, kept = 0, None
     with np.errstate(all="ignore"):
-        course = follow(law, problem.vehicle, problem.rail, boxes, problem.speeds[1])
-        for sample, (top, state, plant) in enumerate(course, start=1):
-            going = ends >= sample
-            if not np.all(np.isfinite(top[going])):
-                raise Refused("the enclosure of a strip is lost")
-            found["largest slip"] = max(found["largest slip"], float(top[going].max()))
-            ending = going & (sample > ends - told)
-            if ending.any():
-                slip = state.sliding / state.speed
-                above, below = slip.high[ending] - problem.slip, problem.slip - slip.low[ending]
-                found["above"] = max(found["above"], float(above.max()))
-                found["below"] = max(found["below"], float(below.max()))
-                found["supply"] = min(found["supply"], float(state.supply.low[ending].min()))
-                found["speed"] = min(found["speed"], float(state.speed.low[ending].min()))
-            if asked is not None and not np.all(arrived(law, plant, state, asked)[ends == sample]):
-                raise Refused("wheels of a strip are not in the ellipsoid of the band at its end")
-            if sample == last:
-                break
-    found["time"] = max(found["time"], last * law.sample_time)
+        while going.size:
+            top, state, plant = next(course) if kept is None else course.send(kept)
+            sample += 1
+            lost = ~np.isfinite(top)
+            there = ~lost & (arrived(law, plant, state, asked) if asked else ends[going] == sample)
+            slip = state.sliding / state.speed
+            found.lost[going], found.there[going], found.samples[going] = lost, there, sample
+            found.top[going] = np.maximum(found.top[going], top)
+            found.low[going], found.high[going] = slip.low, slip.high
+            found.supply[going], found.speed[going] = state.supply.low, state.speed.low
+            kept = ~lost & ~there & (ends[going] > sample)
+            going = going[kept]
 
 
-def _boxes(problem: Problem, strips: Sequence[tuple[Piece, int]]) -> "tuple[Array, Array]":
-    """Centers of the numbers, and what the symbols do to them: one for the friction, one for the supply."""
+def _boxes(problem: Problem, strips: Sequence[Strip]) -> "tuple[Array, Array]":
+    """Centers of the numbers, and what the symbols do to them: one for each number."""
     import numpy as np
 
     from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS
 
-    middle = np.array([[problem.nominal(name) for name in NUMBERS]] * len(strips))
+    middle = np.zeros((len(strips), len(NUMBERS)))
     spread = np.zeros((len(strips), len(NUMBERS), len(NUMBERS)))
+    for name in NEAR:
+        (low, high), k = problem.span(name), NUMBERS.index(name)
+        middle[:, k] = 0.5 * (low + high)
+        spread[:, k, k] = 0.5 * (high - low) + OUTWARD * high
     row, column = NUMBERS.index(FRICTION), NUMBERS.index(SUPPLY)
     for k, (piece, strip) in enumerate(strips):
-        low, high = piece.borders[strip], piece.borders[strip + 1]
+        low, high = piece.borders[strip : strip + 2]
         half = 0.5 * (piece.friction[1] - piece.friction[0])
         middle[k, row], middle[k, column] = piece.middle, 0.5 * (low + high)
         spread[k, row, row] = half * (1.0 + OUTWARD) + OUTWARD * piece.middle
