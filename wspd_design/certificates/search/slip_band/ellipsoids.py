@@ -193,7 +193,7 @@ def _task(
         )
         left = state @ moves + drifted - moves
         columns += [left[:, :, None] * far, np.broadcast_to(moves * change, left.shape)[:, :, None]]
-    columns = np.concatenate(columns, axis=2)
+    added = np.concatenate(columns, axis=2)
     reaching = [np.array([float(each.mid()) for each in limit.row]) for limit in loop.limits]
     # The error, between samples nearly the same.
     reaching += [np.eye(STATES)[0], -np.eye(STATES)[0]]
@@ -212,7 +212,7 @@ def _task(
     if min(rooms) <= 0.0 or not contracting:
         return None
     # Coordinates in which what disturbs spreads alike in all directions.
-    stirred = np.einsum("nik,njk->ij", columns, columns) / len(columns) + 1e-12 * np.eye(STATES)
+    stirred = np.einsum("nik,njk->ij", added, added) / len(added) + 1e-12 * np.eye(STATES)
     spreads = solve_discrete_lyapunov(mean / kept**0.5, stirred)
     basis = np.linalg.cholesky((spreads + spreads.T) / 2.0) / (1.0 - kept) ** 0.5
     rows = [row @ basis for row in reaching]
@@ -220,7 +220,7 @@ def _task(
     basis = basis * max(1.0, SPREAD / widest)
     back = np.linalg.inv(basis)
     return _Task(
-        maps=np.concatenate([back @ state @ basis, back @ columns], axis=2),
+        maps=np.concatenate([back @ state @ basis, back @ added], axis=2),
         center=at,
         moves=moves,
         steady=loop.steady,
@@ -257,7 +257,8 @@ def _middle(loop: Loop) -> "Array":
     import numpy as np
 
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
-    return ends.mean(axis=1) + float(loop.steady.middle.mid()) * _drifting(loop)
+    middle: Array = ends.mean(axis=1) + float(loop.steady.middle.mid()) * _drifting(loop)
+    return middle
 
 
 def _drifting(loop: Loop) -> "Array":
