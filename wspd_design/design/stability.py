@@ -17,6 +17,7 @@ from wspd_design.certificates.setting.slip_loop import (
     LoopLaw,
     LoopRanges,
     Pair,
+    Way,
     corners,
     latest_share,
     parts_of,
@@ -178,8 +179,9 @@ def _corners(
                 LoopRanges(
                     secants=secants,
                     effects=(effect, effect),
-                    parts=tuple((end, end) for end in parts),
-                    shares=tuple(product((0.0, late), mean)),
+                    ways=tuple(
+                        Way(part, part, *shares) for part, *shares in product(parts, (0.0, late), mean)
+                    ),
                     shares_center=(0.0, seen[1]),  # nothing is asked about what disturbs
                 )
             )

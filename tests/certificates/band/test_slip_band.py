@@ -15,13 +15,14 @@ from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
+from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.search.slip_band.search import Sought, Spent, alone, cover, exactly
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.band import CELLS, RESERVED, SLIP_BAND, covered
 from wspd_design.certificates.theorems.slip_band.checker import checker, lies_in
 from wspd_design.certificates.theorems.slip_band.friction import FADINGS, HALVES, REACHES, SLOPES, Friction
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read, write
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 from wspd_design.controllers.observers.sensors import Sensors
@@ -58,12 +59,11 @@ def test_checker_alone_accepts_it(half, proof):
 
 
 SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST, BACK = range(1, 7)
-Q, CENTER, ALPHA, OFFSET, SHARES, INSIDE = slice(7, 22), 22, 27, 28, 29, -1
+Q, CENTER, MOVES, ALPHA, OFFSET, SHARES, INSIDE = slice(7, 22), 22, slice(27, 32), 32, 33, 34, -1
+STEADY, CHANGE = -3, -2  # shares of the steady drift and of its change
 # Shares of what disturbs without noise, with a constant slip and without dead band
 DRIFTS = tuple(
-    SHARES + k
-    for k, name in enumerate(DISTURBANCES)
-    if name.endswith("drift") and not name.endswith("slip drift")
+    SHARES + k for k, name in enumerate(DISTURBANCES) if name.endswith("drift") and name != "slip drift"
 )
 
 
@@ -79,6 +79,17 @@ def test_ellipsoid_that_is_too_large_is_refused(half, proof):
     each = proof["ellipsoids"][0]
     each[Q] = [repr(100.0 * float(number)) for number in each[Q]]
     assert "may" in refused(half, proof)
+
+
+def test_center_that_moves_otherwise_than_the_loop_settles_is_refused(half, proof):
+    """With another way to go with the steady drift, or none, what it adds is not in its share."""
+    for by in (0.0, -1.0, 2.0):
+        forged = json.loads(json.dumps(proof))
+        each = forged["ellipsoids"][0]
+        each[MOVES] = [repr(by * float(number)) for number in each[MOVES]]
+        assert "may" in refused(half, forged)
+    proof["ellipsoids"][0][STEADY] = repr(0.001 * float(proof["ellipsoids"][0][STEADY]))
+    assert "may lead out of an ellipsoid" in refused(half, proof)
 
 
 def test_center_that_the_loop_leaves_is_refused(half, proof):
@@ -140,7 +151,7 @@ def test_shares_above_one_are_refused(half, proof):
 
 
 def test_disturbance_without_share_is_refused(half, proof):
-    for place in (OFFSET, *DRIFTS):
+    for place in (OFFSET, *DRIFTS, STEADY, CHANGE):
         forged = json.loads(json.dumps(proof))
         forged["ellipsoids"][0][place] = "0.0"
         assert "no share" in refused(half, forged)
@@ -164,7 +175,7 @@ def test_alpha_that_the_loop_does_not_reach_is_refused(half, proof):
     assert "may lead out of an ellipsoid" in refused(half, proof)
 
 
-def ellipse(size, center, inside):
+def ellipse(size, center, inside, moves=0):
     """A ball of this radius about a point on the first axis."""
     matrix = tuple(tuple(Fraction(size) ** 2 * (i == j) for j in range(STATES)) for i in range(STATES))
     numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset", "longest", "back"), Fraction(1))
@@ -175,15 +186,26 @@ def ellipse(size, center, inside):
         shortest=Fraction(0),
         matrix=matrix,
         center=(Fraction(center), *[Fraction(0)] * (STATES - 1)),
+        moves=(Fraction(moves), *[Fraction(0)] * (STATES - 1)),
         shares=(),
+        steady=Fraction(1),
+        change=Fraction(1),
         inside=inside,
     )
+
+
+def drift(low, high):
+    """A steady drift between two ends."""
+    return Steady(*(point(Fraction(each)) for each in (low, high, 0, "1/2")))
+
+
+CALM = drift(0, 0)
 
 
 @pytest.mark.parametrize(("apart", "lies"), [("0.49", True), ("0.51", False)])
 def test_balls_lie_in_each_other_as_long_as_radius_and_way_reach(apart, lies):
     inner = ellipse("1/2", apart, Fraction(0))
-    assert any(lies_in(inner, each) for each in around_it()) is lies
+    assert any(lies_in((inner, CALM), (each, CALM)) for each in around_it()) is lies
 
 
 def around_it():
@@ -193,9 +215,30 @@ def around_it():
 
 def test_balls_about_other_errors_do_not_lie_in_each_other():
     inner = ellipse("1/2", "0", Fraction(0))
-    assert any(lies_in(inner, each) for each in around_it())
+    assert any(lies_in((inner, CALM), (each, CALM)) for each in around_it())
     other = replace(inner, settled=Fraction(1, 10**6))
-    assert not any(lies_in(other, each) for each in around_it())
+    assert not any(lies_in((other, CALM), (each, CALM)) for each in around_it())
+
+
+@pytest.mark.parametrize(
+    ("faster", "slower", "moves", "center", "lies"),
+    [
+        ((-9, 11), (-9, 11), "1/10", 0, True),  # alike: apart at no drift
+        ((0, 10), (-10, 10), "1/10", "-1/2", True),  # alike, about other middles
+        ((0, 10), (-10, 10), "1/10", 0, False),
+        (("-4.9", "4.9"), ("-4.9", "4.9"), 0, 0, True),
+        (("-5.1", "5.1"), ("-5.1", "5.1"), 0, 0, False),
+        ((-9, 9), ("-4.9", "4.9"), 0, 0, True),  # only drifts that both know
+        ((-9, 9), ("-4.9", "5.1"), 0, 0, False),
+        ((-9, 9), ("-5.1", "4.9"), 0, 0, False),
+    ],
+)
+def test_balls_whose_centers_move_lie_in_each_other_at_every_drift_that_both_know(
+    faster, slower, moves, center, lies
+):
+    inner = ellipse("1/2", 0, Fraction(0), moves="1/10"), drift(*faster)
+    outer = [ellipse(1, center, each.inside, moves=moves) for each in around_it()]
+    assert any(lies_in(inner, (each, drift(*slower))) for each in outer) is lies
 
 
 def told_with(problem, certificate, proofs):
@@ -297,7 +340,7 @@ def test_matrix_that_is_not_positive_is_refused(half, proof):
 
 def test_each_share_is_needed(half, proof):
     """A disturbance whose share is a thousandth of what the search gives it: what it adds is not left out."""
-    for window, number in (*((0, each) for each in DRIFTS), (5, OFFSET)):
+    for window, number in (*((0, each) for each in (*DRIFTS, STEADY)), (5, OFFSET)):
         forged = json.loads(json.dumps(proof))
         each = forged["ellipsoids"][window]
         each[number] = repr(0.001 * float(each[number]))
@@ -444,7 +487,7 @@ def test_worn_wheels_of_which_the_law_takes_no_scale_are_refused(half, proof):
 
 def test_cells_that_go_on_with_the_ellipsoids_of_a_larger_one_are_accepted():
     """Tangents of a smaller range touch elsewhere: an ellipsoid of a cell may not be one of its half."""
-    problem = problem_of(0.82, speeds=(24.0 / 3.6, 34.0 / 3.6))
+    problem = problem_of(0.95, speeds=(14.0 / 3.6, 20.0 / 3.6))
     _, friction = bounded_friction(problem, SLIP_BAND.obligations(problem))
     assert friction is not None
     law = law_of(problem.controller)

@@ -139,9 +139,13 @@ def loop_at(problem, law, settled=0.0, *, window=WINDOW, friction=None):
 
 
 def loop_numbers(problem, law, *, told=None, settled=0.0):
-    """Disturbances of that loop; ``told`` is the law that the statement believes in."""
-    found = loop_at(problem, told or law, settled).disturbances
-    return [tuple(float(end.mid()) for end in each) for each in found]
+    """Disturbances of that loop, all of the drift; ``told`` is the law that the statement believes in."""
+    found = loop_at(problem, told or law, settled)
+    ends = np.array([[float(end.mid()) for end in each] for each in found.disturbances])
+    steady = np.array([float(end.mid()) for end in (found.steady.low, found.steady.high)])
+    ends[2] += steady
+    ends[3] += float(found.steady.share.mid()) * steady
+    return [tuple(each) for each in ends]
 
 
 def inside(value, ends):
@@ -186,11 +190,45 @@ def drift_by_friction(problem, law, settled):
         for each in (slip - settled * problem.vehicle.wheel_radius / 8.03, slip)
     )
     with ctx.workprec(128):
-        ends = loop_at(
-            problem, law, settled, window=(8.029, 8.031), friction=at._replace(level=level.level)
-        ).disturbances
-        torque, rims = (float((ends[k][0] + ends[k][1]).mid()) / 2.0 for k in (2, 4))
+        found = loop_at(problem, law, settled, window=(8.029, 8.031), friction=at._replace(level=level.level))
+        torque, rims = (float((low + high).mid()) / 2.0 for low, high in found.disturbances[2:5:2])
+        torque += float(found.steady.middle.mid())
     return torque + problem.nominal("wheelset inertia") / float(law.inertia) * rims
+
+
+@pytest.mark.parametrize("settled", [-0.01, 0.0, 0.05])
+def test_steady_drift_is_nearly_the_same_in_the_next_sample(falling, settled):
+    """Of the torque that holds a wheel beside a constant slip, without that of the rims, by differences in time."""
+    law = replace(law_of(falling.controller), falls=False, slip=Fraction(9, 50))
+    course = Course(falling, law, lambda _, __: 0.18)
+    h, inertia = float(law.sample_time), falling.vehicle.wheelset_inertia
+    speeds = course.speeds(8.3, h * np.linspace(0.0, 6.0, 121))[::20]
+
+    def rate(speed):
+        """Drift over a sample with the rate that it has at a speed."""
+        d = 1e-4
+        change = course.holding(speed + d, 0.18, settled) - course.holding(speed - d, 0.18, settled)
+        return -h * h * change / (2.0 * d) * course.braking(speed, 0.18) / inertia
+
+    steady = loop_at(falling, law, settled).steady
+    drifts = [rate(each) for each in speeds]
+    low, high, most = (float(each.mid()) for each in (steady.low, steady.high, steady.change))
+    assert all(low <= each <= high for each in drifts)
+    changes = [abs(other - one) for one, other in pairwise(drifts)]
+    assert max(changes) <= most < 0.1 * min(map(abs, drifts))
+    assert most < 40.0 * max(changes)
+    # The next sample's torque goes by the drift at its beginning, but for half of the change.
+    for one, (before, after) in zip(drifts, pairwise(speeds), strict=False):
+        gone = h * (course.holding(after, 0.18, settled) - course.holding(before, 0.18, settled)) / inertia
+        assert abs(gone - one) <= most / 2.0
+
+
+def test_slip_that_falls_has_no_steady_drift(falling):
+    """What is steady of it is not told apart from how the slip changes."""
+    steady = loop_at(falling, law_of(falling.controller)).steady
+    assert steady.low.is_zero()
+    assert steady.high.is_zero()
+    assert steady.change.is_zero()
 
 
 # Limits of a state of which all numbers are 0: what is held, the way that is asked for, and the error itself.

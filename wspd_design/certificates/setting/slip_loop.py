@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise, product
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from wspd_design.model.generated import slip_loop as generated
 from wspd_design.model.number import Number, maximum, minimum
@@ -49,17 +49,23 @@ class LoopLaw:
     kept: Number  # -, of the error of the filtered acceleration over a sample
 
 
+class Way(NamedTuple):
+    """Numbers of a wanted change of the torque."""
+
+    part: Number  # -, rho of the rest beside the change at the center
+    part_center: Number  # -, rho of that one
+    late: Number  # -, share of the sample that sees the torque before the rest
+    seen: Number  # -, share of the rest in the mean torque of the law
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopRanges:
     """Ranges of the numbers that may differ from sample to sample."""
 
     secants: Pair  # 1/s, of the friction over the wheel speed, over the inertia; neither end 0
     effects: Pair  # -, g
-    parts: tuple[Pair, ...]
-    """Corners of rho of the rest of a wanted way, and of the way at the center [-]."""
-    shares: tuple[Pair, ...]
-    """Corners of the late share of the rest, and of its share in the mean torque of the law [-]."""
-    shares_center: Pair  # -, the same of the way at the center
+    ways: tuple[Way, ...]  # corners
+    shares_center: Pair  # -, late share and share in the mean torque of the law, of the way at the center
 
 
 def polygon(secants: Pair, sample_time: Number) -> tuple[Pair, ...]:
@@ -106,18 +112,34 @@ def parts_of_longer(speedup: Number, longest: Number) -> Pair:
     return _ends([speedup, generated.rate_of_way(speedup, longest)])
 
 
-def parts_about(side: Pair, other: Pair) -> tuple[Pair, ...]:
-    """Return the parts of the rest of a way and of the way at the center that go together, as corners.
+def ways_about(
+    side: Pair, other: Pair, far: Number, shares: tuple[Sequence[Pair], Sequence[Pair]], center: Pair
+) -> tuple[Way, ...]:
+    """Return corners of ways about one at a center: of longer or shorter ones on its side, and of those to the other.
+
+    A way to the other side is one from 0 and that at the center, each for its part of the distance from there.
 
     Parameters
     ----------
-    side : tuple of number
-        Smallest and largest part of ways to the side of that at the center.
-    other : tuple of number
-        The same of ways to the other side.
+    side, other : tuple of number
+        Smallest and largest part of ways to the side of that at the center, and to the other side.
+    far : number
+        Largest part of the distance that lies on the other side.
+    shares : tuple of two sequences of pairs
+        Corners of late share and share in the mean torque of the law: of what is between ways on the side of that at
+        the center, and of ways from 0 to the other side.
+    center : tuple of number
+        The same of the way at the center.
     """
-    (low, high), (other_low, other_high) = side, other
-    return (low, low), (high, high), (minimum(other_low, low), low), (maximum(other_high, high), high)
+    own, opposite = shares
+    found = []
+    for rho in side:
+        found += [Way(rho, rho, *each) for each in (*own, center)]
+        for there, (late, seen) in product(other, opposite):
+            part = rho + far * (there - rho)
+            weighed = far * there * (1 - late) + (1 - far) * rho * (1 - center[0])
+            found.append(Way(part, rho, 1 - weighed / part, far * seen + (1 - far) * center[1]))
+    return tuple(found)
 
 
 def latest_share(growth: Number, pulse: Number, delay: Number, added: Number) -> Number:
@@ -169,13 +191,13 @@ def numbers_at_corners(
     law: LoopLaw, ranges: LoopRanges
 ) -> Iterator[tuple[tuple[Number, ...], tuple[Number, ...]]]:
     """Return phi, psi/h, g, rho, and both shares of the sample at all corners, for the rest and for the center."""
-    for slide, g, (rho, rho_center), shares in product(
-        polygon(ranges.secants, law.sample_time),
-        dict.fromkeys(ranges.effects),
-        dict.fromkeys(ranges.parts),
-        ranges.shares,
+    for slide, g, way in product(
+        polygon(ranges.secants, law.sample_time), dict.fromkeys(ranges.effects), ranges.ways
     ):
-        yield (*slide, g, rho, *shares), (*slide, g, rho_center, *ranges.shares_center)
+        yield (
+            (*slide, g, way.part, way.late, way.seen),
+            (*slide, g, way.part_center, *ranges.shares_center),
+        )
 
 
 def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[tuple[Matrix, Matrix]]:

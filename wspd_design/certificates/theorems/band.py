@@ -93,7 +93,7 @@ def claims(problem: Problem) -> dict[str, Claim]:
     found = {}
     law, radius = law_of(problem.controller), _radii(problem)
     for (k, window), (half, ends) in product(enumerate(windows_of(problem)), enumerate(_halves(problem))):
-        there = replace(_held(problem), speeds=window)
+        there = replace(contact_held(problem), speeds=window)
         there = replace(there, bounds=Bounds.of({**dict(there.bounds.items()), FRICTION: ends}))
         held = slips_held(law, window, radius)
         for name in BOUNDS:
@@ -137,7 +137,7 @@ def _radii(problem: Problem) -> Interval:
     return Fraction(low), Fraction(high)
 
 
-def _held(problem: Problem) -> Problem:
+def contact_held(problem: Problem) -> Problem:
     """Hold the contact and the shape of the friction at their nominal values."""
     kept = {name: ends for name, ends in problem.bounds.items() if name in varied(problem)}
     return replace(problem, bounds=type(problem.bounds).of(kept))
@@ -209,13 +209,13 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
         Special(
             key=CELLS,
             text="for every cell of the box and every window of speed no sample leads out of an ellipsoid of the state",
-            check=checker(_held(problem), problem.controller),
+            check=checker(contact_held(problem), problem.controller),
         ),
         *(
             Special(
                 key=name,
                 text=f"for a share of the box no sample leads out of an ellipsoid of the state, {what}",
-                check=checker(_held(problem), problem.controller, reserved=name == RESERVED),
+                check=checker(contact_held(problem), problem.controller, reserved=name == RESERVED),
             )
             for name, what in DISTURBED.items()
         ),
@@ -246,7 +246,7 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     cells, windows = covered(problem, findings, CELLS), windows_of(problem)
     friction = proved_friction(problem, findings)
     held, reference = held_names(problem), reference_text(law_of(problem.controller))
-    within = domain.domain_of(_held(problem), varied(problem), held)
+    within = domain.domain_of(contact_held(problem), varied(problem), held)
     low, high = (speed * KMH for speed in problem.speeds)
     claim = (
         f"Once the state of a wheelset is in its ellipsoid, its slip stays in a band around {reference} at every "

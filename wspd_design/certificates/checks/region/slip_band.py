@@ -27,6 +27,7 @@ from wspd_design.certificates.theorems.band import (
     NOISY,
     RESERVED,
     SLIP_BAND,
+    contact_held,
     key,
     proved_friction,
 )
@@ -50,7 +51,9 @@ def search(problem: Problem) -> Mapping[str, Stated]:
             DEPARTURE: _departure(problem),
         }
     law = law_of(problem.controller)
-    sought = Sought(problem=problem, law=law, friction=friction, conditions=exactly(problem, law))
+    sought = Sought(
+        problem=contact_held(problem), law=law, friction=friction, conditions=exactly(problem, law)
+    )
     found, failed = largest_share(sought, SOUGHT * budget().effort)
     effort = effort_of(problem, failed, proved=found.share if found else Fraction(0)) if failed else Effort()
     if found is None:

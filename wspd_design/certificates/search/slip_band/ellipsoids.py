@@ -15,6 +15,7 @@ from wspd_design.certificates.setting.slip_loop import (
     STATES,
     LoopLaw,
     LoopRanges,
+    Way,
     numbers_at_corners,
     sample,
 )
@@ -480,4 +481,6 @@ def _doubles(record: Any) -> Any:
 
 
 def _double(value: Any) -> Any:
+    if isinstance(value, Way):
+        return Way(*map(float, value))
     return tuple(map(_double, value)) if isinstance(value, tuple) else float(value)

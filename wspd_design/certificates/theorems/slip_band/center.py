@@ -3,19 +3,18 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
 from operator import mul
 from typing import NamedTuple
 
-from wspd_design.certificates.kernel.arb import Ball, ball, ends_of, hull_of, least_of, most_of, point
+from wspd_design.certificates.kernel.arb import Ball, ends_of, least_of, most_of, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.setting.slip_loop import (
     DISTURBANCES,
     Pair,
-    parts_about,
     parts_of,
     shares_together,
     wanted,
+    ways_about,
 )
 from wspd_design.certificates.theorems.slip_band.loop import Loop
 from wspd_design.certificates.theorems.slip_band.pulses import Limit, Pulses, Row, in_time, loop_law
@@ -55,27 +54,19 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
     # A way to the other side counts for its part of the distance from the center, at most as it does for the longest.
     most_back = other.part(back) * ends_of(loop.pulses[0].height[1] + loop.pulses[1].height[1])[1]
     far = most_back / (most_back + abs(way))
-    opposite = tuple(end + far * (each - end) for end, each in zip(side.parts, other.parts, strict=True))
-    shares, (late, seen) = _shares(law, loop, (side, other), (shortest, longest))
+    (own, opposite), (late, seen) = _shares(law, loop, (side, other), (shortest, longest, back))
     disturbances = [low.union(high) for low, high in loop.disturbances]
     known = tuple(point(Fraction(float(each.mid()))) for each in (late, seen))
     disturbances[DISTURBANCES.index("mean reference drift")] += (seen - known[1]) * way
-    effect = loop.ranges.effects[1]
-    most = most_of([end for each in loop.pulses for end in each.parts]) * effect
-    steepest = most_of([loop.ranges.secants[1] * point(law.sample_time), point(LEVEL)])
-    # To the other side the valve is another one: a part of what is gone there has not the late share of the way there.
-    mixed = most_of([abs(here - there) for here, there in product(side.parts, other.parts)])
-    mixed *= most_of([back, longest]) / 2 * ball(Fraction(-1), Fraction(1))
-    disturbances[DISTURBANCES.index("uneven slip drift")] += (
-        ((late - known[0]) * most + mixed * effect) * way * steepest.expm1() / steepest
-    )
+    growth = most_of([loop.ranges.secants[1] * point(law.sample_time), point(LEVEL)])
+    most = side.parts[1] * loop.ranges.effects[1] * growth.expm1() / growth
+    disturbances[DISTURBANCES.index("uneven slip drift")] += (late - known[0]) * way * most
     within = (in_time(law, each, pulse if each is side else back, loop.beside) for each in loop.pulses)
     return replace(
         loop,
         ranges=replace(
             loop.ranges,
-            parts=parts_about(side.parts, ends_of(hull_of(opposite))),
-            shares=shares,
+            ways=ways_about(side.parts, other.parts, far, (own, opposite), known),
             shares_center=known,
         ),
         disturbances=tuple(map(ends_of, disturbances)),
@@ -84,14 +75,14 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
 
 
 def _shares(
-    law: BandLaw, loop: Loop, sides: tuple[Pulses, Pulses], at_center: tuple[Ball, Ball]
-) -> tuple[tuple[Pair, ...], tuple[Ball, Ball]]:
-    """Return the late share and the share in the mean torque of the law, of the rest as corners and of the center.
+    law: BandLaw, loop: Loop, sides: tuple[Pulses, Pulses], lengths: tuple[Ball, Ball, Ball]
+) -> tuple[tuple[tuple[Pair, ...], tuple[Pair, ...]], tuple[Ball, Ball]]:
+    """Return late shares and shares in the mean torque of the law: corners on both sides, and those of the center.
 
-    What a longer pulse changes counts in a mean over the sample from its end on. So a part l of the rest counts in the
+    What a longer pulse changes counts in a mean over the sample from its end on. So a part l of a change counts in the
     mean torque that the law works out, times the rate of the way that it goes by its nominal times; and nearly the same
     part in what the wheel sees, which is weighted by how errors grow, comes later with a late pulse, and goes by the
-    true times. Lengths are convex over ways: l is at least as large as halfway between the center and the longest one.
+    true times. Lengths are convex over ways: l is at least as large as halfway between the ends of the change.
 
     Parameters
     ----------
@@ -101,39 +92,47 @@ def _shares(
         As :func:`loop_of` returns it.
     sides : tuple of Pulses
         To the side of the way at the center, and to the other one.
-    at_center : tuple of ball
-        Shortest and longest pulse of the way at the center, over the sample time.
+    lengths : tuple of ball
+        Shortest and longest pulse of the way at the center, and the longest to the other side.
     """
-    h, share, side = point(law.sample_time), point(law.time_share), sides[0]
-    shortest, longest = at_center
-    low, high = loop.ranges.secants
-    slowest, fastest = least_of([low * h, point(-LEVEL)]), most_of([high * h, point(LEVEL)])
-    reach, none = loop.pulse / side.time, point(0)
+    share, (side, other), (shortest, longest, back) = point(law.time_share), sides, lengths
+    fastest, slowest = (
+        extreme([end * point(law.sample_time), point(level)])
+        for end, extreme, level in zip(
+            loop.ranges.secants[::-1], (most_of, least_of), (LEVEL, -LEVEL), strict=True
+        )
+    )
     # The part gone on the way from the center differs by so much from that on the way from none.
     begun = side.part(longest) / side.part(loop.pulse)
 
     def uneven(speedup: Ball) -> Ball:
-        return 1 + ((abs(1 - speedup) * reach).exp() - 1) * begun
+        return 1 + ((abs(1 - speedup) * loop.pulse / side.time).exp() - 1) * begun
 
-    uneven_true = most_of([uneven(end) for end in side.speedups])
-    # Parts l of the true change have other weights than those of the law, which differ by side.
-    weights = most_of(
-        [
-            ((abs(end - share) + abs(1 - share)) * loop.pulse / each.time).exp()
-            for each in sides
-            for end in each.speedups
-        ]
-    ).sqrt()
-    aside = loop.pulse * (weights - 1) / (weights + 1)
-    left, added = 1 - (loop.pulse + longest) / 2, loop.added
-    later = most_of([share_after(fastest, left - aside - loop.delay), none])
-    earlier = share_after(slowest, left + aside) * uneven_true
-    least, most = parts_of((share, share), most_of([loop.pulse / each.time for each in sides]))
-    shares = shares_together(
-        (left, point(1)),
-        (later / uneven_true / (1 + added) / left, (earlier + added) / (1 + added) / left),
-        ends_of((least / uneven(share)).union(most * uneven(share))),
+    def together(
+        pulses: Pulses, longest_one: Ball, left: Ball, uneven_true: Ball, uneven_law: Ball
+    ) -> tuple[Pair, ...]:
+        """Parts of a change from some length to the longest one, of which at least a part counts."""
+        weights = most_of(
+            [(abs(end - share) * longest_one / pulses.time).exp() for end in pulses.speedups]
+        ).sqrt()
+        aside = longest_one * (weights - 1) / (weights + 1)  # parts have other weights than those of the law
+        later = most_of([share_after(fastest, left - aside - loop.delay), point(0)]) / uneven_true
+        earlier = share_after(slowest, left + aside) * uneven_true + loop.added
+        least, most = parts_of((share, share), longest_one / pulses.time)
+        return shares_together(
+            (left, point(1)),
+            (later / (1 + loop.added) / left, earlier / (1 + loop.added) / left),
+            ends_of((least / uneven_law).union(most * uneven_law)),
+        )
+
+    own = together(
+        side,
+        loop.pulse,
+        1 - (loop.pulse + longest) / 2,
+        most_of([uneven(end) for end in side.speedups]),
+        uneven(share),
     )
+    opposite = together(other, back, 1 - back / 2, point(1), point(1))
     # Of the center itself, over the part that is gone on the whole way.
     least, most = parts_of((share, share), longest / side.time)
     fading = (
@@ -141,14 +140,13 @@ def _shares(
     ).exp()  # the rate at the end of the pulse over that at its beginning
     seen = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
     differs = [
-        most_of([excess * loop.pulse, abs(1 - end) * longest]) / side.time
+        most_of([sign * (1 - end) * loop.pulse, abs(1 - end) * longest]) / side.time
         for sign, end in zip((1, -1), side.speedups, strict=True)
-        for excess in (sign * (1 - end),)
     ]
     faster = (-side.speedups[1] * longest / side.time).exp()
-    last = most_of([share_after(fastest, 1 - longest / 2 - loop.delay), none]) * (-differs[0]).exp()
-    first = share_after(slowest, 1 - faster * shortest / 2) * differs[1].exp()
-    return shares, (1 - (last / (1 + added)).union((first + added) / (1 + added)), seen)
+    last = most_of([share_after(fastest, 1 - longest / 2 - loop.delay), point(0)]) * (-differs[0]).exp()
+    first = share_after(slowest, 1 - faster * shortest / 2) * differs[1].exp() + loop.added
+    return (own, opposite), (1 - last.union(first) / (1 + loop.added), seen)
 
 
 def way_at(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Ball:

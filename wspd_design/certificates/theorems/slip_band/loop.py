@@ -6,6 +6,7 @@ All of them are worked out in balls from the box and from the proved bounds of t
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
+from math import isfinite
 from typing import NamedTuple
 
 from wspd_design.certificates.kernel.arb import (
@@ -23,7 +24,7 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.creep_slope import bend
 from wspd_design.certificates.setting.declared_law import LEAST
-from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, latest_share, wanted
+from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, Way, latest_share, wanted
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
     FRICTION,
@@ -209,7 +210,10 @@ def loop_of(
     else:
         less = apart * radius  # m/s, that the wheel slides slower
         bent_force = bend(replace(problem, speeds=window), float(law.slip), (below(less), above(less)))
-        change = h**3 * (weight * ball(*bent_force) * braking**2 + fading_torque * jerk)
+        if not all(map(isfinite, bent_force)):
+            raise Refused("the second derivative of the friction is not enclosed")
+        # The speed falls by the braking, which itself rises with the jerk.
+        change = h**3 * (fading_torque * jerk - weight * ball(*bent_force) * braking**2)
         change = most_of([abs(change.lower()), abs(change.upper())])
         steady = Steady(*ends_of(steadily), change, share_seen)
         mean_drift = drift * half_way + steadily * (half_way - share_seen)
@@ -255,10 +259,12 @@ def loop_of(
         ranges=LoopRanges(
             secants=(low, high),
             effects=ends_of(effect),
-            parts=tuple(
-                (end, end) for end in ends_of(hull_of([end for each in pulses for end in each.parts]))
+            ways=tuple(
+                Way(part, part, *shares)
+                for part, *shares in product(
+                    ends_of(hull_of([end for each in pulses for end in each.parts])), ends_of(late), seen
+                )
             ),
-            shares=tuple(product(ends_of(late), seen)),
             shares_center=(late, hull_of(seen)),
         ),
         disturbances=tuple(map(ends_of, disturbed)),
