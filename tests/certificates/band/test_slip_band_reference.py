@@ -210,7 +210,7 @@ def test_steady_drift_is_nearly_the_same_in_the_next_sample(falling, settled):
         change = course.holding(speed + d, 0.18, settled) - course.holding(speed - d, 0.18, settled)
         return -h * h * change / (2.0 * d) * course.braking(speed, 0.18) / inertia
 
-    steady = loop_at(falling, law, settled).steady
+    steady = loop_at(falling, law, settled, window=(8.0, 8.35)).steady
     drifts = [rate(each) for each in speeds]
     low, high, most = (float(each.mid()) for each in (steady.low, steady.high, steady.change))
     assert all(low <= each <= high for each in drifts)

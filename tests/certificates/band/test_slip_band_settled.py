@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from flint import ctx
 from scipy.integrate import quad
+from scipy.optimize import linprog
 
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused, Work, number
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, parts_about
+from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, Way, ways_about
 from wspd_design.certificates.theorems.band import CELLS
 from wspd_design.certificates.theorems.slip_band import checker
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
@@ -207,7 +208,7 @@ def test_way_at_the_center_has_the_part_of_its_own_side(valves, way):
         asked = -math.expm1(-length * h / assumed[kind])
         return [-math.expm1(-length * h / time) / asked for time in (fill, vent)[kind]]
 
-    pairs = [tuple(float(each.mid()) for each in pair) for pair in found.ranges.parts]
+    pairs = pairs_of(Way(*(each.mid() for each in each_way)) for each_way in found.ranges.ways)
     side, other = (0, 1) if way > 0.0 else (1, 0)
     here, there = (
         [part for length in (1e-3, 0.2, 0.5) for part in gone(kind, length)] for kind in (side, other)
@@ -226,7 +227,13 @@ def counted(side, other, way, most, times=1.0):
     """Pairs of parts where ways of at most this length to the other side count for their part of the distance."""
     far = most / (most + times * way)
     here, there = (tuple(float(end.mid()) for end in each.parts) for each in (side, other))
-    return parts_about(here, tuple(end + far * (each - end) for end, each in zip(here, there, strict=True)))
+    share = (0.0, 0.6)
+    return pairs_of(ways_about(here, there, far, ([share], [share]), share))
+
+
+def pairs_of(ways):
+    """Different pairs of parts of the rest and of the way at the center."""
+    return sorted({tuple(round(float(end), 12) for end in (each.part, each.part_center)) for each in ways})
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -240,8 +247,8 @@ def test_ways_to_the_other_side_count_for_their_part_of_the_distance(valves, way
     sides = loop.pulses[::-1] if kind == 0 else loop.pulses
     most = -math.expm1(-float(LENGTHS.back) * h / assumed)
     most *= sum(float(each.height[1].mid()) for each in loop.pulses)
-    pairs = [tuple(float(each.mid()) for each in pair) for pair in found.ranges.parts]
-    np.testing.assert_allclose(sorted(pairs), sorted(counted(*sides, abs(way), most)), rtol=1e-9)
+    pairs = pairs_of(Way(*(each.mid() for each in each_way)) for each_way in found.ranges.ways)
+    np.testing.assert_allclose(pairs, counted(*sides, abs(way), most), rtol=1e-9)
     center_parts = [float(end.mid()) for end in sides[0].parts]
 
     def enclosed(pairs):
@@ -258,7 +265,7 @@ def test_ways_to_the_other_side_count_for_their_part_of_the_distance(valves, way
     ):
         wanted, gone = (-math.expm1(-length * h / each) * height for each in (assumed, time))
         simulated.append((-math.copysign(wanted, way), -math.copysign(gone, way)))
-    assert {center for _, center in pairs} == set(center_parts)
+    assert sorted({center for _, center in pairs}) == pytest.approx(sorted(set(center_parts)))
     assert enclosed(pairs)
     # Near 0 the parts are nearly those of the side of the center.
     assert not enclosed(counted(*sides, abs(way), most, times=2.0))
@@ -307,7 +314,7 @@ def test_mean_torque_of_the_law_is_between_what_is_seen_of_both_ways(valves, way
         return math.copysign(quad(gone, 0.0, 1.0, points=[length], epsabs=1e-13)[0], u)
 
     side = 0 if way > 0.0 else 1
-    seen = [float(each.mid()) for _, each in found.ranges.shares]
+    seen = [float(each.seen.mid()) for each in found.ranges.ways]
     known = float(found.ranges.shares_center[1].mid())
     place = DISTURBANCES.index("mean reference drift")
     below, above = (
@@ -368,38 +375,33 @@ def in_means(law, u, heights, true_times, growth, delay):
     return gone(delay + length, true_times[kind]), weighted, mean
 
 
-def shares_needed(problem, loop, way, delay, *, faulty=None, left_out=1.0):
-    """How far pairs of shares that simulated ways need lie outside of the corners of the loop; 0 inside."""
+def left_out(problem, loop, way, delay, *, faulty=lambda ways: ways):
+    """How far what simulated ways do is from every mixture of the corners of the loop, and of what disturbs."""
     with ctx.workprec(128):
-        low, high = (
-            point(Fraction(each) / Fraction(law_of(problem.controller).sample_time)) for each in GROWTHS
-        )
+        h = Fraction(law_of(problem.controller).sample_time)
+        low, high = (point(Fraction(each) / h) for each in GROWTHS)
         ranges = replace(loop.ranges, secants=(low, high))
         law, found = centered(problem, replace(loop, ranges=ranges, delay=point(Fraction(delay))), way)
-    corners = np.array([[float(each.mid()) for each in pair] for pair in found.ranges.shares])
-    if faulty is not None:
-        corners = faulty(corners)
+    corners = np.array(faulty([[float(each.mid()) for each in one] for one in found.ranges.ways]))
     known = [float(each.mid()) for each in found.ranges.shares_center]
-    effect = float(found.ranges.effects[1].mid())
-    slack = [
-        max(
-            abs(float((after - before).mid()))
+    # A change of a mean is a disturbance of the error over the effect, and the growth of what it adds to it.
+    to_mean = GROWTHS[1] / math.expm1(GROWTHS[1]) / float(found.ranges.effects[1].mid())
+    disturbed = [
+        [
+            float((after - before).mid()) * factor
             for after, before in zip(found.disturbances[k], loop.disturbances[k], strict=True)
+        ]
+        for k, factor in (
+            (DISTURBANCES.index("uneven slip drift"), to_mean),
+            (DISTURBANCES.index("mean reference drift"), 1.0),
         )
-        for k in map(DISTURBANCES.index, ("uneven slip drift", "mean reference drift"))
     ]
-    slack[0] *= (
-        left_out * GROWTHS[1] / math.expm1(GROWTHS[1]) / effect
-    )  # of a mean, from a disturbance of the error
-    side, outside = 0 if way > 0.0 else 1, 0.0
+    side, farthest = 0 if way > 0.0 else 1, 0.0
     assumed, h = [float(each) for each in (law.fill_time, law.vent_time)], float(law.sample_time)
     fill, vent = (problem.span(name) for name in ("fill time", "vent time"))
-    for times, growth, length in product(
-        product(fill, vent), GROWTHS, (float(LENGTHS[0]), float(LENGTHS[1]))
-    ):
+    for times, growth, length in product(product(fill, vent), GROWTHS, map(float, LENGTHS[:2])):
         heights = [0.1, 0.1]
         heights[side] = abs(way) / -math.expm1(-length * h / assumed[side])
-        at_center = in_means(law, way, heights, times, growth, delay)
         longest = [float(PULSE), float(PULSE)]
         longest[1 - side] = float(LENGTHS.back)
         ends = [
@@ -407,42 +409,55 @@ def shares_needed(problem, loop, way, delay, *, faulty=None, left_out=1.0):
             for each, time, height in zip(longest, assumed, heights, strict=True)
         ]
         for u in np.linspace(-0.999 * ends[1], 0.999 * ends[0], 7):
-            gone, weighted, mean = in_means(law, u, heights, times, growth, delay)
-            own = u * way > 0.0
-            part_center = gone / u if own else at_center[0] / way
-            part = gone / u if own else (gone - at_center[0]) / (u - way)
-            late = 1.0 - (weighted - (1.0 - known[0]) * part_center * way) / (part * (u - way))
-            seen = (mean - known[1] * way) / (u - way)
-            room = slack[0] / abs(part * (u - way)), slack[1] / abs(u - way)
-            outside = max(outside, beyond((late, seen), corners, room))
-    return outside
+            done = np.array(in_means(law, u, heights, times, growth, delay))
+            part, center, late, seen = corners.T
+            whole = part * (u - way) + center * way
+            weighed = part * (1.0 - late) * (u - way) + center * (1.0 - known[0]) * way
+            mean = seen * (u - way) + known[1] * way
+            farthest = max(farthest, apart(np.array([whole, weighed, mean]).T, done, disturbed) / abs(way))
+    return farthest
 
 
-def beyond(pair, corners, room):
-    """How far a pair lies outside of a parallelogram, its sides and its coordinates given, less what is allowed."""
-    a, b, c, _ = corners
-    sides = np.array([b - a, c - a]).T
-    middle = corners.mean(axis=0)
-    apart = np.linalg.solve(sides, np.array(pair) - middle)
-    allowed = np.abs(np.linalg.inv(sides)) @ np.array(room)
-    return max(float(np.max(np.abs(apart) - 0.5 - allowed)), 0.0)
+def apart(corners, point, disturbed):
+    """Least distance of a point from the mixtures of corners, the last two coordinates moved between two ends."""
+    count = len(corners)
+    # Unknowns: weights of the corners, what is added to the last two coordinates, and the distance.
+    costs = np.zeros(count + 3)
+    costs[-1] = 1.0
+    moved = np.zeros((3, 2))
+    moved[1:, :] = np.eye(2)
+    rows = np.concatenate([corners.T, moved], axis=1)
+    within = np.concatenate([np.concatenate([sign * rows, -np.ones((3, 1))], axis=1) for sign in (1.0, -1.0)])
+    found = linprog(
+        costs,
+        A_ub=within,
+        b_ub=np.concatenate([point, -point]),
+        A_eq=[[*np.ones(count), 0.0, 0.0, 0.0]],
+        b_eq=[1.0],
+        bounds=[(0.0, None)] * count + [tuple(each) for each in disturbed] + [(0.0, None)],
+    )
+    assert found.status == 0
+    return float(found.fun)
 
 
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("delay", [0.0, 0.2])
-def test_shares_of_simulated_ways_lie_between_their_corners(valves, way, delay):
-    """Against integrals over the sample: weights that grow or fall, both ends of the times, ways to both sides."""
+def test_simulated_ways_are_mixtures_of_the_corners(valves, way, delay):
+    """What is gone, and both means, against integrals over the sample: ways to both sides, errors that grow or fade."""
     problem, loop, *_ = valves
-    assert shares_needed(problem, loop, way, delay) < 1e-9
+    assert left_out(problem, loop, way, delay) < 1e-6
 
 
 @pytest.mark.parametrize("way", WAYS[:1])
-def test_shares_that_go_together_too_closely_leave_ways_out(valves, way):
-    """Mutants: longest pulses of half the length, and nothing for the other valve to the other side."""
+def test_shares_that_are_too_close_leave_ways_out(valves, way):
+    """Mutants: pulses of half the length, no ways to the other side, and shares of the same side for those."""
     problem, loop, *_ = valves
 
-    def shorter(corners):
-        return np.array([*(0.5 * (corners[:2] + corners[2:])), *corners[2:]])
+    def shorter(ways):
+        return [[a, b, 0.5 * late, 0.5 * (seen + 0.6)] for a, b, late, seen in ways]
 
-    assert shares_needed(problem, loop, way, 0.0, faulty=shorter) > 0.1
-    assert shares_needed(problem, loop, way, 0.0, left_out=0.0) > 0.1
+    def one_side(ways):
+        return [each for each in ways if each[0] == each[1]]
+
+    for faulty in (shorter, one_side):
+        assert left_out(problem, loop, way, 0.0, faulty=faulty) > 1e-3

@@ -12,6 +12,7 @@ from wspd_design.certificates.setting.slip_loop import (
     STATES,
     LoopLaw,
     LoopRanges,
+    Way,
     corners,
     latest_share,
 )
@@ -20,8 +21,10 @@ UNITS = list(np.eye(STATES + len(DISTURBANCES)))
 STEADY = LoopRanges(
     secants=(-3.0, 1.0),
     effects=(0.8, 0.8),
-    parts=((0.55, 0.55), (0.65, 0.65)),
-    shares=tuple(product((0.0, latest_share(0.02, 1.0, 0.0, 0.0)), (0.3, 0.62))),
+    ways=tuple(
+        Way(part, part, late, seen)
+        for part, late, seen in product((0.55, 0.65), (0.0, latest_share(0.02, 1.0, 0.0, 0.0)), (0.3, 0.62))
+    ),
     shares_center=(0.0, 0.5),
 )
 

@@ -1,7 +1,6 @@
 """Corners of the sampled slip loop: they enclose what a sample can be."""
 
 import math
-from fractions import Fraction
 
 import flint
 import numpy as np
@@ -12,16 +11,15 @@ from wspd_design.certificates.setting.slip_loop import (
     STATES,
     LoopLaw,
     LoopRanges,
+    Way,
     corners,
     latest_share,
     numbers_at_corners,
-    parts_about,
-    parts_of,
-    parts_of_longer,
     polygon,
     sample,
     shares_together,
     wanted,
+    ways_about,
 )
 
 H = 0.02
@@ -71,8 +69,10 @@ def test_corners_in_balls_are_those_in_doubles():
         return LoopRanges(
             secants=(number(-7.0), number(1.0)),
             effects=(number(0.75), number(1.25)),
-            parts=((number(0.5), number(0.5)), (number(1.125), number(1.125)), (number(0.25), number(0.5))),
-            shares=((number(0.0), number(0.625)), (number(0.5), number(0.25))),
+            ways=tuple(
+                Way(*map(number, each))
+                for each in ((0.5, 0.5, 0.0, 0.625), (1.125, 1.125, 0.5, 0.25), (0.25, 0.5, 0.25, 0.5))
+            ),
             shares_center=(number(0.125), number(0.375)),
         )
 
@@ -92,7 +92,7 @@ def test_corners_in_balls_are_those_in_doubles():
         dtype=float,
     )
     wanted_ones = np.array(list(corners(LAW, ranges(float), UNITS)), dtype=float)
-    assert found.shape == (6 * 2 * 3 * 2, 2, STATES, STATES + len(DISTURBANCES))
+    assert found.shape == (6 * 2 * 3, 2, STATES, STATES + len(DISTURBANCES))
     np.testing.assert_allclose(found, wanted_ones, rtol=1e-9, atol=1e-12)
 
 
@@ -101,8 +101,7 @@ def test_constant_errors_are_at_rest():
     ranges = LoopRanges(
         secants=(-3.0, 1.0),
         effects=(0.7, 1.3),
-        parts=((0.4, 0.4), (1.2, 1.2)),
-        shares=((0.0, 0.3), (0.5, 0.6)),
+        ways=(Way(0.4, 0.4, 0.0, 0.3), Way(1.2, 1.2, 0.5, 0.6)),
         shares_center=(0.1, 0.5),
     )
     for matrix in (each for both in corners(LAW, ranges, UNITS) for each in both):
@@ -115,8 +114,7 @@ def test_center_has_its_own_part_and_share_and_all_else_of_the_sample():
     ranges = LoopRanges(
         secants=(-3.0, 1.0),
         effects=(0.7, 1.3),
-        parts=((0.4, 0.6), (1.2, 0.9)),
-        shares=((0.0, 0.6), (0.5, 0.3)),
+        ways=(Way(0.4, 0.6, 0.0, 0.6), Way(1.2, 0.9, 0.5, 0.3)),
         shares_center=(0.1, 0.5),
     )
     found = list(numbers_at_corners(LAW, ranges))
@@ -136,40 +134,30 @@ def test_what_is_wanted_is_what_a_whole_way_leads_to():
     assert whole[4] == whole[STATES + DISTURBANCES.index("acceleration error")]
 
 
-def test_pairs_of_parts_are_those_of_both_signs():
-    """Ways beside the center on its side have its part; across 0 the rest has a part of the other side at worst."""
-    side, other = (0.8, 1.1), (0.5, 1.4)
-    assert set(parts_about(side, other)) == {(0.8, 0.8), (1.1, 1.1), (0.5, 0.8), (1.4, 1.1)}
-    assert set(parts_about(other, side)) == {(0.5, 0.5), (1.4, 1.4)}
-    random = np.random.default_rng(2)
-    for one, opposite in ((side, other), (other, side), (side, side)):
-        pairs = parts_about(one, opposite)
-        for u, u_center in random.uniform(-1.0, 1.0, (200, 2)):
-            part = random.choice(one if u * u_center > 0.0 else opposite)
-            gone = [rest * (u - u_center) + center * u_center for rest, center in pairs]
-            assert min(gone) - 1e-12 <= part * u <= max(gone) + 1e-12
+def test_ways_are_those_of_both_signs():
+    """Ways beside the center on its side have its part; of those across 0, the way at the center has the other part."""
+    random, share = np.random.default_rng(2), (0.1, 0.5)
+    for one, other in (((0.8, 1.1), (0.5, 1.4)), ((0.5, 1.4), (0.8, 1.1)), ((0.8, 1.1), (0.8, 1.1))):
+        for far in (0.3, 1.0):
+            ways = ways_about(one, other, far, ([share], [share]), share)
+            for u_center in random.uniform(0.1, 1.0, 100):
+                part, there = random.choice(one), random.choice(other)
+                for u, gone in (
+                    (random.uniform(0.0, 3.0), part),
+                    (-u_center * far / (1.0 - far) * random.uniform() if far < 1.0 else -9.0, None),
+                ):
+                    whole = gone * u if gone is not None else there * u
+                    ends = [each.part * (u - u_center) + each.part_center * u_center for each in ways]
+                    assert min(ends) - 1e-12 <= whole <= max(ends) + 1e-12
 
 
-def test_a_longer_way_goes_further_by_the_rate_at_one_of_the_ends():
-    """A slow valve goes ever more of what is wanted, a fast one ever less; the rate goes farther than the part."""
-    for speedup in (0.4, 1.3):
-        low, high = parts_of_longer(speedup, 0.5)
-        assert low < speedup < high or speedup in (low, high)
-        part = parts_of((speedup, speedup), 0.5)
-        assert low <= part[0] <= part[1] <= high
-        ends = np.linspace(0.0, 0.5, 21)
-        asked, gone = 1.0 - np.exp(-ends), 1.0 - np.exp(-speedup * ends)
-        rates = np.diff(gone) / np.diff(asked)
-        assert low <= rates.min() <= rates.max() <= high
-        assert rates.min() < part[0] or rates.max() > part[1]
-
-
-def test_part_of_the_way_is_the_assumed_time_over_the_true_one_for_short_pulses():
-    assert parts_of((0.4, 1.2), 1e-9) == pytest.approx((0.4, 1.2))
-    low, high = parts_of((0.4, 1.2), 0.5)
-    assert low == pytest.approx(0.4)
-    assert high == pytest.approx(1.2)
-    assert parts_of((2.0, 2.0), float(Fraction(1, 2)))[0] < 2.0
+def test_a_way_from_none_to_the_other_side_counts_with_its_own_shares():
+    """As far as it can be: what is late there, and of the mean, each for its part of the distance."""
+    (*_, last) = ways_about((0.8, 0.8), (1.2, 1.2), 0.75, ([(0.0, 0.6)], [(0.4, 0.3)]), (0.1, 0.55))
+    assert last.part == pytest.approx(0.25 * 0.8 + 0.75 * 1.2)
+    assert last.part_center == 0.8
+    assert last.part * (1.0 - last.late) == pytest.approx(0.25 * 0.8 * 0.9 + 0.75 * 1.2 * 0.6)
+    assert last.seen == pytest.approx(0.25 * 0.55 + 0.75 * 0.3)
 
 
 def test_a_pulse_sees_the_torque_before_it_until_it_has_begun_and_half_of_it_is_gone():
