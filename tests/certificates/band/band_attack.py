@@ -1,7 +1,7 @@
 """Runs that attack a proved band of slip: starts on the boundary of its ellipsoids, and stops from rolling wheels.
 
 The plant is that of :mod:`tests.attack.plant`, the protection is written once more here, both over arrays of runs. Of
-the package come only the numbers of the law and the proof that is attacked::
+the package come only the numbers of the law, and the proof that is attacked with the middle of its steady drift::
 
     python -m tests.certificates.band.band_attack DESIGN CERTIFICATE --starts 100000 --stops 10000
 
@@ -20,6 +20,7 @@ import numpy as np
 
 from tests.attack.plant import Plant, creep_force, filled, resistance, static_load, vented
 from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.theorems.slip_band.checker import steady_of
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.statement import LETTERS, box_of, halved, windows_of
 from wspd_design.design.certification import check, problem_of
@@ -59,6 +60,8 @@ class Sets:
     cells: Any  # (cells, numbers, 2)
     matrices: Any  # (cells, windows, 5, 5)
     centers: Any  # (cells, windows, 5)
+    moves: Any  # (cells, windows, 5), of the centers with the steady drift
+    middles: Any  # (cells, windows), steady drift that the centers are for [rad/s]
     settled: Any  # (cells, windows), error that errors are counted from [rad/s]
     supplies: Any  # (cells, windows), least share of the full pressure [-]
     bands: Any  # (windows, 2): below and above the reference [-]
@@ -95,6 +98,16 @@ def sets_of(problem, proof, numbers):
             np.array([[each.matrix for each in cell] for cell in found.cells], dtype=float)
         ),
         centers=np.array([[each.center for each in cell] for cell in found.cells], dtype=float),
+        moves=np.array([[each.moves for each in cell] for cell in found.cells], dtype=float),
+        middles=np.array(
+            [
+                [
+                    float(steady_of(problem, found, (cell, k), each).middle.mid())
+                    for k, each in enumerate(ellipsoids)
+                ]
+                for cell, ellipsoids in zip(cells, found.cells, strict=True)
+            ]
+        ),
         settled=np.array([[each.settled for each in cell] for cell in found.cells], dtype=float),
         supplies=np.array([[each.supply for each in cell] for cell in found.cells], dtype=float),
         bands=np.array(
@@ -320,6 +333,28 @@ def holds(law, plant, speed, wheel, there):
     return torque * law.full / plant.max_torque / law.inertia, rate
 
 
+def drift(law, plant, speed, wheel, settled):
+    """Steady drift over a sample of the torque that holds a wheel beside the reference, but for what turns it.
+
+    By differences over the train speed, which falls as the slip of the wheels makes it.
+    """
+
+    def holding(v):
+        there = (1.0 - law.slip) * v / plant.wheel_radius + settled
+        torque = plant.wheelset_inertia * motion(plant, v, there, 0.0)[1]
+        return torque * law.full / plant.max_torque / law.inertia
+
+    d = 1e-4 * speed
+    change = (holding(speed + d) - holding(speed - d)) / (2.0 * d)
+    return law.h**2 * change * motion(plant, speed, wheel, 0.0)[0]
+
+
+def centers(law, sets, at, runs, settled):
+    """Centers of the ellipsoids of some cells and windows, for the drift that runs have there."""
+    away = drift(law, runs.plant, runs.speed, runs.wheel, settled) - sets.middles[at]
+    return sets.centers[at].T + sets.moves[at].T * away
+
+
 @dataclass
 class Seen:
     """What runs have done."""
@@ -348,8 +383,8 @@ def follow(law, sets, runs, *, samples, disturbance=None, seed=3):
         if not len(runs.speed):
             break
         now, window = runs.number, sets.window(runs.speed)
-        apart = deviations(law, runs, sets.settled[cells[now], window])
-        apart -= sets.centers[cells[now], window].T
+        settled = sets.settled[cells[now], window]
+        apart = deviations(law, runs, settled) - centers(law, sets, (cells[now], window), runs, settled)
         size = np.einsum("ik,kij,jk->k", apart, sets.matrices[cells[now], window], apart)
         inside = size <= 1.0 + 1e-9
         # As long as the supply is below what a slower window asks for, nothing is claimed.
@@ -385,8 +420,14 @@ def boundary(problem, law, sets, random, count, larger=1.0):
     direction = random.normal(size=(count, 5))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     roots = np.linalg.cholesky(np.linalg.inv(sets.matrices[cell, window]))
-    e, p, n, y, lag = (sets.centers[cell, window] + larger * np.einsum("kij,kj->ki", roots, direction)).T
-    there = (1.0 - law.slip) * speed / plant.wheel_radius + sets.settled[cell, window]
+    settled = sets.settled[cell, window]
+    there = (1.0 - law.slip) * speed / plant.wheel_radius + settled
+    # The drift goes by how the train slows down, which the error of the wheels changes a little.
+    away, error = larger * np.einsum("kij,kj->ik", roots, direction), 0.0 * speed
+    for _ in range(5):
+        drifted = drift(law, plant, speed, there + error, settled) - sets.middles[cell, window]
+        e, p, n, y, lag = sets.centers[cell, window].T + sets.moves[cell, window].T * drifted + away
+        error = e
     wheel = there + e
     held, rate = holds(law, plant, speed, wheel, there)
     scale = law.radius / plant.wheel_radius

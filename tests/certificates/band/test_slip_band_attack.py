@@ -60,10 +60,12 @@ def test_stops_from_rolling_enter_and_stay(half, sets, stops):
 
 
 def test_sets_that_are_too_small_are_left(half, sets):
-    """The attack can tell: a fifth of each ellipsoid is left from its boundary, and half of the band is not kept."""
-    smaller = replace(sets, matrices=25.0 * sets.matrices)
+    """The attack can tell: a part of each ellipsoid is left, one about centers that stay, and .4 of the band."""
+    smaller = replace(sets, matrices=400.0 * sets.matrices)
     assert attack_boundary(half, smaller, starts=200).left.any()
-    narrower = replace(sets, bands=0.5 * sets.bands)
+    still = replace(sets, matrices=25.0 * sets.matrices, moves=0.0 * sets.moves)
+    assert attack_boundary(half, still, starts=200).left.any()
+    narrower = replace(sets, bands=0.4 * sets.bands)
     assert attack_boundary(half, narrower, starts=200).left.any()
 
 

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 from wspd_design.certificates.checks.frame import Figures, series
 from wspd_design.certificates.quantities import QUANTITIES
 from wspd_design.certificates.records import Certificate, Problem, Role, Series, Status
-from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.theorems.band import CELLS, contact_held
 from wspd_design.certificates.theorems.slip_band.attempt import Attempt, attempt_of, cells_of, how_it_ended
+from wspd_design.certificates.theorems.slip_band.checker import steady_of
 from wspd_design.certificates.theorems.slip_band.departure import SettledStop, settled_stop
+from wspd_design.certificates.theorems.slip_band.loop import Steady
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read
 from wspd_design.certificates.theorems.slip_band.reference import slip_at
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -67,14 +69,17 @@ def figures(problem: Problem, certificate: Certificate) -> Figures:
     cells = cells_of(box_of(problem, proof.share), proof.steps)[0]
     nominal = tuple(Fraction(problem.nominal(name)) for name in NAMES)
     inside = (all(low <= x <= high for x, (low, high) in zip(nominal, cell, strict=True)) for cell in cells)
-    ellipsoids = next(
-        [each for each in cell if each is not None]
-        for cell, holds in zip(proof.cells, inside, strict=True)
-        if holds
+    place, ellipsoids = next(
+        (cell, found) for cell, found, holds in zip(cells, proof.cells, inside, strict=True) if holds
     )
+    sets = [
+        (each, steady_of(contact_held(problem), proof, (place, k), each))
+        for k, each in enumerate(ellipsoids)
+        if each is not None
+    ]
     shown = tuple(_cells(problem, proof, attempt))
     return Figures(
-        series=(*_band(problem, finding.numbers), *_basin(problem, ellipsoids), *shown),
+        series=(*_band(problem, finding.numbers), *_basin(problem, sets), *shown),
         remark=f"{REMARK} {_remark(attempt, shown, whole=proof.share == 1)}".strip(),
     )
 
@@ -124,17 +129,17 @@ def _band(problem: Problem, numbers: Mapping[str, float]) -> tuple[Series, ...]:
     )
 
 
-def _basin(problem: Problem, ellipsoids: Sequence[Ellipsoid]) -> Iterator[Series]:
+def _basin(problem: Problem, sets: Sequence[tuple[Ellipsoid, Steady]]) -> Iterator[Series]:
     """Yield the ellipsoids of the slowest and of a middle window as error and torque see them, and runs in them."""
     windows = windows_of(problem)
     for k in sorted({0, len(windows) // 2}):
         low, high = (speed * KMH for speed in windows[k])
         name = f"{low:.0f} to {high:.0f} km/h"
-        yield _outline(problem, f"ellipsoid, {name}", ellipsoids[k])
+        yield _outline(problem, f"ellipsoid, {name}", *sets[k])
         if isinstance(
             problem.controller, Protection
         ):  # how the observers of another law have settled is not known
-            yield from _runs(problem, f"runs, {name}", ellipsoids[k], windows[k])
+            yield from _runs(problem, f"runs, {name}", sets[k][0], windows[k])
 
 
 def _scales(problem: Problem) -> tuple[float, float]:
@@ -143,15 +148,18 @@ def _scales(problem: Problem) -> tuple[float, float]:
     return -problem.vehicle.wheel_radius, float(law.inertia / law.sample_time) / 1e3
 
 
-def _outline(problem: Problem, name: str, each: Ellipsoid) -> Series:
-    """Shadow of an ellipsoid on error and torque."""
+def _outline(problem: Problem, name: str, each: Ellipsoid, steady: Steady) -> Series:
+    """Shadow of an ellipsoid on error and torque, about all centers that the steady drift moves it to."""
     import numpy as np
 
     spread = np.array(each.matrix, dtype=float)[np.ix_(SEEN, SEEN)]
     center = np.array(each.center, dtype=float)[list(SEEN)]
     center[0] += float(each.settled)
     turn = np.linspace(0.0, 2.0 * math.pi, AROUND)
-    edge = np.linalg.cholesky(spread) @ np.array([np.cos(turn), np.sin(turn)])
+    root, directions = np.linalg.cholesky(spread), np.array([np.cos(turn), np.sin(turn)])
+    moved = np.array(each.moves, dtype=float)[list(SEEN)] * float(steady.spread.mid())
+    # Where the outline looks the way that the center moves, it is that about the last center.
+    edge = root @ directions + np.outer(moved, np.sign(np.linalg.inv(root) @ moved @ directions))
     slide, torque = _scales(problem)
     return series(name, *BASIN, slide * (center[0] + edge[0]), torque * (center[1] + edge[1]), Role.OUTLINE)
 

@@ -143,20 +143,12 @@ def _loop(problem: Problem, law: BandLaw, found: Proof, at: tuple[Cell, int], ea
     return loop_of(problem, law, cell, windows_of(problem)[k], found.friction[k], choice, conditions)
 
 
-def moved(problem: Problem, found: Proof) -> list[float]:
-    """Return how far the center of the states in the fastest window moves to either end of the steady drift [rad/s].
-
-    The proof is one of a single cell.
-    """
+def steady_of(problem: Problem, found: Proof, at: tuple[Cell, int], each: Ellipsoid) -> Steady:
+    """Return the steady drift of the torque that an ellipsoid in a cell and a window is about."""
     from flint import ctx
 
-    k = len(found.friction) - 1
-    each = found.cells[0][k]
-    if each is None:
-        raise Refused("the proof has no ellipsoid in the fastest window")
     with ctx.workprec(DIGITS):
-        loop = _loop(problem, law_of(problem.controller), found, (box_of(problem, found.share), k), each)
-        return [float((point(b) * loop.steady.spread).mid()) for b in each.moves]
+        return _loop(problem, law_of(problem.controller), found, at, each).steady
 
 
 def holds_more(

@@ -13,14 +13,15 @@ from itertools import pairwise
 from math import exp
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from wspd_design.certificates.kernel.arb import above
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.theorems.slip_band.checker import checker as checker_of_band
-from wspd_design.certificates.theorems.slip_band.checker import inverse, moved
+from wspd_design.certificates.theorems.slip_band.checker import inverse, steady_of
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION, SLOPES
 from wspd_design.certificates.theorems.slip_band.proof import read as read_band
-from wspd_design.certificates.theorems.slip_band.statement import NAMES, windows_of
+from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of, windows_of
 from wspd_design.controllers.protection import Protection
 from wspd_design.model.slip import resistance
 from wspd_design.parameters.bounds import Bounds
@@ -214,12 +215,14 @@ def asked_of(problem: Problem, proof: Mapping[str, Any]) -> "Asked":
         raise Refused("the band must be that of one cell, which is the whole box")
     begin = found.cells[0][-1]
     assert begin is not None  # without a reserve no window is left out
+    steady = steady_of(problem, found, (box_of(problem, found.share), len(windows) - 1), begin)
+    away = above(steady.spread)
     return Asked(
         speeds=windows[-1],
         settled=float(begin.settled),
         matrix=inverse(begin.matrix),
         center=[float(each) for each in begin.center],
-        moved=moved(problem, found),
+        moved=[float(each) * away for each in begin.moves],
         supply=float(begin.supply),
     )
 
