@@ -139,8 +139,9 @@ def _shares(
         -share * longest / side.time
     ).exp()  # the rate at the end of the pulse over that at its beginning
     seen = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
+    shorter = [abs(1 - end) * longest for end in side.speedups]
     differs = [
-        most_of([sign * (1 - end) * loop.pulse, abs(1 - end) * longest]) / side.time
+        most_of([sign * (1 - end) * loop.pulse, *shorter]) / side.time
         for sign, end in zip((1, -1), side.speedups, strict=True)
     ]
     faster = (-side.speedups[1] * longest / side.time).exp()
