@@ -217,7 +217,7 @@ def loop_of(
         change = most_of([abs(change.lower()), abs(change.upper())])
         steady = Steady(*ends_of(steadily), change, share_seen)
         mean_drift = drift * half_way + steadily * (half_way - share_seen)
-        # It is that at the begin of the sample, and within it hardly another.
+        # It is the one with which the sample begins, and hardly changes within it.
         drift += change / 2 * ball(Fraction(-1), Fraction(1))
         mean_drift += change / 2 * ball(Fraction(-1), Fraction(1))
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
