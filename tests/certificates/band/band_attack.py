@@ -1,7 +1,7 @@
 """Runs that attack a proved band of slip: starts on the boundary of its ellipsoids, and stops from rolling wheels.
 
 The plant is that of :mod:`tests.attack.plant`, the protection is written once more here, both over arrays of runs. Of
-the package come only the numbers of the law, and the proof that is attacked with the middle of its steady drift::
+the package come only the numbers of the law, and the proof that is attacked::
 
     python -m tests.certificates.band.band_attack DESIGN CERTIFICATE --starts 100000 --stops 10000
 
@@ -20,7 +20,6 @@ import numpy as np
 
 from tests.attack.plant import Plant, creep_force, filled, resistance, static_load, vented
 from wspd_design.certificates.theorems.band import CELLS
-from wspd_design.certificates.theorems.slip_band.checker import steady_of
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.statement import LETTERS, box_of, halved, windows_of
 from wspd_design.design.certification import check, problem_of
@@ -61,7 +60,7 @@ class Sets:
     matrices: Any  # (cells, windows, 5, 5)
     centers: Any  # (cells, windows, 5)
     moves: Any  # (cells, windows, 5), of the centers with the steady drift
-    middles: Any  # (cells, windows), steady drift that the centers are for [rad/s]
+    drifts: Any  # (cells, windows), steady drift that the centers are for [rad/s]
     settled: Any  # (cells, windows), error that errors are counted from [rad/s]
     supplies: Any  # (cells, windows), least share of the full pressure [-]
     bands: Any  # (windows, 2): below and above the reference [-]
@@ -99,15 +98,7 @@ def sets_of(problem, proof, numbers):
         ),
         centers=np.array([[each.center for each in cell] for cell in found.cells], dtype=float),
         moves=np.array([[each.moves for each in cell] for cell in found.cells], dtype=float),
-        middles=np.array(
-            [
-                [
-                    float(steady_of(problem, found, (cell, k), each).middle.mid())
-                    for k, each in enumerate(ellipsoids)
-                ]
-                for cell, ellipsoids in zip(cells, found.cells, strict=True)
-            ]
-        ),
+        drifts=np.array([[each.drift for each in cell] for cell in found.cells], dtype=float),
         settled=np.array([[each.settled for each in cell] for cell in found.cells], dtype=float),
         supplies=np.array([[each.supply for each in cell] for cell in found.cells], dtype=float),
         bands=np.array(
@@ -351,7 +342,7 @@ def drift(law, plant, speed, wheel, settled):
 
 def centers(law, sets, at, runs, settled):
     """Centers of the ellipsoids of some cells and windows, for the drift that runs have there."""
-    away = drift(law, runs.plant, runs.speed, runs.wheel, settled) - sets.middles[at]
+    away = drift(law, runs.plant, runs.speed, runs.wheel, settled) - sets.drifts[at]
     return sets.centers[at].T + sets.moves[at].T * away
 
 
@@ -425,7 +416,7 @@ def boundary(problem, law, sets, random, count, larger=1.0):
     # The drift goes by how the train slows down, which the error of the wheels changes a little.
     away, error = larger * np.einsum("kij,kj->ik", roots, direction), 0.0 * speed
     for _ in range(5):
-        drifted = drift(law, plant, speed, there + error, settled) - sets.middles[cell, window]
+        drifted = drift(law, plant, speed, there + error, settled) - sets.drifts[cell, window]
         e, p, n, y, lag = sets.centers[cell, window].T + sets.moves[cell, window].T * drifted + away
         error = e
     wheel = there + e

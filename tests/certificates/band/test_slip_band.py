@@ -59,7 +59,7 @@ def test_checker_alone_accepts_it(half, proof):
 
 
 SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST, BACK = range(1, 7)
-Q, CENTER, MOVES, ALPHA, OFFSET, SHARES, INSIDE = slice(7, 22), 22, slice(27, 32), 32, 33, 34, -1
+Q, CENTER, DRIFT, MOVES, ALPHA, OFFSET, SHARES, INSIDE = slice(7, 22), 22, 27, slice(28, 33), 33, 34, 35, -1
 STEADY, CHANGE = -3, -2  # shares of the steady drift and of its change
 # Shares of what disturbs without noise, with a constant slip and without dead band
 DRIFTS = tuple(
@@ -175,7 +175,7 @@ def test_alpha_that_the_loop_does_not_reach_is_refused(half, proof):
     assert "may lead out of an ellipsoid" in refused(half, proof)
 
 
-def ellipse(size, center, inside, moves=0):
+def ellipse(size, center, inside, moves=0, drift=0):
     """A ball of this radius about a point on the first axis."""
     matrix = tuple(tuple(Fraction(size) ** 2 * (i == j) for j in range(STATES)) for i in range(STATES))
     numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset", "longest", "back"), Fraction(1))
@@ -186,6 +186,7 @@ def ellipse(size, center, inside, moves=0):
         shortest=Fraction(0),
         matrix=matrix,
         center=(Fraction(center), *[Fraction(0)] * (STATES - 1)),
+        drift=Fraction(drift),
         moves=(Fraction(moves), *[Fraction(0)] * (STATES - 1)),
         shares=(),
         steady=Fraction(1),
@@ -194,12 +195,12 @@ def ellipse(size, center, inside, moves=0):
     )
 
 
-def drift(low, high):
+def steady(low, high):
     """A steady drift between two ends."""
     return Steady(*(point(Fraction(each)) for each in (low, high, 0, "1/2")))
 
 
-CALM = drift(0, 0)
+CALM = steady(0, 0)
 
 
 @pytest.mark.parametrize(("apart", "lies"), [("0.49", True), ("0.51", False)])
@@ -224,8 +225,7 @@ def test_balls_about_other_errors_do_not_lie_in_each_other():
     ("faster", "slower", "moves", "center", "lies"),
     [
         ((-9, 11), (-9, 11), "1/10", 0, True),  # alike: apart at no drift
-        ((0, 10), (-10, 10), "1/10", "-1/2", True),  # alike, about other middles
-        ((0, 10), (-10, 10), "1/10", 0, False),
+        ((0, 10), (-10, 10), "1/10", "1/2", False),
         (("-4.9", "4.9"), ("-4.9", "4.9"), 0, 0, True),
         (("-5.1", "5.1"), ("-5.1", "5.1"), 0, 0, False),
         ((-9, 9), ("-4.9", "4.9"), 0, 0, True),  # only drifts that both know
@@ -236,9 +236,25 @@ def test_balls_about_other_errors_do_not_lie_in_each_other():
 def test_balls_whose_centers_move_lie_in_each_other_at_every_drift_that_both_know(
     faster, slower, moves, center, lies
 ):
-    inner = ellipse("1/2", 0, Fraction(0), moves="1/10"), drift(*faster)
+    inner = ellipse("1/2", 0, Fraction(0), moves="1/10"), steady(*faster)
     outer = [ellipse(1, center, each.inside, moves=moves) for each in around_it()]
-    assert any(lies_in(inner, (each, drift(*slower))) for each in outer) is lies
+    assert any(lies_in(inner, (each, steady(*slower))) for each in outer) is lies
+
+
+def test_centers_for_other_drifts_are_compared_at_one():
+    """A center that is for another drift is where it moves to from there."""
+    inner = ellipse("1/2", 0, Fraction(0), moves="1/10"), steady(-9, 9)
+    for center, lies in (("1/2", True), (0, False)):
+        outer = [ellipse(1, center, each.inside, moves="1/10", drift=5) for each in around_it()]
+        assert any(lies_in(inner, (each, steady(-9, 9))) for each in outer) is lies
+
+
+def test_drift_that_a_center_is_for_is_part_of_the_statement(half, proof):
+    each = proof["ellipsoids"][0]
+    for by in (0.0, 2.0):
+        forged = json.loads(json.dumps(proof))
+        forged["ellipsoids"][0][DRIFT] = repr(by * float(each[DRIFT]))
+        assert "may" in refused(half, forged)
 
 
 def told_with(problem, certificate, proofs):

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from wspd_design.certificates.checks.frame import Figures, series
+from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.quantities import QUANTITIES
 from wspd_design.certificates.records import Certificate, Problem, Role, Series, Status
 from wspd_design.certificates.theorems.band import CELLS, contact_held
@@ -157,7 +158,7 @@ def _outline(problem: Problem, name: str, each: Ellipsoid, steady: Steady) -> Se
     center[0] += float(each.settled)
     turn = np.linspace(0.0, 2.0 * math.pi, AROUND)
     root, directions = np.linalg.cholesky(spread), np.array([np.cos(turn), np.sin(turn)])
-    moved = np.array(each.moves, dtype=float)[list(SEEN)] * float(steady.spread.mid())
+    moved = np.array(each.moves, dtype=float)[list(SEEN)] * float(steady.away(point(each.drift)).mid())
     # Where the outline looks the way that the center moves, it is that about the last center.
     edge = root @ directions + np.outer(moved, np.sign(np.linalg.inv(root) @ moved @ directions))
     slide, torque = _scales(problem)

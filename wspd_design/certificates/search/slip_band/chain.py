@@ -7,7 +7,7 @@ from fractions import Fraction
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, ellipsoid, excess, settling
-from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more
+from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, lies_in
 from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
@@ -192,7 +192,8 @@ def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
 
     The tangents that enclose the numbers of a sample touch elsewhere for a smaller range, and may enclose more.
     """
-    steady = None
+    steady: Steady | None = None
+    faster: Faster = None
     for number, each in enumerate(chain.ellipsoids):
         if each is None:
             continue
@@ -200,7 +201,10 @@ def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
         loop = sought.loops(cell, window, Choice(each.pulse, each.near, each.settled))(each.supply)
         try:
             errors(sought.law, loop, each)
+            held = faster is None or lies_in(faster, (each, loop.steady))
         except Refused:
+            held = False
+        if not held:
             return replace(chain, ellipsoids=chain.ellipsoids[:number], steady=steady)
-        steady = loop.steady
+        steady, faster = loop.steady, (each, loop.steady)
     return replace(chain, steady=steady)

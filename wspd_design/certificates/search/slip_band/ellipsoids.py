@@ -62,7 +62,8 @@ class _Task:
 
     maps: "Array"  # [A o Br] at all corners, with what the steady drift adds as last columns
     center: "Array"
-    moves: "Array"  # of the center with the steady drift
+    drift: Fraction  # steady one that the center is for
+    moves: "Array"  # of the center with that
     steady: Steady
     lengths: Lengths
     basis: "Array"
@@ -154,7 +155,9 @@ def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid
             center,
             Lengths(found.shortest, found.longest, found.back),
         )
-        if beyond_limit(loop, Set(q, center, [each * loop.steady.spread for each in moves])):
+        if beyond_limit(
+            loop, Set(q, center, [each * loop.steady.away(point(found.drift)) for each in moves])
+        ):
             low = middle + 1
         else:
             high = middle
@@ -184,7 +187,8 @@ def _task(
     mean, at = state.mean(axis=0), np.array(center, dtype=float)
     offset = at_center[:, :, :STATES] @ at - at + at_center[:, :, STATES:] @ _middle(loop)
     columns = [offset[:, :, None], disturbed[:, :, used] * spread[list(used)]]
-    far, change = (float(each.mid()) for each in (loop.steady.spread, loop.steady.change))
+    drift = _drift(loop)
+    far, change = (float(each.mid()) for each in (loop.steady.away(point(drift)), loop.steady.change))
     moves = np.zeros(STATES)
     if far > 0.0:
         # The center goes to where the loop settles with another drift.
@@ -223,6 +227,7 @@ def _task(
     return _Task(
         maps=np.concatenate([back @ state @ basis, back @ added], axis=2),
         center=at,
+        drift=drift,
         moves=moves,
         steady=loop.steady,
         lengths=lengths,
@@ -258,8 +263,13 @@ def _middle(loop: Loop) -> "Array":
     import numpy as np
 
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
-    middle: Array = ends.mean(axis=1) + float(loop.steady.middle.mid()) * _drifting(loop)
+    middle: Array = ends.mean(axis=1) + float(_drift(loop)) * _drifting(loop)
     return middle
+
+
+def _drift(loop: Loop) -> Fraction:
+    """Middle of the steady drift."""
+    return _short(float((loop.steady.low + loop.steady.high).mid()) / 2.0)
 
 
 def _drifting(loop: Loop) -> "Array":
@@ -389,13 +399,13 @@ def _apart(task: _Task, faster: tuple[Ellipsoid, Steady]) -> "list[Array]":
 
     (inner, other), own = faster, task.steady
     center, moves = (np.array(each, dtype=float) for each in (inner.center, inner.moves))
-    middles = [float(each.middle.mid()) for each in (other, own)]
     ends = (
         max(float(each.low.mid()) for each in (other, own)),
         min(float(each.high.mid()) for each in (other, own)),
     )
     return [
-        center + moves * (end - middles[0]) - task.center - task.moves * (end - middles[1]) for end in ends
+        center + moves * (end - float(inner.drift)) - task.center - task.moves * (end - float(task.drift))
+        for end in ends
     ]
 
 
@@ -447,6 +457,7 @@ def _rounded(
         back=task.lengths.back,
         matrix=tuple(tuple(_short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(_short(float(each)) for each in task.center),
+        drift=task.drift,
         moves=tuple(_short(float(each)) for each in task.moves),
         alpha=Fraction(task.kept),
         offset=_short(float(shares[0])),

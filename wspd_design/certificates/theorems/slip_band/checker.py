@@ -4,7 +4,8 @@ For each cell and window the proof states a center c, Q, alpha, a share for the 
 disturbance; the ellipsoid is (X - c)'Q^-1(X - c) <= 1. What disturbs lies between two bounds, so d = m + r z with
 -1 <= z <= 1, and X+ - c = A (X - c) + o + B r z with o = A_c c - c + B_c m: the change of the torque at the center has
 numbers of its own. The drift s of the torque that comes from the fading friction is nearly the same in the next sample;
-the center moves with it, c + b (s - middle), which adds A b + B_s - b times s - middle, and b times what s changes by.
+the center, c for a stated drift n, moves with it: c + b (s - n), which adds A b + B_s - b times s - n, and b times what
+s changes by.
 From the ellipsoid the next state has at most alpha + sum of the shares <= 1 if
 
     Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share
@@ -186,28 +187,28 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     loop = about(law, loop, center, Lengths(found.shortest, found.longest, found.back))
     spread = [(high - low) / 2 for low, high in loop.disturbances]
     steady, moves = loop.steady, [point(each) for each in found.moves]
+    away = steady.away(point(found.drift))
     shares = (found.offset, *found.shares, found.steady, found.change)
     if found.alpha <= 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:
         raise Refused(
             "alpha and the shares of the disturbances add up to more than 1, or alpha is not positive"
         )
     if found.offset == 0 or any(
-        s == 0 and not r.is_zero()
-        for s, r in zip(shares[1:], [*spread, steady.spread, steady.change], strict=True)
+        s == 0 and not r.is_zero() for s, r in zip(shares[1:], [*spread, away, steady.change], strict=True)
     ):
         raise Refused("a disturbance has no share")
     blocks = [[each / point(found.alpha) for each in row] for row in q]
     blocks += [
         [point(0) if r.is_zero() else r * r / point(s)] for s, r in zip(found.shares, spread, strict=True)
     ]
-    drifts = [each * steady.middle for each in drifting(steady)]
+    drifts = [each * point(found.drift) for each in drifting(steady)]
     settled = [
         *center,
         *((low + high) / 2 + s for (low, high), s in zip(loop.disturbances, drifts, strict=True)),
     ]
     if not all(is_positive(each) for each in _left_over(law, loop, found, q, settled, blocks)):
         raise Refused("a sample may lead out of an ellipsoid")
-    there = Set(q, center, [each * steady.spread for each in moves])
+    there = Set(q, center, [each * away for each in moves])
     beyond = beyond_limit(loop, there)
     if beyond:
         raise Refused(f"the state may go beyond {beyond}")
@@ -269,7 +270,7 @@ def _left_over(
         o = arb_mat([[(row * at)[0, 0]] for row in of_center]) - center
         left = whole - ab * diagonal * ab.transpose() - o * o.transpose() / point(found.offset)
         if found.steady:
-            drifted = (ab * with_drift - b) * steady.spread
+            drifted = (ab * with_drift - b) * steady.away(point(found.drift))
             left -= drifted * drifted.transpose() / point(found.steady)
         if found.change:
             left -= b * b.transpose() * (steady.change * steady.change / point(found.change))
@@ -325,10 +326,10 @@ def centers_apart(faster: tuple[Ellipsoid, Steady], slower: tuple[Ellipsoid, Ste
     for drift in (most_of([each.low for each in steadies]), least_of([each.high for each in steadies])):
         one, other = (
             [
-                point(c) + point(b) * (drift - steady.middle)
+                point(c) + point(b) * (drift - point(found.drift))
                 for c, b in zip(found.center, found.moves, strict=True)
             ]
-            for found, steady in (faster, slower)
+            for found, _ in (faster, slower)
         )
         yield [a - b for a, b in zip(one, other, strict=True)]
 

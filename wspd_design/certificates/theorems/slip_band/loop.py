@@ -87,15 +87,9 @@ class Steady(NamedTuple):
     change: Ball  # rad/s, from one sample to the next, at most
     share: Ball  # -, of the drift, that its mean over a sample counts
 
-    @property
-    def middle(self) -> Ball:
-        """Drift that the center of the states belongs to [rad/s]."""
-        return (self.low + self.high) / 2
-
-    @property
-    def spread(self) -> Ball:
-        """Distance of the ends from the middle [rad/s]."""
-        return (self.high - self.low) / 2
+    def away(self, drift: Ball) -> Ball:
+        """Return the largest distance of the drift from one [rad/s]."""
+        return most_of([abs(self.low - drift), abs(self.high - drift)])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -31,8 +31,9 @@ class Ellipsoid:
     longest: Fraction  # -, the same, at most
     back: Fraction  # -, longest pulse to the other side over the sample time
     matrix: Square  # Q [rad2/s2]
-    center: tuple[Fraction, ...]  # c [rad/s], for the middle of the steady drift
-    moves: tuple[Fraction, ...]  # b [-], by how much the center moves with the steady drift
+    center: tuple[Fraction, ...]  # c [rad/s]
+    drift: Fraction  # steady drift that the center is for [rad/s]
+    moves: tuple[Fraction, ...]  # b [-], by how much the center moves with that
     alpha: Fraction  # of the function that is left after a sample
     offset: Fraction  # what the way of the center adds at most
     shares: tuple[Fraction, ...]  # what each disturbance adds at most, in the order of the disturbances
@@ -93,6 +94,7 @@ def _written(each: Ellipsoid) -> list[str]:
         each.back,
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
+        each.drift,
         *each.moves,
         each.alpha,
         each.offset,
@@ -135,7 +137,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + 2 * STATES + 5 + len(DISTURBANCES)))
+        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + 2 * STATES + 6 + len(DISTURBANCES)))
         for each in ellipsoids
     ]
     return Proof(
@@ -183,8 +185,8 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         )
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
-    center, moves = (numbers[len(ENTRIES) + k * STATES :][:STATES] for k in range(2))
-    alpha, offset, *shares, steady, change, inside = numbers[len(ENTRIES) + 2 * STATES :]
+    center, (drift, *rest) = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
+    moves, (alpha, offset, *shares, steady, change, inside) = rest[:STATES], rest[STATES:]
     return Ellipsoid(
         pulse=pulse,
         supply=supply,
@@ -195,6 +197,7 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         back=back,
         matrix=rows,
         center=tuple(center),
+        drift=drift,
         moves=tuple(moves),
         alpha=alpha,
         offset=offset,

@@ -13,7 +13,7 @@ from itertools import pairwise
 from math import exp
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from wspd_design.certificates.kernel.arb import above
+from wspd_design.certificates.kernel.arb import above, point
 from wspd_design.certificates.kernel.checker import Refused, Work, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.records import Problem
@@ -216,7 +216,7 @@ def asked_of(problem: Problem, proof: Mapping[str, Any]) -> "Asked":
     begin = found.cells[0][-1]
     assert begin is not None  # without a reserve no window is left out
     steady = steady_of(problem, found, (box_of(problem, found.share), len(windows) - 1), begin)
-    away = above(steady.spread)
+    away = above(steady.away(point(begin.drift)))
     return Asked(
         speeds=windows[-1],
         settled=float(begin.settled),
