@@ -192,7 +192,7 @@ def drift_by_friction(problem, law, settled):
     with ctx.workprec(128):
         found = loop_at(problem, law, settled, window=(8.029, 8.031), friction=at._replace(level=level.level))
         torque, rims = (float((low + high).mid()) / 2.0 for low, high in found.disturbances[2:5:2])
-        torque += float(found.steady.middle.mid())
+        torque += float((found.steady.low + found.steady.high).mid()) / 2.0
     return torque + problem.nominal("wheelset inertia") / float(law.inertia) * rims
 
 
