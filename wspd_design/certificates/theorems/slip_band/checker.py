@@ -265,15 +265,16 @@ def _left_over(
     whole, at = arb_mat([list(row) for row in q]), arb_mat([[each] for each in settled])
     center = arb_mat([[point(each)] for each in found.center])
     units = [arb_mat([[int(i == j) for j in range(size)]]) for i in range(size)]
+    away = steady.away(point(found.drift))
+    if found.change:  # the same at all corners
+        whole -= b * b.transpose() * (steady.change * steady.change / point(found.change))
     for rest, of_center in corners(loop_law(law), loop.ranges, units):
         ab = arb_mat([row.entries() for row in rest])
         o = arb_mat([[(row * at)[0, 0]] for row in of_center]) - center
         left = whole - ab * diagonal * ab.transpose() - o * o.transpose() / point(found.offset)
         if found.steady:
-            drifted = (ab * with_drift - b) * steady.away(point(found.drift))
+            drifted = (ab * with_drift - b) * away
             left -= drifted * drifted.transpose() / point(found.steady)
-        if found.change:
-            left -= b * b.transpose() * (steady.change * steady.change / point(found.change))
         yield left.tolist()
 
 
