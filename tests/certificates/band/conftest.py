@@ -1,34 +1,41 @@
 import json
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
 import wspd_design as wd
 from wspd_design.certificates import suite
+from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.search.budget import Budget
-from wspd_design.certificates.theorems.slip_band.statement import NAMES
-from wspd_design.design.problem import stability_problem
-from wspd_design.parameters.bounds import Bounds
+from wspd_design.certificates.theorems.band import contact_held
+from wspd_design.certificates.theorems.slip_band.checker import checker
+from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of
+from wspd_design.design import certification
 
 LOCO, WET = wd.load_vehicle("er24pc"), wd.load_rail("polach-wet")
+PLENTY = 10**9
 SLOW = 10.0 / 3.6, 14.4 / 3.6
 """Two windows: bounding the friction in each takes the most time of many a proof [m/s]."""
 
 
 def problem_of(share, *, rail=WET, speeds=(10.0 / 3.6, 120.0 / 3.6), **tracking):
-    """Closed loop of the designed law without dead band, on a part of the stated box."""
+    """Closed loop of the designed law without dead band, on the stated box with a share of what cells divide."""
     specification = wd.Specification(sample_time=0.02, reference="constant", speeds=speeds)
-    law = wd.design_controller(LOCO, rail, specification, law="observer-smc").build(LOCO, rail)
-    numbers = replace(law.core.tracking, **{"dead_band": 0.0} | tracking)
-    problem = stability_problem(
-        LOCO, rail, replace(law, core=replace(law.core, tracking=numbers)), specification
+    design = wd.design_controller(LOCO, rail, specification, law="observer-smc")
+    stated = certification.problem_of(design, vehicle=LOCO, rail=rail)
+    core = stated.controller.core
+    numbers = replace(core.tracking, **{"dead_band": 0.0} | tracking)
+    divided = {
+        name: (float(low), float(high))
+        for name, (low, high) in zip(NAMES, box_of(stated, Fraction(share)), strict=True)
+    }
+    return replace(
+        stated,
+        controller=replace(stated.controller, core=replace(core, tracking=numbers)),
+        bounds=stated.bounds | divided,
     )
-    ends = {}
-    for name in NAMES:
-        (low, high), middle = problem.span(name), problem.nominal(name)
-        ends[name] = (middle + share * (low - middle), middle + share * (high - middle))
-    return replace(problem, bounds=Bounds.of(ends))
 
 
 def certificate_of(problem, effort=0.9):
@@ -37,9 +44,21 @@ def certificate_of(problem, effort=0.9):
     return found
 
 
+def told_of(problem, proof, **asked):
+    """What the checker tells of a proof, asked as the theorem asks it."""
+    return checker(contact_held(problem), problem.controller, **asked)(proof, Work(PLENTY))
+
+
+def refused(problem, proof):
+    """Why the checker refuses a proof."""
+    with pytest.raises(Refused) as reason:
+        told_of(problem, proof)
+    return str(reason.value)
+
+
 @pytest.fixture(scope="session")
 def half():
-    """A half of each range of the wet rail."""
+    """A half of each range of the wet rail, with supply rate and running resistance on all of theirs."""
     return problem_of(0.5)
 
 

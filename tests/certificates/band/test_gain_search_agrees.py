@@ -8,7 +8,7 @@ import pytest
 from tests.certificates.band.conftest import SLOW, problem_of
 from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.search.slip_band.search import Sought, Spent, cover, exactly
-from wspd_design.certificates.theorems.band import SLIP_BAND
+from wspd_design.certificates.theorems.band import SLIP_BAND, contact_held
 from wspd_design.certificates.theorems.slip_band.proof import Proof
 from wspd_design.certificates.theorems.slip_band.statement import law_of
 from wspd_design.design.stability import closes
@@ -40,7 +40,7 @@ def test_both_say_the_same_about_the_nominal_cell(friction, gain, brake, closed)
     problem = problem_of(0.0, speeds=SLOW, approach_rate=gain)
     vehicle = replace(problem.vehicle, brake=replace(problem.vehicle.brake, **brake))
     bounds = problem.bounds | {"supply rate": (vehicle.brake.supply_rate,) * 2}
-    problem = replace(problem, vehicle=vehicle, bounds=bounds)
+    problem = contact_held(replace(problem, vehicle=vehicle, bounds=bounds))
     law = law_of(problem.controller)
     sought = Sought(problem=problem, law=law, friction=friction, conditions=exactly(problem, law))
     found = cover(sought, Fraction(1), Spent(ENOUGH))

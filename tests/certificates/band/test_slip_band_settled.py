@@ -12,10 +12,11 @@ from flint import ctx
 from scipy.integrate import quad
 from scipy.optimize import linprog
 
+from tests.certificates.band.conftest import refused, told_of
 from wspd_design.certificates.kernel.arb import point
-from wspd_design.certificates.kernel.checker import Refused, Work, number
+from wspd_design.certificates.kernel.checker import Refused, number
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, Way, ways_about
-from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.theorems.band import CELLS, contact_held
 from wspd_design.certificates.theorems.slip_band import checker
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
@@ -29,7 +30,6 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 from wspd_design.parameters.bounds import Bounds
 
 pytestmark = pytest.mark.slow
-PLENTY = 10**9
 SETTLES, SHORTEST, LONGEST, BACK = 3, 4, 5, 6
 PULSE = Fraction(1, 2)
 
@@ -37,12 +37,6 @@ PULSE = Fraction(1, 2)
 @pytest.fixture
 def proof(document):
     return document["findings"][CELLS]["proof"]
-
-
-def refused(problem, proof):
-    with pytest.raises(Refused) as reason:
-        checker.checker(problem, problem.controller)(proof, Work(PLENTY))
-    return str(reason.value)
 
 
 def forged(proof, window, place, change):
@@ -110,15 +104,13 @@ def test_pulses_back_that_the_states_do_not_keep_are_refused(half, proof, window
     assert reason.endswith("in its longest pulse")
     # Not for any length: some are shorter than what the search tells, and are kept to.
     assert least > 0
-    assert checker.checker(half, half.controller)(
-        forged(proof, window, BACK, lambda _: float(told)), Work(PLENTY)
-    )
+    assert told_of(half, forged(proof, window, BACK, lambda _: float(told)))
 
 
 def test_ellipsoids_lie_in_each_other_only_with_errors_counted_from_the_same(half, proof, monkeypatch):
     """With nothing else asked for: an ellipsoid about another error is not where it seems to be."""
     monkeypatch.setattr(checker, "errors", lambda *_: (point(-0.01), point(0.01)))
-    assert checker.checker(half, half.controller)(proof, Work(PLENTY))["cells"] == 1.0
+    assert told_of(half, proof)["cells"] == 1.0
     for by in (-1e-6, 0.03):
         assert "next slower" in refused(half, forged(proof, 6, SETTLES, lambda e, by=by: e + by))
 
@@ -139,7 +131,7 @@ def loop_in(problem, proof, window):
     found = read(proof, len(windows_of(problem)))
     each = found.cells[0][window]
     return loop_of(
-        problem,
+        contact_held(problem),
         law_of(problem.controller),
         box_of(problem, Fraction(1)),
         windows_of(problem)[window],
