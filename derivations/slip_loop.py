@@ -126,7 +126,6 @@ rate = (T_a / T_n) * sp.exp(
     (1 - T_a / T_n) * P * h / T_a
 )  # of the way over the wanted one, at the end of the pulse
 rate_residual = sp.simplify(sp.diff(_gone, P) - rate * sp.diff(_asked_for, P))
-rate_of_pulse = rate.subs(T_n, T_a / c).subs(P, longest * T_a / h)
 _length = -T_a / h * sp.log(1 - u)  # of the pulse that is wanted, over the part of the room: convex
 convex_residual = sp.simplify(sp.diff(_length, u, 2) - T_a / h / (1 - u) ** 2)
 
@@ -265,13 +264,6 @@ FUNCTIONS = (
         part_of_pulse,
         "Part of the wanted way that the valve goes with the longest pulse; with the shortest it is c",
         "Part [-]",
-    ),
-    _function(
-        "rate_of_way",
-        (c, longest),
-        rate_of_pulse,
-        "Change of the way over that of the wanted one, at the end of the longest pulse; with the shortest it is c",
-        "Rate [-]",
     ),
     _function(
         "lateness",

@@ -15,8 +15,8 @@ from wspd_design.certificates.setting.slip_loop import (
     STATES,
     LoopLaw,
     parts_of,
-    parts_of_longer,
     sample,
+    shares_together,
     ways_about,
 )
 from wspd_design.model.generated import slip_loop as generated
@@ -326,43 +326,56 @@ def test_parts_of_the_other_side_do_not_hold_for_the_center():
     assert any(mixed(pairs_about(*parts[::-1]), run, way) is None for run, _, way, parts in ways())
 
 
-def further_in_mean(torque, kind, before, after):
-    """What of a way that is wanted further is in the mean of the law, for two lengths over the sample time."""
+def further(torque, kind, before, after):
+    """What of a way that is wanted further is gone, and is in the mean of the law, by nominal times.
+
+    For two lengths over the sample time.
+    """
     assumed = SHARE * NOMINAL[kind]
-    ends = [
-        FULL - (FULL - torque) * math.exp(-each * H / assumed)
-        if kind == 0
-        else torque * math.exp(-each * H / assumed)
-        for each in (before, after)
-    ]
-    means = [mean_of(torque, each) for each in ends]
-    return (means[1] - means[0]) / (ends[1] - ends[0])
+    wanted, gone = (
+        [
+            FULL - (FULL - torque) * math.exp(-each * H / time)
+            if kind == 0
+            else torque * math.exp(-each * H / time)
+            for each in (before, after)
+        ]
+        for time in (assumed, NOMINAL[kind])
+    )
+    means = [mean_of(torque, each) for each in wanted]
+    return tuple((ends[1] - ends[0]) / (wanted[1] - wanted[0]) for ends in (gone, means))
+
+
+def rate_at(length):
+    """Change of the way by the nominal time over that of the wanted one, at the end of a pulse of the faster valve."""
+    assumed = SHARE * min(NOMINAL)
+    given = {"h": H, "P": length, "T_a": assumed, "T_n": assumed / SHARE}
+    return float(slip_loop.rate.subs({each: given[each.name] for each in slip_loop.rate.free_symbols}))
+
+
+def seen_beside(shortest_left):
+    """Shares in the mean of the law of ways about a center, where at least so much of the sample is left."""
+    ends = shares_together((shortest_left, 1.0), (1.0, 1.0), (rate_at(0.0), rate_at(PULSE)))
+    found = [each.seen for each in ways_about((1.0, 1.0), (1.0, 1.0), 0.0, (ends, ends), ends[0])]
+    return min(found), max(found)
 
 
 def test_what_a_longer_pulse_adds_to_the_mean_of_the_law():
     """It counts from the end of the pulse at the center on: half of the longest pulse alone would be too much."""
-    found = [
-        further_in_mean(torque, kind, before, after)
-        for torque, kind, before, after in product(
-            (10e3, 24e3, 50e3), (0, 1), (0.05, 0.1, AT_CENTER), (1e-3, 0.15, 0.3, PULSE)
-        )
-    ]
-    low, high = parts_of_longer(SHARE, PULSE * H / (SHARE * min(NOMINAL)))
-    assert low * (1.0 - (PULSE + AT_CENTER) / 2.0) <= min(found) <= max(found) <= high
-    assert min(found) < low * (1.0 - PULSE / 2.0)
-    # Nor is it a part of the way from 0 on.
-    whole = parts_of((SHARE, SHARE), PULSE * H / (SHARE * min(NOMINAL)))
-    assert parts_of_longer(SHARE, 0.7)[1] > parts_of((SHARE, SHARE), 0.7)[1]
-    assert whole[1] < high
-
-
-def test_rate_of_way_is_the_derivative_of_the_part():
-    for c, longest in product((0.4, 0.8, 1.3), (0.1, 0.7)):
-        ends = [longest - 1e-6, longest + 1e-6]
-        gone = [generated.part_of_way(c, each) * -math.expm1(-each) for each in ends]
-        asked = [-math.expm1(-each) for each in ends]
-        slope = (gone[1] - gone[0]) / (asked[1] - asked[0])
-        assert generated.rate_of_way(c, longest) == pytest.approx(slope, rel=1e-6)
+    gone, seen = zip(
+        *(
+            further(torque, kind, before, after)
+            for torque, kind, before, after in product(
+                (10e3, 24e3, 50e3), (0, 1), (0.05, 0.1, AT_CENTER), (1e-3, 0.15, 0.3, PULSE)
+            )
+        ),
+        strict=True,
+    )
+    low, high = seen_beside(1.0 - (PULSE + AT_CENTER) / 2.0)
+    assert low <= min(seen) <= max(seen) <= high
+    assert min(seen) < seen_beside(1.0 - PULSE / 2.0)[0]
+    # Nor is what is gone further a part of the way from none on.
+    assert rate_at(0.0) <= min(gone) <= max(gone) <= rate_at(PULSE)
+    assert max(gone) > parts_of((SHARE, SHARE), PULSE * H / (SHARE * min(NOMINAL)))[1]
 
 
 def test_lag_of_the_filter_follows_a_jerk_of_any_course():

@@ -99,19 +99,6 @@ def parts_of(speedups: Pair, longest: Number) -> Pair:
     return _ends([*speedups, *(generated.part_of_way(each, longest) for each in speedups)])
 
 
-def parts_of_longer(speedup: Number, longest: Number) -> Pair:
-    """Return the smallest and the largest part of a longer wanted way that the valve goes further.
-
-    Parameters
-    ----------
-    speedup : number
-        Assumed over true time of the valve [-].
-    longest : number
-        Longest pulse over the assumed time [-].
-    """
-    return _ends([speedup, generated.rate_of_way(speedup, longest)])
-
-
 def ways_about(
     side: Pair, other: Pair, far: Number, shares: tuple[Sequence[Pair], Sequence[Pair]], center: Pair
 ) -> tuple[Way, ...]:

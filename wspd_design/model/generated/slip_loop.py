@@ -178,24 +178,6 @@ def part_of_way(c: Number, longest: Number) -> Number:
     return (1.0 - exp(-c * longest)) / (1.0 - exp(-longest))
 
 
-def rate_of_way(c: Number, longest: Number) -> Number:
-    """Change of the way over that of the wanted one, at the end of the longest pulse; with the shortest it is c, docs/theory.md#band.
-
-    Parameters
-    ----------
-    c : Number
-        Assumed over true time of the valve [-].
-    longest : Number
-        Longest pulse over the assumed time of the valve [-].
-
-    Returns
-    -------
-    Number
-        Rate [-].
-    """
-    return c * exp(longest * (1.0 - c))
-
-
 def lateness(m: Number, pulse: Number, delay: Number) -> Number:
     """Largest share of the sample that can see the torque before the pulse, docs/theory.md#band.
 
