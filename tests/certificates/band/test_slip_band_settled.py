@@ -15,9 +15,16 @@ from scipy.optimize import linprog
 from tests.certificates.band.conftest import refused, told_of
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused, number
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, Way, ways_about
+from wspd_design.certificates.setting.slip_loop import (
+    DISTURBANCES,
+    STATES,
+    Way,
+    parts_of,
+    shares_together,
+    ways_about,
+)
 from wspd_design.certificates.theorems.band import CELLS, contact_held
-from wspd_design.certificates.theorems.slip_band import checker
+from wspd_design.certificates.theorems.slip_band import center, checker
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import read
@@ -334,6 +341,31 @@ def test_mean_torque_of_the_law_is_between_what_is_seen_of_both_ways(valves, way
     assert min(seen) <= min(further) <= max(further) <= max(seen)
     # With half of the longest pulse alone the mean would be taken to see more than it does.
     assert min(further) < share * (1.0 - float(PULSE) / 2.0)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_way_further_than_the_center_is_another_part_than_all_of_it_from_none_on(valves, way, monkeypatch):
+    """What the law counts of it, over what it would count if its valves had the times that it assumes."""
+    problem, loop, *_ = valves
+    told = []
+    monkeypatch.setattr(
+        center, "shares_together", lambda *asked: told.append(asked) or shares_together(*asked)
+    )
+    law, _ = centered(problem, loop, way)
+    (_, _, counted), _ = told
+    time = float((law.fill_time if way > 0.0 else law.vent_time) / law.sample_time)
+    share = float(law.time_share)
+
+    def counts(rate, ends):
+        return quad(lambda length: (1.0 - length) * rate * math.exp(-rate * length / time), *ends)[0]
+
+    further = [
+        counts(share, ends) / counts(1.0, ends)
+        for ends in product(map(float, LENGTHS[:2]), (0.3, float(PULSE)))
+    ]
+    low, high = (float(end.mid()) for end in counted)
+    assert low <= min(further) <= max(further) <= high
+    assert max(further) > parts_of((share, share), float(PULSE) / time)[1]
 
 
 def test_way_without_a_sign_has_no_numbers_of_its_own(valves):
