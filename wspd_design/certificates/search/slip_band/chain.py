@@ -6,7 +6,8 @@ from fractions import Fraction
 
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, ellipsoid, excess, settling
+from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, ellipsoid, excess
+from wspd_design.certificates.search.slip_band.task import settling
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, lies_in
 from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
