@@ -96,7 +96,8 @@ def parts_of(speedups: Pair, longest: Number) -> Pair:
     longest : number
         Longest pulse over the assumed time [-].
     """
-    return _ends([*speedups, *(generated.part_of_way(each, longest) for each in speedups)])
+    found = [*speedups, *(generated.part_of_way(each, longest) for each in speedups)]
+    return reduce(minimum, found), reduce(maximum, found)
 
 
 def ways_about(
@@ -168,10 +169,6 @@ def shares_together(left: Pair, true: Pair, law: Pair) -> tuple[Pair, ...]:
         for along in (low - aside, high + aside)
         for sign in (1.0, -1.0)
     )
-
-
-def _ends(numbers: Sequence[Number]) -> Pair:
-    return reduce(minimum, numbers), reduce(maximum, numbers)
 
 
 def numbers_at_corners(
