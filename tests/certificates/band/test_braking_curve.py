@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import wspd_design as wd
-from tests.certificates.band.band_attack import BESIDE, BOX, Law, rolling, sampled
 from tests.certificates.band.conftest import problem_of
+from tests.certificates.band.sampled_runs import BESIDE, BOX, Law, rolling, sampled
 from wspd_design.design.tracking_gains import CURVE_SHARE
 
 ENDS = (*BOX, "supply rate")

@@ -6,17 +6,8 @@ import numpy as np
 import pytest
 
 import wspd_design as wd
-from tests.certificates.band.band_attack import (
-    BESIDE,
-    BOX,
-    Law,
-    attack_boundary,
-    box,
-    follow,
-    rolling,
-    sampled,
-    sets_of,
-)
+from tests.certificates.band.band_attack import attack_boundary, box, follow, sets_of
+from tests.certificates.band.sampled_runs import BESIDE, BOX, Law, rolling, sampled
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.band import CELLS
 

@@ -5,8 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from tests.certificates.band.band_attack import Disturbance, attack_boundary, sets_of
+from tests.certificates.band.band_attack import attack_boundary, sets_of
 from tests.certificates.band.conftest import certificate_of, problem_of
+from tests.certificates.band.sampled_runs import Disturbance
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.search.slip_band import disturbed
 from wspd_design.certificates.theorems.band import CELLS, LATE, NOISY
