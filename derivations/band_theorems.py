@@ -140,7 +140,8 @@ THEOREMS = (
         "o = A_c c - c + B_c m: what the valve makes of the change of the torque that is wanted at the center has "
         "numbers of its own. The drift s of the torque that comes from the fading friction lies between bounds about"
         " n, and changes by little from one sample to the next; for a vector b the state less c + b (s - n) goes on "
-        "as above, with (A b + B_s - b)(s - n) and b times the change of s among what disturbs, and n in its middle."
+        "as above, with (A b + B_s - b)(s - n) and b times the rest of what s changes by among what disturbs, n in its "
+        "middle and b times the middle of what s changes by taken off o."
         " If Q > 0, shares D > 0 and alpha > 0 with alpha + sum D <= 1 make Q - A Q A'/alpha - [o Br] D^-1 [o Br]' "
         "positive definite at the corners of all numbers of a sample, then no sample leads out of that ellipsoid "
         "about c + b (s - n), and w - w_r stays within the root of the first entry of Q around E plus the first "
@@ -154,14 +155,16 @@ THEOREMS = (
             "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
             "and torque above zero: there the law is the written one",
             "pressure measured exactly, wheel and train speed within a bound; pulses begin within a bound after the "
-            "sample and end in it; the supply has at least a share of the full pressure, and rises by eq. (8)",
+            "sample and end in it; the supply has at least a share of the full pressure, and rises by eq. (8); of what "
+            "it lacks of that, the cylinder lacks at least a stated multiple of the supply",
             "the slip that is held is constant or c/sqrt(v); beside that it may move within stated bounds, at most at "
             "a stated rate, of which the law knows nothing",
             "drift of torque and reference, and of the error of the filtered acceleration, between their bounds: while "
             "the train slows down, the friction at the reference rises; where the slip falls as c/sqrt(v), the filter "
             "has settled",
             "where the slip is constant, the change of the steady drift from enclosures of the second derivative of "
-            "the friction along the speeds w_r + E, and from the jerk; else there is no steady drift, b = 0",
+            "the friction along the speeds w_r + E for the masses and frictions of the cell, and from the jerk; else "
+            "there is no steady drift, b = 0",
         ),
         sketch="In deviations from the torque that holds the reference, pads, inertia and friction drop out of what "
         "is constant: the observer estimates the torque that explains the motion. What is asked of Q is by Schur "

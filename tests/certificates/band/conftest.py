@@ -20,9 +20,9 @@ SLOW = 10.0 / 3.6, 14.4 / 3.6
 """Two windows: bounding the friction in each takes the most time of many a proof [m/s]."""
 
 
-def problem_of(share, *, rail=WET, speeds=(10.0 / 3.6, 120.0 / 3.6), **tracking):
+def problem_of(share, *, rail=WET, speeds=(10.0 / 3.6, 120.0 / 3.6), sample_time=0.02, **tracking):
     """Closed loop of the designed law without dead band, on the stated box with a share of what cells divide."""
-    specification = wd.Specification(sample_time=0.02, reference="constant", speeds=speeds)
+    specification = wd.Specification(sample_time=sample_time, reference="constant", speeds=speeds)
     design = wd.design_controller(LOCO, rail, specification, law="observer-smc")
     stated = certification.problem_of(design, vehicle=LOCO, rail=rail)
     core = stated.controller.core

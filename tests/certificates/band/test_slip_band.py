@@ -51,8 +51,8 @@ def test_checker_alone_accepts_it(half, proof):
     assert told_of(half, proof)["cells"] >= 1
 
 
-SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST, BACK = range(1, 7)
-Q, CENTER, DRIFT, MOVES, ALPHA, OFFSET, SHARES, INSIDE = slice(7, 22), 22, 27, slice(28, 33), 33, 34, 35, -1
+SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST, BACK, ROOM = range(1, 8)
+Q, CENTER, DRIFT, MOVES, ALPHA, OFFSET, SHARES, INSIDE = slice(8, 23), 23, 28, slice(29, 34), 34, 35, 36, -1
 STEADY, CHANGE = -3, -2  # shares of the steady drift and of its change
 # Shares of what disturbs without noise, with a constant slip and without dead band
 DRIFTS = tuple(
@@ -171,7 +171,7 @@ def test_alpha_that_the_loop_does_not_reach_is_refused(half, proof):
 def ellipse(size, center, inside, moves=0, drift=0):
     """A ball of this radius about a point on the first axis."""
     matrix = tuple(tuple(Fraction(size) ** 2 * (i == j) for j in range(STATES)) for i in range(STATES))
-    numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset", "longest", "back"), Fraction(1))
+    numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset", "longest", "back", "room"), Fraction(1))
     return Ellipsoid(
         **numbers,
         near=0,
@@ -190,7 +190,8 @@ def ellipse(size, center, inside, moves=0, drift=0):
 
 def steady(low, high):
     """A steady drift between two ends."""
-    return Steady(*(point(Fraction(each)) for each in (low, high, 0, "1/2")))
+    low, high, none, half = (point(Fraction(each)) for each in (low, high, 0, "1/2"))
+    return Steady(low, high, (none, none), half)
 
 
 CALM = steady(0, 0)

@@ -143,7 +143,7 @@ def loop_in(problem, proof, window):
         box_of(problem, Fraction(1)),
         windows_of(problem)[window],
         found.friction[window],
-        Choice(each.pulse, each.near, each.settled),
+        Choice(each.pulse, each.near, each.settled, each.room),
         Conditions(each.supply, Fraction(0), Fraction(0)),
     ), each
 

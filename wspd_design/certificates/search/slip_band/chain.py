@@ -10,7 +10,7 @@ from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, 
 from wspd_design.certificates.search.slip_band.task import settling
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, lies_in
 from wspd_design.certificates.theorems.slip_band.friction import Halves
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import ROOM, Choice, Conditions, Loop, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
 from wspd_design.parameters.errors import WspdError
@@ -21,6 +21,9 @@ CHOICES = tuple(
     for pulse in pulses
 )
 """What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
+LONG = Fraction(
+    45, 4
+)  # 1/s, room for a long sample over its time: ten times what a supply of 1.125 1/s may rise by
 FIRST, WIDEST = Choice(Fraction(1, 2), 1), Choice(Fraction(1, 2), 0)
 
 
@@ -73,6 +76,11 @@ class Sought:
 
         return loop
 
+    @property
+    def room(self) -> Fraction:
+        """Room above the cylinder over what the supply lacks: with as much a rising supply adds little to a pulse."""
+        return max(ROOM, LONG * self.law.sample_time)
+
     def in_time(self, choice: Choice) -> Choice:
         """Shorten pulses so that they end in their sample, however late they begin."""
         return choice._replace(pulse=min(choice.pulse, 1 - self.conditions.delay))
@@ -98,7 +106,7 @@ def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
     """Return a chain without ellipsoids that counts errors from where the loop settles at the lowest speeds."""
 
     def settled(like: Choice) -> Fraction:
-        there = sought.in_time(like)
+        there = sought.in_time(like._replace(room=sought.room))
         return settling(
             sought.law,
             lambda error: sought.loops(cell, 0, there._replace(settled=error))(sought.conditions.supply),
@@ -108,7 +116,7 @@ def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
         error = settled(CHOICES[0])
     except Refused:  # it settles outside of that reach
         error = settled(WIDEST)
-    return Chain(choice=choice._replace(settled=error))
+    return Chain(choice=choice._replace(settled=error, room=sought.room))
 
 
 def continued(sought: Sought, cell: Cell, chain: Chain, spent: Spent) -> Chain:
@@ -167,7 +175,9 @@ def best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) ->
     """
     last = chain.choice
     near = (each for each in CHOICES if each.near == last.near or each.pulse == last.pulse)
-    tried = dict.fromkeys(sought.in_time(each._replace(settled=last.settled)) for each in (last, *near))
+    tried = dict.fromkeys(
+        sought.in_time(each._replace(settled=last.settled, room=last.room)) for each in (last, *near)
+    )
     found = {each: far(sought, cell, window, replace(chain, choice=each), spent) for each in tried}
     least = min(found, key=lambda each: found[each])
     return least, found[least]
@@ -199,7 +209,7 @@ def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
         if each is None:
             continue
         window = len(sought.windows) - 1 - number
-        loop = sought.loops(cell, window, Choice(each.pulse, each.near, each.settled))(each.supply)
+        loop = sought.loops(cell, window, Choice(each.pulse, each.near, each.settled, each.room))(each.supply)
         try:
             errors(sought.law, loop, each)
             held = faster is None or lies_in(faster, (each, loop.steady))

@@ -269,6 +269,7 @@ def _rounded(
         shortest=task.lengths.shortest,
         longest=task.lengths.longest,
         back=task.lengths.back,
+        room=choice.room,
         matrix=tuple(tuple(short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(short(float(each)) for each in task.center),
         drift=task.drift,

@@ -88,7 +88,10 @@ def _middle_has(sought: Sought, cell: Cell, window: int, anew: Chain, spent: Spe
     """Whether the middle of a cell has an ellipsoid; no cell around it can do better."""
     middle = tuple(((low + high) / 2,) * 2 for low, high in cell)
     anew = begun(sought, middle, anew.choice)
-    every = (anew.choice, *(each._replace(settled=anew.choice.settled) for each in CHOICES))
+    every = (
+        anew.choice,
+        *(each._replace(settled=anew.choice.settled, room=anew.choice.room) for each in CHOICES),
+    )
     return any(far(sought, middle, window, replace(anew, choice=each), spent) < 1.0 for each in every)
 
 

@@ -17,7 +17,7 @@ from wspd_design.certificates.setting.slip_loop import (
     sample,
 )
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
-from wspd_design.certificates.theorems.slip_band.checker import drifting
+from wspd_design.certificates.theorems.slip_band.checker import drifting, spread_of
 from wspd_design.certificates.theorems.slip_band.loop import Loop, Steady
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
@@ -74,7 +74,9 @@ def task_of(
     offset = at_center[:, :, :STATES] @ at - at + at_center[:, :, STATES:] @ _middle(loop)
     columns = [offset[:, :, None], disturbed[:, :, used] * spread[list(used)]]
     drift = _drift(loop)
-    far, change = (float(each.mid()) for each in (loop.steady.away(point(drift)), loop.steady.change))
+    far, change = (
+        float(each.mid()) for each in (loop.steady.away(point(drift)), spread_of(loop.steady.change))
+    )
     moves = np.zeros(STATES)
     if far > 0.0:
         # The center goes to where the loop settles with another drift.
@@ -82,6 +84,7 @@ def task_of(
         moves = np.array(
             [float(short(x)) for x in np.linalg.solve(np.eye(STATES) - mean, drifted.mean(axis=0))]
         )
+        columns[0] = columns[0] - (moves * float(loop.steady.rise.mid()))[:, None]
         left = state @ moves + drifted - moves
         columns += [left[:, :, None] * far, np.broadcast_to(moves * change, left.shape)[:, :, None]]
     added = np.concatenate(columns, axis=2)
@@ -138,7 +141,7 @@ def _center(law: BandLaw, loop: Loop) -> tuple[Fraction, ...]:
     """Return the state in which the loop settles if nothing but the middle of all is there."""
     import numpy as np
 
-    middle = _middle(loop)
+    middle, rise = _middle(loop), float(loop.steady.rise.mid())
     center: tuple[Fraction, ...] | None = None
     for _ in range(SETTLING):
         # Once the side of the way is known, so are the parts that the valve goes.
@@ -148,7 +151,10 @@ def _center(law: BandLaw, loop: Loop) -> tuple[Fraction, ...]:
                 law, loop, [point(each) for each in center], Lengths(Fraction(0), Fraction(1), Fraction(1))
             )
         found = _maps(loop_law(law), known.ranges)[1].mean(axis=0)
-        at = np.linalg.solve(np.eye(STATES) - found[:, :STATES], found[:, STATES:] @ middle)
+        left, disturbed = np.eye(STATES) - found[:, :STATES], found[:, STATES:]
+        # The center moves on as the drift changes.
+        moved = np.linalg.solve(left, disturbed @ _drifting(loop)) * rise
+        at = np.linalg.solve(left, disturbed @ middle - moved)
         center = tuple(short(float(each)) for each in at)
     assert center is not None
     return center

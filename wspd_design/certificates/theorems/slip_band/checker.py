@@ -140,7 +140,7 @@ def _loop(problem: Problem, law: BandLaw, found: Proof, at: tuple[Cell, int], ea
     """Work out the loop of an ellipsoid in a cell and a window."""
     cell, k = at
     conditions = Conditions(each.supply, found.delay, found.noise, found.reserve)
-    choice = Choice(each.pulse, each.near, each.settled)
+    choice = Choice(each.pulse, each.near, each.settled, each.room)
     return loop_of(problem, law, cell, windows_of(problem)[k], found.friction[k], choice, conditions)
 
 
@@ -185,16 +185,16 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     if not is_positive(q):
         raise Refused("a matrix Q is not positive definite")
     loop = about(law, loop, center, Lengths(found.shortest, found.longest, found.back))
-    spread = [(high - low) / 2 for low, high in loop.disturbances]
+    spread = [spread_of(each) for each in loop.disturbances]
     steady, moves = loop.steady, [point(each) for each in found.moves]
-    away = steady.away(point(found.drift))
+    away, rises = steady.away(point(found.drift)), spread_of(steady.change)
     shares = (found.offset, *found.shares, found.steady, found.change)
     if found.alpha <= 0 or any(each < 0 for each in shares) or found.alpha + sum(shares) > 1:
         raise Refused(
             "alpha and the shares of the disturbances add up to more than 1, or alpha is not positive"
         )
     if found.offset == 0 or any(
-        s == 0 and not r.is_zero() for s, r in zip(shares[1:], [*spread, away, steady.change], strict=True)
+        s == 0 and not r.is_zero() for s, r in zip(shares[1:], [*spread, away, rises], strict=True)
     ):
         raise Refused("a disturbance has no share")
     blocks = [[each / point(found.alpha) for each in row] for row in q]
@@ -216,6 +216,12 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     if not highest < loop.widest[1] or not loop.widest[0] < lowest:
         raise Refused("the error may leave the range in which the slope of the friction is bounded")
     return lowest, highest
+
+
+def spread_of(ends: Pair) -> Ball:
+    """Return by how much an end differs from the middle."""
+    low, high = ends
+    return (high - low) / 2
 
 
 class Set(NamedTuple):
@@ -263,11 +269,13 @@ def _left_over(
         for j, each in enumerate(row):
             diagonal[i, j if i < STATES else i] = each
     whole, at = arb_mat([list(row) for row in q]), arb_mat([[each] for each in settled])
-    center = arb_mat([[point(each)] for each in found.center])
+    # The center of the next sample: that of the same drift, and what it moves as the drift changes.
+    center = arb_mat([[point(c) + move * steady.rise] for c, move in zip(found.center, moves, strict=True)])
     units = [arb_mat([[int(i == j) for j in range(size)]]) for i in range(size)]
     away = steady.away(point(found.drift))
     if found.change:  # the same at all corners
-        whole -= b * b.transpose() * (steady.change * steady.change / point(found.change))
+        rises = spread_of(steady.change)
+        whole -= b * b.transpose() * (rises * rises / point(found.change))
     for rest, of_center in corners(loop_law(law), loop.ranges, units):
         ab = arb_mat([row.entries() for row in rest])
         o = arb_mat([[(row * at)[0, 0]] for row in of_center]) - center

@@ -54,10 +54,13 @@ from wspd_design.certificates.theorems.slip_band.statement import (
 )
 from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
 
 RADIUS = NAMES.index("wheel radius")
-ROOM = Fraction(1, 4)  # of what the supply lacks, that the cylinder lacks of the supply at least
+ROOM = Fraction(
+    1, 4
+)  # of what the supply lacks, that the cylinder lacks of the supply, if nothing else is told
 
 
 class Conditions(NamedTuple):
@@ -77,6 +80,7 @@ class Choice(NamedTuple):
     pulse: Fraction  # -, longest one over the sample time
     near: int  # which errors are kept to: the number of a reach
     settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
+    room: Fraction = ROOM  # -, of what the supply lacks, that the cylinder lacks of the supply at least
 
 
 class Steady(NamedTuple):
@@ -84,8 +88,13 @@ class Steady(NamedTuple):
 
     low: Ball  # rad/s, over a sample
     high: Ball
-    change: Ball  # rad/s, from one sample to the next, at most
+    change: Pair  # rad/s, that it rises by from one sample to the next, at least and at most
     share: Ball  # -, of the drift, that its mean over a sample counts
+
+    @property
+    def rise(self) -> Ball:
+        """Middle of what it rises by [rad/s]."""
+        return (self.change[0] + self.change[1]) / 2
 
     def away(self, drift: Ball) -> Ball:
         """Return the largest distance of the drift from one [rad/s]."""
@@ -198,22 +207,22 @@ def loop_of(
     fading_torque = weight * there - damping * turned / seen_inertia  # of the reference, over the train speed
     steadily, share_seen = -h * h * fading_torque * braking, point(Fraction(float(half_way.mid())))
     if law.falls or law.slip_error:
-        steady = Steady(none, none, none, share_seen)
+        steady = Steady(none, none, (none, none), share_seen)
         drift += steadily
         mean_drift = drift * half_way
     else:
         less = apart * radius  # m/s, that the wheel slides slower
-        bent_force = bend(replace(problem, speeds=window), float(law.slip), (below(less), above(less)))
+        part = replace(problem, speeds=window, bounds=_bounds(problem, cell))
+        bent_force = bend(part, float(law.slip), (below(less), above(less)))
         if not all(map(isfinite, bent_force)):
             raise Refused("the second derivative of the friction is not enclosed")
         # The speed falls by the braking, which itself rises with the jerk.
-        change = h**3 * (fading_torque * jerk - weight * ball(*bent_force) * braking**2)
-        change = most_of([abs(change.lower()), abs(change.upper())])
-        steady = Steady(*ends_of(steadily), change, share_seen)
+        change = h**3 * (weight * ball(*bent_force) * braking**2 - fading_torque * jerk)
+        steady = Steady(*ends_of(steadily), ends_of(change), share_seen)
         mean_drift = drift * half_way + steadily * (half_way - share_seen)
-        # It is the one with which the sample begins, and hardly changes within it.
-        drift += change / 2 * ball(Fraction(-1), Fraction(1))
-        mean_drift += change / 2 * ball(Fraction(-1), Fraction(1))
+        # It is the one with which the sample begins; what it changes by within it adds half of that until its end.
+        drift += change / 2
+        mean_drift += change / 2 * ball(Fraction(0), Fraction(1))
     slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
     lag_drift = slowly * (1 - share / 2)
     # The part of the change of the speed that the rims take part in changes where the slip falls. Settled, the lag D is
@@ -228,7 +237,7 @@ def loop_of(
         * ball(Fraction(-1), Fraction(1))
     )
     uneven = sliding * most_of([(high * h).exp() - 1, 1 - (low * h).exp(), point(0)])
-    added = _added(problem, law, fill, pulse, conditions)
+    added = _added(problem, law, fill, choice, conditions)
     left_out += loop_law(law).gain * (misread + apart)
     disturbed = (
         known,
@@ -274,6 +283,14 @@ def loop_of(
         pulses=pulses,
         beside=beside,
     )
+
+
+def _bounds(problem: Problem, cell: Cell) -> Bounds:
+    """Ranges of the box, those that a cell divides no wider than there."""
+    ends = {
+        name: (below(point(low)), above(point(high))) for name, (low, high) in zip(NAMES, cell, strict=True)
+    }
+    return Bounds.of({**dict(problem.bounds.items()), **ends})
 
 
 def _errors(strip: Strip, turning: Ball) -> Pair:
@@ -336,12 +353,12 @@ def _limits(
         Limit(
             what="the room that a rising supply asks for",
             row=(zero, zero, zero, point(1), zero),
-            bound=room - point(ROOM) * (1 - point(supply)) * full,
+            bound=room - point(choice.room) * (1 - point(supply)) * full,
         ),
     )
 
 
-def _added(problem: Problem, law: BandLaw, fill: Ball, pulse: Fraction, conditions: Conditions) -> Ball:
+def _added(problem: Problem, law: BandLaw, fill: Ball, choice: Choice, conditions: Conditions) -> Ball:
     """Return what a rising supply adds to a way that fills, over the way."""
     if conditions.supply == 1:
         return point(0)
@@ -349,7 +366,9 @@ def _added(problem: Problem, law: BandLaw, fill: Ball, pulse: Fraction, conditio
         raise Refused("the supply is that of the full pressure alone")
     rate = point(problem.span("supply rate")[1])
     fastest, h = ends_of(fill)[0], point(law.sample_time)
-    added = added_by_supply(rate, fastest, h, point(pulse), point(conditions.delay), point(ROOM))
+    added = added_by_supply(
+        rate, fastest, h, point(choice.pulse), point(conditions.delay), point(choice.room)
+    )
     return ends_of(added)[1]
 
 

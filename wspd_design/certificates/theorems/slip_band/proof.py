@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, REACHES, Friction, Halves
 
-FORMAT = "wspd-slip-band/7"
+FORMAT = "wspd-slip-band/8"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -30,6 +30,7 @@ class Ellipsoid:
     )
     longest: Fraction  # -, the same, at most
     back: Fraction  # -, longest pulse to the other side over the sample time
+    room: Fraction  # -, of what the supply lacks, that the cylinder lacks of the supply at least
     matrix: Square  # Q [rad2/s2]
     center: tuple[Fraction, ...]  # c [rad/s]
     drift: Fraction  # steady drift that the center is for [rad/s]
@@ -92,6 +93,7 @@ def _written(each: Ellipsoid) -> list[str]:
         each.shortest,
         each.longest,
         each.back,
+        each.room,
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
         each.drift,
@@ -137,7 +139,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 7 + len(ENTRIES) + 2 * STATES + 6 + len(DISTURBANCES)))
+        _ellipsoid(_numbers(each, 8 + len(ENTRIES) + 2 * STATES + 6 + len(DISTURBANCES)))
         for each in ellipsoids
     ]
     return Proof(
@@ -172,7 +174,7 @@ def _friction(numbers: Sequence[Fraction]) -> Halves:
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
-    pulse, supply, near, settled, shortest, longest, back, *numbers = written
+    pulse, supply, near, settled, shortest, longest, back, room, *numbers = written
     if not 0 < pulse <= 1:
         raise Refused("the longest pulse must be above 0, and the sample at most")
     if not 0 <= supply <= 1:
@@ -183,6 +185,8 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         raise Refused(
             "the pulses of the way at the center, and those back, must be from 0 to the longest one"
         )
+    if not room > 0:
+        raise Refused("the room above the cylinder must be above 0")
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, (drift, *rest) = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
@@ -195,6 +199,7 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         shortest=shortest,
         longest=longest,
         back=back,
+        room=room,
         matrix=rows,
         center=tuple(center),
         drift=drift,
