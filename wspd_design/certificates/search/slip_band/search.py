@@ -70,10 +70,12 @@ def _chain(sought: Sought, cell: Cell, inherited: Chain | None, spent: Spent) ->
     window = left_of(sought, chain)
     if window < 0 or not inherited.ellipsoids:
         return chain
+    # Faster windows may have smaller ellipsoids for the first choice than for the last one.
     anew = begun(sought, cell, chain.choice)
     if far(sought, cell, window, anew, spent) >= 1.0:
         return chain
-    return continued(sought, cell, anew, spent)
+    found = continued(sought, cell, begun(sought, cell), spent)
+    return found if left_of(sought, found) < 0 else continued(sought, cell, anew, spent)
 
 
 def alone(sought: Sought, share: Fraction) -> Proof | None:
