@@ -156,9 +156,8 @@ def loop_of(
     settled = apart * radius / slowest
     fades, fades_there = fading_at(friction, none), fading_at(friction, settled)
     # All axles are within their bands, and from the reference to their slip the force follows the slope.
-    used = ball(*friction.level) + mean_slope(friction, none, choice.near) * slowest * -ball(
-        *reached(choice.near)
-    )
+    used = ball(*friction.level)
+    used += mean_slope(friction, none, choice.near) * slowest * ball(*reached(choice.near))
     pulled = point(constants().gravity) * mu0  # deceleration by a friction of mu0 Q
     braking = pulled * used + drag
     if not braking < point(fastest_loss(problem)) or not braking > 0:
