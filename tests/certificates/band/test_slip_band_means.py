@@ -60,9 +60,9 @@ class Sample:
             patch.setattr(
                 center, "shares_together", lambda *asked: self.told.append(asked) or shares_together(*asked)
             )
-            loop = loop_of(
-                problem, self.law, cell, windows_of(problem)[6], (ANY,) * HALVES, Choice(PULSE, 0), EXACT
-            )
+            conditions = EXACT._replace(delay=Fraction(delay))
+            window, choice = windows_of(problem)[6], Choice(PULSE, 0)
+            loop = self.plain = loop_of(problem, self.law, cell, window, (ANY,) * HALVES, choice, conditions)
             growths = growth if least_growth is None else least_growth, growth
             secants = tuple(point(Fraction(each)) / point(self.law.sample_time) for each in growths)
             ranges, added = replace(loop.ranges, secants=secants), point(Fraction(added))
@@ -181,3 +181,21 @@ def test_way_at_a_center_is_the_wanted_change_with_what_disturbs_in_its_middle(p
     gain, lag = float(law.approach_rate * law.sample_time), lag + sum(acceleration) / 2.0
     wanted = n + gain * (e + float(law.ahead) * (n - y + lag)) + lag
     assert found == pytest.approx(wanted - y + sum(command) / 2.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.3])
+@pytest.mark.parametrize("speedup", SPEEDUPS)
+def test_ways_from_none_on_are_between_the_corners(problem, speedup, delay):
+    """Any pulse that begins at any time until the latest one, by parts, and by what counts in both means."""
+    numbers = {"speedup": speedup, "lengths": SHORT, "added": 0.0}
+    loop = Sample(problem, way=0.003, growth=0.0, delay=delay, **numbers).plain
+    corners = np.array([[float(end.mid()) for end in each] for each in loop.ranges.ways])
+    low, high = corners.min(axis=0) - ROUNDING, corners.max(axis=0) + ROUNDING
+    for secant, begun, way in product(loop.ranges.secants, {0.0, delay}, WAYS):
+        growth = float(secant.mid()) * float(law_of(problem.controller).sample_time)
+        run = Sample(problem, way=way, growth=growth, delay=begun, **numbers)
+        for length in np.linspace(1e-3, float(PULSE), 6):
+            wanted, gone, weighed, mean = run.gone(length, run.kind)
+            found = np.array([gone / wanted, gone / wanted, 1.0 - weighed / gone, mean / wanted])
+            assert (low <= found).all()
+            assert (found <= high).all()
