@@ -45,6 +45,14 @@ def test_share_of_the_change_of_the_steady_drift_is_needed(half, proof):
     assert "may lead out of an ellipsoid" in refused(half, proof)
 
 
+@pytest.mark.parametrize("ends", [(-1.0, 0.001), (-0.001, 1.0)])
+def test_errors_on_either_side_of_where_the_slope_is_bounded_are_refused(half, proof, monkeypatch, ends):
+    monkeypatch.setattr(checker, "_within", lambda *_: (point(-0.001), point(0.001)))
+    assert told_of(half, proof)
+    monkeypatch.setattr(checker, "_within", lambda *_: tuple(map(point, ends)))
+    assert "range in which the slope of the friction is bounded" in refused(half, proof)
+
+
 def test_valves_that_begin_later_than_the_proof_allows_are_refused(half, proof):
     brake = replace(half.vehicle.brake, dead_time=0.002)
     slow = replace(half, vehicle=replace(half.vehicle, brake=brake))

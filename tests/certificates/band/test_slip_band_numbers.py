@@ -290,7 +290,7 @@ def test_drift_of_a_train_whose_deceleration_rises_faster_or_slower_is_within_it
         for k, v in enumerate((SPEED, stop.speeds(SPEED, (0.0, h))[1])):
             change = stop.holding(v + 1e-4, 0.18, settled) - stop.holding(v - 1e-4, 0.18, settled)
             steady[k] = -h * h * change / 2e-4 * stop.braking(v, 0.18) / float(law.inertia)
-        assert abs(steady[1] - steady[0]) <= float(loop.steady.change.mid())
+        assert within(steady[1] - steady[0], doubles(loop.steady.change))
     for secant in doubles(loop.ranges.secants):
         for k, value in stop.disturbed(0.0, settled, secant).items():
             assert within(value - {2: 1.0, 3: share}.get(k, 0.0) * steady[0], ends[k]), k
