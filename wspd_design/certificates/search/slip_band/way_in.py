@@ -1,23 +1,26 @@
 """Search for strips of friction and supply rate that cover the way from rolling; nothing here is trusted."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import plant_with
 from wspd_design.certificates.theorems.slip_band.friction import FRICTION
 from wspd_design.certificates.theorems.slip_band.way_in import (
+    NEAR,
     SUPPLY,
+    TILTING,
     Piece,
     Row,
     Strip,
     courses,
     strips_of,
+    tilt,
 )
 from wspd_design.controllers.protection import Protection
-from wspd_design.parameters.records import Rail, Vehicle
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +29,9 @@ if TYPE_CHECKING:
     from wspd_design.certificates.theorems.slip_band.arrival import Asked
 
     Array = NDArray[np.float64]
+
+Powers: TypeAlias = Mapping[str, float]
+"""Of each number, in the supply rate of a strip."""
 
 SHARES = (1.0, 0.5, 0.25, 0.0)  # of the range of the friction about its nominal value
 HALVES = (0.04, 0.032, 0.025, 0.02, 0.016, 0.0125, 0.01, 0.008, 0.0063, 0.005, 0.004)
@@ -71,14 +77,17 @@ def plan(
         for half in HALVES
         if _number(high / low, row[1] / row[0], half) <= most
     ]
-    strips = [_tried(problem, law, (low, high), row, half, asked is not None) for row, half in tried]
+    powers = {row: _powers(problem, law, math.sqrt(low * high), row) for row in pairwise(edges)}
+    strips = [
+        _tried(problem, law, (low, high), row, half, powers[row], asked is not None) for row, half in tried
+    ]
     found = courses(problem, law, strips, asked)
     rows: list[Row] = []
     for row in pairwise(edges):
         held = [half for (at, half), there in zip(tried, found.there, strict=True) if at == row and there]
         if not held:
             return None
-        rows.append(_row(problem, law, (low, high), row, held[0], asked is not None))
+        rows.append(_row(problem, law, (low, high), row, held[0], powers[row], asked is not None))
         if len(strips_of(rows)) > most:
             return None
     return tuple(rows)
@@ -96,6 +105,7 @@ def _tried(
     friction: tuple[float, float],
     row: tuple[float, float],
     half: float,
+    powers: Powers,
     settled: bool,
 ) -> Strip:
     """Return a strip at the slow end of a row and the highest friction, wider than it has to be."""
@@ -103,9 +113,9 @@ def _tried(
     piece = (low, high)
     if math.log(high / low) > 2.0 * half:
         piece = (high * math.exp(-2.0 * half * MARGIN), high)
-    slope = _slope(problem, law, 0.5 * (piece[0] + piece[1])) if low < high else 0.0
-    borders = (row[0], row[0] * math.exp(WIDTH * half * MARGIN))
-    alone = Piece(friction=piece, slope=slope, borders=borders, samples=(1,))
+    alone = _whole(problem, piece, row, powers)
+    slowest = row[0] - tilt(problem, alone)
+    alone = replace(alone, borders=(slowest, slowest * math.exp(WIDTH * half * MARGIN)))
     return Strip(replace(alone, samples=_samples(problem, law, alone, LATER[settled])), 0)
 
 
@@ -115,6 +125,7 @@ def _row(
     friction: tuple[float, float],
     row: tuple[float, float],
     half: float,
+    powers: Powers,
     settled: bool,
 ) -> Row:
     """Divide the friction into pieces, and each piece into strips of the supply rates of a row."""
@@ -122,52 +133,76 @@ def _row(
     count = max(1, math.ceil(math.log(high / low) / (2.0 * half)))
     edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
     found = []
-    for one, other in pairwise(edges):
-        slope = _slope(problem, law, 0.5 * (one + other)) if low < high else 0.0
-        shift = abs(slope) * 0.5 * (other - one) * (1.0 + 1e-9) + 1e-9 * slowest
+    for ends in pairwise(edges):
+        alone = _whole(problem, ends, row, powers)
+        shift = tilt(problem, alone) * (1.0 + 1e-9) + 1e-9 * slowest
         first, last = slowest - shift, fastest + shift
         number = max(1, math.ceil(math.log(last / first) / (WIDTH * half)))
         borders = tuple(first * (last / first) ** (k / number) for k in range(number + 1))
-        piece = Piece(friction=(one, other), slope=slope, borders=borders, samples=(1,) * number)
+        piece = replace(alone, borders=borders, samples=(1,) * number)
         found.append(replace(piece, samples=_samples(problem, law, piece, LATER[settled])))
     return Row(supply=row, pieces=tuple(found))
 
 
-def _stop(problem: Problem, law: Protection, friction: float, supply: float) -> "tuple[Array, Array]":
-    """Times and slips of a simulated stop [s, -]."""
+def _stop(
+    problem: Problem, law: Protection, supply: float, changed: Mapping[str, float]
+) -> "tuple[Array, Array]":
+    """Times and slips of a simulated stop, with a supply rate and numbers that are not the nominal ones [s, -]."""
     import numpy as np
 
     from wspd_design.simulation.records import Scenario
     from wspd_design.simulation.stop import simulate
 
-    vehicle, rail = _changed(problem, friction, supply)
+    vehicle, rail = plant_with(problem, changed)
+    vehicle = replace(vehicle, brake=replace(vehicle.brake, supply_rate=supply))
     run = simulate(vehicle, law, Scenario(rail=rail, initial_speed=problem.speeds[1]), plant="quarter")
     return np.asarray(run.time), np.asarray(run.slip)[:, 0]
 
 
-def _changed(problem: Problem, friction: float, supply: float) -> tuple[Vehicle, Rail]:
-    vehicle, rail = plant_with(problem, {FRICTION: friction})
-    return replace(vehicle, brake=replace(vehicle.brake, supply_rate=supply)), rail
+def _whole(
+    problem: Problem, friction: tuple[float, float], row: tuple[float, float], powers: Powers
+) -> Piece:
+    """Return a piece with one strip, whose supply rate follows the powers of its numbers."""
+    middles = {name: problem.nominal(name) for name in NEAR} | {FRICTION: 0.5 * (friction[0] + friction[1])}
+    supply = math.sqrt(row[0] * row[1])
+    slopes = tuple(powers[name] * supply / middles[name] for name in TILTING)
+    return Piece(friction=friction, slopes=slopes, borders=row, samples=(1,))
 
 
-def _slope(problem: Problem, law: Protection, friction: float) -> float:
-    """Supply rate over the friction along which wheels reach the same slip at the same time [1/s]."""
+def _powers(problem: Problem, law: Protection, friction: float, row: tuple[float, float]) -> Powers:
+    """Powers of the numbers with which the supply rate goes along which wheels slide at the same time.
+
+    Parameters
+    ----------
+    problem, law : Problem, Protection
+        What is followed.
+    friction : float
+        About which they are worked out [-].
+    row : tuple of float
+        Range of the supply rate about whose middle they are [1/s].
+    """
+    nominal = {FRICTION: friction} | {name: problem.nominal(name) for name in NEAR}
+    supply = math.sqrt(row[0] * row[1])
+    less, more = 1.0 - CHANGE, 1.0 + CHANGE
+    by_supply = _slides(problem, law, supply * more, nominal) - _slides(problem, law, supply * less, nominal)
+    found = {}
+    for name, value in nominal.items():
+        later, sooner = (_slides(problem, law, supply, nominal | {name: value * end}) for end in (more, less))
+        power = (sooner - later) / by_supply if by_supply else math.inf
+        found[name] = power if math.isfinite(power) else 0.0
+    return found
+
+
+def _slides(problem: Problem, law: Protection, supply: float, changed: Mapping[str, float]) -> float:
+    """When a wheel of a simulated stop slides [s]."""
     import numpy as np
 
-    def reached(friction: float, supply: float) -> float:
-        time, slip = _stop(problem, law, friction, supply)
-        beyond = np.flatnonzero(slip >= SLIDING * problem.slip)
-        if not beyond.size:
-            return math.inf
-        k = int(beyond[0])
-        return float(np.interp(SLIDING * problem.slip, slip[k - 1 : k + 1], time[k - 1 : k + 1]))
-
-    supply = problem.nominal(SUPPLY)
-    by_friction = reached(friction * (1.0 + CHANGE), supply) - reached(friction * (1.0 - CHANGE), supply)
-    by_supply = reached(friction, supply * (1.0 + CHANGE)) - reached(friction, supply * (1.0 - CHANGE))
-    if not math.isfinite(by_friction) or not math.isfinite(by_supply) or by_supply == 0.0:
-        return 0.0
-    return -(by_friction / friction) / (by_supply / supply)
+    time, slip = _stop(problem, law, supply, changed)
+    beyond = np.flatnonzero(slip >= SLIDING * problem.slip)
+    if not beyond.size:
+        return math.inf
+    k = int(beyond[0])
+    return float(np.interp(SLIDING * problem.slip, slip[k - 1 : k + 1], time[k - 1 : k + 1]))
 
 
 def _samples(problem: Problem, law: Protection, piece: Piece, later: float) -> tuple[int, ...]:
@@ -176,7 +211,7 @@ def _samples(problem: Problem, law: Protection, piece: Piece, later: float) -> t
 
     found: list[int] = []
     for first in range(0, len(piece.samples), STEPS):
-        time, slip = _stop(problem, law, piece.friction[1], piece.borders[first])
+        time, slip = _stop(problem, law, piece.borders[first], {FRICTION: piece.friction[1]})
         reached = np.flatnonzero(slip >= problem.slip - SETTLED)
         settled = float(time[reached[0]]) if reached.size else float(time[-1])
         found += [math.ceil((settled + later) / law.sample_time)] * min(STEPS, len(piece.samples) - first)

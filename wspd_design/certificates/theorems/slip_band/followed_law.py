@@ -205,7 +205,8 @@ def went(
     """Change of the torque over a sample for a way that is asked, up or down, by filling and by venting.
 
     Of a room the pulse goes 1 - (1 - y)^p for y that is asked, with the power p the times of the inversion over those
-    of the valve: p y, but for a factor that lies between 1 and its value at the largest y.
+    of the valve: p y, but for a factor that lies between 1 and its value at the largest y. With the sign of the way
+    that is the mean of both powers times it, and half of their difference times its size.
 
     Parameters
     ----------
@@ -233,8 +234,13 @@ def went(
     (short, far), (short_down, far_down) = outward
     mean = (powers[0] + powers[1]) * 0.5
     unlike = (powers[0] - powers[1]) * 0.5
-    turned = np.maximum(np.abs(unlike.low), np.abs(unlike.high)) * np.maximum(*ends)
-    return (asked * mean).widened(np.maximum(short, far_down) + turned, np.maximum(far, short_down) + turned)
+    change = asked * mean + _size(asked) * unlike
+    return change.widened(np.maximum(short, far_down), np.maximum(far, short_down))
+
+
+def _size(way: Affine) -> Affine:
+    """Size of a way that may be up or down."""
+    return way.positive_part() * 2.0 - way
 
 
 def _missed(whole: Affine, share: Affine, speed: float) -> Affine:

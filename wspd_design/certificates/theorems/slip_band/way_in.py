@@ -1,9 +1,9 @@
 """Decide about a proof of the way from rolling to the reference: boxes of friction and supply rate, followed in time.
 
-How fast the supply rises decides when a wheel begins to slide, and so does the friction. A box is therefore a strip: a
-range of the friction, and a supply rate that changes with the friction so that its wheels slide at the same time. The
-strips of a piece of the friction lie side by side and cover the supply rates of a row; the slower the supply, the
-narrower they have to be. All other numbers of the box lie within a share of their ranges in every strip.
+How fast the supply rises decides when a wheel begins to slide, and so do the friction and all other numbers of the
+box. A box is therefore a strip: a range of the friction, the other numbers within a share of their ranges, and a supply
+rate that changes with all of them so that its wheels slide at the same time. The strips of a piece of the friction lie
+side by side and cover the supply rates of a row; the slower the supply, the narrower they have to be.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -36,12 +36,14 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-FORMAT = "wspd-way-in/3"
+FORMAT = "wspd-way-in/4"
 SUPPLY = "supply rate"
 VARIED = (FRICTION, SUPPLY)
 NEAR = tuple(name for name in NAMES if name not in VARIED)
 """Numbers that stay near their nominal values: within a share of the way to either end of their ranges."""
-LARGEST_SHARE = Fraction(1, 20)  # for which the friction of the band is bounded
+TILTING = (FRICTION, *NEAR)
+"""Numbers with which the supply rate of a strip changes."""
+LARGEST_SHARE = Fraction(1, 10)  # for which the friction of the band is bounded
 MOST_STRIPS, MOST_SAMPLES, MOST_LETTERS = 20_000, 2_000, 60  # of a proof, of a strip, of a number
 AT_ONCE = 256  # strips that are followed together
 WORK = 25  # operations that a sample of a strip is worth
@@ -53,8 +55,8 @@ class Piece:
     """A range of the friction with its strips."""
 
     friction: tuple[float, float]  # -
-    slope: float  # 1/s, of the supply rate over the friction
-    borders: tuple[float, ...]  # 1/s, of the strips at the middle friction, rising
+    slopes: tuple[float, ...]  # 1/s, of the supply rate over each of the tilting numbers, in their units
+    borders: tuple[float, ...]  # 1/s, of the strips where all of these are in the middle, rising
     samples: tuple[int, ...]  # for which each strip is followed
 
     @property
@@ -100,7 +102,7 @@ def write(rows: Sequence[Row], share: Fraction, band: Mapping[str, Any] | None =
                 "pieces": [
                     {
                         "friction": [text(Fraction(end)) for end in each.friction],
-                        "slope": text(Fraction(each.slope)),
+                        "slopes": [text(Fraction(slope)) for slope in each.slopes],
                         "borders": [text(Fraction(border)) for border in each.borders],
                         "samples": list(each.samples),
                     }
@@ -140,20 +142,28 @@ def _row(written: object) -> Row:
 
 
 def _piece(written: object) -> Piece:
-    if not isinstance(written, dict) or written.keys() != {"friction", "slope", "borders", "samples"}:
-        raise Refused("a piece lacks its friction, slope, borders or samples")
-    friction, borders, samples = (written[name] for name in ("friction", "borders", "samples"))
-    if not all(isinstance(each, list) for each in (friction, borders, samples)):
-        raise Refused("friction, borders and samples of a piece must be lists")
+    names = ("friction", "slopes", "borders", "samples")
+    if not isinstance(written, dict) or written.keys() != {*names}:
+        raise Refused("a piece lacks its friction, slopes, borders or samples")
+    friction, slopes, borders, samples = (written[name] for name in names)
+    if not all(isinstance(each, list) for each in (friction, slopes, borders, samples)):
+        raise Refused("friction, slopes, borders and samples of a piece must be lists")
     if len(friction) != 2 or len(borders) != len(samples) + 1 or not samples:
         raise Refused("a piece needs two ends of the friction, and one border more than strips")
+    if len(slopes) != len(TILTING):
+        raise Refused(f"a piece needs {len(TILTING)} slopes: over {', '.join(TILTING)}")
     if not all(type(each) is int and 0 < each <= MOST_SAMPLES for each in samples):
         raise Refused(f"a strip is followed for 1 to {MOST_SAMPLES} samples")
     low, high = (_double(end) for end in friction)
     edges = tuple(_double(each) for each in borders)
     if not low <= high or any(one >= other for one, other in pairwise(edges)):
         raise Refused("the ends of the friction or the borders of the strips do not rise")
-    return Piece(friction=(low, high), slope=_double(written["slope"]), borders=edges, samples=tuple(samples))
+    return Piece(
+        friction=(low, high),
+        slopes=tuple(_double(each) for each in slopes),
+        borders=edges,
+        samples=tuple(samples),
+    )
 
 
 def _double(written: object) -> float:
@@ -171,8 +181,8 @@ def checker(problem: Problem, law: Protection) -> Callable[[Mapping[str, Any], W
 
     def check(proof: Mapping[str, Any], work: Work) -> dict[str, float]:
         share, rows = read(proof)
-        low, high = _covered(problem, rows)
         near = around(problem, share)
+        low, high = _covered(near, rows)
         work.spend(WORK * sum(each.samples for each in strips_of(rows)))
         from wspd_design.certificates.theorems.slip_band.computed_law import unlike
 
@@ -267,11 +277,11 @@ def _covered(problem: Problem, rows: Sequence[Row]) -> tuple[float, float]:
         raise Refused("the rows of the supply rate do not follow each other")
     if rows[0].supply[0] > slowest or rows[-1].supply[1] < fastest:
         raise Refused("the rows do not cover all supply rates")
-    ranges = [_friction_of(row) for row in rows]
+    ranges = [_friction_of(problem, row) for row in rows]
     return max(low for low, _ in ranges), min(high for _, high in ranges)
 
 
-def _friction_of(row: Row) -> tuple[float, float]:
+def _friction_of(problem: Problem, row: Row) -> tuple[float, float]:
     """Range of the friction for which all supply rates of a row are covered, or refuse."""
     slowest, fastest = row.supply
     end = row.pieces[0].friction[0]
@@ -279,16 +289,26 @@ def _friction_of(row: Row) -> tuple[float, float]:
         if each.friction[0] != end:
             raise Refused("the pieces of the friction do not follow each other")
         end = each.friction[1]
-        shifts = [each.slope * (friction - each.middle) for friction in each.friction]
-        first, last = each.borders[0] + max(shifts), each.borders[-1] + min(shifts)
-        if first > slowest or last < fastest:
+        shift = (1.0 + OUTWARD) * tilt(problem, each)
+        if each.borders[0] + shift > slowest or each.borders[-1] - shift < fastest:
             raise Refused("the strips of a piece do not cover all supply rates")
-        if not each.borders[0] + min(shifts) > 0.0:
+        if not each.borders[0] - shift > 0.0:
             raise Refused("a strip holds a supply rate that is not positive")
     low = row.pieces[0].friction[0]
     if not low > 0.0:
         raise Refused("a piece holds a friction that is not positive")
     return low, end
+
+
+def tilt(problem: Problem, piece: Piece) -> float:
+    """Largest change of the supply rate within a strip that goes with the numbers of a piece [1/s]."""
+    return sum(abs(slope) * half for slope, (_, half) in zip(piece.slopes, _ranges(problem, piece), strict=True))
+
+
+def _ranges(problem: Problem, piece: Piece) -> list[tuple[float, float]]:
+    """Middle and half width of each of the tilting numbers."""
+    ends = [piece.friction, *(problem.span(name) for name in NEAR)]
+    return [(0.5 * (low + high), 0.5 * (high - low)) for low, high in ends]
 
 
 def followed(
@@ -401,16 +421,14 @@ def _boxes(problem: Problem, strips: Sequence[Strip]) -> "tuple[Array, Array]":
 
     middle = np.zeros((len(strips), len(NUMBERS)))
     spread = np.zeros((len(strips), len(NUMBERS), len(NUMBERS)))
-    for name in NEAR:
-        (low, high), k = problem.span(name), NUMBERS.index(name)
-        middle[:, k] = 0.5 * (low + high)
-        spread[:, k, k] = 0.5 * (high - low) + OUTWARD * high
-    row, column = NUMBERS.index(FRICTION), NUMBERS.index(SUPPLY)
+    supply = NUMBERS.index(SUPPLY)
     for k, (piece, strip) in enumerate(strips):
         low, high = piece.borders[strip : strip + 2]
-        half = 0.5 * (piece.friction[1] - piece.friction[0])
-        middle[k, row], middle[k, column] = piece.middle, 0.5 * (low + high)
-        spread[k, row, row] = half * (1.0 + OUTWARD) + OUTWARD * piece.middle
-        spread[k, column, row] = piece.slope * half
-        spread[k, column, column] = 0.5 * (high - low) + OUTWARD * (high + abs(piece.slope) * half)
+        middle[k, supply] = 0.5 * (low + high)
+        spread[k, supply, supply] = 0.5 * (high - low) + OUTWARD * (high + tilt(problem, piece))
+        for name, slope, (center, half) in zip(TILTING, piece.slopes, _ranges(problem, piece), strict=True):
+            number = NUMBERS.index(name)
+            middle[k, number] = center
+            spread[k, number, number] = half + OUTWARD * (half + center)
+            spread[k, supply, number] = slope * spread[k, number, number]
     return middle, spread
