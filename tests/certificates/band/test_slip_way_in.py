@@ -32,6 +32,7 @@ from wspd_design.certificates.theorems.slip_band.way_in import (
     LARGEST_SHARE,
     NEAR,
     SUPPLY,
+    TILTING,
     Piece,
     Row,
     Strip,
@@ -40,6 +41,7 @@ from wspd_design.certificates.theorems.slip_band.way_in import (
     around,
     checker,
     followed,
+    tilt,
     write,
 )
 from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN, STRIPS
@@ -51,6 +53,7 @@ from wspd_design.simulation.stop import simulate
 pytestmark = pytest.mark.slow
 PLENTY = 10**9
 LOW = wd.load_rail("low-adhesion")
+LEVEL = (0.0,) * len(TILTING)  # slopes of strips whose supply rate goes with nothing
 
 
 @pytest.fixture(scope="module")
@@ -64,13 +67,18 @@ def low():
 @pytest.fixture(scope="module")
 def piece(low):
     mu0 = low.nominal(FRICTION)
-    alone = Piece(friction=(mu0, mu0), slope=0.0, borders=(0.75, 0.756), samples=(1,))
+    alone = Piece(friction=(mu0, mu0), slopes=LEVEL, borders=(0.75, 0.756), samples=(1,))
     return replace(alone, samples=search._samples(low, low.controller, alone, 0.3))
 
 
 @pytest.fixture(scope="module")
 def numbers(low, piece):
     return followed(low, low.controller, [Strip(piece, 0)])
+
+
+def sloping(**slopes):
+    """Slopes over these numbers, and none over others."""
+    return tuple(slopes.get(name.replace(" ", "_"), 0.0) for name in TILTING)
 
 
 def rows(*pieces, supply=(0.75, 0.756)):
@@ -129,7 +137,7 @@ def stop():
     ends = {name: problem.span(name) for name in NEAR} | {SUPPLY: (0.75, 0.756)}
     nominal = replace(problem, bounds=type(problem.bounds).of(ends), speeds=(80.0 / 3.6, problem.speeds[1]))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search, "HALVES", (0.005,))
+        patch.setattr(search, "HALVES", (0.02,))
         patch.setattr(search, "ROWS", 1)
         (found,) = suite.verify(nominal, only=["slip_way_in"], figures=False)
     return nominal, found
@@ -165,14 +173,16 @@ def test_verdict_says_how_far_other_numbers_lie_from_their_nominal_values(stop):
 def test_end_before_the_filters_have_settled_is_refused(stop):
     nominal, found = stop
     proof = json.loads(json.dumps(found.findings[STRIPS].stated.proof))
-    proof["rows"][0]["pieces"][0]["samples"] = [150]
+    alone = proof["rows"][0]["pieces"][0]
+    alone["samples"] = [150] * len(alone["samples"])
     assert "not in the ellipsoid" in refused(nominal, proof)
 
 
 def test_forged_band_is_refused(stop):
     nominal, found = stop
     proof = json.loads(json.dumps(found.findings[STRIPS].stated.proof))
-    proof["rows"][0]["pieces"][0]["samples"] = [2]
+    alone = proof["rows"][0]["pieces"][0]
+    alone["samples"] = [2] * len(alone["samples"])
     each = proof["band"]["ellipsoids"][-1]
     each[6:21] = [repr(0.01 * float(number)) for number in each[6:21]]
     assert "may" in refused(nominal, proof)
@@ -249,7 +259,7 @@ def test_verdict_says_what_was_shown(low, numbers):
 def test_gaps_are_refused(low, piece):
     narrow = write(rows(replace(piece, borders=(0.751, 0.756))), NONE)
     assert "do not cover" in refused(low, narrow)
-    tilted = write(rows(replace(piece, friction=(0.079, 0.081), slope=1.0)), NONE)
+    tilted = write(rows(replace(piece, friction=(0.079, 0.081), slopes=sloping(mu0=1.0))), NONE)
     assert "do not cover" in refused(low, tilted)
     apart = write(rows(replace(piece, friction=(0.06, 0.07)), replace(piece, friction=(0.0701, 0.1))), NONE)
     assert "do not follow" in refused(low, apart)
@@ -263,6 +273,22 @@ def test_gaps_are_refused(low, piece):
     assert "rows do not cover" in refused(low, part)
     gap = write([*rows(piece, supply=(0.75, 0.752)), *rows(piece, supply=(0.753, 0.756))], NONE)
     assert "rows of the supply rate do not follow" in refused(low, gap)
+
+
+def test_strips_that_follow_a_number_have_to_reach_further(low, piece):
+    """Heavy vehicles slide later: along a strip the supply rises faster with them."""
+    masses = problem_of(1.0, rail=LOW).span("mass")
+    near = replace(low, bounds=type(low.bounds).of({**dict(low.bounds.entries), "mass": masses}))
+    share = Fraction(1, 100)
+    shift = 1e-6 * 0.01 * 0.5 * (masses[1] - masses[0])
+    following = replace(piece, slopes=sloping(mass=1e-6), samples=(2,))
+    assert "do not cover" in refused(near, write(rows(following), share))
+    for low_end, high_end in ((0.999, 1.001), (1.001, 0.999)):
+        borders = (0.75 - low_end * shift, 0.756 + high_end * shift)
+        assert "do not cover" in refused(near, write(rows(replace(following, borders=borders)), share))
+    enough = replace(following, borders=(0.75 - 1.001 * shift, 0.756 + 1.001 * shift))
+    checker(near, near.controller)(write(rows(enough), share), Work(PLENTY))
+    assert "needs 7 slopes" in refused(near, write(rows(replace(piece, slopes=(0.0,))), share))
 
 
 def test_only_the_friction_of_all_rows_counts(low, piece):
@@ -285,16 +311,17 @@ def test_end_before_the_reference_does_not_count_as_there(low, piece):
 
 @pytest.fixture(scope="module")
 def slow():
-    """A slow supply and the best friction, with all numbers in their ranges; and a strip that bears a small share."""
+    """A slow supply and the best friction, with all numbers in their ranges; and a strip that follows the friction."""
     problem = problem_of(1.0, rail=LOW)
-    middle, supply = 0.099, (0.378, 0.38)
-    friction = (0.99 * middle, 1.01 * middle)
+    middle, supply = 0.097, (0.378, 0.38)
+    friction = (0.97 * middle, 1.03 * middle)
     ends = {name: problem.span(name) for name in NEAR} | {FRICTION: friction, SUPPLY: supply}
     problem = replace(problem, bounds=type(problem.bounds).of(ends))
-    slope = search._slope(problem, problem.controller, middle)
-    shift = slope * 0.5 * (friction[1] - friction[0])
-    borders = (supply[0] - shift - 1e-6, supply[1] + shift + 1e-6)
-    alone = Piece(friction=friction, slope=slope, borders=borders, samples=(1,))
+    powers = search._powers(problem, problem.controller, middle, supply)
+    by_friction = dict.fromkeys(TILTING, 0.0) | {FRICTION: powers[FRICTION]}
+    alone = search._whole(problem, friction, supply, by_friction)
+    shift = tilt(problem, alone) + 1e-6
+    alone = replace(alone, borders=(supply[0] - shift, supply[1] + shift))
     return problem, replace(alone, samples=(120,))
 
 
@@ -326,7 +353,7 @@ def test_stops_with_numbers_at_the_ends_of_the_share_are_enclosed(slow):
     problem, wide = slow
     near, law = around(problem, Fraction(1, 50)), problem.controller
     mu0, supply = wide.middle, 0.379
-    narrow = Strip(Piece(friction=(mu0, mu0), slope=0.0, borders=(0.3789, 0.3791), samples=(190,)), 0)
+    narrow = Strip(Piece(friction=(mu0, mu0), slopes=LEVEL, borders=(0.3789, 0.3791), samples=(190,)), 0)
     box, bare = (enclosed(each, narrow, 190) for each in (near, around(problem, NONE)))
     outside = 0
     for side in (0, 1):
@@ -340,12 +367,36 @@ def test_stops_with_numbers_at_the_ends_of_the_share_are_enclosed(slow):
     assert outside > 100
 
 
+def test_stops_whose_supply_goes_with_the_other_numbers_are_enclosed(slow):
+    """Numbers at the ends of the share that let wheels slide later, and the faster supply of the strip there."""
+    problem, wide = slow
+    near, law, mu0, samples = around(problem, Fraction(1, 50)), problem.controller, wide.middle, 150
+    powers = search._powers(problem, law, mu0, (0.3789, 0.3791))
+    whole = search._whole(problem, (mu0, mu0), (0.3789, 0.3791), powers)
+    boxes = _boxes(near, [Strip(whole, 0)])
+    course = approach.follow(law, near.vehicle, near.rail, boxes, near.speeds[1])
+    found = [(state.sliding / state.speed, state.supply) for _, state, _ in islice(course, samples)]
+    level = enclosed(near, Strip(replace(whole, slopes=LEVEL), 0), samples)
+    assert (found[-1][0].high - found[-1][0].low)[0] < 0.5 * np.diff(level[-1])[0]
+    later = {name: near.span(name)[int(powers[name] > 0.0)] for name in NEAR}
+    supply = 0.379 + tilt(near, whole)
+    vehicle, rail = plant_with(problem, later | {FRICTION: mu0})
+    vehicle = replace(vehicle, brake=replace(vehicle.brake, supply_rate=supply))
+    run = simulate(vehicle, law, Scenario(rail=rail, initial_speed=near.speeds[1]), plant="quarter")
+    times = law.sample_time * np.arange(1, samples + 1)
+    slips, supplied = np.interp(times, run.time, run.slip[:, 0]), -np.expm1(-supply * times)
+    for (slip, share), there, pressure in zip(found, slips, supplied, strict=True):
+        assert slip.low[0] - 2e-5 <= there <= slip.high[0] + 2e-5
+        assert share.low[0] - 1e-9 <= pressure <= share.high[0] + 1e-9
+    assert supply > 1.01 * 0.3791  # out of a strip whose supply follows nothing
+
+
 def test_another_law_is_noticed(low, monkeypatch):
     assert computed_law.unlike(low, low.controller) == ""
     original = followed_law._pull
     monkeypatch.setattr(followed_law, "_pull", lambda error, rate, slew: original(error, rate, 1.001 * slew))
     assert "computes another" in computed_law.unlike(low, low.controller)
-    alone = Piece(friction=(0.08, 0.08), slope=0.0, borders=(0.75, 0.756), samples=(5,))
+    alone = Piece(friction=(0.08, 0.08), slopes=LEVEL, borders=(0.75, 0.756), samples=(5,))
     proof = write(rows(alone), NONE)
     assert "computes another" in refused(low, proof)
 
@@ -374,6 +425,22 @@ def test_a_change_that_is_not_in_proportion_is_noticed(low, monkeypatch):
     original = followed_law.went
     monkeypatch.setattr(followed_law, "went", lambda *given: original(*given) * 1.001)
     assert "computes another" in computed_law.unlike(low, low.controller)
+
+
+@pytest.mark.parametrize("ends", [(-500.0, 800.0), (200.0, 800.0), (-800.0, -200.0)])
+def test_ways_up_and_down_go_with_the_power_of_their_own_valve(ends):
+    """In rooms so large that a pulse goes in proportion to its length."""
+    low, high = ends
+    way = Affine(np.array([0.5 * (low + high)]), np.array([[0.5 * (high - low)]]), np.zeros(1))
+    room, filling, venting = (Affine(np.array([x]), np.zeros((1, 1)), np.zeros(1)) for x in (1e9, 1.2, 0.4))
+    change = followed_law.went(way, (room, room), (filling, venting), (18.0, 18.0), 0.0)
+    for z in np.linspace(-1.0, 1.0, 21):
+        asked = way.center[0] + z * way.slopes[0, 0]
+        exact = (1.2 if asked > 0.0 else 0.4) * asked
+        about = change.center[0] + z * change.slopes[0, 0]
+        assert abs(exact - about) <= change.error[0]
+    if low * high > 0.0:
+        assert change.error[0] < 1e-3
 
 
 # Around a way of none, around the longest way of filling, and between both.
