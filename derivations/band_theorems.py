@@ -92,13 +92,14 @@ THEOREMS = (
         statement="A train rolls, and the brake is demanded. Its loop has eight numbers at a sample: the speed v, the "
         "sliding speed s = v - R w, the innovation r of the observer, its friction torque, the braking torque, the "
         "filtered acceleration, the change of v over the last sample, and the supply. Each is enclosed by an affine "
-        "form in symbols between -1 and 1, of which two stand for the friction and the supply rate of a strip, and "
-        "six for mass, inertia, radius, pads and both valve times, each within a share of the way from its nominal "
-        "value to either end of its range. What a sample makes of the forms encloses what it makes of the numbers; if "
-        "a form of the slip s/v stays below a number, also between samples, for strips that cover both ranges, no "
-        "wheel slips more on its way. If the forms of e, p, N, Y and D lie at a sample in the ellipsoid of a band for "
-        "the same share, and the supply has what the band asks for then and when the train gets to each slower "
-        "window, the wheels stay in the band down to the lowest speed.",
+        "form in symbols between -1 and 1, of which two stand for the friction and the supply rate of a strip, and six "
+        "for mass, inertia, radius, pads and both valve times, each within a share of the way from its nominal value "
+        "to either end of its range; along a strip the supply rate changes in proportion to all of them. What a sample "
+        "makes of the forms encloses what it makes of the numbers; if a form of the slip s/v stays below a number, "
+        "also between samples, for strips that cover both ranges, no wheel slips more on its way. If the forms of e, "
+        "p, N, Y and D lie at a sample in the ellipsoid of a band for the same share, and the supply has what the band "
+        "asks for then and when the train gets to each slower window, the wheels stay in the band down to the lowest "
+        "speed.",
         hypotheses=(
             "friction and supply rate as stated, six numbers within the stated share, everything else at its nominal "
             "value, and the scale of the train speed found while rolling",
@@ -109,12 +110,12 @@ THEOREMS = (
         "sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in it, then the "
         "rates there with the time as a symbol, whose mean counts. The torque goes from one sample to the next as the "
         "valve does, evenly but for h^2/8 of its second derivative. Where it is open whether a valve fills or vents, "
-        "or for how long, the way x is one number from the longest venting to the longest filling: with the power q "
-        "of the times of the inversion over those of the valve, its change is q x but for a factor between 1 and (1 - "
-        "(1 - y)^q)/(q y) at the largest share y of the room, which is a mean of (1 - u)^(q - 1). A sum of symbols "
-        "lies in an ellipsoid if the lengths of center and symbols, in its coordinates, add up to less than 1. The "
-        "supply lacks at most exp(-r t) of what it lacked, and t is at least the speed that is lost over the largest "
-        "deceleration.",
+        "or for how long, the way x is one number from the longest venting to the longest filling: with the power q of "
+        "the times of the inversion over those of the valve, filling above 0 and venting below, its change is q x but "
+        "for a factor between 1 and (1 - (1 - y)^q)/(q y) at the largest share y of the room, which is a mean of (1 - "
+        "u)^(q - 1). A sum of symbols lies in an ellipsoid if the lengths of center and symbols, in its coordinates, "
+        "add up to less than 1. The supply lacks at most exp(-r t) of what it lacked, and t is at least the speed that "
+        "is lost over the largest deceleration.",
         not_said="Masses, inertias, radii, pads and valve times farther from the nominal ones; noise and dead time.",
         identities=(
             Identity("part of its room that a pulse for the share y goes", _way_gone),
