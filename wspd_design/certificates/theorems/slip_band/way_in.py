@@ -302,7 +302,9 @@ def _friction_of(problem: Problem, row: Row) -> tuple[float, float]:
 
 def tilt(problem: Problem, piece: Piece) -> float:
     """Largest change of the supply rate within a strip that goes with the numbers of a piece [1/s]."""
-    return sum(abs(slope) * half for slope, (_, half) in zip(piece.slopes, _ranges(problem, piece), strict=True))
+    return sum(
+        abs(slope) * half for slope, (_, half) in zip(piece.slopes, _ranges(problem, piece), strict=True)
+    )
 
 
 def _ranges(problem: Problem, piece: Piece) -> list[tuple[float, float]]:
