@@ -8,8 +8,9 @@ import pytest
 
 from tests.unit.reporting.sample_dossier import certificate, sample_dossier
 from wspd_design.certificates.kernel.finding import Effort, Finding, Stated
-from wspd_design.certificates.records import Status
+from wspd_design.certificates.records import Domain, Interval, Proof, Status
 from wspd_design.reporting.blocks import Code, Definitions, Table
+from wspd_design.reporting.proofs import MOST, listed
 from wspd_design.reporting.report import report_document
 from wspd_design.reporting.sections.checks import checks
 from wspd_design.reporting.text import plain
@@ -54,6 +55,42 @@ def test_each_proof_has_a_row_with_its_size():
     ]
     assert [[plain(cell) for cell in row] for row in table.rows] == [["p at most 3.2 1/s", "2"]]
     assert "pole.json" in plain(table.caption)
+
+
+def bounded(place, what="slope", relation="<=", unit=" 1/s"):
+    """Proof of a bound, and of a range, of its own."""
+    speed = Interval(name="speed", low=float(place), high=place + 1.0, unit="m/s")
+    held = Interval(name="mass", low=2.0, high=2.0, unit="kg")
+    statement = f"{what} {relation} {0.5 * place - 3.0:g}{unit}"
+    return Proof(statement=statement, domain=Domain(varied=(speed,), held=(held,)), boxes=place + 1)
+
+
+def test_many_proofs_of_a_kind_are_one_row():
+    cells = Proof(statement="no sample leads out", domain=None, boxes=1)
+    many = [bounded(place) for place in range(MOST)]
+    upper, lower, last = listed([*many, bounded(3, relation=">="), cells])
+    assert upper.statement == f"slope <= -3 to {0.5 * (MOST - 1) - 3.0:g} 1/s, in {MOST} parts"
+    assert upper.boxes == MOST * (MOST + 1) // 2
+    assert (
+        upper.domain.text
+        == Domain(
+            varied=(Interval(name="speed", low=0.0, high=float(MOST), unit="m/s"),), held=many[0].domain.held
+        ).text
+    )
+    assert lower == bounded(3, relation=">=")
+    assert last == cells
+
+
+def test_other_quantities_sides_units_and_ranges_are_kinds_of_their_own():
+    many = [bounded(place) for place in range(MOST)]
+    narrowed = replace(many[0], domain=replace(many[0].domain, held=()))
+    others = [bounded(1, what="level"), bounded(1, relation=">="), bounded(1, unit=" s/m"), narrowed]
+    assert listed([*many, *others])[1:] == tuple(others)
+
+
+def test_few_proofs_are_listed_one_by_one():
+    few = tuple(bounded(place) for place in range(MOST))
+    assert listed(few) == few
 
 
 def test_open_share_and_a_search_that_was_cut_are_stated():

@@ -261,11 +261,11 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
     failed = attempt_of(problem, findings[CELLS].effort)
     if cells.status is Status.PROVED:
         share = cells.numbers["share"]
+        number = cells.numbers["cells"]
+        divided = "The box is one cell" if number == 1 else f"{number:g} cells of the box, each"
         explanation = (
-            f"{bands(windows, cells)} {cells.numbers['cells']:g} cells of the box, each with an ellipsoid "
-        )
-        explanation += (
-            "for each window of speed, that of a faster window inside that of the next slower one. "
+            f"{bands(windows, cells)} {divided} with an ellipsoid for each window of speed, that of a faster window "
+            "inside that of the next slower one. "
         )
         explanation += _supplies(windows, cells)
     borne = "".join(

@@ -36,6 +36,7 @@ from wspd_design.reporting.figures.series import (
     series_caption,
 )
 from wspd_design.reporting.formula_text import with_formulas
+from wspd_design.reporting.proofs import listed
 from wspd_design.reporting.sections.domains import domains
 from wspd_design.reporting.sections.theory import theorem_anchor, theorems_of
 from wspd_design.reporting.statements import Statements, linked, statements_of
@@ -252,8 +253,14 @@ class _Shown:
             if some
             else ()
         )
+        rows = listed(certificate.proofs)
+        alike = (
+            ""
+            if len(rows) == len(certificate.proofs)
+            else f"{len(certificate.proofs)} statements, by their kind. "
+        )
         return build(
-            certificate.proofs,
+            rows,
             (
                 ColumnOf(title="Proved", read=lambda each: with_formulas(each.statement)),
                 *on,
@@ -261,7 +268,7 @@ class _Shown:
             ),
             caption=(
                 *spans(with_formulas(certificate.title)),
-                ": what the independent checker accepted, and the boxes that it decided. Attached as "
+                f": what the independent checker accepted, and the boxes that it decided. {alike}Attached as "
                 f"{file_name(certificate)}.",
             ),
             anchor=f"{anchor}-proofs",
