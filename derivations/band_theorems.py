@@ -142,7 +142,8 @@ THEOREMS = (
         "numbers of its own. The drift s of the torque that comes from the fading friction lies between bounds about"
         " n, and changes by little from one sample to the next; for a vector b the state less c + b (s - n) goes on "
         "as above, with (A b + B_s - b)(s - n) and b times the rest of what s changes by among what disturbs, n in its "
-        "middle and b times the middle of what s changes by taken off o."
+        "middle and b times the middle of what s changes by taken off o. The friction that moves the torque also makes "
+        "the train brake harder: of what the lag of the filtered acceleration drifts by, k s is in B_s, for any k."
         " If Q > 0, shares D > 0 and alpha > 0 with alpha + sum D <= 1 make Q - A Q A'/alpha - [o Br] D^-1 [o Br]' "
         "positive definite at the corners of all numbers of a sample, then no sample leads out of that ellipsoid "
         "about c + b (s - n), and w - w_r stays within the root of the first entry of Q around E plus the first "
@@ -164,8 +165,11 @@ THEOREMS = (
             "the train slows down, the friction at the reference rises; where the slip falls as c/sqrt(v), the filter "
             "has settled",
             "where the slip is constant, the change of the steady drift from enclosures of the second derivative of "
-            "the friction along the speeds w_r + E for the masses and frictions of the cell, and from the jerk; else "
-            "there is no steady drift, b = 0",
+            "the friction along the speeds w_r + E for the masses and frictions of the cell, and from the jerk; what "
+            "the lag drifts by beside k s from enclosures of how much more the friction fades along the reference than "
+            "along w_r + E; else there is no steady drift, b = 0, k = 0",
+            "the deceleration of the train rises 3/4 to 5/4 times as fast as at that deceleration it would with all "
+            "wheels at the reference",
         ),
         sketch="In deviations from the torque that holds the reference, pads, inertia and friction drop out of what "
         "is constant: the observer estimates the torque that explains the motion. What is asked of Q is by Schur "
@@ -206,6 +210,7 @@ THEOREMS = (
             ),
             Identity("share of the last part of a sample with that weight", slip_loop.share_after_residual),
             Identity("error of the filtered acceleration", slip_loop.filter_residual),
+            Identity("what it drifts by beside k s", slip_loop.lag_beside_residual),
             Identity("rho_a (u - u_c) + rho_c u_c = rho u", slip_loop.about_residual),
             Identity("a longer pulse counts in the mean from its end on", slip_loop.mean_residual),
             Identity("change of the way over that of the wanted one", slip_loop.rate_residual),

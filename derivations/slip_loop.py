@@ -158,6 +158,16 @@ _filtered = (
 )  # v' - a, while v' changes steadily
 _weighed = sp.integrate(_jerk * (1 - (1 - _kept) * (1 - _gone_by / h)), (_gone_by, 0, h))  # or in any way
 filter_residual = sp.simplify(_filtered - (_kept * _d + _weighed))
+# What D drifts by beside k s, while the train loses y h a sample and the held torque moves by s.
+_y, _g, _k, _force, _more_force, _turned, _weight_torque, _damped, _resisted, _times = sp.symbols(
+    "y g k F delta T W d_w r_w j", real=True
+)
+_steady = -h * _y * (_weight_torque * _g * _force - _damped)
+_lag_moves = h * _y * _times * _turned * (_g * (_force + _more_force) + _resisted)
+_rising = _g * (_force + _more_force) + _resisted
+_together = (_times * _turned + _k * _weight_torque) * _rising
+_together -= _k * _weight_torque * (_g * _more_force + _resisted)
+lag_beside_residual = sp.expand(_lag_moves - _k * _steady - h * _y * (_together - _k * _damped))
 _earlier = sp.summation((1 - _kept) * (_kept ** (_j - 1) - _kept**_j), (_j, 1, _count))
 earlier_residual = sp.simplify(_earlier - (1 - _kept) * (1 - _kept**_count))
 

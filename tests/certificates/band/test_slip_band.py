@@ -171,7 +171,9 @@ def test_alpha_that_the_loop_does_not_reach_is_refused(half, proof):
 def ellipse(size, center, inside, moves=0, drift=0):
     """A ball of this radius about a point on the first axis."""
     matrix = tuple(tuple(Fraction(size) ** 2 * (i == j) for j in range(STATES)) for i in range(STATES))
-    numbers = dict.fromkeys(("pulse", "supply", "alpha", "offset", "longest", "back", "room"), Fraction(1))
+    numbers = dict.fromkeys(
+        ("pulse", "supply", "alpha", "offset", "longest", "back", "room", "lag"), Fraction(1)
+    )
     return Ellipsoid(
         **numbers,
         near=0,
@@ -191,7 +193,7 @@ def ellipse(size, center, inside, moves=0, drift=0):
 def steady(low, high):
     """A steady drift between two ends."""
     low, high, none, half = (point(Fraction(each)) for each in (low, high, 0, "1/2"))
-    return Steady(low, high, (none, none), half)
+    return Steady(low, high, (none, none), half, none)
 
 
 CALM = steady(0, 0)

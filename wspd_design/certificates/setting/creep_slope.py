@@ -14,6 +14,7 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise, product
+from typing import Any
 
 from wspd_design.certificates.kernel.arb import Ball, above, below, point
 from wspd_design.certificates.kernel.checker import Ends as Balls
@@ -33,6 +34,7 @@ from wspd_design.parameters.records import Rail, Vehicle
 
 BITS = 128  # of the balls that the bend of the force is enclosed in
 PARTS = 4  # of each range, in which the bend of the force is enclosed
+FINER = 32, 8  # parts of speed and steepness, in which differences of its change are enclosed
 REDUCTIONS = "slip reduction", "adhesion reduction"
 STEEPNESS, RATIO, SLIDING, NORMAL_MASS = "steepness", "kS/kA", "sliding speed", "normal mass"
 USED = (
@@ -107,7 +109,7 @@ def bend(problem: Problem, slip: float, beside: Ends) -> Ends:
     with ctx.workprec(BITS):
         ratio = _quotient(problem, *REDUCTIONS)
         found = [
-            _bent(problem, slip, (*parts, ratio[0].union(ratio[1])))
+            2 * _force_along(problem, slip, (*parts, ratio[0].union(ratio[1])))[2]
             for parts in product(
                 _parts(_span(problem, "speed")),
                 _parts(_wide(beside)),
@@ -117,8 +119,33 @@ def bend(problem: Problem, slip: float, beside: Ends) -> Ends:
         return min(map(below, found)), max(map(above, found))
 
 
-def _bent(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball, Ball]) -> Ball:
-    """Return it for balls of speed, of what the wheel slides slower, of the modulus for slip 1, and of kS/kA."""
+@lru_cache(maxsize=1000)
+def fading_beside(problem: Problem, slip: float, beside: Ends) -> Ends:
+    """Enclose what the creep force over mu0 Q changes by with the train speed, at a slip less than beside it [s/m].
+
+    Beside it the wheel slides slower by a speed that does not change, from a range [m/s].
+    """
+    from flint import ctx
+
+    with ctx.workprec(BITS):
+        ratio = _quotient(problem, *REDUCTIONS)
+        found = []
+        for at, steepness in product(
+            _parts(_span(problem, "speed"), FINER[0]), _parts(_steepness(problem, (1.0, 1.0)), FINER[1])
+        ):
+            own, other = (
+                _force_along(problem, slip, (at, less, steepness, ratio[0].union(ratio[1])))[1]
+                for less in (point(0), point(beside[0]).union(point(beside[1])))
+            )
+            found.append(own - other)
+        return min(map(below, found)), max(map(above, found))
+
+
+def _force_along(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball, Ball]) -> Any:
+    """Return the creep force over mu0 Q as a series in the train speed.
+
+    For balls of that, of what the wheel slides slower, of the modulus for slip 1, and of kS/kA.
+    """
     from flint import arb_series
 
     at, less, steepness, ratio = numbers
@@ -138,13 +165,13 @@ def _bent(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball, Ball])
         rail.slip_reduction,
         contact_stiffness(vehicle.contact, load),
     )
-    return 2 * (force / load)[2]
+    return force / load
 
 
-def _parts(ends: Balls) -> tuple[Ball, ...]:
+def _parts(ends: Balls, count: int = PARTS) -> tuple[Ball, ...]:
     """Divide a range into balls."""
     low, high = ends
-    edges = [low + (high - low) * k / PARTS for k in range(PARTS + 1)]
+    edges = [low + (high - low) * k / count for k in range(count + 1)]
     return tuple(one.union(other) for one, other in pairwise(edges))
 
 

@@ -318,8 +318,9 @@ def _tell(problem: Problem, findings: Findings) -> Certificate:
             "the parameters do not change during the stop; the full pressure is demanded, and the supply rises to it",
             f"{_measured(problem)}; the scale of the train speed was found while rolling",
             "all axles at static load and within their bands; the deceleration of the train rises "
-            f"{float(JERK_FACTORS[0]):g} to {float(JERK_FACTORS[1]):g} times as fast as with all wheels at the "
-            f"reference{', and its filter has settled' if law_of(problem.controller).falls else ''}",
+            f"{float(JERK_FACTORS[0]):g} to {float(JERK_FACTORS[1]):g} times as fast as at that deceleration it "
+            "would with all wheels at the reference"
+            f"{', and its filter has settled' if law_of(problem.controller).falls else ''}",
             f"pulses begin {_beginning(problem)}; the law computes with real numbers{_compared(problem)}",
             "says nothing about the way from rolling into the ellipsoid, nor below the lowest speed",
         ),

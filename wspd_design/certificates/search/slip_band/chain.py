@@ -81,6 +81,12 @@ class Sought:
         """Room above the cylinder over what the supply lacks: with as much a rising supply adds little to a pulse."""
         return max(ROOM, LONG * self.law.sample_time)
 
+    @property
+    def lags(self) -> tuple[Fraction, ...]:
+        """Shares of what the lag of the filter drifts by, that may go with the steady drift, if there is one."""
+        steady = not self.law.falls and not self.law.slip_error and not self.law.slip_drift
+        return (Fraction(0), Fraction(1)) if steady else (Fraction(0),)
+
     def in_time(self, choice: Choice) -> Choice:
         """Shorten pulses so that they end in their sample, however late they begin."""
         return choice._replace(pulse=min(choice.pulse, 1 - self.conditions.delay))
@@ -103,10 +109,13 @@ class Chain:
 
 
 def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
-    """Return a chain without ellipsoids that counts errors from where the loop settles at the lowest speeds."""
+    """Return a chain without ellipsoids that counts errors from where the loop settles at the lowest speeds.
+
+    It keeps what of the lag goes with the steady drift in that choice.
+    """
 
     def settled(like: Choice) -> Fraction:
-        there = sought.in_time(like._replace(room=sought.room))
+        there = sought.in_time(like._replace(room=sought.room, lag=choice.lag))
         return settling(
             sought.law,
             lambda error: sought.loops(cell, 0, there._replace(settled=error))(sought.conditions.supply),
@@ -176,7 +185,7 @@ def best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) ->
     last = chain.choice
     near = (each for each in CHOICES if each.near == last.near or each.pulse == last.pulse)
     tried = dict.fromkeys(
-        sought.in_time(each._replace(settled=last.settled, room=last.room)) for each in (last, *near)
+        sought.in_time(last._replace(pulse=each.pulse, near=each.near)) for each in (last, *near)
     )
     found = {each: far(sought, cell, window, replace(chain, choice=each), spent) for each in tried}
     least = min(found, key=lambda each: found[each])
@@ -209,7 +218,9 @@ def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
         if each is None:
             continue
         window = len(sought.windows) - 1 - number
-        loop = sought.loops(cell, window, Choice(each.pulse, each.near, each.settled, each.room))(each.supply)
+        loop = sought.loops(cell, window, Choice(each.pulse, each.near, each.settled, each.room, each.lag))(
+            each.supply
+        )
         try:
             errors(sought.law, loop, each)
             held = faster is None or lies_in(faster, (each, loop.steady))

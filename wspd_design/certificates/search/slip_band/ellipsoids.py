@@ -270,6 +270,7 @@ def _rounded(
         longest=task.lengths.longest,
         back=task.lengths.back,
         room=choice.room,
+        lag=choice.lag,
         matrix=tuple(tuple(short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(short(float(each)) for each in task.center),
         drift=task.drift,

@@ -8,6 +8,7 @@ from fractions import Fraction
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.chain import (
     CHOICES,
+    FIRST,
     Chain,
     OutOfBudget,
     Sought,
@@ -30,6 +31,9 @@ NARROWEST = 1.02  # ratio of the ends of a range that is not worth halving
 SHARES = tuple(Fraction(k, 8) for k in range(1, 9))
 RESERVES = tuple(map(Fraction, ("0.5", "0.6", "0.7", "0.75", "0.8", "0.85")))
 HOPELESS = 1.4  # square of what is reached over what limits leave, from which on the widest range is halved
+BINDS = (
+    1.1  # of the same without the ellipsoid of the next faster window, from which on that one is in the way
+)
 WORTH = 0.3  # of the widest range, that another one has at least to be looked at
 MATTERS = {"m": 1.0, "i": 1.0, "r": 2.0, "u": 1.0, "t": 1.0, "f": 0.3, "v": 0.3}
 """How much the logarithm of a range spreads the loop."""
@@ -63,6 +67,23 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Attempt:
 
 
 def _chain(sought: Sought, cell: Cell, inherited: Chain | None, spent: Spent) -> Chain:
+    """Go on with the ellipsoids of the larger cell; if faster ones bind, let the lag go with the steady drift."""
+    chain = _carried_on(sought, cell, inherited, spent)
+    window, lags = left_of(sought, chain), [each for each in sought.lags if each > chain.choice.lag]
+    if window < 0 or not lags:
+        return chain
+
+    def ahead(one: Chain) -> tuple[int, float]:
+        return -left_of(sought, one), -far(sought, cell, window, one, spent)
+
+    anew = begun(sought, cell, chain.choice)
+    if far(sought, cell, window, chain, spent) < BINDS * far(sought, cell, window, anew, spent):
+        return chain
+    others = [continued(sought, cell, begun(sought, cell, FIRST._replace(lag=each)), spent) for each in lags]
+    return max((chain, *others), key=ahead)
+
+
+def _carried_on(sought: Sought, cell: Cell, inherited: Chain | None, spent: Spent) -> Chain:
     """Go on with the ellipsoids of the larger cell, or begin anew where they are in the way."""
     if inherited is None:
         return continued(sought, cell, begun(sought, cell), spent)
@@ -74,7 +95,7 @@ def _chain(sought: Sought, cell: Cell, inherited: Chain | None, spent: Spent) ->
     anew = begun(sought, cell, chain.choice)
     if far(sought, cell, window, anew, spent) >= 1.0:
         return chain
-    found = continued(sought, cell, begun(sought, cell), spent)
+    found = continued(sought, cell, begun(sought, cell, FIRST._replace(lag=chain.choice.lag)), spent)
     return found if left_of(sought, found) < 0 else continued(sought, cell, anew, spent)
 
 
@@ -92,7 +113,7 @@ def _middle_has(sought: Sought, cell: Cell, window: int, anew: Chain, spent: Spe
     anew = begun(sought, middle, anew.choice)
     every = (
         anew.choice,
-        *(each._replace(settled=anew.choice.settled, room=anew.choice.room) for each in CHOICES),
+        *(anew.choice._replace(pulse=each.pulse, near=each.near) for each in CHOICES),
     )
     return any(far(sought, middle, window, replace(anew, choice=each), spent) < 1.0 for each in every)
 

@@ -5,7 +5,7 @@ disturbance; the ellipsoid is (X - c)'Q^-1(X - c) <= 1. What disturbs lies betwe
 -1 <= z <= 1, and X+ - c = A (X - c) + o + B r z with o = A_c c - c + B_c m: the change of the torque at the center has
 numbers of its own. The drift s of the torque that comes from the fading friction is nearly the same in the next sample;
 the center, c for a stated drift n, moves with it: c + b (s - n), which adds A b + B_s - b times s - n, and b times what
-s changes by.
+s changes by. A stated share of what the lag of the filtered acceleration drifts by counts as one with it.
 From the ellipsoid the next state has at most alpha + sum of the shares <= 1 if
 
     Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share
@@ -140,7 +140,7 @@ def _loop(problem: Problem, law: BandLaw, found: Proof, at: tuple[Cell, int], ea
     """Work out the loop of an ellipsoid in a cell and a window."""
     cell, k = at
     conditions = Conditions(each.supply, found.delay, found.noise, found.reserve)
-    choice = Choice(each.pulse, each.near, each.settled, each.room)
+    choice = Choice(each.pulse, each.near, each.settled, each.room, each.lag)
     return loop_of(problem, law, cell, windows_of(problem)[k], found.friction[k], choice, conditions)
 
 
@@ -242,7 +242,7 @@ class Set(NamedTuple):
 
 def drifting(steady: Steady) -> list[Ball]:
     """Return what the disturbances have of a steady drift of 1."""
-    share = {"torque drift": point(1), "mean torque drift": steady.share}
+    share = {"torque drift": point(1), "mean torque drift": steady.share, "lag drift": steady.lag}
     return [share.get(name, point(0)) for name in DISTURBANCES]
 
 

@@ -22,7 +22,7 @@ from wspd_design.certificates.kernel.arb import (
 )
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.creep_slope import bend
+from wspd_design.certificates.setting.creep_slope import bend, fading_beside
 from wspd_design.certificates.setting.declared_law import LEAST
 from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, Way, latest_share, wanted
 from wspd_design.certificates.theorems.slip_band.friction import (
@@ -36,6 +36,7 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     reached,
     slope_at,
 )
+from wspd_design.certificates.theorems.slip_band.lag import Fading, lag_of
 from wspd_design.certificates.theorems.slip_band.pulses import (
     Limit,
     Pulses,
@@ -81,6 +82,7 @@ class Choice(NamedTuple):
     near: int  # which errors are kept to: the number of a reach
     settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
     room: Fraction = ROOM  # -, of what the supply lacks, that the cylinder lacks of the supply at least
+    lag: Fraction = Fraction(0)  # -, of what the lag of the filter drifts by, that goes with the steady drift
 
 
 class Steady(NamedTuple):
@@ -90,6 +92,7 @@ class Steady(NamedTuple):
     high: Ball
     change: Pair  # rad/s, that it rises by from one sample to the next, at least and at most
     share: Ball  # -, of the drift, that its mean over a sample counts
+    lag: Ball  # -, of the drift, that the lag of the filtered acceleration drifts by
 
     @property
     def rise(self) -> Ball:
@@ -205,25 +208,38 @@ def loop_of(
     drift = -h * h * weight * moved_there + (h * damping * sliding - inertia * turning) / seen_inertia
     fading_torque = weight * there - damping * turned / seen_inertia  # of the reference, over the train speed
     steadily, share_seen = -h * h * fading_torque * braking, point(Fraction(float(half_way.mid())))
-    if law.falls or law.slip_error:
-        steady = Steady(none, none, (none, none), share_seen)
+    slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
+    lag_drift = slowly * (1 - share / 2)
+    if law.falls or law.slip_error or law.slip_drift:
+        steady = Steady(none, none, (none, none), share_seen, none)
         drift += steadily
         mean_drift = drift * half_way
     else:
         less = apart * radius  # m/s, that the wheel slides slower
         part = replace(problem, speeds=window, bounds=_bounds(problem, cell))
-        bent_force = bend(part, float(law.slip), (below(less), above(less)))
-        if not all(map(isfinite, bent_force)):
-            raise Refused("the second derivative of the friction is not enclosed")
+        along = part, float(law.slip), (below(less), above(less))
+        bent_force = bend(*along)
+        # Of two enclosures the closer one takes longer.
+        more = ball(*fading_beside(*along)) if choice.lag else fading - there
+        if not all(map(isfinite, (*bent_force, below(more), above(more)))):
+            raise Refused("a derivative of the friction is not enclosed")
         # The speed falls by the braking, which itself rises with the jerk.
         change = h**3 * (weight * ball(*bent_force) * braking**2 - fading_torque * jerk)
-        steady = Steady(*ends_of(steadily), ends_of(change), share_seen)
+        fades_with = Fading(
+            pulled=pulled,
+            weight=2 * radius * mass / wheels(vehicle) / seen_inertia,
+            along=there,
+            at_reference=fading,
+            beside=more,
+            damping=damping * turned / seen_inertia,
+            resistance=_resistance(problem, speed, 1) / mass,
+        )
+        lagging, lag_drift = lag_of(fades_with, choice.lag, turned * (1 - share / 2), h * h * braking, change)
+        steady = Steady(*ends_of(steadily), ends_of(change), share_seen, lagging)
         mean_drift = drift * half_way + steadily * (half_way - share_seen)
         # It is the one with which the sample begins; what it changes by within it adds half of that until its end.
         drift += change / 2
         mean_drift += change / 2 * ball(Fraction(0), Fraction(1))
-    slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
-    lag_drift = slowly * (1 - share / 2)
     # The part of the change of the speed that the rims take part in changes where the slip falls. Settled, the lag D is
     # at most (1 - share + bent) D + drift.
     bent = reference.bend * h * braking / reference.turning

@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, REACHES, Friction, Halves
 
-FORMAT = "wspd-slip-band/8"
+FORMAT = "wspd-slip-band/9"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -38,6 +38,7 @@ class Ellipsoid:
     alpha: Fraction  # of the function that is left after a sample
     offset: Fraction  # what the way of the center adds at most
     shares: tuple[Fraction, ...]  # what each disturbance adds at most, in the order of the disturbances
+    lag: Fraction  # -, of what the lag of the filter drifts by, that goes with the steady drift
     steady: Fraction  # what the steady drift adds at most
     change: Fraction  # what its change does
     inside: Fraction  # multiplier that shows that the ellipsoid of the next faster window lies in this one
@@ -101,6 +102,7 @@ def _written(each: Ellipsoid) -> list[str]:
         each.alpha,
         each.offset,
         *each.shares,
+        each.lag,
         each.steady,
         each.change,
     )
@@ -139,7 +141,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 8 + len(ENTRIES) + 2 * STATES + 6 + len(DISTURBANCES)))
+        _ellipsoid(_numbers(each, 8 + len(ENTRIES) + 2 * STATES + 7 + len(DISTURBANCES)))
         for each in ellipsoids
     ]
     return Proof(
@@ -190,7 +192,7 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, (drift, *rest) = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
-    moves, (alpha, offset, *shares, steady, change, inside) = rest[:STATES], rest[STATES:]
+    moves, (alpha, offset, *shares, lag, steady, change, inside) = rest[:STATES], rest[STATES:]
     return Ellipsoid(
         pulse=pulse,
         supply=supply,
@@ -207,6 +209,7 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         alpha=alpha,
         offset=offset,
         shares=tuple(shares),
+        lag=lag,
         steady=steady,
         change=change,
         inside=inside,
