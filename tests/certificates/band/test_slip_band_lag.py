@@ -20,14 +20,14 @@ from tests.certificates.band.test_slip_band_reference import (
     inside,
 )
 from wspd_design.certificates.checks.region.slip_band import bounded_friction
-from wspd_design.certificates.kernel.arb import above, ball, below, point
+from wspd_design.certificates.kernel.arb import above, ball, below, ends_of, point
 from wspd_design.certificates.search.slip_band import task
 from wspd_design.certificates.search.slip_band.chain import FIRST, Sought, Spent, begun, continued
 from wspd_design.certificates.search.slip_band.search import exactly, proof_of
 from wspd_design.certificates.setting.creep_slope import fading_beside
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES
 from wspd_design.certificates.theorems.band import SLIP_BAND, contact_held
-from wspd_design.certificates.theorems.slip_band import checker
+from wspd_design.certificates.theorems.slip_band import checker, loop
 from wspd_design.certificates.theorems.slip_band.checker import drifting
 from wspd_design.certificates.theorems.slip_band.friction import HALVES
 from wspd_design.certificates.theorems.slip_band.lag import Fading, lag_of
@@ -147,6 +147,30 @@ def test_lag_of_a_train_lies_beside_its_share_of_the_drift(settled, share):
         assert inside(j * moved - k * steady, ends)
     assert ends[1] - ends[0] < 0.75 * abs(moved)
     assert bool(inside(moved, ends)) is (share == 0)
+
+
+def test_loop_tells_what_fades(monkeypatch):
+    """Numbers that move the lag little, against the train's own."""
+    problem, seen = falling_problem(EURO, 0.0), []
+    law = replace(law_of(problem.controller), falls=False, slip=Fraction(7, 50))
+    monkeypatch.setattr(loop, "lag_of", lambda *given: seen.append(given) or lag_of(*given))
+    with ctx.workprec(128):
+        cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
+        friction = friction_at(problem, WINDOW, (0.14 - 4e-3, 0.14 + 1e-3))
+        choice = Choice(Fraction(1, 2), 0, Fraction(0.05), lag=Fraction(1))
+        found = loop.loop_of(problem, law, cell, WINDOW, (friction,) * HALVES, choice, EXACT)
+        ((fades, _, _, _, change),) = seen
+        ends = [[float(end.mid()) for end in each] for each in (found.steady.change, ends_of(change))]
+    vehicle, fast = problem.vehicle, WINDOW[1]
+    assert ends[0] == ends[1]
+    resisted = (vehicle.resistance_linear + 2.0 * vehicle.resistance_quadratic * fast) / vehicle.mass
+    assert above(fades.resistance) == pytest.approx(resisted, rel=1e-6)
+    damped = 2.0 * vehicle.wheel_damping * 0.86 / vehicle.wheel_radius / vehicle.wheelset_inertia
+    assert above(fades.damping) == pytest.approx(damped, rel=1e-6)
+    # Along the reference the friction fades by the slip times the bound of the window.
+    low, high = friction.fadings[0]
+    assert below(fades.at_reference) == pytest.approx(0.14 * low, rel=1e-6)
+    assert above(fades.at_reference) == pytest.approx(0.14 * high, rel=1e-6)
 
 
 @pytest.fixture(scope="module")

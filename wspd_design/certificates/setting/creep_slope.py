@@ -34,7 +34,7 @@ from wspd_design.parameters.records import Rail, Vehicle
 
 BITS = 128  # of the balls that the bend of the force is enclosed in
 PARTS = 4  # of each range, in which the bend of the force is enclosed
-FINER = 32, 8  # parts of speed and steepness, in which differences of its change are enclosed
+FINER = 32, 16  # parts of speed and steepness, in which differences of its change are enclosed
 REDUCTIONS = "slip reduction", "adhesion reduction"
 STEEPNESS, RATIO, SLIDING, NORMAL_MASS = "steepness", "kS/kA", "sliding speed", "normal mass"
 USED = (
