@@ -39,7 +39,7 @@ from wspd_design.certificates.theorems.slip_band.statement import law_of, window
 from wspd_design.controllers.protection import Protection
 
 TOLERANCES = {"slope": 1e-3, "level": 2e-3, "fading": 5e-4}  # s/m, -, s/m
-SOUGHT = 500  # ellipsoids for each share of the box, with an effort of 1
+SOUGHT = 600  # ellipsoids for each share of the box, with an effort of 1
 
 
 def search(problem: Problem) -> Mapping[str, Stated]:
