@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import cache, partial
 from typing import Any, cast
 
 from wspd_design.certificates.checks.frame import Check
@@ -11,7 +12,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.slip_band.chain import Sought
 from wspd_design.certificates.search.slip_band.search import alone, exactly
-from wspd_design.certificates.search.slip_band.way_in import SHARES, plan
+from wspd_design.certificates.search.slip_band.way_in import SHARES, plan, powers_of
 from wspd_design.certificates.theorems.slip_band.friction import Halves
 from wspd_design.certificates.theorems.slip_band.proof import write as write_band
 from wspd_design.certificates.theorems.slip_band.statement import law_of
@@ -33,11 +34,12 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     law, effort = cast(Protection, problem.controller), budget().effort
     stated, friction = bounded_friction(around(problem), SLIP_WAY_IN.obligations(problem))
     tried = [(1.0, each) for each in OTHERS] + [(each, OTHERS[-1]) for each in SHARES[1:]]
+    powers = cache(partial(powers_of, problem, law))
     for of_friction, others in tried:
         near = around(problem, others)
         band = None if friction is None else _band(near, law, friction)
         asked = None if band is None else asked_of(near, band)
-        rows = plan(near, law, effort, asked, of_friction)
+        rows = plan(near, law, effort, asked, powers(of_friction), of_friction)
         if rows is not None:
             return stated | {STRIPS: Stated(proof=write(rows, others, band))}
     return stated | {STRIPS: Stated(effort=Effort(undecided=1.0, cut=True))}

@@ -47,8 +47,35 @@ SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does
 
 
+def powers_of(problem: Problem, law: Protection, share: float) -> dict[tuple[float, float], Powers]:
+    """Return the powers of the numbers for each row of the supply rate, about the middle of a share of the friction."""
+    low, high = _friction(problem, share)
+    return {row: _powers(problem, law, math.sqrt(low * high), row) for row in _supply_rows(problem)}
+
+
+def _friction(problem: Problem, share: float) -> tuple[float, float]:
+    """Return a share of the range of the friction about its nominal value."""
+    nominal, (low, high) = problem.nominal(FRICTION), problem.span(FRICTION)
+    return (
+        (low, high)
+        if share == 1.0
+        else (nominal + share * (low - nominal), nominal + share * (high - nominal))
+    )
+
+
+def _supply_rows(problem: Problem) -> list[tuple[float, float]]:
+    """Divide the range of the supply rate into rows."""
+    slowest, fastest = problem.span(SUPPLY)
+    return list(pairwise([*(slowest * (fastest / slowest) ** (k / ROWS) for k in range(ROWS)), fastest]))
+
+
 def plan(
-    problem: Problem, law: Protection, effort: float, asked: "Asked | None", share: float = 1.0
+    problem: Problem,
+    law: Protection,
+    effort: float,
+    asked: "Asked | None",
+    powers: Mapping[tuple[float, float], Powers],
+    share: float = 1.0,
 ) -> tuple[Row, ...] | None:
     """Choose rows, pieces and strips of a share of the friction that the budget can follow; None if none can.
 
@@ -64,26 +91,21 @@ def plan(
         Of the budget.
     asked : Asked, optional
         What a band asks for.
+    powers : mapping of a range of the supply rate to powers
+        Of :func:`powers_of`; they do not depend on how far the other numbers reach.
     share : float
         Of the range of the friction about its nominal value.
     """
-    most, nominal = MOST * effort, problem.nominal(FRICTION)
-    low, high = (end if share == 1.0 else nominal + share * (end - nominal) for end in problem.span(FRICTION))
-    slowest, fastest = problem.span(SUPPLY)
-    edges = [slowest * (fastest / slowest) ** (k / ROWS) for k in range(ROWS)] + [fastest]
+    most, (low, high) = MOST * effort, _friction(problem, share)
     tried = [
-        (row, half)
-        for row in pairwise(edges)
-        for half in HALVES
-        if _number(high / low, row[1] / row[0], half) <= most
+        (row, half) for row in powers for half in HALVES if _number(high / low, row[1] / row[0], half) <= most
     ]
-    powers = {row: _powers(problem, law, math.sqrt(low * high), row) for row in pairwise(edges)}
     strips = [
         _tried(problem, law, (low, high), row, half, powers[row], asked is not None) for row, half in tried
     ]
     found = courses(problem, law, strips, asked)
     rows: list[Row] = []
-    for row in pairwise(edges):
+    for row in powers:
         held = [half for (at, half), there in zip(tried, found.there, strict=True) if at == row and there]
         if not held:
             return None
