@@ -99,9 +99,9 @@ def inside(value, ends, part=1e-9):
 
 # What is wide, with all else nearly known: an enclosure that goes by one end of it alone would miss the other one.
 ALONE = {
-    "speed": ((3.0, 30.0), (0.02, 0.02), {}),
+    "speed": ((12.0, 33.0), (0.02, 0.02), {}),
     "beside": (SPEEDS, (-0.3, 0.4), {}),
-    "steepness": (SPEEDS, (0.02, 0.02), {"mu0": 0.5}),
+    "steepness": (SPEEDS, (0.3, 0.3), {"mu0": 0.5}),
     "ratio": (SPEEDS, (0.02, 0.02), {"slip reduction": 0.8}),
     "nothing": ((8.0, 8.001), (0.02, 0.02), {}),
 }

@@ -15,6 +15,8 @@ from flint import ctx
 from tests.certificates.band.conftest import WET
 from tests.certificates.band.test_slip_band_reference import falling_problem
 from wspd_design.certificates.kernel.arb import point
+from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.setting.creep_slope import bend, fading_beside
 from wspd_design.certificates.theorems.band import claims, key
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
@@ -23,9 +25,11 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     Friction,
     fading_at,
     slope_at,
+    strip_of,
 )
 from wspd_design.certificates.theorems.slip_band.reference import held_in, slips_held
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
+from wspd_design.controllers.references import ConstantSlip
 
 WINDOW = (8.0, 9.6)  # m/s
 ERROR, DRIFT = 0.02, 0.4  # -, m/s2
@@ -115,8 +119,33 @@ def test_every_bound_is_asked_for_the_slips_of_the_errors_that_it_counts_for(fal
     assert set(ranges) == {each for each, slides in seen.items() if slides}
 
 
-def constant(problem):
+def constant(problem, slip=0.14):
     """The law of a problem with a constant slip in place of its own."""
-    from wspd_design.controllers.references import ConstantSlip
+    return replace(problem.controller, reference=ConstantSlip(slip=slip))
 
-    return replace(problem.controller, reference=ConstantSlip(slip=0.14))
+
+@pytest.mark.parametrize("slip", [0.006, 0.01, 0.02, 0.04])
+def test_wheels_that_turn_faster_than_the_train_are_asked_about_as_those_that_slide_as_much(falling, slip):
+    """Where little slip is held, some errors that are reached are those of wheels that drive the train."""
+    problem = replace(falling, slip=slip, controller=constant(falling, slip))
+    asked, windows = claims(problem), windows_of(problem)
+    driving = 0
+    for name, error in product(NAMES, (-0.02, -0.01, -0.002, 0.004, 0.01, 0.012, 0.018, 0.027, 0.04)):
+        strip = strip_of(name)
+        if strip is None or not float(strip[0]) <= error <= float(strip[1]):
+            continue
+        (sliding,) = (each for each in asked[key(name, 0, 0, ">=")].variables if each.name == "sliding speed")
+        for v in (*windows[0], 0.5 * sum(windows[0])):
+            slides = slip * v - error * problem.speeds[0]
+            driving += slides < 0.0
+            assert float(sliding.low) - 1e-9 <= abs(slides) <= float(sliding.high) + 1e-9
+    assert driving
+
+
+def test_courses_of_wheels_that_may_turn_faster_than_the_train_are_refused(falling):
+    """What is enclosed along them holds for wheels that slide."""
+    there = replace(falling, speeds=(8.0, 8.1))
+    for enclosed in (bend, fading_beside):
+        assert all(map(math.isfinite, enclosed(there, 0.02, (0.14, 0.15))))
+        with pytest.raises(Refused, match="faster than the train"):
+            enclosed(there, 0.02, (0.14, 0.17))

@@ -18,7 +18,7 @@ from typing import Any
 
 from wspd_design.certificates.kernel.arb import Ball, above, below, point
 from wspd_design.certificates.kernel.checker import Ends as Balls
-from wspd_design.certificates.kernel.checker import add, inverse, mul, power
+from wspd_design.certificates.kernel.checker import Refused, add, inverse, mul, power
 from wspd_design.certificates.kernel.claim import Claim, Expression, Relation, variable
 from wspd_design.certificates.quantities import QUANTITIES
 from wspd_design.certificates.records import Problem
@@ -151,6 +151,8 @@ def _force_along(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball,
     at, less, steepness, ratio = numbers
     speed = arb_series([at, 1], prec=3)
     sliding = speed * point(slip) - less
+    if not sliding[0] > 0:  # the other way the friction falls with the sliding speed as it rises with this number
+        raise Refused("errors are counted from where wheels may turn faster than the train")
     values = {name: problem.nominal(name) for name in HELD} | {NORMAL_MASS: 1.0, RATIO: ratio}
     vehicle, rail = _normal(problem, values | {STEEPNESS: steepness * (point(slip) - less / speed)})
     load = static_wheel_load(vehicle)

@@ -51,10 +51,14 @@ def slips_held(law: BandLaw, window: Ends, radius: Interval) -> Ends:
 
 
 def slips_beside(law: BandLaw, window: Ends, radius: Interval, slowest: float, strip: Strip) -> Ends:
-    """Range of the slips of errors in a strip, e R over the lowest speed, in a window."""
+    """Range of the slips of errors in a strip, e R over the lowest speed, in a window.
+
+    A wheel that turns faster than the train has the slope and the fading of one that slides as much the other way.
+    """
     low, high = slips_held(law, window, radius)
     beside = [float(end) * slowest / speed for end in strip for speed in window]
-    return max(low - max(beside), 0.0), high - min(beside)
+    least, most = low - max(beside), high - min(beside)
+    return max(least, -most, 0.0), max(most, -least)
 
 
 def slip_at(law: BandLaw, speed: float, radius: float) -> float:

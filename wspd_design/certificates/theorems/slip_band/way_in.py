@@ -259,7 +259,7 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
         steepest = max(abs(end) for each in halves for ends in each.slopes for end in ends)
         farthest = max(abs(end) for strip in SLOPES for end in strip)
         used = max(each.level[1] for each in halves) + steepest * float(farthest) * problem.speeds[0]
-        drag = float(resistance(vehicle, windows[k + 1][1])) / vehicle.mass
+        drag = float(resistance(vehicle, windows[k + 1][1])) / problem.span("mass")[0]
         loss = (constants().gravity * mu0 * used + drag) * (1.0 + OUTWARD)
         lacking *= exp(-slowest * max(speed - top, 0.0) / loss) * (1.0 + OUTWARD)
         speed = min(speed, top)
