@@ -151,7 +151,8 @@ def _force_along(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball,
     at, less, steepness, ratio = numbers
     speed = arb_series([at, 1], prec=3)
     sliding = speed * point(slip) - less
-    if not sliding[0] > 0:  # the other way the friction falls with the sliding speed as it rises with this number
+    # Of a wheel that turns faster than the train the friction falls with what this number rises by.
+    if not sliding[0] > 0:
         raise Refused("errors are counted from where wheels may turn faster than the train")
     values = {name: problem.nominal(name) for name in HELD} | {NORMAL_MASS: 1.0, RATIO: ratio}
     vehicle, rail = _normal(problem, values | {STEEPNESS: steepness * (point(slip) - less / speed)})
