@@ -21,6 +21,7 @@ from wspd_design.certificates.setting.creep_slope import (
     fading_beside,
     fading_claim,
     level_claim,
+    poles,
     slope_claim,
 )
 from wspd_design.parameters.bounds import Bounds
@@ -209,3 +210,26 @@ def test_normal_wheel_is_held_at_what_is_no_range(box):
         assert asked["friction ratio"].low == asked["friction ratio"].high == Fraction(WET.friction_ratio)
         assert asked["friction decay"].low == asked["friction decay"].high == Fraction(WET.friction_decay)
         assert asked[NORMAL_MASS].low == asked[NORMAL_MASS].high == 1
+
+
+def test_poles_of_all_wheels_lie_between_those_of_the_bounds_of_the_slope(box):
+    """Eq. (19) with a slope between two numbers, wheels damped much or little, and slips in a wide range."""
+    ranges = {
+        "mass": (6e4, 9e4),
+        "wheelset inertia": (600.0, 900.0),
+        "wheel radius": (0.5, 0.55),
+        "wheel damping": (1.0, 300.0),
+        "mu0": (0.05, 0.3),
+    }
+    problem, slips = replace(box, bounds=Bounds.of(ranges)), (0.01, 0.6)
+    for slopes in ((-0.2, -0.1), (-0.1, 0.3), (0.2, 0.3)):
+        low, high = poles(problem, slips, *slopes)
+        seen = []
+        for mass, inertia, radius, damping, mu0 in product(*ranges.values()):
+            for slip, slope in product(slips, slopes):
+                load = mass * constants().gravity / 8.0
+                # Of a wheel, with half of the inertia of its set; the train is slowed down by all of them.
+                moved = load * radius**2 / (inertia / 2.0) + (1.0 - slip) * 8.0 * load / mass
+                seen.append(mu0 * slope * moved - damping / (inertia / 2.0))
+        assert low <= min(seen) < low + 0.1 * (high - low)
+        assert high - 0.1 * (high - low) < max(seen) <= high

@@ -21,6 +21,7 @@ from wspd_design.controllers.observer_form import ObserverForm, TorqueObserver
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.protocol import VehicleMeasurement
 from wspd_design.controllers.references import ConstantSlip, FallingSlip
+from wspd_design.parameters.bounds import Bounds
 
 SAMPLES = 400
 WORN = 0.53  # m
@@ -204,18 +205,26 @@ def test_numbers_that_are_declared_are_those_of_a_protection_that_has_them(probl
 
 
 # --- the box and its cells ----------------------------------------------------------------------------------------
-@pytest.mark.parametrize("share", ["1", "1/2", "1/16"])
-def test_share_of_the_box_reaches_as_far_to_either_side(problem, share):
-    for name, (low, high) in zip(NAMES, box_of(problem, Fraction(share)), strict=True):
-        (least, most), nominal = problem.span(name), problem.nominal(name)
-        assert float(low - Fraction(nominal)) == pytest.approx(float(Fraction(share)) * (least - nominal))
-        assert float(high - Fraction(nominal)) == pytest.approx(float(Fraction(share)) * (most - nominal))
-    assert LOCO.wheel_radius == problem.nominal("wheel radius") == problem.span("wheel radius")[1]
+@pytest.fixture(scope="module")
+def uneven(problem):
+    """Ranges that reach farther up than down, but for that of the radius."""
+    ends = {name: (0.8 * problem.nominal(name), 1.3 * problem.nominal(name)) for name in NAMES}
+    return replace(problem, bounds=Bounds.of(ends | {"wheel radius": (0.5, LOCO.wheel_radius)}))
+
+
+@pytest.mark.parametrize("share", [1.0, 0.5, 0.0625])
+def test_share_of_the_box_is_that_of_the_way_to_either_end(uneven, share):
+    for name, ends in zip(NAMES, box_of(uneven, Fraction(share)), strict=True):
+        nominal = uneven.nominal(name)
+        low, high = (1.0 - 0.2 * share) * nominal, (1.0 + 0.3 * share) * nominal
+        if name == "wheel radius":
+            low, high = 0.55 - 0.05 * share, 0.55
+        assert tuple(map(float, ends)) == pytest.approx((low, high))
 
 
 @pytest.mark.parametrize("letter", LETTERS)
-def test_both_halves_of_a_cell_are_all_of_it(problem, letter):
-    cell = box_of(problem, Fraction(1))
+def test_both_halves_of_a_cell_are_all_of_it(uneven, letter):
+    cell = box_of(uneven, Fraction(1))
     lower, upper = halved(cell, letter)
     (k,) = (n for n in range(len(NAMES)) if lower[n] != cell[n])
     assert NAMES[k] == dict(zip(LETTERS, NAMES, strict=True))[letter]
