@@ -100,7 +100,7 @@ def inside(value, ends, part=1e-9):
 
 # What is wide, with all else nearly known: an enclosure that goes by one end of it alone would miss the other one.
 ALONE = {
-    "speed": ((12.0, 33.0), (0.02, 0.02), {}),
+    "speed": ((20.0, 33.0), (0.02, 0.02), {}),
     "beside": (SPEEDS, (-0.3, 0.4), {}),
     "steepness": (SPEEDS, (0.3, 0.3), {"mu0": 0.5}),
     "ratio": (SPEEDS, (0.02, 0.02), {"slip reduction": 0.8}),
