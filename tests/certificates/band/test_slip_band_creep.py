@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from tests.certificates.band.conftest import LOCO, WET, problem_of
+from tests.certificates.band.conftest import LOCO, SLOW, WET, problem_of
 from tests.certificates.band.test_slip_band_departure import polach
 from wspd_design.certificates.setting.creep_slope import (
     NORMAL_MASS,
@@ -24,6 +24,8 @@ from wspd_design.certificates.setting.creep_slope import (
     poles,
     slope_claim,
 )
+from wspd_design.certificates.theorems.band import claims, key
+from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
 
@@ -185,6 +187,29 @@ def test_claims_are_about_every_wheel_of_the_box(box, grows):
                 values
             )
             assert float(claim.expression(values)) == pytest.approx(exact, rel=1e-6, abs=1e-7)
+
+
+def test_claims_of_a_half_of_mu0_are_about_every_wheel_with_such_a_friction():
+    """Light or heavy, and with the force, the slope and the fading that their names say."""
+    problem = problem_of(1.0, speeds=SLOW)
+    asked, law, (slow, _) = claims(problem), law_of(problem.controller), windows_of(problem)[0]
+    (least, most), d = problem.span("mu0"), 1e-5
+    contact = {name: problem.nominal(name) for name in (*CONTACT, *RAIL)}
+    for half, ends in enumerate(((least, (least + most) / 2.0), ((least + most) / 2.0, most))):
+        for mu0, mass in product(ends, problem.span("mass")):
+            wheel, slip = Wheel(problem, contact | {"mu0": mu0, "mass": mass}), float(law.slip)
+            exact = {
+                "level": wheel.force(slip, slow),
+                "slope 3": -(wheel.force(slip + d, slow) - wheel.force(slip - d, slow)) / (2.0 * d * slow),
+                "fading 1": (wheel.force(slip, slow + d) - wheel.force(slip, slow - d)) / (2.0 * d * slip),
+            }
+            for name, value in exact.items():
+                claim = asked[key(name, half, 0, "<=")]
+                ranges = {each.name: (float(each.low), float(each.high)) for each in claim.variables}
+                values = {each: low for each, (low, _) in ranges.items()}
+                values |= {STEEPNESS: modulus(wheel.stiffness * slip), SLIDING: slip * slow}
+                assert all(inside(values[each], at, 1e-9 * abs(at[1])) for each, at in ranges.items())
+                assert float(claim.expression(values)) == pytest.approx(value, rel=1e-6, abs=1e-7)
 
 
 def modulus(steepness):

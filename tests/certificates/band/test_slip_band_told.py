@@ -234,6 +234,7 @@ def test_laws_of_another_vehicle_or_range_are_not_spoken_about(problem):
     assert "another vehicle" in reason(
         controller=replace(law, valve=replace(law.valve, brake=replace(law.valve.brake, max_pressure=1.0)))
     )
+    assert "another vehicle" in reason(vehicle=replace(vehicle, wheelsets=6))
     assert with_brake(dead_time=0.0199) == ""
     assert "a sample or more" in with_brake(dead_time=law.sample_time)
     assert "holds its valves" in reason(controller=replace(law, cut_out_speed=1.001 * problem.speeds[0]))
@@ -255,6 +256,9 @@ def test_declared_laws_of_another_vehicle_or_with_errors_that_cannot_be_are_not_
         return SLIP_BAND.speaks_about(replace(declared, vehicle=other))
 
     assert "another vehicle" in with_brake(max_pressure=1.01 * vehicle.brake.max_pressure)
+    assert "another vehicle" in SLIP_BAND.speaks_about(
+        replace(declared, vehicle=replace(vehicle, wheelsets=6))
+    )
     assert "one valve with a lag" in with_brake(valve="flow")
     assert "one full torque" in with_brake(axle_shares=(1.0, 1.0, 1.0, 0.9))
     for told in ("slip_error=-0.01", "slip_drift=-0.01", "slip_error=0.14"):

@@ -32,11 +32,12 @@ def unlike(problem: Problem, law: Protection) -> str:
     speed = problem.speeds[1] * (0.5 + 0.5 * shares("speed"))
     supply = 0.3 + 0.7 * shares("supply")
     torque = supply * full * (0.1 + 0.8 * shares("torque"))
-    sliding = speed * 1.6 * problem.slip * shares("sliding")
-    # From far below to far above the torque, so that pulses of all lengths fill and vent.
-    friction = torque * (0.6 + 0.8 * shares("friction"))
     innovation, change = 0.02 * (shares("innovation") - 0.5), -0.05 * shares("change")
     acceleration = -3.0 * shares("acceleration")
+    # From far below to far above reference and torque, most of them close: pulses of all lengths fill and vent.
+    sliding = speed * problem.slip * (1.0 + (2.0 * shares("sliding") - 1.0) ** 5)
+    friction = torque * (1.0 + 0.4 * (2.0 * shares("friction") - 1.0) ** 3)
+    friction += law.wheelset_inertia / law.wheel_radius * acceleration
 
     def form(values: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Affine:
         return Affine(values, np.zeros((POINTS, 32)), np.zeros(POINTS))

@@ -1,0 +1,169 @@
+"""One sample of the way in, enclosed for a box of states and numbers, against a wheel and a law of their own.
+
+Whatever a symbol stands for, the simulated value is where the form says with this symbol, but for its error.
+"""
+
+import numpy as np
+import pytest
+
+import wspd_design as wd
+from tests.certificates.band import sampled_runs
+from tests.certificates.band.conftest import problem_of
+from tests.certificates.band.sampled_runs import BOX, Law, Memory, Runs, plant_of, sampled
+from wspd_design.certificates.kernel.affine import Affine
+from wspd_design.certificates.theorems.slip_band import followed_law, followed_plant, motion
+from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS, State
+
+POINTS = 400
+FIRST_STATE, TIME, FRESH, SIZE = (
+    16,
+    24,
+    25,
+    80,
+)  # symbols: 8 numbers, 8 combinations of them, 8 states, time, others
+KNOWN = [*range(8), *range(FIRST_STATE, TIME)]
+# Half widths of mass, inertia, radius, mu0, pads, both times and the supply rate, over the nominal values
+SPREAD = (0.01, 0.01, 0.002, 0.02, 0.01, 0.03, 0.03, 0.02)
+# Speed, sliding speed, innovation, observed friction, torque, acceleration, change of the speed, supply
+STATES = {
+    "rolling": (32.0, 0.01, 0.0, 200.0, 300.0, -0.05, -0.001, 0.2),
+    "fills all the sample": (32.0, 1.0, 0.001, 9000.0, 4000.0, -0.4, -0.008, 0.42),
+    "fills": (32.0, 3.0, 0.003, 22_600.0, 22_000.0, -0.7, -0.0145, 0.5),
+    "vents": (25.0, 3.6, -0.003, 16_500.0, 17_500.0, -0.7, -0.0145, 0.6),
+    "vents all the sample": (25.0, 6.0, -0.004, 9_000.0, 17_500.0, -0.7, -0.0145, 0.6),
+    "neither": (25.0, 3.49, 0.0, 17_000.0, 16_950.0, -0.7, -0.0145, 0.6),
+    "at the supply": (28.0, 2.0, 0.0, 26_000.0, 23_500.0, -0.9, -0.02, 0.4),
+}
+WIDTHS = np.array([0.02, 0.02, 5e-4, 60.0, 60.0, 0.02, 4e-4, 0.003])  # half, of the states
+
+
+@pytest.fixture(scope="module")
+def problem():
+    return problem_of(1.0, rail=wd.load_rail("low-adhesion"))
+
+
+class Sample:
+    """Forms of a sample, and what simulated wheels do."""
+
+    def __init__(self, problem, center, widths, spread, seed):
+        random = np.random.default_rng(seed)
+        z = random.uniform(-1.0, 1.0, (SIZE, POINTS))
+        self.z = np.where(random.random(z.shape) < 0.6, np.sign(z), z)
+        nominal = np.array([problem.nominal(name) for name in NUMBERS])
+        halves = nominal * np.array(spread)
+        law, free = problem.controller, iter(range(FRESH, SIZE))
+
+        def fresh(form):
+            return form.named(next(free))
+
+        def form(value, half, symbol):
+            slopes = np.zeros((1, SIZE))
+            slopes[0, symbol] = half
+            return Affine(np.array([value]), slopes, np.zeros(1))
+
+        numbers = {
+            name: form(v, h, k) for k, (name, v, h) in enumerate(zip(NUMBERS, nominal, halves, strict=True))
+        }
+        self.plant = followed_plant.plant_of(
+            problem.vehicle, problem.rail, law.valve.brake.max_torque, numbers, 8
+        )
+        self.state = State(
+            *(form(v, h, FIRST_STATE + k) for k, (v, h) in enumerate(zip(center, widths, strict=True)))
+        )
+        self.decided = followed_law.decide(law, self.plant, self.state, fresh)
+        self.moved = motion.motion(self.plant, law, self.state, self.decided, TIME, fresh)
+        self.points = nominal[:, None] + halves[:, None] * self.z[: len(NUMBERS)]
+        self.states = np.array(center)[:, None] + np.array(widths)[:, None] * self.z[FIRST_STATE:TIME]
+        self.simulate(problem, Law(law, problem.slip))
+
+    def simulate(self, problem, law):
+        named = dict(zip(NUMBERS, self.points, strict=True))
+        held = {name: problem.nominal(name) for name in sampled_runs.BESIDE if name != "supply rate"}
+        plant = plant_of(
+            problem, {name: named[name] for name in BOX} | held | {"supply rate": named["supply rate"]}
+        )
+        speed, sliding, innovation, friction, torque, acceleration, change, supply = self.states
+        radius, scale = plant.wheel_radius, law.radius / plant.wheel_radius
+        wheel = (speed - sliding) / radius
+        r = innovation / radius
+        told = scale * speed
+        memory = Memory(
+            scale=scale,
+            told=told,
+            acceleration=law.filtered(scale * acceleration, told - scale * change, told),
+            observed=wheel - r + (1.0 - law.theta**2) * r,
+            friction=np.maximum(friction + (1.0 - law.theta) ** 2 * law.inertia / law.h * r, 0.0),
+            exact=told,
+            unspoiled=0.0 * told,
+        )
+        pads = plant.max_torque / law.full
+        runs = Runs(
+            plant=plant,
+            memory=memory,
+            since=-np.log1p(-supply) / plant.supply_rate,
+            measured=wheel,
+            speed=speed,
+            wheel=wheel,
+            torque=torque * pads,
+            number=np.arange(POINTS),
+        )
+        fill, vent, mean = law.pulses(memory, wheel, torque, law.full * supply)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sampled_runs, "SUBSTEP", 1e-4)
+            after, _, self.highest = sampled(law, runs)
+        expected = memory.observed + law.h / law.inertia * (memory.friction - mean)
+        self.seen = {
+            "fill": fill / law.h,
+            "vent": vent / law.h,
+            "friction": memory.friction,
+            "acceleration": memory.acceleration / scale,
+            "innovation": -radius * expected,
+            "speed": after.speed,
+            "sliding": after.speed - radius * after.wheel,
+            "torque": after.torque / pads,
+            "supply": -np.expm1(-plant.supply_rate * after.since),
+        }
+
+    def form(self, name):
+        return getattr(self.decided if hasattr(self.decided, name) else self.moved, name)
+
+    def farthest(self, name, scale):
+        """By how much a simulated value is farther from its form than the error allows, and the error; over a scale."""
+        form = self.form(name)
+        known = form.center[0] + form.slopes[0, KNOWN] @ self.z[KNOWN]
+        others = [k for k in range(SIZE) if k not in KNOWN]
+        error = form.error[0] + np.abs(form.slopes[0, others]).sum()
+        beyond = np.abs(self.seen[name] - known) - error
+        inside = (self.seen[name] >= form.low[0] - 1e-6 * scale) & (
+            self.seen[name] <= form.high[0] + 1e-6 * scale
+        )
+        assert np.all(inside), name
+        return beyond.max() / scale, error / scale
+
+
+SCALES = {
+    "fill": 1.0,
+    "vent": 1.0,
+    "friction": 1e3,
+    "acceleration": 0.1,
+    "innovation": 0.3,
+    "speed": 1.0,
+    "sliding": 1.0,
+    "torque": 1e3,
+    "supply": 0.1,
+}
+
+
+@pytest.mark.parametrize("wide", [1e-3, 0.2, 1.0])
+@pytest.mark.parametrize("kind", STATES)
+def test_simulated_samples_are_where_the_forms_say(problem, kind, wide):
+    """From nearly a point to states of which it is open whether the valve fills or vents, and for how long."""
+    found = Sample(problem, STATES[kind], wide * WIDTHS, [min(wide, 1.0) * each for each in SPREAD], 3)
+    for name, scale in SCALES.items():
+        beyond, error = found.farthest(name, scale)
+        assert beyond <= 1e-6, (name, beyond)
+        if wide < 0.01:
+            assert error < 0.01, name
+    assert np.all(found.highest <= found.moved.top[0] + 1e-9)
+    if wide < 0.01:
+        assert found.highest.max() > found.moved.top[0] - 1e-3
