@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import wspd_design as wd
+from tests.attack.plant import filled, vented
 from tests.certificates.band import sampled_runs
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.sampled_runs import BOX, Law, Memory, Runs, plant_of, sampled
@@ -73,10 +74,30 @@ class Sample:
             *(form(v, h, FIRST_STATE + k) for k, (v, h) in enumerate(zip(center, widths, strict=True)))
         )
         self.decided = followed_law.decide(law, self.plant, self.state, fresh)
-        self.moved = motion.motion(self.plant, law, self.state, self.decided, TIME, fresh)
+        self.on_the_way, self.in_the_mean = [], []
+        with pytest.MonkeyPatch.context() as patch:
+            self.listen(patch)
+            self.moved = motion.motion(self.plant, law, self.state, self.decided, TIME, fresh)
         self.points = nominal[:, None] + halves[:, None] * self.z[: len(NUMBERS)]
         self.states = np.array(center)[:, None] + np.array(widths)[:, None] * self.z[FIRST_STATE:TIME]
         self.simulate(problem, Law(law, problem.slip))
+
+    def listen(self, patch):
+        """Keep what pulls at the wheel in each part of the sample: at any time in it, and in its mean."""
+        enclosed, with_brake = motion._enclosed, motion._with_brake
+
+        def begun(plant, begin, guess, pulled, step):
+            self.on_the_way.append(pulled)
+            self.in_the_mean.append(None)
+            return enclosed(plant, begin, guess, pulled, step)
+
+        def braked(plant, begin, pulled):
+            if self.in_the_mean:
+                self.in_the_mean[-1] = pulled  # the last one of a part counts for its end
+            return with_brake(plant, begin, pulled)
+
+        patch.setattr(motion, "_enclosed", begun)
+        patch.setattr(motion, "_with_brake", braked)
 
     def simulate(self, problem, law):
         named = dict(zip(NUMBERS, self.points, strict=True))
@@ -113,6 +134,15 @@ class Sample:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(sampled_runs, "SUBSTEP", 1e-4)
             after, _, self.highest = sampled(law, runs)
+        self.pulls = lambda t: (
+            radius
+            / plant.wheelset_inertia
+            * vented(
+                plant,
+                filled(plant, runs.torque, np.minimum(t * law.h, fill), since=runs.since),
+                np.clip(t * law.h - fill, 0.0, vent),
+            )
+        )
         expected = memory.observed + law.h / law.inertia * (memory.friction - mean)
         self.seen = {
             "fill": fill / law.h,
@@ -129,18 +159,24 @@ class Sample:
     def form(self, name):
         return getattr(self.decided if hasattr(self.decided, name) else self.moved, name)
 
-    def farthest(self, name, scale):
-        """By how much a simulated value is farther from its form than the error allows, and the error; over a scale."""
-        form = self.form(name)
+    def beyond(self, form, value, time=None):
+        """By how much a simulated value is farther from its form than the error allows, and the error."""
         known = form.center[0] + form.slopes[0, KNOWN] @ self.z[KNOWN]
-        others = [k for k in range(SIZE) if k not in KNOWN]
+        others = [k for k in range(SIZE) if k not in KNOWN and (k != TIME or time is None)]
+        if time is not None:
+            known = known + form.slopes[0, TIME] * time
         error = form.error[0] + np.abs(form.slopes[0, others]).sum()
-        beyond = np.abs(self.seen[name] - known) - error
+        return np.max(np.abs(value - known) - error), error
+
+    def farthest(self, name, scale):
+        """The same of a number at the end, over a scale."""
+        form = self.form(name)
+        beyond, error = self.beyond(form, self.seen[name])
         inside = (self.seen[name] >= form.low[0] - 1e-6 * scale) & (
             self.seen[name] <= form.high[0] + 1e-6 * scale
         )
         assert np.all(inside), name
-        return beyond.max() / scale, error / scale
+        return beyond / scale, error / scale
 
 
 SCALES = {
@@ -166,6 +202,47 @@ def test_simulated_samples_are_where_the_forms_say(problem, kind, wide):
         assert beyond <= 1e-6, (name, beyond)
         if wide < 0.01:
             assert error < 0.01, name
+        assert (
+            name not in ("speed", "sliding") or found.form(name).slopes[0, TIME] == 0.0
+        )  # of a time that is over
     assert np.all(found.highest <= found.moved.top[0] + 1e-9)
     if wide < 0.01:
         assert found.highest.max() > found.moved.top[0] - 1e-3
+
+
+@pytest.mark.parametrize("wide", [1e-3, 0.2, 1.0])
+@pytest.mark.parametrize("kind", STATES)
+def test_brake_pulls_at_every_instant_as_the_forms_say(problem, kind, wide):
+    """In each part of the sample, at its times and in its mean."""
+    found = Sample(problem, STATES[kind], wide * WIDTHS, [min(wide, 1.0) * each for each in SPREAD], 4)
+    count = len(found.on_the_way)
+    assert count == len(found.in_the_mean) == round(problem.sample_time / motion.STEP)
+    for part, (on_the_way, in_the_mean) in enumerate(zip(found.on_the_way, found.in_the_mean, strict=True)):
+        for time in np.linspace(-1.0, 1.0, 9):
+            beyond, _ = found.beyond(on_the_way, found.pulls((part + (time + 1.0) / 2.0) / count), time)
+            assert beyond <= 1e-9
+        middles = (part + (np.arange(400) + 0.5) / 400.0) / count
+        beyond, _ = found.beyond(in_the_mean, np.mean([found.pulls(t) for t in middles], axis=0))
+        assert beyond <= 1e-6
+
+
+def test_slip_that_is_largest_in_the_middle_of_a_part_is_not_exceeded(problem):
+    """While venting, at torques that a wheel follows at first and does not any more later in the sample."""
+    nominal = dict(zip(NUMBERS, (np.array([problem.nominal(name)]) for name in NUMBERS), strict=True))
+    held = {name: problem.nominal(name) for name in sampled_runs.BESIDE}
+    plant = plant_of(problem, {name: nominal[name] for name in BOX} | held)
+    slowing, turning = sampled_runs.motion(plant, 25.0, (25.0 - 3.5) / plant.wheel_radius, 0.0)
+    # The slip does not change with this torque.
+    still = float((turning * plant.wheel_radius - (1.0 - 3.5 / 25.0) * slowing)[0])
+    still *= float((plant.wheelset_inertia / plant.wheel_radius)[0])
+    peaks = []
+    for more in np.linspace(0.004, 0.02, 10):
+        center = (25.0, 3.5, 0.0, 3_000.0, (1.0 + more) * still, -0.7, -0.0145, 0.9)
+        found = Sample(problem, center, 1e-6 * WIDTHS, [0.0] * len(NUMBERS), 3)
+        top, ends = (
+            found.moved.top[0],
+            max(3.5 / 25.0, float((found.seen["sliding"] / found.seen["speed"]).max())),
+        )
+        assert found.highest.max() <= top < found.highest.max() + 2e-4
+        peaks.append(found.highest.max() - ends)
+    assert np.count_nonzero(np.array(peaks) > 1e-6) > 5
