@@ -246,3 +246,58 @@ def test_slip_that_is_largest_in_the_middle_of_a_part_is_not_exceeded(problem):
         assert found.highest.max() <= top < found.highest.max() + 2e-4
         peaks.append(found.highest.max() - ends)
     assert np.count_nonzero(np.array(peaks) > 1e-6) > 5
+
+
+def test_rates_that_are_enclosed_hold_as_long_as_is_said(problem):
+    """Of wheels that begin to slide or to roll again; where the enclosure is not one, nothing is told."""
+    random, count, law = np.random.default_rng(9), 60, Law(problem.controller, problem.slip)
+
+    def form(values, half=0.0):
+        slopes = np.zeros((count, SIZE))
+        slopes[:, FIRST_STATE] = half
+        return Affine(np.array(values), slopes, np.zeros(count))
+
+    sliding, torque = random.uniform(0.3, 4.0, count), random.uniform(0.0, 4e4, count)
+    nominal = {name: np.full(count, problem.nominal(name)) for name in NUMBERS}
+    plant = followed_plant.plant_of(
+        problem.vehicle, problem.rail, law.full, {name: form(each) for name, each in nominal.items()}, 8
+    )
+    held = {name: problem.nominal(name) for name in sampled_runs.BESIDE}
+    wheels = plant_of(problem, {name: nominal[name] for name in BOX} | held)
+    begin, pulled = (form(np.full(count, 25.0)), form(sliding)), form(torque) * plant.effect
+    told = {}
+    for step in (0.005, 0.02, 0.06, 1.0):
+        with np.errstate(all="ignore"):
+            guess = motion._with_brake(plant, begin, pulled)
+            found = motion._enclosed(plant, begin, guess, pulled, step)
+        speed, wheel = np.full(count, 25.0), (25.0 - sliding) / wheels.wheel_radius
+        finite = np.isfinite(found[1].error) & np.isfinite(found[0].error)
+        told[step] = np.count_nonzero(finite)
+        for _ in range(200):
+            slowing, turning = sampled_runs.motion(wheels, speed, wheel, torque)
+            gliding = slowing - wheels.wheel_radius * turning
+            for rate, form_of in ((slowing, found[0]), (gliding, found[1])):
+                inside = (form_of.low - 1e-4 <= rate) & (rate <= form_of.high + 1e-4)
+                assert np.all(inside | ~finite)
+            speed, wheel = speed + step / 200.0 * slowing, np.maximum(wheel + step / 200.0 * turning, 0.0)
+    assert told[0.005] == count
+    assert told[0.02] > count / 2
+    assert told[1.0] < count
+
+
+def test_slip_within_a_part_is_not_beyond_the_top_though_its_ends_are_far_below(problem, monkeypatch):
+    """Rates of the sliding speed that fall from 40 to -40 m/s2 in each part: halfway it is higher than at both ends."""
+
+    def with_brake(_plant, begin, _pulled):
+        speed, _ = begin
+        none = speed * 0.0
+        slopes = none.slopes.copy()
+        slopes[:, TIME] = -40.0
+        return none, Affine(none.center, slopes, none.error)
+
+    monkeypatch.setattr(motion, "_with_brake", with_brake)
+    found = Sample(problem, STATES["neither"], 1e-6 * WIDTHS, [0.0] * len(NUMBERS), 3)
+    step = motion.STEP
+    assert found.form("sliding").high[0] == pytest.approx(3.5, abs=1e-4)
+    # 40 m/s2 for half of a part, falling evenly
+    assert found.moved.top[0] >= (3.5 + 40.0 * step / 4.0) / 25.0 - 1e-9
