@@ -150,20 +150,37 @@ def state_of(speed=(22.0, 0.1), supply=(0.7, 0.01)):
     )
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_wheels_that_have_arrived_are_in_the_ellipsoid_wherever_its_center_is(monkeypatch, seed):
+# What is wide, in the coordinates of the ellipsoid: the point, one symbol, errors, where the center is; or all of it.
+WIDE = {
+    "point": (0.9, 0.0, 0.0, 0.0),
+    "symbol": (0.0, 1.0, 0.0, 0.0),
+    "errors": (0.0, 0.0, 1.0, 0.0),
+    "center": (0.0, 0.1, 0.0, 0.9),
+    "all": (0.1, 0.3, 0.3, 0.2),
+}
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("kind", WIDE)
+def test_wheels_that_have_arrived_are_in_the_ellipsoid_wherever_its_center_is(monkeypatch, kind, seed):
     """The largest box about a point that counts as there: none of its corners, nor of its errors, is outside."""
-    random = np.random.default_rng(seed)
+    random, (far, wide, wrong, moves) = np.random.default_rng(seed), WIDE[kind]
     asked = asked_for(random)
-    matrix, center, moved = (np.array(each) for each in (asked.matrix, asked.center, asked.moved))
-    inward = np.linalg.inv(np.linalg.cholesky(matrix)).T
-    middle = center + inward @ (0.1 * random.normal(size=FORMS))
-    slopes, errors = (
-        (inward @ random.normal(size=(FORMS, 6))),
-        random.random(FORMS) * np.abs(inward).sum(axis=1) / 4.0,
-    )
+    matrix, center = (np.array(each) for each in (asked.matrix, asked.center))
+    inward = np.linalg.inv(np.linalg.cholesky(matrix)).T  # makes a vector of length 1 one of the boundary
+
+    def direction():
+        found = random.normal(size=FORMS)
+        return inward @ (found / np.linalg.norm(found))
+
+    moved, apart = moves * direction(), far * direction()
+    asked = asked._replace(moved=moved)
+    slopes = np.stack([direction() * (wide if k == 0 or kind == "all" else 0.0) for k in range(6)], axis=1)
+    errors = wrong * random.random(FORMS) * np.abs(inward).sum(axis=1) / 4.0 + 1e-6
 
     def there(size):
+        # A point that is far away is so by the same factor as all else.
+        middle = center + (size * apart if kind == "point" else apart)
         forms = tuple(
             Affine(np.array([m]), size * s[None, :], np.array([size * e]))
             for m, s, e in zip(middle, slopes, errors, strict=True)
@@ -171,18 +188,19 @@ def test_wheels_that_have_arrived_are_in_the_ellipsoid_wherever_its_center_is(mo
         monkeypatch.setattr(arrival, "in_band", lambda *_: forms)
         return bool(arrived(None, None, state_of(), asked)[0])
 
-    least, most = 0.0, 10.0
-    for _ in range(40):
+    least, most = 0.0, 1e4
+    for _ in range(60):
         size = 0.5 * (least + most)
         least, most = (size, most) if there(size) else (least, size)
-    assert 0.0 < least < 10.0
+    assert 0.0 < least < 1e4
     corners = np.array(list(product((-1.0, 1.0), repeat=6)))
     signs = np.array(list(product((-1.0, 1.0), repeat=FORMS)))
-    points = middle + (least * corners @ slopes.T)[:, None, :] + least * signs * errors
-    for sign in (-1.0, 1.0):
-        apart = points - center - sign * moved
-        sizes = np.einsum("abi,ij,abj->ab", apart, matrix, apart)
-        assert sizes.max() <= 1.0
+    points = (least * apart if kind == "point" else apart) + (least * corners @ slopes.T)[:, None, :]
+    points = points + least * signs * errors
+    sizes = [np.einsum("abi,ij,abj->ab", x, matrix, x).max() for x in (points - moved, points + moved)]
+    assert max(sizes) <= 1.0
+    if kind in ("point", "symbol"):
+        assert max(sizes) > 0.9
 
 
 def test_wheels_outside_of_the_speeds_or_with_less_supply_have_not_arrived(monkeypatch):
