@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import wspd_design as wd
 from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.theorems.slip_band import followed_law, motion
 
@@ -122,3 +123,50 @@ def test_way_that_is_asked_goes_as_far_as_both_valves_go(power, more):
             y = min(abs(way) / room, longest)
             if abs(way) / room <= longest:
                 assert holds(found, np.sign(way) * there * (1.0 - (1.0 - y) ** own), z, 0.0, 1e-9)
+
+
+CURVES = {
+    "adhesion": (lambda x: motion._adhesion_part(RAIL, x), lambda y: adhesion_part(y), (-1.0, 12.0)),
+    "slip": (
+        lambda x: motion._slip_part(RAIL, x),
+        lambda y: 2.0 / np.pi * np.arctan(RAIL.slip_reduction * y),
+        (-5.0, 60.0),
+    ),
+    "pull": (lambda x: followed_law._pull(x, 8.0, 20.0), lambda y: pull(y, 8.0, 20.0), (-2.0, 6.0)),
+    "share": (
+        lambda x: followed_law._share(x, form_of(1.0), 18.0, 1e-3, left_out=0.0, pulse=0.0),
+        lambda y: np.minimum(-18.0 * np.log1p(-np.clip(y, 0.0, 0.9)), 1.0),
+        (0.0, 0.09),
+    ),
+}
+RAIL = wd.load_rail("polach-wet")
+
+
+def adhesion_part(gradient):
+    z = RAIL.adhesion_reduction * gradient
+    return 2.0 / np.pi * z / (1.0 + z * z)
+
+
+def pull(error, rate, slew):
+    """k e, and beyond the beginning of the braking curve the root that touches it."""
+    far = np.sqrt(np.maximum(2.0 * slew * (error - 0.5 * slew / rate**2), 0.0))
+    return np.where(error * rate**2 > slew, far, rate * error)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_curves_are_enclosed_over_wide_and_narrow_ranges(name):
+    """Between its ends a curve is farther from its secant than at them."""
+    enclosed, curve, (low, high) = CURVES[name]
+    random = np.random.default_rng(7)
+    widest = 0.0
+    for wide in (1.0, 0.4, 0.05):
+        for _ in range(12):
+            half = 0.5 * wide * (high - low)
+            middle = random.uniform(low + half, high - half)
+            found = enclosed(form_of(middle, [half]))
+            widest = max(widest, float(found.error[0]))
+            for z in np.linspace(-1.0, 1.0, 201):
+                assert holds(
+                    found, float(curve(np.float64(middle + half * z))), np.full(SYMBOLS, z), 0.0, 1e-9
+                )
+    assert widest < 2.0 * np.ptp(curve(np.linspace(low, high, 101)))

@@ -303,3 +303,45 @@ def test_slip_within_a_part_is_not_beyond_the_top_though_its_ends_are_far_below(
     assert found.form("sliding").high[0] == pytest.approx(3.5, abs=1e-4)
     # 40 m/s2 for half of a part, falling evenly
     assert found.moved.top[0] >= (3.5 + 40.0 * step / 4.0) / 25.0 - 1e-9
+
+
+def test_errors_of_the_numbers_of_a_plant_do_not_cancel(problem):
+    """Of two numbers that go with different ones of the vehicle, sum and difference reach as far as they do."""
+    nominal, halves = np.array([problem.nominal(name) for name in NUMBERS]), 0.2
+    slopes = np.zeros((len(NUMBERS), 1, SIZE))
+    for k, value in enumerate(nominal):
+        slopes[k, 0, k] = halves * value
+    numbers = {
+        name: Affine(np.array([v]), slopes[k], np.zeros(1))
+        for k, (name, v) in enumerate(zip(NUMBERS, nominal, strict=True))
+    }
+    plant = followed_plant.plant_of(problem.vehicle, problem.rail, 6e4, numbers, 8)
+    z = np.array(np.meshgrid(*[[-1.0, 0.0, 1.0]] * len(NUMBERS))).reshape(len(NUMBERS), -1)
+    mass, inertia, radius, mu0, torque, fill, vent, supply = nominal[:, None] * (1.0 + halves * z)
+    seen = {
+        "curvature": 1.0 / radius,
+        "mass": 1.0 / mass,
+        "inertia": 1.0 / inertia,
+        "effect": radius / inertia * torque / 6e4,
+        "fill_rate": 1.0 / fill,
+        "vent_rate": 1.0 / vent,
+        "gripping": mu0
+        * sampled_runs.static_load(plant_of(problem, named(problem, nominal)))
+        * 8.0
+        / nominal[0],
+        "supply_rate": supply,
+    }
+    for one, values in seen.items():
+        for other, rest in seen.items():
+            for sign in (-1.0, 1.0):
+                scale = sign * float(getattr(plant, one).center[0] / getattr(plant, other).center[0])
+                form = getattr(plant, one) + getattr(plant, other) * scale
+                value = values + scale * rest
+                slack = 1e-9 * np.abs(values)
+                assert np.all((form.low[0] - slack <= value) & (value <= form.high[0] + slack)), (one, other)
+
+
+def named(problem, numbers):
+    """Numbers of the plant of the attacker by their names."""
+    held = {name: problem.nominal(name) for name in sampled_runs.BESIDE}
+    return {name: number for name, number in zip(NUMBERS, numbers, strict=True) if name in BOX} | held
