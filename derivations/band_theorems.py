@@ -153,7 +153,8 @@ THEOREMS = (
         hypotheses=(
             "mass, inertia, radius, pads and valve times do not change; there are sets for each cell of their box",
             "(phi, psi) in the polygon of the range of the mean slope of the friction between E and what the band "
-            "reaches, from bounds that are proved in strips of the error, for either half of mu0",
+            "reaches, from bounds that are proved in strips of the error for each part of the range of the steepness "
+            "k_A C/mu0 over the slip, of all parts that a cell lies in",
             "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
             "and torque above zero: there the law is the written one",
             "pressure measured exactly, wheel and train speed within a bound; pulses begin within a bound after the "

@@ -1,4 +1,5 @@
 import json
+import math
 from dataclasses import replace
 from fractions import Fraction
 
@@ -11,6 +12,7 @@ from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.search.budget import Budget
 from wspd_design.certificates.theorems.band import contact_held
 from wspd_design.certificates.theorems.slip_band.checker import checker
+from wspd_design.certificates.theorems.slip_band.friction import Part
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of
 from wspd_design.design import certification
 
@@ -47,6 +49,11 @@ def certificate_of(problem, effort=0.9):
 def told_of(problem, proof, **asked):
     """What the checker tells of a proof, asked as the theorem asks it."""
     return checker(contact_held(problem), problem.controller, **asked)(proof, Work(PLENTY))
+
+
+def everywhere(friction):
+    """Bounds of the friction for wheels of any steepness."""
+    return (Part((0.0, math.inf), friction),)
 
 
 def refused(problem, proof):

@@ -8,7 +8,7 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import SLOW, certificate_of, problem_of, refused, told_of
+from tests.certificates.band.conftest import SLOW, certificate_of, everywhere, problem_of, refused, told_of
 from wspd_design.certificates.checks.frame import accepted
 from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.kernel.arb import point
@@ -16,11 +16,19 @@ from wspd_design.certificates.kernel.finding import Stated
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.slip_band.search import Sought, Spent, alone, cover, exactly
+from wspd_design.certificates.setting.creep_slope import STEEPNESS
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.setting.written_protection import not_written
 from wspd_design.certificates.theorems.band import CELLS, RESERVED, SLIP_BAND, contact_held, covered
 from wspd_design.certificates.theorems.slip_band.checker import lies_in
-from wspd_design.certificates.theorems.slip_band.friction import FADINGS, HALVES, REACHES, SLOPES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import (
+    FADINGS,
+    NAMES,
+    PARTS,
+    REACHES,
+    SLOPES,
+    Friction,
+)
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read, write
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
@@ -314,7 +322,7 @@ def test_clip_of_what_is_held_is_that_of_the_reserve(half):
                 law,
                 box,
                 windows_of(half)[0],
-                (friction,) * HALVES,
+                everywhere(friction),
                 Choice(Fraction(1, 2), 0),
                 exact._replace(reserve=reserve),
             )
@@ -410,31 +418,75 @@ def test_dropped_window_and_dropped_cell_are_refused(half, proof):
 
 def test_narrower_friction_proves_less_than_the_theorem_asks(half, proof, document):
     """Bounds that are narrower than the proved ones are a true statement about another friction."""
-    low, high = (float(each) for each in proof["friction"][0][:2])
-    proof["friction"][0][:2] = [repr(0.5 * low), repr(0.5 * high)]
+    low, high = (float(each) for each in proof["friction"][0][2:4])
+    proof["friction"][0][2:4] = [repr(0.5 * low), repr(0.5 * high)]
     assert not replay(half, json.dumps(document)).accepted
 
 
-def test_bounds_of_the_other_half_of_mu0_prove_nothing(half, proved, proof):
-    """Whatever the checker says: the bounds of a half must hold what is proved in it."""
+def parts_in(proof, window=0):
+    """Numbers of the parts of a window: the range of the steepness, then the bounds."""
+    numbers = proof["friction"][window]
+    count = len(numbers) // PARTS
+    assert count == 2 * (1 + len(NAMES))
+    return [numbers[k * count : (k + 1) * count] for k in range(PARTS)]
+
+
+def with_parts(proof, parts, window=0):
+    """Return a proof that states other parts in a window."""
+    friction = list(proof["friction"])
+    friction[window] = [number for each in parts for number in each]
+    return {**proof, "friction": friction}
+
+
+def test_parts_of_the_steepness_that_leave_some_out_are_refused(half, proof):
+    """Exchanged ones among them, with their bounds."""
+    first, second, *others = parts_in(proof)
+    *before, last = parts_in(proof)
+    low, high = map(float, second[:2])
+    middle = repr(0.5 * (low + high))
+    for parts in (
+        [second, first, *others],
+        [first, *others[::-1], second],
+        [first, [second[0], middle, *second[2:]], *others],
+        [first, [middle, *second[1:]], *others],
+        [[repr(1.001 * float(first[0])), *first[1:]], second, *others],
+        [*before, [last[0], repr(0.999 * float(last[1])), *last[2:]]],
+    ):
+        assert "leave out some of a cell" in refused(half, with_parts(proof, parts))
+
+
+def test_part_that_is_no_range_of_doubles_is_refused(half, proof):
+    first, *others = parts_in(proof)
+    for forged, reason in (
+        ([*first[1::-1], *first[2:]], "is none"),
+        (["1/3", *first[1:]], "is not a double"),
+    ):
+        assert reason in refused(half, with_parts(proof, [forged, *others]))
+    assert "lacks" in refused(half, with_parts(proof, others))
+
+
+@pytest.mark.parametrize("window", [0, -1])
+def test_parts_for_which_other_bounds_are_proved_prove_nothing(half, proved, proof, window):
+    """Whatever the checker says: a part must lie in the one for which something is proved, and hold what is."""
     finding = proved.findings[CELLS]
     assert covered(half, proved.findings, CELLS) is finding
-    for window in (0, -1):
-        forged = json.loads(json.dumps(proof))
-        ends = forged["friction"][window]
-        count = len(ends) // HALVES
-        forged["friction"][window] = ends[count:] + ends[:count]
-        told = told_with(half, proved, {CELLS: forged})
-        assert told.status is Status.UNDECIDED
-        read_again = read(forged, len(windows_of(half))).friction[window]
-        swapped = {
+    first, second, *others = parts_in(proof, window)
+    for parts in (
+        [[*first[:2], *second[2:]], [*second[:2], *first[2:]], *others],  # bounds of another part
+        [second, first, *others],
+        [[first[0], second[1], *first[2:]], second, *others],  # a part that reaches into the next one
+        [first, [first[0], *second[1:]], *others],
+    ):
+        forged = with_parts(proof, parts, window)
+        assert told_with(half, proved, {CELLS: forged}).status is Status.UNDECIDED
+        stated = {
             f"{name} {k} {window % len(windows_of(half))} {end}": value
-            for k, each in enumerate(read_again)
-            for name, ends in each.named.items()
+            for k, each in enumerate(read(forged, len(windows_of(half))).friction[window])
+            for name, ends in ((STEEPNESS, each.steepness), *each.friction.named.items())
             for end, value in zip(("low", "high"), ends, strict=True)
         }
-        assert swapped.keys() <= finding.numbers.keys()
-        other = replace(finding, numbers={**finding.numbers, **swapped})
+        assert stated.keys() <= finding.numbers.keys()
+        other = replace(finding, numbers={**finding.numbers, **stated})
         assert covered(half, {**proved.findings, CELLS: other}, CELLS).status is Status.UNDECIDED
 
 

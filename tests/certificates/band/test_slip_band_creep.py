@@ -23,8 +23,10 @@ from wspd_design.certificates.setting.creep_slope import (
     level_claim,
     poles,
     slope_claim,
+    steepness_of,
 )
-from wspd_design.certificates.theorems.band import claims, key
+from wspd_design.certificates.theorems.band import claims, contact_held, key
+from wspd_design.certificates.theorems.slip_band.friction import PARTS, parts_of
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
@@ -189,27 +191,37 @@ def test_claims_are_about_every_wheel_of_the_box(box, grows):
             assert float(claim.expression(values)) == pytest.approx(exact, rel=1e-6, abs=1e-7)
 
 
-def test_claims_of_a_half_of_mu0_are_about_every_wheel_with_such_a_friction():
+def test_claims_of_a_part_of_the_steepness_are_about_every_wheel_that_lies_in_it():
     """Light or heavy, and with the force, the slope and the fading that their names say."""
-    problem = problem_of(1.0, speeds=SLOW)
+    problem = contact_held(problem_of(1.0, speeds=SLOW))
     asked, law, (slow, _) = claims(problem), law_of(problem.controller), windows_of(problem)[0]
-    (least, most), d = problem.span("mu0"), 1e-5
+    masses, frictions = (np.linspace(*problem.span(name), 7) for name in ("mass", "mu0"))
+    slip, d, met = float(law.slip), 1e-5, set()
     contact = {name: problem.nominal(name) for name in (*CONTACT, *RAIL)}
-    for half, ends in enumerate(((least, (least + most) / 2.0), ((least + most) / 2.0, most))):
-        for mu0, mass in product(ends, problem.span("mass")):
-            wheel, slip = Wheel(problem, contact | {"mu0": mu0, "mass": mass}), float(law.slip)
-            exact = {
-                "level": wheel.force(slip, slow),
-                "slope 3": -(wheel.force(slip + d, slow) - wheel.force(slip - d, slow)) / (2.0 * d * slow),
-                "fading 1": (wheel.force(slip, slow + d) - wheel.force(slip, slow - d)) / (2.0 * d * slip),
-            }
-            for name, value in exact.items():
-                claim = asked[key(name, half, 0, "<=")]
-                ranges = {each.name: (float(each.low), float(each.high)) for each in claim.variables}
-                values = {each: low for each, (low, _) in ranges.items()}
-                values |= {STEEPNESS: modulus(wheel.stiffness * slip), SLIDING: slip * slow}
-                assert all(inside(values[each], at, 1e-9 * abs(at[1])) for each, at in ranges.items())
-                assert float(claim.expression(values)) == pytest.approx(value, rel=1e-6, abs=1e-7)
+    for mass, mu0 in product(map(float, masses), map(float, frictions)):
+        alone = replace(problem, bounds=Bounds.of({"mass": (mass, mass), "mu0": (mu0, mu0)}))
+        low, high = steepness_of(alone)
+        parts = [
+            k
+            for k, (least, most) in enumerate(parts_of(steepness_of(problem)))
+            if least <= high and low <= most
+        ]
+        assert parts
+        met |= {*parts}
+        wheel = Wheel(problem, contact | {"mu0": mu0, "mass": mass})
+        exact = {
+            "level": wheel.force(slip, slow),
+            "slope 3": -(wheel.force(slip + d, slow) - wheel.force(slip - d, slow)) / (2.0 * d * slow),
+            "fading 1": (wheel.force(slip, slow + d) - wheel.force(slip, slow - d)) / (2.0 * d * slip),
+        }
+        for part, (name, value) in product(parts, exact.items()):
+            claim = asked[key(name, part, 0, "<=")]
+            ranges = {each.name: (float(each.low), float(each.high)) for each in claim.variables}
+            values = {each: low for each, (low, _) in ranges.items()}
+            values |= {STEEPNESS: modulus(wheel.stiffness * slip), SLIDING: slip * slow}
+            assert all(inside(values[each], at, 1e-9 * abs(at[1])) for each, at in ranges.items())
+            assert float(claim.expression(values)) == pytest.approx(value, rel=1e-6, abs=1e-7)
+    assert met == set(range(PARTS))
 
 
 def modulus(steepness):

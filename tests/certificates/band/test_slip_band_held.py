@@ -20,8 +20,8 @@ from wspd_design.certificates.setting.creep_slope import bend, fading_beside
 from wspd_design.certificates.theorems.band import claims, key
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
-    HALVES,
     NAMES,
+    PARTS,
     Friction,
     fading_at,
     slope_at,
@@ -96,13 +96,13 @@ def bounds_used(error):
 
 @pytest.mark.parametrize("falls", [True, False])
 def test_every_bound_is_asked_for_the_slips_of_the_errors_that_it_counts_for(falling, falls):
-    """In each window, for new and worn wheels, whatever the slip beside that of the law, and for either half of mu0."""
+    """In each window, for new and worn wheels, whatever the slip beside that of the law, and in each part."""
     problem = falling if falls else replace(falling, controller=constant(falling))
     law, windows = law_of(problem.controller), windows_of(problem)
     asked, slowest = claims(problem), problem.speeds[0]
     ranges = {}
-    for name, k, half, relation in product(NAMES, (0, 4, len(windows) - 1), range(HALVES), (">=", "<=")):
-        (sliding,) = (x for x in asked[key(name, half, k, relation)].variables if x.name == "sliding speed")
+    for name, k, part, relation in product(NAMES, (0, 4, len(windows) - 1), range(PARTS), (">=", "<=")):
+        (sliding,) = (x for x in asked[key(name, part, k, relation)].variables if x.name == "sliding speed")
         ranges.setdefault((name, k), []).append((float(sliding.low), float(sliding.high)))
     seen = {each: [] for each in ranges}
     errors = np.array(

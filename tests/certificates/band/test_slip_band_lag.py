@@ -10,7 +10,7 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import SLOW, problem_of, refused, told_of
+from tests.certificates.band.conftest import SLOW, everywhere, problem_of, refused, told_of
 from tests.certificates.band.test_slip_band_reference import (
     EXACT,
     WINDOW,
@@ -29,7 +29,6 @@ from wspd_design.certificates.setting.slip_loop import DISTURBANCES
 from wspd_design.certificates.theorems.band import SLIP_BAND, contact_held
 from wspd_design.certificates.theorems.slip_band import checker, loop
 from wspd_design.certificates.theorems.slip_band.checker import drifting
-from wspd_design.certificates.theorems.slip_band.friction import HALVES
 from wspd_design.certificates.theorems.slip_band.lag import Fading, lag_of
 from wspd_design.certificates.theorems.slip_band.loop import Choice, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import write
@@ -133,7 +132,7 @@ def test_lag_of_a_train_lies_beside_its_share_of_the_drift(settled, share):
         cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
         friction = friction_at(problem, WINDOW, (0.14 - 4e-3, 0.14 + 1e-3))
         choice = Choice(Fraction(1, 2), 0, Fraction(settled), lag=share)
-        found = loop_of(problem, law, cell, WINDOW, (friction,) * HALVES, choice, EXACT)
+        found = loop_of(problem, law, cell, WINDOW, everywhere(friction), choice, EXACT)
         ends, k = (
             tuple(float(each.mid()) for each in found.disturbances[LAG_DRIFT]),
             float(found.steady.lag.mid()),
@@ -158,7 +157,7 @@ def test_loop_tells_what_fades(monkeypatch):
         cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
         friction = friction_at(problem, WINDOW, (0.14 - 4e-3, 0.14 + 1e-3))
         choice = Choice(Fraction(1, 2), 0, Fraction(0.05), lag=Fraction(1))
-        found = loop.loop_of(problem, law, cell, WINDOW, (friction,) * HALVES, choice, EXACT)
+        found = loop.loop_of(problem, law, cell, WINDOW, everywhere(friction), choice, EXACT)
         ((fades, _, _, _, change),) = seen
         ends = [[float(end.mid()) for end in each] for each in (found.steady.change, ends_of(change))]
     vehicle, fast = problem.vehicle, WINDOW[1]

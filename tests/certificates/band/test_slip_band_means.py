@@ -14,14 +14,14 @@ import pytest
 from flint import ctx
 from scipy.integrate import quad
 
-from tests.certificates.band.conftest import problem_of
+from tests.certificates.band.conftest import everywhere, problem_of
 from tests.certificates.band.test_slip_band_reference import EXACT
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, shares_together
 from wspd_design.certificates.theorems.band import contact_held
 from wspd_design.certificates.theorems.slip_band import center
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
-from wspd_design.certificates.theorems.slip_band.friction import FADINGS, HALVES, SLOPES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import FADINGS, SLOPES, Friction
 from wspd_design.certificates.theorems.slip_band.loop import Choice, loop_of
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 
@@ -62,7 +62,7 @@ class Sample:
             )
             conditions = EXACT._replace(delay=Fraction(delay))
             window, choice = windows_of(problem)[6], Choice(PULSE, 0)
-            loop = self.plain = loop_of(problem, self.law, cell, window, (ANY,) * HALVES, choice, conditions)
+            loop = self.plain = loop_of(problem, self.law, cell, window, everywhere(ANY), choice, conditions)
             growths = growth if least_growth is None else least_growth, growth
             secants = tuple(point(Fraction(each)) / point(self.law.sample_time) for each in growths)
             ranges, added = replace(loop.ranges, secants=secants), point(Fraction(added))

@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 from flint import ctx
 
-from tests.certificates.band.conftest import WET
+from tests.certificates.band.conftest import WET, everywhere
 from tests.certificates.band.sampled_runs import Law
 from tests.certificates.band.test_slip_band_reference import EXACT, WINDOW, Course, falling_problem
 from wspd_design.certificates.kernel.checker import Refused
+from wspd_design.certificates.setting import creep_slope
+from wspd_design.certificates.theorems.slip_band import loop
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
-    HALVES,
     REACHES,
     SLOPES,
     Friction,
@@ -29,10 +30,13 @@ from wspd_design.certificates.theorems.slip_band.reference import slip_at, slips
 from wspd_design.certificates.theorems.slip_band.statement import (
     JERK_FACTORS,
     NAMES,
+    box_of,
     fastest_loss,
+    halved,
     law_of,
     windows_of,
 )
+from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
 
 PULSE = Fraction(1, 2)
@@ -92,8 +96,8 @@ def friction_of(problem, law, window):
 def loop_in(problem, law, settled=0.0, *, friction=None, conditions=EXACT, window=WINDOW, near=0):
     with ctx.workprec(128):
         cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
-        halves = (friction or friction_of(problem, law, window),) * HALVES
-        return loop_of(problem, law, cell, window, halves, Choice(PULSE, near, Fraction(settled)), conditions)
+        parts = everywhere(friction or friction_of(problem, law, window))
+        return loop_of(problem, law, cell, window, parts, Choice(PULSE, near, Fraction(settled)), conditions)
 
 
 def doubles(ends):
@@ -520,3 +524,25 @@ def test_states_within_the_limits_are_those_of_the_written_law(request, kind, se
                 worst[what] = min(worst.get(what, math.inf), margin)
     assert len(worst) == 7
     assert all(margin >= -1e-9 for margin in worst.values()), worst
+
+
+@pytest.mark.parametrize("letters", ["", "m", "u", "mu", "i"])
+def test_cell_takes_the_bounds_for_the_steepness_of_its_masses_and_frictions(monkeypatch, letters):
+    """Wheels are the steeper, the lighter they are and the less friction there is."""
+    problem = falling_problem(WET, 1.0)
+    cells = [box_of(problem, Fraction(1))]
+    for letter in letters:
+        cells = [half for each in cells for half in halved(each, letter)]
+    asked = []
+    monkeypatch.setattr(loop, "bounds_for", lambda _, steepness: asked.append(steepness) or 1 / 0)
+    for cell in cells:
+        with pytest.raises(ZeroDivisionError):
+            loop_of(problem, law_of(problem.controller), cell, WINDOW, (), Choice(PULSE, 0), EXACT)
+    nominal = creep_slope.steepness_of(replace(problem, bounds=Bounds.of({})))[0]
+    for cell, (low, high) in zip(cells, asked, strict=True):
+        mass, mu0 = ([float(end) for end in cell[NAMES.index(name)]] for name in ("mass", "mu0"))
+        ends = [
+            nominal * (problem.nominal("mass") / m) ** (1.0 / 3.0) * problem.nominal("mu0") / u
+            for m, u in zip(mass, mu0, strict=True)
+        ]
+        assert (high, low) == pytest.approx(ends, rel=1e-9)

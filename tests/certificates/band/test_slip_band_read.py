@@ -8,7 +8,7 @@ import pytest
 
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
-from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, REACHES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, REACHES, Friction, Part
 from wspd_design.certificates.theorems.slip_band.proof import MOST_CELLS, Ellipsoid, Proof, read, write
 
 WINDOWS = 2
@@ -44,16 +44,12 @@ def an_ellipsoid(number):
     )
 
 
-def halves(window):
-    """Bounds of the friction for either half of mu0, all of them different."""
+def parts(window):
+    """Parts of the steepness with bounds of the friction, all numbers different."""
+    first = [200.0 * window + 50.0 * part for part in range(PARTS)]
     return tuple(
-        Friction.of(
-            tuple(
-                (100.0 * window + 50.0 * half + k, 100.0 * window + 50.0 * half + k + 0.5)
-                for k in range(len(NAMES))
-            )
-        )
-        for half in range(HALVES)
+        Part((k, k + 0.5), Friction.of(tuple((k + n, k + n + 0.5) for n in range(1, 1 + len(NAMES)))))
+        for k in first
     )
 
 
@@ -65,7 +61,7 @@ def proof():
         delay=Fraction(1, 20),
         noise=Fraction(1, 1000),
         reserve=Fraction(9, 10),
-        friction=tuple(halves(k) for k in range(WINDOWS)),
+        friction=tuple(parts(k) for k in range(WINDOWS)),
         steps="m..",
         cells=((one, other), (None, one)),
     )
@@ -95,7 +91,7 @@ def test_what_is_read_is_what_was_written(proof, written):
         *(("share", value, "share of the box must be above 0") for value in ("0", "-1/2", "11/10")),
         *((name, "-1/1000", "below 0") for name in ("delay", "noise")),
         *(("reserve", value, "claimed about must be above 0") for value in ("0", "-1", "1001/1000")),
-        ("format", "wspd-slip-band/8", "does not have the format"),
+        ("format", "wspd-slip-band/9", "does not have the format"),
         *(("steps", value, "steps and cells do not match") for value in ("m.", "m...", ".")),
         ("steps", ["m", ".", "."], "no steps or no cells"),
         ("cells", [], "no steps or no cells"),
@@ -156,7 +152,8 @@ def test_bounds_of_the_friction_that_cannot_be_are_refused(written):
     """A bound that is rounded where it is read would be another one than the checker tells."""
     ends = written["friction"][1]
     assert "not a double" in why(written | {"friction": [ends, ["1/3", *ends[1:]]]})
-    assert "range of the friction is none" in why(
-        written | {"friction": [ends, [ends[1], ends[0], *ends[2:]]]}
-    )
-    assert "lacks" in why(written | {"friction": [ends, ends[2:]]})
+    for k in (0, 2, len(ends) - 2):
+        exchanged = [*ends[:k], ends[k + 1], ends[k], *ends[k + 2 :]]
+        assert "is none" in why(written | {"friction": [ends, exchanged]})
+    for count in (2, len(ends) // PARTS):
+        assert "lacks" in why(written | {"friction": [ends, ends[count:]]})

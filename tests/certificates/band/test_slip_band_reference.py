@@ -10,14 +10,14 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import LOCO, SLOW, WET, certificate_of
+from tests.certificates.band.conftest import LOCO, SLOW, WET, certificate_of, everywhere
 from tests.certificates.band.test_slip_band_departure import polach
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
 from wspd_design.certificates.theorems.slip_band import loop
 from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.friction import FADINGS, HALVES, SLOPES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import FADINGS, SLOPES, Friction
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held, turning_at
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of, law_of, windows_of
@@ -136,7 +136,7 @@ def loop_at(problem, law, settled=0.0, *, window=WINDOW, friction=None, cell=Non
         slips = slips_held(law, window, cell[2])
         friction = friction or friction_at(problem, window, (slips[0] - 4e-3, slips[1] + 1e-3))
         choice = Choice(Fraction(1, 2), 0, Fraction(settled))
-        return loop_of(problem, law, cell, window, (friction,) * HALVES, choice, EXACT)
+        return loop_of(problem, law, cell, window, everywhere(friction), choice, EXACT)
 
 
 def loop_numbers(problem, law, *, told=None, settled=0.0):

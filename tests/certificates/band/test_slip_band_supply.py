@@ -12,7 +12,7 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import certificate_of, problem_of, refused, told_of
+from tests.certificates.band.conftest import certificate_of, everywhere, problem_of, refused, told_of
 from tests.certificates.band.test_slip_band import ROOM, SUPPLY, Q
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
@@ -21,7 +21,7 @@ from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, cor
 from wspd_design.certificates.theorems.band import CELLS, contact_held
 from wspd_design.certificates.theorems.slip_band import checker
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
-from wspd_design.certificates.theorems.slip_band.friction import FADINGS, HALVES, SLOPES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import FADINGS, SLOPES, Friction
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import read
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
@@ -40,7 +40,7 @@ def loop_with(problem, room, pulse):
             law_of(problem.controller),
             box_of(problem, Fraction(0)),
             windows_of(problem)[0],
-            (friction,) * HALVES,
+            everywhere(friction),
             Choice(pulse, 0, Fraction(0), room),
             Conditions(SUPPLIED, DELAY, Fraction(0)),
         )

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
+from itertools import product
 from math import inf
 
 import pytest
@@ -12,6 +14,7 @@ from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.finding import Finding, Stated
 from wspd_design.certificates.outside import OutsideModel
 from wspd_design.certificates.records import Status
+from wspd_design.certificates.setting.creep_slope import STEEPNESS, steepness_of
 from wspd_design.certificates.theorems import band
 from wspd_design.certificates.theorems.band import (
     CELLS,
@@ -29,7 +32,7 @@ from wspd_design.certificates.theorems.band import (
     proved_friction,
 )
 from wspd_design.certificates.theorems.slip_band.attempt import Attempt, effort_of
-from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, parts_of
 from wspd_design.certificates.theorems.slip_band.statement import windows_of
 from wspd_design.controllers.references import FallingSlip
 
@@ -42,14 +45,14 @@ def problem():
     return problem_of(0.5, speeds=SLOW)
 
 
-def ends_of(name, half, k):
+def ends_of(name, part, k):
     """Proved bounds, each of them another one."""
-    low = 1.0 + NAMES.index(name) + 20.0 * half + 50.0 * k
+    low = 1.0 + NAMES.index(name) + 20.0 * part + 100.0 * k
     return low, low + 0.5
 
 
 def keys():
-    return [(name, half, k) for name in NAMES for half in range(HALVES) for k in range(WINDOWS)]
+    return [(name, part, k) for name in NAMES for part in range(PARTS) for k in range(WINDOWS)]
 
 
 @pytest.fixture(scope="module")
@@ -67,14 +70,21 @@ def friction(problem):
     return found
 
 
+@cache
+def steepness_parts():
+    return parts_of(steepness_of(contact_held(problem_of(0.5, speeds=SLOW))))
+
+
 def numbers_of(**changed):
     """What the checker tells of ellipsoids that were made for just these bounds."""
     numbers = {"share": 1.0, "cells": 1.0, "delay": 0.0, "noise": 0.0, "reserve": 1.0}
     for k, (below, above) in BANDS.items():
         numbers |= {f"supply {k}": 0.5 + 0.1 * k, f"band {k} below": below, f"band {k} above": above}
-    for name, half, k in keys():
-        low, high = ends_of(name, half, k)
-        numbers |= {f"{name} {half} {k} low": low, f"{name} {half} {k} high": high}
+    for name, part, k in keys():
+        low, high = ends_of(name, part, k)
+        numbers |= {f"{name} {part} {k} low": low, f"{name} {part} {k} high": high}
+    for (part, (low, high)), k in product(enumerate(steepness_parts()), range(WINDOWS)):
+        numbers |= {f"{STEEPNESS} {part} {k} low": low, f"{STEEPNESS} {part} {k} high": high}
     return numbers | changed
 
 
@@ -100,11 +110,11 @@ def test_ellipsoids_for_the_proved_friction_count(problem, findings):
 
 @pytest.mark.parametrize("end", ["low", "high"])
 def test_ellipsoids_for_less_friction_than_is_proved_do_not_count(problem, findings, end):
-    """For each bound alone, in each half and window: a bit more is in order, a bit less is not."""
-    for name, half, k in keys():
-        number = f"{name} {half} {k} {end}"
+    """For each bound alone, in each part and window: a bit more is in order, a bit less is not."""
+    for name, part, k in keys():
+        number = f"{name} {part} {k} {end}"
         outward = {"low": -1e-9, "high": 1e-9}[end]
-        at = dict(zip(("low", "high"), ends_of(name, half, k), strict=True))[end]
+        at = dict(zip(("low", "high"), ends_of(name, part, k), strict=True))[end]
         wider, narrower = (shown(numbers_of(**{number: at + sign * outward})) for sign in (1.0, -1.0))
         assert covered(problem, findings | {CELLS: wider}, CELLS) is wider
         assert covered(problem, findings | {CELLS: narrower}, CELLS).status is Status.UNDECIDED
@@ -113,6 +123,18 @@ def test_ellipsoids_for_less_friction_than_is_proved_do_not_count(problem, findi
         told = SLIP_BAND.tell(problem, findings | {place: narrower})
         assert told.status is Status.UNDECIDED
         assert "% of each range" not in told.explanation
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_ellipsoids_for_more_steepness_than_bounds_were_proved_for_do_not_count(problem, findings, end):
+    """In each part and window: a range that is a bit narrower is in order, a wider one is not."""
+    for part, k in product(range(PARTS), range(WINDOWS)):
+        at = steepness_parts()[part][end == "high"]
+        inward = {"low": 1e-9, "high": -1e-9}[end] * at
+        number = f"{STEEPNESS} {part} {k} {end}"
+        narrower, wider = (shown(numbers_of(**{number: at + sign * inward})) for sign in (1.0, -1.0))
+        assert covered(problem, findings | {CELLS: narrower}, CELLS) is narrower
+        assert covered(problem, findings | {CELLS: wider}, CELLS).status is Status.UNDECIDED
 
 
 def test_ellipsoids_count_only_where_all_of_the_friction_is_proved(problem, findings):

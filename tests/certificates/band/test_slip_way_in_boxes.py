@@ -9,7 +9,7 @@ import pytest
 
 import wspd_design as wd
 from tests.certificates.band.conftest import problem_of
-from tests.certificates.band.test_slip_band_read import an_ellipsoid, halves
+from tests.certificates.band.test_slip_band_read import an_ellipsoid, parts
 from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
@@ -232,7 +232,7 @@ def test_what_a_band_asks_for_is_that_of_its_fastest_window(problem, monkeypatch
             "delay": Fraction(0),
             "noise": Fraction(0),
             "reserve": Fraction(1),
-            "friction": tuple(halves(k) for k in range(count)),
+            "friction": tuple(parts(k) for k in range(count)),
             "steps": ".",
             "cells": (tuple(ellipsoids),),
         }

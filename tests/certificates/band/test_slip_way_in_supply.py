@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.test_slip_band_read import an_ellipsoid
 from wspd_design.certificates.kernel.checker import Refused
-from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, Friction
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, Friction, Part
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import windows_of
 from wspd_design.certificates.theorems.slip_band.way_in import _supply_rises, around
@@ -31,11 +31,11 @@ def problem():
     return around(replace(whole, vehicle=vehicle, bounds=Bounds.of(ends), speeds=(10.0, 33.0)))
 
 
-def friction_of(k, half):
-    """Bounds that differ in each window and half; the slope of one strip is the steepest, on either side of 0."""
+def friction_of(k, part):
+    """Bounds that differ in each window and part; the slope of one strip is the steepest, on either side of 0."""
     slopes = [(-0.01, 0.01)] * 6
-    slopes[2 + half] = (-0.15 + 0.01 * k, 0.02) if half else (-0.01, 0.1)
-    level = 0.2 + 0.02 * k + 0.03 * half
+    slopes[2 + part] = (-0.15 + 0.01 * k, 0.02) if part == 1 else (-0.01, 0.1)
+    level = 0.2 + 0.02 * k + 0.01 * part
     bounds = (*slopes, (level - 0.1, level), *[(-0.1, -0.09)] * 3)
     assert len(bounds) == len(NAMES)
     return Friction.of(bounds)
@@ -44,7 +44,7 @@ def friction_of(k, half):
 def most_used(k):
     """Friction over mu0 Q that a wheel has at most in a window, at the farthest error."""
     steepest = max(0.15 - 0.01 * k, 0.1)
-    return 0.2 + 0.02 * k + 0.03 + steepest * FARTHEST * 10.0
+    return 0.2 + 0.02 * k + 0.01 * (PARTS - 1) + steepest * FARTHEST * 10.0
 
 
 def proof_of(problem, supplies):
@@ -56,7 +56,8 @@ def proof_of(problem, supplies):
             noise=Fraction(0),
             reserve=Fraction(1),
             friction=tuple(
-                tuple(friction_of(k, half) for half in range(HALVES)) for k in range(len(windows_of(problem)))
+                tuple(Part((1.0 + part, 2.0 + part), friction_of(k, part)) for part in range(PARTS))
+                for k in range(len(windows_of(problem)))
             ),
             steps=".",
             cells=(tuple(replace(one, supply=Fraction(each), near=0) for each in supplies),),

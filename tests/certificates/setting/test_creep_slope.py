@@ -46,3 +46,58 @@ def test_known_plant_has_the_slope_of_the_kernel(make_problem, make_controller):
     expected = float(at.pole[0] - at.deceleration[0] / 10.0)
     assert low <= expected <= high
     assert high - low < 1e-4
+
+
+# --- parts of the steepness ----------------------------------------------------------------------------------
+
+
+def part_of(problem, **numbers):
+    """Steepness of a wheel with other numbers."""
+    low, high = creep_slope.steepness_of(
+        replace(problem, bounds=problem.bounds | {name: (x, x) for name, x in numbers.items()})
+    )
+    assert high / low - 1.0 < 1e-12
+    return low
+
+
+@pytest.fixture
+def wet(make_problem, make_controller):
+    problem = make_problem(make_controller("torque-feedback"), speeds=(5.0, 5.0))
+    kept = {name: ends for name, ends in problem.bounds.items() if name in ("mass", "mu0")}
+    return replace(problem, bounds=type(problem.bounds).of(kept))
+
+
+@pytest.mark.parametrize("grows", [True, False])
+def test_steepness_is_largest_for_the_lightest_wheel_with_the_least_friction(wet, grows):
+    problem = replace(wet, contact_grows_with_load=grows)
+    (light, heavy), (poor, good) = problem.span("mass"), problem.span("mu0")
+    low, high = creep_slope.steepness_of(problem)
+    assert low == pytest.approx(part_of(problem, mass=heavy, mu0=good), rel=1e-12)
+    assert high == pytest.approx(part_of(problem, mass=light, mu0=poor), rel=1e-12)
+    power = 1.0 / 3.0 if grows else 1.0
+    assert high / low == pytest.approx(good / poor * (heavy / light) ** power, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "claimed", [creep_slope.slope_claim, creep_slope.level_claim, creep_slope.fading_claim]
+)
+def test_wheels_of_one_steepness_have_one_friction(wet, claimed):
+    """What is proved in a part holds for any mass and mu0 with a steepness in it, and for no other one."""
+    (light, heavy), (poor, good) = wet.span("mass"), wet.span("mu0")
+    power = 1.0 / 3.0
+    same = poor * (heavy / light) ** power  # of the light wheel, as steep as the heavy one on the poor rail
+    steepness = part_of(wet, mass=heavy, mu0=poor)
+    assert part_of(wet, mass=light, mu0=same) == pytest.approx(steepness, rel=1e-9)
+
+    def value(problem, **part):
+        return extreme(claimed(problem, (0.14, 0.14), "<=", Fraction(0), **part), tolerance=1e-9).high
+
+    def alone(mass, mu0):
+        return replace(wet, bounds=wet.bounds | {"mass": (mass, mass), "mu0": (mu0, mu0)})
+
+    found = value(wet, steepness=(steepness, steepness))
+    assert value(alone(heavy, poor)) == pytest.approx(found, abs=1e-8)
+    assert value(alone(light, same)) == pytest.approx(found, abs=1e-8)
+    assert abs(value(alone(light, good)) - found) > 1e-4
+    whole = creep_slope.steepness_of(wet)
+    assert value(wet, steepness=whole) == pytest.approx(value(wet), abs=1e-7)

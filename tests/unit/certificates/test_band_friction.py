@@ -14,14 +14,15 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.theorems.slip_band import friction
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
-    HALVES,
+    PARTS,
     REACHES,
     SLOPES,
     Friction,
+    Part,
     bounds_for,
     fading_at,
-    halves_of,
     mean_slope,
+    parts_of,
     reached,
     slope_at,
     strip_of,
@@ -239,41 +240,74 @@ def test_names_tell_bounds_in_the_order_of_a_proof(curve):
     assert strip_of("fading 3") == FADINGS[2]
 
 
-# --- halves of mu0 ------------------------------------------------------------------------------------------
-WHOLE = Fraction("0.08"), Fraction("0.16")
-MIDDLE = Fraction("0.12")
+# --- parts of the steepness ---------------------------------------------------------------------------------
+WHOLE = 1.0 / 0.16, 1.0 / 0.08
+"""Steepness of wheels that differ in mu0 alone, over that of one with mu0 = 1."""
 
 
 @pytest.fixture(scope="module")
-def halves():
-    """Bounds at the ends of either half."""
-    return tuple(bounds(*((float(mu0), SPEED) for mu0 in each)) for each in halves_of(*WHOLE))
+def parts():
+    """Bounds at the ends of each part."""
+    return tuple(
+        Part(each, bounds(*((1.0 / steepness, SPEED) for steepness in each))) for each in parts_of(WHOLE)
+    )
 
 
-def test_range_of_mu0_is_divided_in_its_middle():
-    assert halves_of(*WHOLE) == ((WHOLE[0], MIDDLE), (MIDDLE, WHOLE[1]))
-    assert len(halves_of(*WHOLE)) == HALVES
+def test_parts_are_as_wide_as_each_other_and_leave_nothing_out():
+    found = parts_of(WHOLE)
+    assert len(found) == PARTS
+    assert (found[0][0], found[-1][1]) == WHOLE
+    assert all(one[1] == other[0] for one, other in pairwise(found))
+    assert np.allclose(np.diff(found), (WHOLE[1] - WHOLE[0]) / PARTS)
 
 
-@pytest.mark.parametrize(
-    ("part", "half"), [(("0.08", "0.11"), 0), (("0.13", "0.16"), 1), (("0.15", "0.15"), 1)]
-)
-def test_cell_in_a_half_of_mu0_has_the_bounds_of_that_half(halves, part, half):
-    assert bounds_for(halves, WHOLE, tuple(map(Fraction, part))) == halves[half]
+def within(parts, first, last):
+    """A range from the middle of one part to that of another."""
+    return tuple(0.5 * sum(parts[k].steepness) for k in (first, last))
 
 
-@pytest.mark.parametrize("part", [("0.08", "0.16"), ("0.119", "0.121"), ("0.12", "0.12"), ("0.12", "0.16")])
-def test_cell_on_both_sides_of_the_middle_has_the_bounds_of_both_halves(halves, part):
-    found = bounds_for(halves, WHOLE, tuple(map(Fraction, part)))
+@pytest.mark.parametrize("part", range(PARTS))
+def test_cell_in_a_part_has_the_bounds_of_that_part(parts, part):
+    assert bounds_for(parts, within(parts, part, part)) == parts[part].friction
+
+
+@pytest.mark.parametrize(("first", "last"), [(0, 1), (1, 3), (0, PARTS - 1)])
+def test_cell_in_several_parts_has_the_bounds_of_all_of_them(parts, first, last):
+    found = bounds_for(parts, within(parts, first, last))
     for name, (low, high) in found.named.items():
-        ends = [each.named[name] for each in halves]
+        ends = [each.friction.named[name] for each in parts[first : last + 1]]
         assert (low, high) == (min(low for low, _ in ends), max(high for _, high in ends))
 
 
-def test_bounds_of_the_lower_half_do_not_hold_in_the_upper_one(halves):
-    """Level and slopes over mu0 Q change with mu0: a cell of the upper half is not one of the lower."""
+def test_cell_where_two_parts_meet_has_the_bounds_of_both(parts):
+    edge = parts[0].steepness[1]
+    assert bounds_for(parts, (edge, edge)) == bounds_for(parts, within(parts, 0, 1))
+
+
+def test_parts_that_leave_out_some_of_a_cell_are_refused(parts):
+    first, second, third, last = parts
+    whole = tuple(0.5 * sum(each.steepness) for each in (first, last))
+    for wrong, steepness in (
+        (parts, (0.99 * WHOLE[0], whole[1])),
+        (parts, (whole[0], 1.01 * WHOLE[1])),
+        (parts, (1.1 * WHOLE[1], 1.2 * WHOLE[1])),
+        ((first, third, last), whole),
+        ((first, third, second, last), whole),
+        ((second, first, third, last), whole),
+        ((), whole),
+    ):
+        with pytest.raises(Refused, match="leave out some of a cell"):
+            bounds_for(wrong, steepness)
+    assert bounds_for((first, third, last), within(parts, 2, 3)) == bounds_for(parts, within(parts, 2, 3))
+
+
+def test_bounds_of_one_part_do_not_hold_in_another(parts):
+    """Level and slopes over mu0 Q change with the steepness: bounds that are exchanged are wrong."""
     mu0 = 0.15
-    upper, lower = (bounds_for(each, WHOLE, (Fraction(mu0),) * 2) for each in (halves, halves[::-1]))
+    exchanged = tuple(
+        Part(one.steepness, other.friction) for one, other in zip(parts, parts[::-1], strict=True)
+    )
+    right, wrong = (bounds_for(each, (1.0 / mu0, 1.0 / mu0)) for each in (parts, exchanged))
 
     def holds(found):
         low, high = found.level
@@ -281,5 +315,5 @@ def test_bounds_of_the_lower_half_do_not_hold_in_the_upper_one(halves):
         mean = mean_slope(found, point(Fraction(0)), 0)
         return low <= level_at(0.0, mu0) <= high, all(inside(each, mean) for each in secants)
 
-    assert holds(upper) == (True, True)
-    assert holds(lower)[0] is False
+    assert holds(right) == (True, True)
+    assert holds(wrong)[0] is False

@@ -58,8 +58,26 @@ HELD = ("friction ratio", "friction decay")
 """What q depends on and the claims hold: with their ranges too a proof would take some 50 000 boxes."""
 
 
-def slope_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
-    """Claim that -S stays on one side of a bound [s/m], for all slips of a range and all numbers of the domain."""
+def steepness_of(problem: Problem) -> Ends:
+    """Range of the steepness over the slip, as the shear modulus that stands for it [Pa]."""
+    from flint import ctx
+
+    with ctx.workprec(BITS):
+        return _doubles(_steepness(problem))
+
+
+def slope_claim(
+    problem: Problem,
+    slips: Ends,
+    relation: Relation,
+    bound: Fraction,
+    *,
+    steepness: Ends | None = None,
+) -> Claim:
+    """Claim that -S stays on one side of a bound [s/m], for all slips of a range and all numbers of the domain.
+
+    With a range of :func:`steepness_of`, for those numbers whose steepness lies in it.
+    """
 
     def expression(x: Values) -> Number:
         return slip_dynamics(*_normal(problem, x), 1.0, x[SLIDING], deceleration=0.0).pole
@@ -68,10 +86,17 @@ def slope_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fracti
         return forces(*_normal(problem, x), 1.0, x[SLIDING], deceleration=0.0).pole
 
     name = "slope of the creep force over mu0 Q v, falling"
-    return _claim(problem, slips, name, expression, relation, bound, "s/m", form=arranged)
+    return _claim(problem, slips, name, expression, relation, bound, "s/m", steepness, form=arranged)
 
 
-def level_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
+def level_claim(
+    problem: Problem,
+    slips: Ends,
+    relation: Relation,
+    bound: Fraction,
+    *,
+    steepness: Ends | None = None,
+) -> Claim:
     """Claim that the creep force over mu0 Q stays on one side of a bound [-]; the rest as in :func:`slope_claim`."""
 
     def expression(x: Values) -> Number:
@@ -79,10 +104,17 @@ def level_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fracti
         force = slip_dynamics(vehicle, rail, 1.0, x[SLIDING], deceleration=0.0).creep_force
         return force / static_wheel_load(vehicle)
 
-    return _claim(problem, slips, "creep force over mu0 Q", expression, relation, bound, "-")
+    return _claim(problem, slips, "creep force over mu0 Q", expression, relation, bound, "-", steepness)
 
 
-def fading_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
+def fading_claim(
+    problem: Problem,
+    slips: Ends,
+    relation: Relation,
+    bound: Fraction,
+    *,
+    steepness: Ends | None = None,
+) -> Claim:
     """Claim a bound on how the creep force over mu0 Q changes with the sliding speed at a fixed slip [s/m]."""
 
     def expression(x: Values) -> Number:
@@ -94,7 +126,7 @@ def fading_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fract
         return creep_force_speed_derivative(1.0, x[SLIDING], load, *friction, *reductions, stiffness) / load
 
     name = "change of the creep force over mu0 Q with the sliding speed"
-    return _claim(problem, slips, name, expression, relation, bound, "s/m")
+    return _claim(problem, slips, name, expression, relation, bound, "s/m", steepness)
 
 
 @lru_cache(maxsize=1000)
@@ -113,7 +145,7 @@ def bend(problem: Problem, slip: float, beside: Ends) -> Ends:
             for parts in product(
                 _parts(_span(problem, "speed")),
                 _parts(_wide(beside)),
-                _parts(_steepness(problem, (1.0, 1.0))),
+                _parts(_steepness(problem)),
             )
         ]
         return min(map(below, found)), max(map(above, found))
@@ -131,7 +163,7 @@ def fading_beside(problem: Problem, slip: float, beside: Ends) -> Ends:
         ratio = _quotient(problem, *REDUCTIONS)
         found = []
         for at, steepness in product(
-            _parts(_span(problem, "speed"), FINER[0]), _parts(_steepness(problem, (1.0, 1.0)), FINER[1])
+            _parts(_span(problem, "speed"), FINER[0]), _parts(_steepness(problem), FINER[1])
         ):
             own, other = (
                 _force_along(problem, slip, (at, less, steepness, ratio[0].union(ratio[1])))[1]
@@ -186,14 +218,16 @@ def _claim(
     relation: Relation,
     bound: Fraction,
     unit: str,
+    steepness: Ends | None,
     *,
     form: Expression | None = None,
 ) -> Claim:
     """Claim a bound about the normal wheel."""
+    modulus = _steepness(problem) if steepness is None else _wide(steepness)
     return Claim(
         name=name,
         variables=(
-            variable(STEEPNESS, _doubles(_steepness(problem, slips)), "Pa"),
+            variable(STEEPNESS, _doubles(mul(_wide(slips), modulus)), "Pa"),
             variable(RATIO, _doubles(_quotient(problem, *REDUCTIONS)), "-"),
             *(variable(held, problem.nominal(held), QUANTITIES[held].unit) for held in HELD),
             variable(NORMAL_MASS, 1.0, "kg"),
@@ -248,11 +282,11 @@ def _normal(problem: Problem, x: Values) -> tuple[Vehicle, Rail]:
     return normal, rail
 
 
-def _steepness(problem: Problem, slips: Ends) -> Balls:
-    """Range of the shear modulus that gives the normal wheel the steepness z = kA C slip / mu0."""
+def _steepness(problem: Problem) -> Balls:
+    """Range of the shear modulus that gives the normal wheel at slip 1 the steepness z = kA C slip / mu0."""
     share, power_of_load = _gravity(problem), Fraction(EXPONENT)
     load, reference = mul(_span(problem, "mass"), share), _span(problem, "reference load")
-    found = mul(_wide(slips), share)
+    found = share
     for name in ("shear modulus", "semi axis rolling", "semi axis lateral", "kalker c11"):
         found = mul(found, _span(problem, name))
     if problem.contact_grows_with_load:

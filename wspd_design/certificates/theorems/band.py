@@ -10,7 +10,6 @@ from fractions import Fraction
 from functools import partial
 from itertools import product
 
-from wspd_design.certificates.kernel.arb import above, below, point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.kernel.claim import Claim, Relation
 from wspd_design.certificates.kernel.finding import Finding, Place
@@ -32,15 +31,14 @@ from wspd_design.certificates.theorems.slip_band.departure import (
     holding_share,
     place_ranges,
 )
+from wspd_design.certificates.theorems.slip_band.friction import NAMES as BOUNDS
 from wspd_design.certificates.theorems.slip_band.friction import (
-    FRICTION,
-    HALVES,
     Friction,
-    Halves,
-    halves_of,
+    Part,
+    Parts,
+    parts_of,
     strip_of,
 )
-from wspd_design.certificates.theorems.slip_band.friction import NAMES as BOUNDS
 from wspd_design.certificates.theorems.slip_band.reference import (
     reference_text,
     slip_at,
@@ -59,7 +57,7 @@ from wspd_design.controllers.observer_form import TorqueObserver
 from wspd_design.controllers.protection import Protection
 from wspd_design.controllers.references import FallingSlip
 from wspd_design.model.slip import slip_dynamics
-from wspd_design.parameters.bounds import Bounds, Ends
+from wspd_design.parameters.bounds import Ends
 from wspd_design.parameters.units import KMH
 
 CELLS = "ellipsoids"
@@ -69,7 +67,7 @@ NOISY = "ellipsoids with noise"
 DEPARTURE = "start at the reference"
 VARIED = (*NAMES, "resistance constant", "resistance linear", "resistance quadratic")
 DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
-BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
+BOUNDED: dict[str, Callable[..., Claim]] = {
     "slope": creep_slope.slope_claim,
     "level": creep_slope.level_claim,
     "fading": creep_slope.fading_claim,
@@ -82,48 +80,48 @@ DISTURBED = {
 }
 
 
-def key(name: str, half: int, window: int, relation: Relation) -> str:
-    """Name of the obligation to bound a property of the friction for a half of mu0, in a window; the slowest is 1."""
+def key(name: str, part: int, window: int, relation: Relation) -> str:
+    """Name of the obligation to bound a property of the friction in a part of the steepness, in a window, from 1 on."""
     side = "from" if relation == ">=" else "to"
-    return f"{name} {side}, {('lower', 'upper')[half]} half of mu0, window {window + 1}"
+    return f"{name} {side}, part {part + 1} of the steepness, window {window + 1}"
 
 
 def claims(problem: Problem) -> dict[str, Claim]:
     """Claims about the friction; whatever bound is proved counts."""
     found = {}
     law, radius = law_of(problem.controller), _radii(problem)
-    for (k, window), (half, ends) in product(enumerate(windows_of(problem)), enumerate(_halves(problem))):
+    for (k, window), (part, ends) in product(enumerate(windows_of(problem)), enumerate(_parts(problem))):
         there = replace(contact_held(problem), speeds=window)
-        there = replace(there, bounds=Bounds.of({**dict(there.bounds.items()), FRICTION: ends}))
         held = slips_held(law, window, radius)
         for name in BOUNDS:
             strip, claim = strip_of(name), BOUNDED[name.split()[0]]
             slips = held if strip is None else slips_beside(law, window, radius, problem.speeds[0], strip)
             for relation in DIRECTIONS:
-                found[key(name, half, k, relation)] = claim(there, slips, relation, Fraction(0))
+                found[key(name, part, k, relation)] = claim(
+                    there, slips, relation, Fraction(0), steepness=ends
+                )
     return found
 
 
-def _halves(problem: Problem) -> tuple[Ends, ...]:
-    """Ranges of mu0 that hold its halves."""
-    low, high = map(Fraction, problem.span(FRICTION))
-    return tuple((below(point(one)), above(point(other))) for one, other in halves_of(low, high))
+def _parts(problem: Problem) -> tuple[Ends, ...]:
+    """Parts of the range of the steepness."""
+    return parts_of(creep_slope.steepness_of(contact_held(problem)))
 
 
-def proved_friction(problem: Problem, findings: Findings) -> tuple[Halves, ...] | None:
+def proved_friction(problem: Problem, findings: Findings) -> tuple[Parts, ...] | None:
     """Proved bounds of the friction for each window, or none if one is open."""
     found = []
     for k in range(len(windows_of(problem))):
-        halves = []
-        for half in range(HALVES):
+        parts = []
+        for part, steepness in enumerate(_parts(problem)):
             ends = tuple(
-                (findings[key(name, half, k, ">=")].low, findings[key(name, half, k, "<=")].high)
+                (findings[key(name, part, k, ">=")].low, findings[key(name, part, k, "<=")].high)
                 for name in BOUNDS
             )
             if not all(math.isfinite(end) for each in ends for end in each):
                 return None
-            halves.append(Friction.of(ends))
-        found.append(tuple(halves))
+            parts.append(Part(steepness, Friction.of(ends)))
+        found.append(tuple(parts))
     return tuple(found)
 
 
@@ -229,17 +227,26 @@ def _obligations(problem: Problem) -> tuple[Obligation, ...]:
 
 
 def covered(problem: Problem, findings: Findings, name: str) -> Finding:
-    """Return a finding on ellipsoids; it counts only for friction within the bounds that it was made for."""
+    """Return a finding on ellipsoids; it counts only for friction within the bounds of its parts."""
     found, proved = findings[name], proved_friction(problem, findings)
     if found.status is not Status.PROVED:
         return found
+
+    def stated(name: str, part: int, window: int) -> Ends:
+        low, high = (found.numbers[f"{name} {part} {window} {end}"] for end in ("low", "high"))
+        return low, high
+
     within = proved is not None and all(
-        found.numbers[f"{name} {half} {k} low"] <= low and high <= found.numbers[f"{name} {half} {k} high"]
-        for k, halves in enumerate(proved)
-        for half, friction in enumerate(halves)
-        for name, (low, high) in friction.named.items()
+        _lies_in(stated(creep_slope.STEEPNESS, part, k), each.steepness)
+        and all(_lies_in(ends, stated(name, part, k)) for name, ends in each.friction.named.items())
+        for k, parts in enumerate(proved)
+        for part, each in enumerate(parts)
     )
     return found if within else Finding(status=Status.UNDECIDED, asked=found.asked)
+
+
+def _lies_in(inner: Ends, outer: Ends) -> bool:
+    return outer[0] <= inner[0] and inner[1] <= outer[1]
 
 
 def _tell(problem: Problem, findings: Findings) -> Certificate:

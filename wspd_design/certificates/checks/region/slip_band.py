@@ -33,7 +33,7 @@ from wspd_design.certificates.theorems.band import (
 )
 from wspd_design.certificates.theorems.slip_band.attempt import effort_of
 from wspd_design.certificates.theorems.slip_band.departure import corners, lock, missing_torque
-from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, Halves
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, Parts
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.controllers.protection import Protection
@@ -73,12 +73,12 @@ def search(problem: Problem) -> Mapping[str, Stated]:
 
 def bounded_friction(
     problem: Problem, obligations: Sequence[Obligation]
-) -> tuple[dict[str, Stated], tuple[Halves, ...] | None]:
+) -> tuple[dict[str, Stated], tuple[Parts, ...] | None]:
     """Bound the friction in each window; none if one is open."""
     wanted = {each.key: each for each in obligations}
     stated = {}
-    for k, half, name, relation in product(range(len(windows_of(problem))), range(HALVES), NAMES, DIRECTIONS):
-        obligation = wanted[key(name, half, k, relation)]
+    for k, part, name, relation in product(range(len(windows_of(problem))), range(PARTS), NAMES, DIRECTIONS):
+        obligation = wanted[key(name, part, k, relation)]
         assert isinstance(obligation, Inequality)
         stated[obligation.key] = enclose(obligation.claim, tolerance=TOLERANCES[name.split()[0]])
     found = {name: finding(wanted[name], each) for name, each in stated.items()}

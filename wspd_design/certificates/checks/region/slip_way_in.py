@@ -13,7 +13,7 @@ from wspd_design.certificates.search.budget import budget
 from wspd_design.certificates.search.slip_band.chain import Sought
 from wspd_design.certificates.search.slip_band.search import alone, exactly
 from wspd_design.certificates.search.slip_band.way_in import SHARES, plan, powers_of
-from wspd_design.certificates.theorems.slip_band.friction import Halves
+from wspd_design.certificates.theorems.slip_band.friction import Parts
 from wspd_design.certificates.theorems.slip_band.proof import write as write_band
 from wspd_design.certificates.theorems.slip_band.statement import law_of
 from wspd_design.certificates.theorems.slip_band.way_in import around, asked_of, write
@@ -45,7 +45,7 @@ def search(problem: Problem) -> Mapping[str, Stated]:
     return stated | {STRIPS: Stated(effort=Effort(undecided=1.0, cut=True))}
 
 
-def _band(problem: Problem, law: Protection, friction: tuple[Halves, ...]) -> dict[str, Any] | None:
+def _band(problem: Problem, law: Protection, friction: tuple[Parts, ...]) -> dict[str, Any] | None:
     """Find a band in one cell, which is the whole box around the nominal numbers."""
     numbers = law_of(law)
     exact = exactly(problem, numbers)

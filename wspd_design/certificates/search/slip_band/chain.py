@@ -9,7 +9,7 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, ellipsoid, excess
 from wspd_design.certificates.search.slip_band.task import settling
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, lies_in
-from wspd_design.certificates.theorems.slip_band.friction import Halves
+from wspd_design.certificates.theorems.slip_band.friction import Parts
 from wspd_design.certificates.theorems.slip_band.loop import ROOM, Choice, Conditions, Loop, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
@@ -52,7 +52,7 @@ class Sought:
 
     problem: Problem
     law: BandLaw
-    friction: tuple[Halves, ...]  # proved bounds for each window
+    friction: tuple[Parts, ...]  # proved bounds for each window
     conditions: Conditions
 
     @property

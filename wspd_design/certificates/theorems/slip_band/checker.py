@@ -24,9 +24,10 @@ from typing import Any, NamedTuple
 from wspd_design.certificates.kernel.arb import Ball, above, least_of, most_of, point
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
+from wspd_design.certificates.setting.creep_slope import STEEPNESS
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, Pair, corners, wanted
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
-from wspd_design.certificates.theorems.slip_band.friction import Halves
+from wspd_design.certificates.theorems.slip_band.friction import Parts
 from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
@@ -127,10 +128,10 @@ def _check(problem: Problem, controller: Law, proof: Mapping[str, Any], work: Wo
             for side, largest in zip(("below", "above"), (band[1], -band[0]), strict=True)
         },
         **{
-            f"{name} {half} {k} {end}": value
-            for k, halves in enumerate(found.friction)
-            for half, each in enumerate(halves)
-            for name, ends in each.named.items()
+            f"{name} {part} {k} {end}": value
+            for k, parts in enumerate(found.friction)
+            for part, each in enumerate(parts)
+            for name, ends in ((STEEPNESS, each.steepness), *each.friction.named.items())
             for end, value in zip(("low", "high"), ends, strict=True)
         },
     }
@@ -157,7 +158,7 @@ def holds_more(
     law: BandLaw,
     cell: Cell,
     window: tuple[float, float],
-    friction: Halves,
+    friction: Parts,
     reserve: Fraction,
 ) -> bool:
     """Whether holding the reference takes more than a share of the full pressure, everywhere in cell and window."""

@@ -2,8 +2,10 @@
 
 A wheel that turns faster than the reference by an error e has a sliding speed that is e R less, at every train speed.
 Errors are therefore divided into strips by e R over the lowest speed of the range, and the friction of a window is
-bounded in each of them, for either half of mu0. Between two errors it changes by the mean slope of the strips in
-between.
+bounded in each of them. Between two errors it changes by the mean slope of the strips in between.
+
+Beside speed and slip the force over mu0 Q depends on the steepness alone, on which mass and mu0 act. Its range is
+divided into parts, and the friction is bounded in each of them.
 """
 
 from collections.abc import Sequence
@@ -51,29 +53,39 @@ class Friction(NamedTuple):
 
 
 FRICTION = "mu0"
-HALVES = 2  # of the range of mu0, for which the friction is bounded alone
-
-Halves: TypeAlias = tuple[Friction, ...]
+PARTS = 4  # of the range of the steepness, in each of which the friction is bounded
 
 
-def halves_of(low: Fraction, high: Fraction) -> tuple[Strip, ...]:
-    """Divide the range of mu0."""
-    middle = (low + high) / 2
-    return (low, middle), (middle, high)
+class Part(NamedTuple):
+    """A range of the steepness over the slip, and bounds of the friction of all wheels whose steepness lies in it."""
+
+    steepness: Ends  # as the modulus that stands for it [Pa]
+    friction: Friction
 
 
-def bounds_for(friction: Halves, whole: Strip, part: Strip) -> Friction:
-    """Return bounds for a part of the range of mu0."""
-    used = [
-        list(each.named.values())
-        for each, (low, high) in zip(friction, halves_of(*whole), strict=True)
-        if part[0] <= high and low <= part[1]
-    ]
-    return Friction.of(
-        tuple(
-            (min(low for low, _ in ends), max(high for _, high in ends)) for ends in zip(*used, strict=True)
-        )
-    )
+Parts: TypeAlias = tuple[Part, ...]
+
+
+def parts_of(steepness: Ends) -> tuple[Ends, ...]:
+    """Divide the range of the steepness."""
+    low, high = steepness
+    edges = (low, *(low + (high - low) * k / PARTS for k in range(1, PARTS)), high)
+    return tuple(pairwise(edges))
+
+
+def bounds_for(parts: Parts, steepness: Ends) -> Friction:
+    """Return bounds for any steepness of a range, or refuse parts that leave some of it out."""
+    low, high = steepness
+    used = [each for each in parts if low <= each.steepness[1] and each.steepness[0] <= high]
+    if (
+        not used
+        or used[0].steepness[0] > low
+        or used[-1].steepness[1] < high
+        or any(one.steepness[1] < other.steepness[0] for one, other in pairwise(used))
+    ):
+        raise Refused("the parts of the steepness leave out some of a cell")
+    every = zip(*(each.friction.named.values() for each in used), strict=True)
+    return Friction.of(tuple((min(low for low, _ in ends), max(high for _, high in ends)) for ends in every))
 
 
 NAMES = (

@@ -22,13 +22,12 @@ from wspd_design.certificates.kernel.arb import (
 )
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.creep_slope import bend, fading_beside
+from wspd_design.certificates.setting.creep_slope import bend, fading_beside, steepness_of
 from wspd_design.certificates.setting.declared_law import LEAST
 from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, Way, latest_share, wanted
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
-    FRICTION,
-    Halves,
+    Parts,
     Strip,
     bounds_for,
     fading_at,
@@ -128,13 +127,13 @@ def loop_of(
     law: BandLaw,
     cell: Cell,
     window: tuple[float, float],
-    bounds: Halves,
+    bounds: Parts,
     choice: Choice,
     conditions: Conditions,
 ) -> Loop:
     """Work out the loop of a cell in a window of speed, with bounds of the friction there."""
-    low, high = map(Fraction, problem.span(FRICTION))
-    friction = bounds_for(bounds, (low, high), cell[NAMES.index(FRICTION)])
+    inside = replace(problem, bounds=_bounds(problem, cell))
+    friction = bounds_for(bounds, steepness_of(inside))
     pulse = choice.pulse
     if pulse + conditions.delay > 1:
         raise Refused("a pulse may go on into the next sample")
@@ -216,7 +215,7 @@ def loop_of(
         mean_drift = drift * half_way
     else:
         less = apart * radius  # m/s, that the wheel slides slower
-        part = replace(problem, speeds=window, bounds=_bounds(problem, cell))
+        part = replace(inside, speeds=window)
         along = part, float(law.slip), (below(less), above(less))
         bent_force = bend(*along)
         # Of two enclosures the closer one takes longer.

@@ -8,9 +8,9 @@ from typing import Any, TypeAlias
 from wspd_design.certificates.kernel.checker import Refused, number
 from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
-from wspd_design.certificates.theorems.slip_band.friction import HALVES, NAMES, REACHES, Friction, Halves
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, REACHES, Friction, Part, Parts
 
-FORMAT = "wspd-slip-band/9"
+FORMAT = "wspd-slip-band/10"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -55,7 +55,7 @@ class Proof:
     delay: Fraction  # -, of the sample, until a pulse begins at the latest
     noise: Fraction  # m/s, by which measured speeds of rims and train differ from the true ones at most
     reserve: Fraction  # -, share of the full pressure beyond which nothing is claimed where holding takes more; 1: none
-    friction: tuple[Halves, ...]
+    friction: tuple[Parts, ...]
     steps: str
     cells: tuple[
         tuple[Ellipsoid | None, ...], ...
@@ -76,8 +76,13 @@ def write(found: Proof) -> dict[str, Any]:
         "noise": text(found.noise),
         "reserve": text(found.reserve),
         "friction": [
-            [text(Fraction(end)) for each in halves for ends in each.named.values() for end in ends]
-            for halves in found.friction
+            [
+                text(Fraction(end))
+                for each in parts
+                for ends in (each.steepness, *each.friction.named.values())
+                for end in ends
+            ]
+            for parts in found.friction
         ],
         "steps": found.steps,
         "ellipsoids": [_written(each) for each in ellipsoids],
@@ -150,7 +155,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
         noise=noise,
         reserve=reserve,
         friction=tuple(
-            _friction(_numbers(each, HALVES * 2 * len(NAMES))) for each in _list(proof["friction"], windows)
+            _parts(_numbers(each, PARTS * 2 * (1 + len(NAMES)))) for each in _list(proof["friction"], windows)
         ),
         steps=steps,
         cells=tuple(tuple(_one_of(known, each) for each in _list(cell, windows)) for cell in cells),
@@ -165,14 +170,15 @@ def _one_of(known: Sequence[Ellipsoid], place: object) -> Ellipsoid | None:
     return known[place]
 
 
-def _friction(numbers: Sequence[Fraction]) -> Halves:
+def _parts(numbers: Sequence[Fraction]) -> Parts:
     ends = [float(each) for each in numbers]
     if any(Fraction(end) != each for end, each in zip(ends, numbers, strict=True)):
-        raise Refused("a bound of the friction is not a double")
+        raise Refused("a bound of the friction or a range of the steepness is not a double")
     pairs = tuple(zip(ends[::2], ends[1::2], strict=True))
     if any(low > high for low, high in pairs):
-        raise Refused("a range of the friction is none")
-    return tuple(Friction.of(pairs[k : k + len(NAMES)]) for k in range(0, len(pairs), len(NAMES)))
+        raise Refused("a range of the friction or of the steepness is none")
+    count = 1 + len(NAMES)
+    return tuple(Part(pairs[k], Friction.of(pairs[k + 1 : k + count])) for k in range(0, len(pairs), count))
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:

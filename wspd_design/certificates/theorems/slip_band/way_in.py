@@ -255,10 +255,10 @@ def _supply_rises(problem: Problem, proof: Mapping[str, Any], supply: float, spe
     supplies = [each.supply for each in found.cells[0] if each is not None]
     lacking = 1.0 - supply
     for k in reversed(range(len(windows) - 1)):  # from the next slower window on
-        halves, (_, top) = found.friction[k + 1], windows[k]
-        steepest = max(abs(end) for each in halves for ends in each.slopes for end in ends)
+        parts, (_, top) = [each.friction for each in found.friction[k + 1]], windows[k]
+        steepest = max(abs(end) for each in parts for ends in each.slopes for end in ends)
         farthest = max(abs(end) for strip in SLOPES for end in strip)
-        used = max(each.level[1] for each in halves) + steepest * float(farthest) * problem.speeds[0]
+        used = max(each.level[1] for each in parts) + steepest * float(farthest) * problem.speeds[0]
         drag = float(resistance(vehicle, windows[k + 1][1])) / problem.span("mass")[0]
         loss = (constants().gravity * mu0 * used + drag) * (1.0 + OUTWARD)
         lacking *= exp(-slowest * max(speed - top, 0.0) / loss) * (1.0 + OUTWARD)
