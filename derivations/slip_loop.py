@@ -24,6 +24,7 @@ from functools import partial
 import sympy as sp
 
 from derivations import brake_actuator as brake
+from derivations import slip_tracking
 from derivations.notation import described, time
 
 h, g, rho, late, seen, phi, psi = sp.symbols("h g rho late seen phi psi", positive=True)
@@ -113,6 +114,22 @@ _u, _u_c, _rho_u, _rho_c = sp.symbols("u u_c rho_u rho_c", real=True)
 _weight_of_u = _u / (_u - _u_c)  # between 0 and 1 where u and u_c have opposite signs
 _rho_a = _weight_of_u * _rho_u + (1 - _weight_of_u) * _rho_c
 about_residual = sp.simplify(_rho_a * (_u - _u_c) + _rho_c * _u_c - _rho_u * _u)
+
+# --- what grows with what is asked, evenly up to 1 and less beyond: ways up to the longest pulse, which is all that the
+# valve has, and the pull on the braking curve, sqrt(2 c - 1) at c times the error and over the pull at its beginning.
+# Both are concave, so that from a point below 1 at least the share of the secant to the largest one is left -----------
+left, beyond, own = sp.symbols("left beyond own", real=True)
+share_left = (left - own) / (beyond - own)
+own_residual = sp.simplify(sp.diff(share_left, own) + (beyond - left) / (beyond - own) ** 2)
+_slew, _rate, _times = sp.symbols("slew rate_of_pull times", positive=True)
+_begins = _slew / _rate**2
+_square = slip_tracking.curve_square.subs(
+    {slip_tracking.e: _times * _begins, slip_tracking.k: _rate, slip_tracking.s: _slew}, simultaneous=True
+)
+curve_residual = sp.simplify(_square / (_rate * _begins) ** 2 - (2 * _times - 1))
+concave_residual = sp.simplify(
+    sp.diff(sp.sqrt(2 * _times - 1), _times, 2) + (2 * _times - 1) ** sp.Rational(-3, 2)
+)
 
 # --- the mean torque that the law works out: a pulse of the length P over h, of the room or of the torque to vent -----
 P, T_n, T_a = sp.symbols(
@@ -231,6 +248,9 @@ _STATE = {
     "delay": "Time from the sample to the latest beginning of a pulse, over the sample time [-]",
     "supply_rate": "Rate of the supply, eq. (8) [1/s]",
     "fill_time": "Time constant of filling [s]",
+    "beyond": "What is asked at most, over that up to which all of it is left, above 1 [-]",
+    "left": "What is left of it, over the same [-]",
+    "own": "What is asked at the center, over the same, below 1 [-]",
     "room": "Least room above the cylinder over what the supply lacks of its final value [-]",
 }
 
@@ -294,6 +314,13 @@ FUNCTIONS = (
         (rising, filling, h, pulse, delay, room),
         added,
         "Largest way that a rising supply adds to a pulse that fills, over the way that it goes without",
+        "Share [-]",
+    ),
+    _function(
+        "share_left",
+        (left, beyond, own),
+        share_left,
+        "Least share of what is asked beside a center that a concave limit leaves",
         "Share [-]",
     ),
 )

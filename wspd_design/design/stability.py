@@ -22,7 +22,8 @@ from wspd_design.certificates.setting.slip_loop import (
     latest_share,
     parts_of,
 )
-from wspd_design.certificates.theorems.slip_band.loop import ROOM, Conditions
+from wspd_design.certificates.theorems.slip_band.loop import Conditions
+from wspd_design.certificates.theorems.slip_band.proof import ROOM
 from wspd_design.controllers.observer_smc import ObserverSmc
 from wspd_design.controllers.protection import Protection
 from wspd_design.design.problem import stated_bounds

@@ -29,8 +29,8 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     SLOPES,
     Friction,
 )
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Steady, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read, write
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, Steady, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice, Ellipsoid, Proof, read, write
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 from wspd_design.controllers.observers.sensors import Sensors
 from wspd_design.controllers.valve_inversion import ValveInversion

@@ -30,8 +30,8 @@ from wspd_design.certificates.theorems.band import SLIP_BAND, contact_held
 from wspd_design.certificates.theorems.slip_band import checker, loop
 from wspd_design.certificates.theorems.slip_band.checker import drifting
 from wspd_design.certificates.theorems.slip_band.lag import Fading, lag_of
-from wspd_design.certificates.theorems.slip_band.loop import Choice, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import write
+from wspd_design.certificates.theorems.slip_band.loop import loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice, write
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of, law_of
 from wspd_design.parameters.bounds import Bounds
 

@@ -22,7 +22,8 @@ from wspd_design.certificates.theorems.band import contact_held
 from wspd_design.certificates.theorems.slip_band import center
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
 from wspd_design.certificates.theorems.slip_band.friction import FADINGS, SLOPES, Friction
-from wspd_design.certificates.theorems.slip_band.loop import Choice, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 
 PULSE = Fraction(1, 2)

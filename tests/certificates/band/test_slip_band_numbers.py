@@ -25,7 +25,8 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     Friction,
     reached,
 )
-from wspd_design.certificates.theorems.slip_band.loop import Choice, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice
 from wspd_design.certificates.theorems.slip_band.reference import slip_at, slips_held, turning_at
 from wspd_design.certificates.theorems.slip_band.statement import (
     JERK_FACTORS,

@@ -18,7 +18,8 @@ from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
 from wspd_design.certificates.theorems.slip_band import loop
 from wspd_design.certificates.theorems.slip_band.checker import checker
 from wspd_design.certificates.theorems.slip_band.friction import FADINGS, SLOPES, Friction
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice
 from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held, turning_at
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of, law_of, windows_of
 from wspd_design.design.problem import stability_problem

@@ -26,8 +26,8 @@ from wspd_design.certificates.setting.slip_loop import (
 from wspd_design.certificates.theorems.band import CELLS, contact_held
 from wspd_design.certificates.theorems.slip_band import center, checker
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import read
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice, read
 from wspd_design.certificates.theorems.slip_band.statement import (
     NAMES,
     box_of,
@@ -143,7 +143,7 @@ def loop_in(problem, proof, window):
         box_of(problem, Fraction(1)),
         windows_of(problem)[window],
         found.friction[window],
-        Choice(each.pulse, each.near, each.settled, each.room),
+        each.choice,
         Conditions(each.supply, Fraction(0), Fraction(0)),
     ), each
 

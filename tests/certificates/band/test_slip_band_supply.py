@@ -22,8 +22,8 @@ from wspd_design.certificates.theorems.band import CELLS, contact_held
 from wspd_design.certificates.theorems.slip_band import checker
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.friction import FADINGS, SLOPES, Friction
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import read
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice, read
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 

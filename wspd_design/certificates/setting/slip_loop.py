@@ -66,6 +66,7 @@ class LoopRanges:
     effects: Pair  # -, g
     ways: tuple[Way, ...]  # corners
     shares_center: Pair  # -, late share and share in the mean torque of the law, of the way at the center
+    pulls: tuple[Number, ...] = (1.0,)  # -, corners of the pull over k e, of what is beside the center
 
 
 def polygon(secants: Pair, sample_time: Number) -> tuple[Pair, ...]:
@@ -130,6 +131,12 @@ def ways_about(
     return tuple(found)
 
 
+def cut_to(ways: Sequence[Way], share: Number) -> tuple[Way, ...]:
+    """Return corners of ways of which the rest beside the center may be cut to a share by the longest pulse."""
+    cut = (each._replace(part=share * each.part, seen=share * each.seen) for each in ways)
+    return (*ways, *cut)
+
+
 def latest_share(growth: Number, pulse: Number, delay: Number, added: Number) -> Number:
     """Return the largest share of a sample that sees the torque before a pulse.
 
@@ -174,13 +181,16 @@ def shares_together(left: Pair, true: Pair, law: Pair) -> tuple[Pair, ...]:
 def numbers_at_corners(
     law: LoopLaw, ranges: LoopRanges
 ) -> Iterator[tuple[tuple[Number, ...], tuple[Number, ...]]]:
-    """Return phi, psi/h, g, rho, and both shares of the sample at all corners, for the rest and for the center."""
-    for slide, g, way in product(
-        polygon(ranges.secants, law.sample_time), dict.fromkeys(ranges.effects), ranges.ways
+    """Return phi, psi/h, g, rho, both shares of the sample, and the pull at all corners, for the rest and the center.
+
+    At the center the pull is k e.
+    """
+    for slide, g, way, pull in product(
+        polygon(ranges.secants, law.sample_time), dict.fromkeys(ranges.effects), ranges.ways, ranges.pulls
     ):
         yield (
-            (*slide, g, way.part, way.late, way.seen),
-            (*slide, g, way.part_center, *ranges.shares_center),
+            (*slide, g, way.part, way.late, way.seen, pull),
+            (*slide, g, way.part_center, *ranges.shares_center, 1.0),
         )
 
 
@@ -202,17 +212,18 @@ def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[
         yield sample(law, rest, units), sample(law, center, units)
 
 
-def wanted(law: LoopLaw) -> tuple[Number, ...]:
-    """Return the row that gives Y* from the state; what adds to D, it counts as D."""
+def wanted(law: LoopLaw, pull: Number = 1.0) -> tuple[Number, ...]:
+    """Return the row that gives Y* from the state, for a pull over k e; what adds to D, it counts as D."""
     columns = [[float(i == j) for i in range(STATES)] for j in range(STATES)]
-    return tuple(generated.wanted_torque(e, n, y, law.gain, law.ahead, lag) for e, _, n, y, lag in columns)
+    gain = pull * law.gain
+    return tuple(generated.wanted_torque(e, n, y, gain, law.ahead, lag) for e, _, n, y, lag in columns)
 
 
 def sample(law: LoopLaw, numbers: Sequence[Any], units: Sequence[Any]) -> tuple[Any, ...]:
     """Return the rows of [A B] for some numbers of a sample, with units as in :func:`corners`."""
     e, p, n, y, lag, error, *disturbed = units
-    way = generated.wanted_torque(e, n, y, law.gain, law.ahead, lag + error) - y
-    phi, psi, g, rho, late, seen = numbers
+    phi, psi, g, rho, late, seen, pull = numbers
+    way = generated.wanted_torque(e, n, y, pull * law.gain, law.ahead, lag + error) - y
     return generated.next_sample(
         e, p, n, y, lag, way, phi, psi, g, rho, late, seen, law.pole, law.kept, *disturbed
     )

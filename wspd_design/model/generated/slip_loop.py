@@ -243,3 +243,24 @@ def added_by_supply(
     """
     x0 = 0.5 * pulse
     return h * supply_rate * (delay + x0) / (room * (1.0 - h * x0 / fill_time))
+
+
+def share_left(left: Number, beyond: Number, own: Number) -> Number:
+    """Least share of what is asked beside a center that a concave limit leaves, docs/theory.md#band.
+
+    Parameters
+    ----------
+    left : Number
+        What is left of it, over the same [-].
+    beyond : Number
+        What is asked at most, over that up to which all of it is left, above 1 [-].
+    own : Number
+        What is asked at the center, over the same, below 1 [-].
+
+    Returns
+    -------
+    Number
+        Share [-].
+    """
+    x0 = -own
+    return (left + x0) / (beyond + x0)

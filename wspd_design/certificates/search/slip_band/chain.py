@@ -10,8 +10,8 @@ from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, 
 from wspd_design.certificates.search.slip_band.task import settling
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, lies_in
 from wspd_design.certificates.theorems.slip_band.friction import Parts
-from wspd_design.certificates.theorems.slip_band.loop import ROOM, Choice, Conditions, Loop, Steady, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, Loop, Steady, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice, Ellipsoid, ROOM
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
 from wspd_design.parameters.errors import WspdError
 
@@ -21,6 +21,10 @@ CHOICES = tuple(
     for pulse in pulses
 )
 """What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
+BEYOND = tuple(
+    tuple(map(Fraction, each)) for each in (("3/2", "1"), ("3/2", "3/2"), ("2", "1"), ("2", "2"), ("1", "1"))
+)
+"""What may be wanted over what the longest pulse does, and predicted over where the braking curve begins."""
 LONG = Fraction(
     45, 4
 )  # 1/s, room for a long sample over its time: ten times what a supply of 1.125 1/s may rise by
@@ -189,6 +193,12 @@ def best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) ->
     )
     found = {each: far(sought, cell, window, replace(chain, choice=each), spent) for each in tried}
     least = min(found, key=lambda each: found[each])
+    if found[least] >= 1.0:
+        for beyond, curve in BEYOND:
+            each = least._replace(pulse=Fraction(1), beyond=beyond, curve=curve)
+            if each not in found:
+                found[each] = far(sought, cell, window, replace(chain, choice=each), spent)
+        least = min(found, key=lambda each: found[each])
     return least, found[least]
 
 
@@ -218,9 +228,7 @@ def still_holding(sought: Sought, cell: Cell, chain: Chain) -> Chain:
         if each is None:
             continue
         window = len(sought.windows) - 1 - number
-        loop = sought.loops(cell, window, Choice(each.pulse, each.near, each.settled, each.room, each.lag))(
-            each.supply
-        )
+        loop = sought.loops(cell, window, each.choice)(each.supply)
         try:
             errors(sought.law, loop, each)
             held = faster is None or lies_in(faster, (each, loop.steady))

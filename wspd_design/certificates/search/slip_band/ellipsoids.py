@@ -14,8 +14,8 @@ from wspd_design.certificates.search.slip_band.task import Task, centered, short
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.checker import Set, beyond_limit, errors, lies_in
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Loop, Steady
-from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid
+from wspd_design.certificates.theorems.slip_band.loop import Loop, Steady
+from wspd_design.certificates.theorems.slip_band.proof import Choice, Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 
 if TYPE_CHECKING:
@@ -270,6 +270,8 @@ def _rounded(
         longest=task.lengths.longest,
         back=task.lengths.back,
         room=choice.room,
+        beyond=choice.beyond,
+        curve=choice.curve,
         lag=choice.lag,
         matrix=tuple(tuple(short(float(each)) for each in row) for row in task.basis @ q @ task.basis.T),
         center=tuple(short(float(each)) for each in task.center),

@@ -199,7 +199,7 @@ def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
     return Lengths(
         shortest=short(shortest_and_longest[0]),
         longest=min(short(shortest_and_longest[1]), Fraction(longest)),
-        back=min(short(back), Fraction(longest)),
+        back=min(short(back), Fraction(longest)) if loop.beyond == 1 else Fraction(longest),
     )
 
 

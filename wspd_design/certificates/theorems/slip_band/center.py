@@ -11,6 +11,7 @@ from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.setting.slip_loop import (
     DISTURBANCES,
     Pair,
+    cut_to,
     parts_of,
     shares_together,
     wanted,
@@ -19,7 +20,7 @@ from wspd_design.certificates.setting.slip_loop import (
 from wspd_design.certificates.theorems.slip_band.loop import Loop
 from wspd_design.certificates.theorems.slip_band.pulses import Limit, Pulses, Row, in_time, loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
-from wspd_design.model.generated.slip_loop import share_after
+from wspd_design.model.generated.slip_loop import share_after, share_left
 
 LEVEL = 1e-9  # growth of errors over a sample that counts as none
 
@@ -47,10 +48,19 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
         What pulses are kept to.
     """
     way = way_at(law, loop, center)
+    loop = _on_curve(law, loop, center)
     if not (way > 0 or way < 0):
+        if loop.beyond > 1:
+            raise Refused(
+                "more may be wanted than the longest pulse does, and the way at the center may have either sign"
+            )
         return loop
     side, other = loop.pulses if way > 0 else loop.pulses[::-1]
     pulse, (shortest, longest, back) = loop.pulse, map(point, lengths)
+    if loop.beyond > 1 and not back >= pulse:
+        raise Refused(
+            "more may be wanted than the longest pulse does, and pulses back are kept to shorter ones"
+        )
     # A way to the other side counts for its part of the distance from the center, at most as it does for the longest.
     most_back = other.part(back) * ends_of(loop.pulses[0].height[1] + loop.pulses[1].height[1])[1]
     far = most_back / (most_back + abs(way))
@@ -61,17 +71,37 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
     growth = most_of([loop.ranges.secants[1] * point(law.sample_time), point(LEVEL)])
     most = side.parts[1] * loop.ranges.effects[1] * growth.expm1() / growth
     disturbances[DISTURBANCES.index("uneven slip drift")] += (late - known[0]) * way * most
-    within = (in_time(law, each, pulse if each is side else back, loop.beside) for each in loop.pulses)
+    ways = ways_about(side.parts, other.parts, far, (own, opposite), known)
+    if loop.beyond > 1:
+        # Of the limit the way at the center takes at most this part: its pulse is kept to the longest one.
+        ways = cut_to(ways, share_left(1, loop.beyond, side.part(longest) / side.part(pulse)))
     return replace(
         loop,
         ranges=replace(
             loop.ranges,
-            ways=ways_about(side.parts, other.parts, far, (own, opposite), known),
+            ways=ways,
             shares_center=known,
         ),
         disturbances=tuple(map(ends_of, disturbances)),
-        limits=(*within, *loop.limits[2:], *_center_in_time(side, abs(way), (shortest, longest))),
+        within=tuple(
+            in_time(each, pulse if each is side else back, wants, loop.beyond)
+            for each in loop.pulses
+            for wants in loop.wants
+        ),
+        others=(*loop.others, *_center_in_time(side, abs(way), (shortest, longest))),
     )
+
+
+def _on_curve(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Loop:
+    """Return the loop with the pull beside the center that the braking curve leaves of k e at least."""
+    curve = loop.curve
+    if curve is None or curve.times == 1:
+        return loop
+    there = sum(map(mul, curve.predicted(law), center), curve.beside[0].union(curve.beside[1]))
+    if not there < curve.error:
+        raise Refused("the center is on the braking curve")
+    least = share_left(curve.left, curve.times, there / curve.error)
+    return replace(loop, ranges=replace(loop.ranges, pulls=(point(1), *ends_of(least)[:1])))
 
 
 def _shares(

@@ -28,8 +28,8 @@ from wspd_design.certificates.setting.creep_slope import STEEPNESS
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, Pair, corners, wanted
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.friction import Parts
-from wspd_design.certificates.theorems.slip_band.loop import Choice, Conditions, Loop, Steady, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import Ellipsoid, Proof, read
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, Loop, Steady, loop_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice, Ellipsoid, Proof, read
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import (
     LETTERS,
@@ -141,8 +141,7 @@ def _loop(problem: Problem, law: BandLaw, found: Proof, at: tuple[Cell, int], ea
     """Work out the loop of an ellipsoid in a cell and a window."""
     cell, k = at
     conditions = Conditions(each.supply, found.delay, found.noise, found.reserve)
-    choice = Choice(each.pulse, each.near, each.settled, each.room, each.lag)
-    return loop_of(problem, law, cell, windows_of(problem)[k], found.friction[k], choice, conditions)
+    return loop_of(problem, law, cell, windows_of(problem)[k], found.friction[k], each.choice, conditions)
 
 
 def steady_of(problem: Problem, found: Proof, at: tuple[Cell, int], each: Ellipsoid) -> Steady:
@@ -351,21 +350,23 @@ def _balls(matrix: Sequence[Sequence[Fraction]]) -> list[list[Ball]]:
 def _within(law: LoopLaw, loop: Loop, states: Set) -> Pair:
     """Bound the error at every instant of a sample, by parts of it in which phi and psi are enclosed."""
     h, (low, high) = law.sample_time, loop.ranges.secants
-    asked, lowest, highest = wanted(law), states.center[0], states.center[0]
+    lowest, highest = states.center[0], states.center[0]
     farthest = most_of([end for each in loop.pulses for end in each.parts])
-    known, command, _, mean, _, _, moved, uneven, *_ = (a.union(b) for a, b in loop.disturbances)
+    _, _, _, mean, _, _, moved, uneven, *_ = (a.union(b) for a, b in loop.disturbances)
     mean += loop.steady.share * loop.steady.low.union(loop.steady.high)
     for part in range(PARTS):
         begin, end = h * part / PARTS, h * (part + 1) / PARTS
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]
         psis = (_psi(low, begin) / h, _psi(high, end) / h)
-        for phi, psi, g, gone in product(
-            (least_of(phis), most_of(phis)), psis, loop.ranges.effects, (point(0), farthest)
+        for phi, psi, g, gone, (asked, beside) in product(
+            (least_of(phis), most_of(phis)), psis, loop.ranges.effects, (point(0), farthest), loop.wants
         ):
             way = [each - (k == 3) for k, each in enumerate(asked)]
             row = [phi * (k == 0) - g * psi * ((k == 3) + gone * each) for k, each in enumerate(way)]
             # A part of the sample has seen at most the drift of the whole one.
-            disturbed = -g * psi * (gone * (asked[4] * known + command) - mean.union(point(0)))
+            disturbed = (
+                -g * psi * (gone * (loop.dead_band + beside[0].union(beside[1])) - mean.union(point(0)))
+            )
             disturbed += (moved + uneven).union(point(0))
             there = states.at(row) + disturbed
             reach = states.reach(row)

@@ -36,9 +36,12 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     slope_at,
 )
 from wspd_design.certificates.theorems.slip_band.lag import Fading, lag_of
+from wspd_design.certificates.theorems.slip_band.proof import Choice
 from wspd_design.certificates.theorems.slip_band.pulses import (
     Limit,
     Pulses,
+    Row,
+    Wants,
     in_time,
     loop_law,
     pulses_of,
@@ -52,15 +55,12 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     Cell,
     fastest_loss,
 )
-from wspd_design.model.generated.slip_loop import added_by_supply, lateness
+from wspd_design.model.generated.slip_loop import added_by_supply, lateness, share_left
 from wspd_design.model.slip import wheels
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
 
 RADIUS = NAMES.index("wheel radius")
-ROOM = Fraction(
-    1, 4
-)  # of what the supply lacks, that the cylinder lacks of the supply, if nothing else is told
 
 
 class Conditions(NamedTuple):
@@ -72,16 +72,6 @@ class Conditions(NamedTuple):
     reserve: Fraction = Fraction(
         1
     )  # -, of the full pressure, beyond which nothing is claimed; 1: no such share
-
-
-class Choice(NamedTuple):
-    """What the states are chosen for."""
-
-    pulse: Fraction  # -, longest one over the sample time
-    near: int  # which errors are kept to: the number of a reach
-    settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
-    room: Fraction = ROOM  # -, of what the supply lacks, that the cylinder lacks of the supply at least
-    lag: Fraction = Fraction(0)  # -, of what the lag of the filter drifts by, that goes with the steady drift
 
 
 class Steady(NamedTuple):
@@ -103,6 +93,24 @@ class Steady(NamedTuple):
         return most_of([abs(self.low - drift), abs(self.high - drift)])
 
 
+class Curve(NamedTuple):
+    """Braking curve of the law."""
+
+    error: Ball  # rad/s, predicted one at which it begins
+    times: Ball  # -, of that, that is predicted at most
+    beside: Pair  # rad/s, of the predicted error beside that of the state
+
+    @property
+    def left(self) -> Ball:
+        """Pull at the largest predicted error, over that at the beginning of the curve."""
+        return (2 * self.times - 1).sqrt()
+
+    def predicted(self, law: BandLaw) -> Row:
+        """Return the row that gives the predicted error from the state."""
+        ahead = point(law.ahead)
+        return point(1), point(0), ahead, -ahead, ahead
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop:
     """The loop in one cell and one window."""
@@ -110,7 +118,8 @@ class Loop:
     ranges: LoopRanges
     disturbances: tuple[Pair, ...]  # lowest and highest, beside the steady drift of the torque [rad/s]
     steady: Steady
-    limits: tuple[Limit, ...]
+    within: tuple[Limit, ...]  # what keeps pulses to their lengths
+    others: tuple[Limit, ...]
     widest: Pair  # rad/s, errors between which the slope is bounded
     settles: Pair  # rad/s, errors between which the fading is bounded
     settled: Fraction  # rad/s, E
@@ -119,7 +128,15 @@ class Loop:
     delay: Ball  # -, latest beginning of a pulse over the sample time
     added: Ball  # -, what a rising supply adds to a way at most, over the way
     pulses: tuple[Pulses, Pulses]  # that fill and that vent
-    beside: Pair  # rad/s, what the law wants beside what the state asks for
+    wants: tuple[Wants, ...]  # for the pull k e, and for the least share of it that the braking curve leaves
+    dead_band: Ball  # rad/s, of what it wants, that it leaves out
+    beyond: Ball  # -, times what the longest pulse does, that is wanted at most
+    curve: Curve | None  # none for a law that has none
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """All that the state is kept to."""
+        return (*self.within, *self.others)
 
 
 def loop_of(
@@ -137,6 +154,10 @@ def loop_of(
     pulse = choice.pulse
     if pulse + conditions.delay > 1:
         raise Refused("a pulse may go on into the next sample")
+    if choice.beyond > 1 and pulse < 1:
+        raise Refused("more may be wanted than the longest pulse does, which is shorter than the sample")
+    if choice.curve > 1 and law.torque_slew is None:
+        raise Refused("the law has no braking curve")
     if 2 * conditions.noise > window[0]:
         raise Refused("the noise is more than half of a speed")
     mass, inertia, radius, mu0, torque, fill, vent = (ball(*each) for each in cell)
@@ -244,7 +265,7 @@ def loop_of(
     bent = reference.bend * h * braking / reference.turning
     lag_drift += bent * lag_drift / (share - bent) * ball(Fraction(-1), Fraction(1))
     known = sliding + misread_rate
-    left_out = (
+    dead_band = (
         h
         / point(law.inertia)
         * _dead_band(law, slip * (speed + point(conditions.noise)) / radius)
@@ -252,7 +273,7 @@ def loop_of(
     )
     uneven = sliding * most_of([(high * h).exp() - 1, 1 - (low * h).exp(), point(0)])
     added = _added(problem, law, fill, choice, conditions)
-    left_out += loop_law(law).gain * (misread + apart)
+    left_out = dead_band + loop_law(law).gain * (misread + apart)
     disturbed = (
         known,
         left_out,
@@ -269,9 +290,16 @@ def loop_of(
     pulses = pulses_of(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
     late = point(0).union(latest_share(high * h, point(pulse), point(conditions.delay), added))
     seen = seen_of(law, pulse)
-    asked = wanted(loop_law(law))
-    beside = ends_of(asked[4] * known + asked[0] * (misread + apart))
-    limits = _limits(law, choice, conditions.supply, held, turned * slowing, known, misread)
+    curve = _curve(law, choice, known, misread + apart)
+    beyond = point(choice.beyond)
+    wants = tuple(
+        _wants(law, pull, known, misread + apart)
+        for pull in (
+            point(1),
+            *(() if curve is None or choice.curve == 1 else (share_left(curve.left, curve.times, 0),)),
+        )
+    )
+    limits = _limits(law, choice, conditions.supply, held, turned * slowing)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
@@ -286,7 +314,8 @@ def loop_of(
         ),
         disturbances=tuple(map(ends_of, disturbed)),
         steady=steady,
-        limits=(*(in_time(law, each, point(pulse), beside) for each in pulses), *limits),
+        within=tuple(in_time(each, point(pulse), one, beyond) for each in pulses for one in wants),
+        others=(*_below(law, curve), *limits),
         widest=_errors(reached(choice.near), slowest / widest_radius),
         settled=choice.settled,
         settles=_errors((FADINGS[0][0], FADINGS[-1][1]), slowest / widest_radius),
@@ -295,7 +324,10 @@ def loop_of(
         delay=point(conditions.delay),
         added=added,
         pulses=pulses,
-        beside=beside,
+        wants=wants,
+        dead_band=dead_band,
+        beyond=beyond,
+        curve=curve,
     )
 
 
@@ -319,8 +351,6 @@ def _limits(
     supply: Fraction,
     held: Ball,
     falling: Ball,
-    known: Ball,
-    misread: Ball,
 ) -> tuple[Limit, ...]:
     """Return what keeps the state where the law is the written one, and torque and room are left.
 
@@ -336,10 +366,6 @@ def _limits(
         Torque that holds the reference, over the inertia of the law [rad/s2].
     falling : ball
         Deceleration of the reference [rad/s2].
-    known : ball
-        Error of that acceleration in the law, beside the lag of its filter, times h [rad/s].
-    misread : ball
-        Error of the error of the wheel speed in the law [rad/s].
     """
     h = point(law.sample_time)
     least_held, most_held = ends_of(h * held)
@@ -348,7 +374,6 @@ def _limits(
     venting, filling = (-h * point(choice.pulse) / point(each) for each in (law.vent_time, law.fill_time))
     zero = point(0)
     return (
-        *_below_the_curve(law, known, misread + point(choice.settled)),
         Limit(
             what="the observed friction above 0",
             row=(zero, zero, point(-1), zero, zero),
@@ -386,19 +411,41 @@ def _added(problem: Problem, law: BandLaw, fill: Ball, choice: Choice, condition
     return ends_of(added)[1]
 
 
-def _below_the_curve(law: BandLaw, known: Ball, misread: Ball) -> tuple[Limit, ...]:
-    """Keep the predicted error where the pull is k e."""
+def _wants(law: BandLaw, pull: Ball, known: Ball, misread: Ball) -> Wants:
+    """Return what the law wants for a pull over k e.
+
+    Parameters
+    ----------
+    law : BandLaw
+        Its numbers.
+    pull : ball
+        Share of k e.
+    known : ball
+        Error of the acceleration of the reference in the law, beside the lag of its filter, times h [rad/s].
+    misread : ball
+        Error of the error of the wheel speed in the law, that from which errors are counted among it [rad/s].
+    """
+    asked = wanted(loop_law(law), pull)
+    return Wants(asked, ends_of(asked[4] * known + asked[0] * misread))
+
+
+def _curve(law: BandLaw, choice: Choice, known: Ball, misread: Ball) -> Curve | None:
+    """Return the braking curve of the law; the rest as :func:`_wants`."""
     if law.torque_slew is None:
+        return None
+    begins = point(law.torque_slew) / point(law.inertia) / point(law.approach_rate) ** 2
+    return Curve(begins, point(choice.curve), ends_of(misread + point(law.ahead) * known))
+
+
+def _below(law: BandLaw, curve: Curve | None) -> tuple[Limit, ...]:
+    """Keep the predicted error within some times that at which the braking curve begins."""
+    if curve is None:
         return ()
-    slew, ahead = (
-        point(law.torque_slew) / point(law.inertia) / point(law.approach_rate) ** 2,
-        point(law.ahead),
-    )
     return (
         Limit(
-            what="the beginning of the braking curve",
-            row=(point(1), point(0), ahead, -ahead, ahead),
-            bound=slew - ends_of(misread + ahead * known)[1],
+            what="the beginning of the braking curve" if curve.times == 1 else "errors on the braking curve",
+            row=curve.predicted(law),
+            bound=curve.times * curve.error - curve.beside[1],
         ),
     )
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.checker import Refused, number
 from wspd_design.certificates.kernel.term import text
@@ -14,7 +14,24 @@ FORMAT = "wspd-slip-band/10"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
+ROOM = Fraction(1, 4)
+"""Of what the supply lacks, that the cylinder lacks of the supply, if nothing else is told."""
+
 Square: TypeAlias = tuple[tuple[Fraction, ...], ...]
+
+
+class Choice(NamedTuple):
+    """What the states are chosen for."""
+
+    pulse: Fraction  # -, longest one over the sample time
+    near: int  # which errors are kept to: the number of a reach
+    settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
+    room: Fraction = ROOM  # -, of what the supply lacks, that the cylinder lacks of the supply at least
+    lag: Fraction = Fraction(0)  # -, of what the lag of the filter drifts by, that goes with the steady drift
+    beyond: Fraction = Fraction(1)  # -, times what the longest pulse does, that is wanted at most
+    curve: Fraction = Fraction(
+        1
+    )  # -, times the error at which the braking curve begins, that is predicted at most
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,6 +48,8 @@ class Ellipsoid:
     longest: Fraction  # -, the same, at most
     back: Fraction  # -, longest pulse to the other side over the sample time
     room: Fraction  # -, of what the supply lacks, that the cylinder lacks of the supply at least
+    beyond: Fraction  # -, times what the longest pulse does, that is wanted at most
+    curve: Fraction  # -, times the error at which the braking curve begins, that is predicted at most
     matrix: Square  # Q [rad2/s2]
     center: tuple[Fraction, ...]  # c [rad/s]
     drift: Fraction  # steady drift that the center is for [rad/s]
@@ -42,6 +61,11 @@ class Ellipsoid:
     steady: Fraction  # what the steady drift adds at most
     change: Fraction  # what its change does
     inside: Fraction  # multiplier that shows that the ellipsoid of the next faster window lies in this one
+
+    @property
+    def choice(self) -> Choice:
+        """What its states are chosen for."""
+        return Choice(self.pulse, self.near, self.settled, self.room, self.lag, self.beyond, self.curve)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,6 +124,8 @@ def _written(each: Ellipsoid) -> list[str]:
         each.longest,
         each.back,
         each.room,
+        each.beyond,
+        each.curve,
         *(each.matrix[i][j] for i, j in ENTRIES),
         *each.center,
         each.drift,
@@ -146,7 +172,7 @@ def read(proof: Mapping[str, Any], windows: int) -> Proof:
     if not 0 < reserve <= 1:
         raise Refused("the share of the full pressure that is claimed about must be above 0, and 1 at most")
     known = [
-        _ellipsoid(_numbers(each, 8 + len(ENTRIES) + 2 * STATES + 7 + len(DISTURBANCES)))
+        _ellipsoid(_numbers(each, 10 + len(ENTRIES) + 2 * STATES + 7 + len(DISTURBANCES)))
         for each in ellipsoids
     ]
     return Proof(
@@ -182,7 +208,7 @@ def _parts(numbers: Sequence[Fraction]) -> Parts:
 
 
 def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
-    pulse, supply, near, settled, shortest, longest, back, room, *numbers = written
+    pulse, supply, near, settled, shortest, longest, back, room, beyond, curve, *numbers = written
     if not 0 < pulse <= 1:
         raise Refused("the longest pulse must be above 0, and the sample at most")
     if not 0 <= supply <= 1:
@@ -195,6 +221,8 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         )
     if not room > 0:
         raise Refused("the room above the cylinder must be above 0")
+    if not (beyond >= 1 and curve >= 1):
+        raise Refused("what is wanted at most, and predicted, must be stated as 1 or more times its limit")
     entries = dict(zip(ENTRIES, numbers, strict=False))
     rows = tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES))
     center, (drift, *rest) = numbers[len(ENTRIES) :][:STATES], numbers[len(ENTRIES) + STATES :]
@@ -208,6 +236,8 @@ def _ellipsoid(written: Sequence[Fraction]) -> Ellipsoid:
         longest=longest,
         back=back,
         room=room,
+        beyond=beyond,
+        curve=curve,
         matrix=rows,
         center=tuple(center),
         drift=drift,

@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.arb import Ball, ends_of, hull_of, point
-from wspd_design.certificates.setting.slip_loop import LoopLaw, Pair, parts_of, wanted
+from wspd_design.certificates.setting.slip_loop import LoopLaw, Pair, parts_of
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 
 Row: TypeAlias = tuple[Ball, ...]
@@ -18,6 +18,13 @@ class Limit:
     what: str
     row: Row
     bound: Ball
+
+
+class Wants(NamedTuple):
+    """What the law wants of the torque, for a pull over k e."""
+
+    row: Row
+    beside: Pair  # rad/s, what it wants beside what the state asks for
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,9 +89,9 @@ def pulses_of(
     )
 
 
-def in_time(law: BandLaw, pulses: Pulses, longest: Ball, beside: Pair) -> Limit:
-    """Keep what is wanted within pulses of a length over the sample time."""
-    asked, part = wanted(loop_law(law)), pulses.part(longest)
+def in_time(pulses: Pulses, longest: Ball, wants: Wants, times: Ball) -> Limit:
+    """Keep what is wanted within some times what pulses of a length over the sample time do."""
+    asked, beside, part = *wants, times * pulses.part(longest)
     ways = tuple(each + (part - 1) * (k == 3) for k, each in enumerate(asked))
     if pulses.rises < 0:
         return Limit(
