@@ -155,8 +155,9 @@ THEOREMS = (
             "(phi, psi) in the polygon of the range of the mean slope of the friction between E and what the band "
             "reaches, from bounds that are proved in strips of the error for each part of the range of the steepness "
             "k_A C/mu0 over the slip, of all parts that a cell lies in",
-            "limits of the state that keep commands within one sample, the error below the braking curve, and friction "
-            "and torque above zero: there the law is the written one",
+            "limits of the state that keep what is wanted within a stated multiple of what a pulse of the whole sample "
+            "does, the predicted error within a stated multiple of that at which the braking curve begins, and "
+            "friction and torque above zero: there the law is the written one",
             "pressure measured exactly, wheel and train speed within a bound; pulses begin within a bound after the "
             "sample and end in it; the supply has at least a share of the full pressure, and rises by eq. (8); of what "
             "it lacks of that, the cylinder lacks at least a stated multiple of the supply",
@@ -179,9 +180,12 @@ THEOREMS = (
         "way; a way to the side of that at the center has a rho of this side, and one to the other side counts for "
         "its part of the distance from the center. What a longer pulse changes counts in a mean over the sample only"
         " from its end on, in the true torque as in the one that the law works out: the late share and the share in "
-        "the mean torque go together, but for rates of the valve, weights and late pulses. The map is affine in "
-        "(phi, psi), in g, in rho, and in both shares, so that a convex function of its values is largest at "
-        "corners. Between samples e has the same form with a part of the change of the torque.",
+        "the mean torque go together, but for rates of the valve, weights and late pulses. Of a wanted way beyond the "
+        "longest pulse the valve goes that pulse, and on the braking curve the pull is less than k e: both are "
+        "concave, so that of what is asked beside the center at least the share of the secant from there is left. The "
+        "map is affine in (phi, psi), in g, in rho, in that share, and in both other shares, so that a convex function "
+        "of its values is largest at corners. Between samples e has the same form with a part of the change of the "
+        "torque.",
         not_said="How a wheel gets into the set; what happens where a pulse goes on into the next sample, or with a "
         "brake that is the limit.",
         identities=(
@@ -216,6 +220,13 @@ THEOREMS = (
             Identity("a longer pulse counts in the mean from its end on", slip_loop.mean_residual),
             Identity("change of the way over that of the wanted one", slip_loop.rate_residual),
             Identity("the length of a pulse is convex over the wanted way", slip_loop.convex_residual),
+            Identity(
+                "the share that a limit leaves falls with what is asked at the center", slip_loop.own_residual
+            ),
+            Identity(
+                "square of the pull on the braking curve over that at its beginning", slip_loop.curve_residual
+            ),
+            Identity("that pull is concave", slip_loop.concave_residual),
             Identity("X+ - c of X+ = A X + B (m + r z)", _centered),
             Identity("and of the state less c + b (s - n), with a drift s that changes by y", _moving_center),
             Identity("what the shares and alpha leave of 1", _budget),

@@ -30,7 +30,7 @@ def test_every_identity_holds():
 
 
 def test_there_are_identities():
-    assert len(residuals("slip_loop")) == 24
+    assert len(residuals("slip_loop")) == 27
 
 
 def test_bend_says_which_way_the_edges_curve():
@@ -222,8 +222,8 @@ def test_loop_in_deviations_is_the_loop_in_numbers_of_the_plant(case):
 
 
 def of_sample(numbers):
-    """[A B] for some numbers of a sample."""
-    return np.array(sample(LAW, numbers, list(np.eye(STATES + len(DISTURBANCES)))))
+    """[A B] for some numbers of a sample, with the pull k e."""
+    return np.array(sample(LAW, (*numbers, 1.0), list(np.eye(STATES + len(DISTURBANCES)))))
 
 
 @pytest.mark.parametrize("place", [0, 2, 3, 4, STATES + 1])

@@ -59,8 +59,8 @@ def test_checker_alone_accepts_it(half, proof):
     assert told_of(half, proof)["cells"] >= 1
 
 
-SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST, BACK, ROOM = range(1, 8)
-Q, CENTER, DRIFT, MOVES, ALPHA, OFFSET, SHARES, INSIDE = slice(8, 23), 23, 28, slice(29, 34), 34, 35, 36, -1
+SUPPLY, NEAR, SETTLES, SHORTEST, LONGEST, BACK, ROOM, BEYOND, CURVE = range(1, 10)
+Q, CENTER, DRIFT, MOVES, ALPHA, OFFSET, SHARES, INSIDE = slice(10, 25), 25, 30, slice(31, 36), 36, 37, 38, -1
 STEADY, CHANGE = -3, -2  # shares of the steady drift and of its change
 # Shares of what disturbs without noise, with a constant slip and without dead band
 DRIFTS = tuple(

@@ -431,7 +431,7 @@ def test_noise_shows_in_error_and_acceleration_as_far_as_is_told(plain, number, 
             seen.append(gain * abs(of_rim - off))
         assert within(rate, known)
         asked = (1.0 + gain * float(law.ahead)) * rate + gain * (-math.copysign(rim, off) - off)
-        assert within(asked, doubles(loop.beside))
+        assert within(asked, doubles(loop.wants[0].beside))
     assert max(seen) > 0.8 * command[1]
 
 

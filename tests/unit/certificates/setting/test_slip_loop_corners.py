@@ -13,6 +13,7 @@ from wspd_design.certificates.setting.slip_loop import (
     LoopRanges,
     Way,
     corners,
+    cut_to,
     latest_share,
     numbers_at_corners,
     polygon,
@@ -116,11 +117,13 @@ def test_center_has_its_own_part_and_share_and_all_else_of_the_sample():
         effects=(0.7, 1.3),
         ways=(Way(0.4, 0.6, 0.0, 0.6), Way(1.2, 0.9, 0.5, 0.3)),
         shares_center=(0.1, 0.5),
+        pulls=(1.0, 0.4),
     )
     found = list(numbers_at_corners(LAW, ranges))
     assert {(rest[3], center[3]) for rest, center in found} == {(0.4, 0.6), (1.2, 0.9)}
-    assert {rest[4:] for rest, _ in found} == {(0.0, 0.6), (0.5, 0.3)}
-    assert {center[4:] for _, center in found} == {(0.1, 0.5)}
+    assert {rest[4:6] for rest, _ in found} == {(0.0, 0.6), (0.5, 0.3)}
+    assert {center[4:] for _, center in found} == {(0.1, 0.5, 1.0)}
+    assert {rest[3:4] + rest[6:] for rest, _ in found} == {(0.4, 1.0), (0.4, 0.4), (1.2, 1.0), (1.2, 0.4)}
     assert all(rest[:3] == center[:3] for rest, center in found)
     for (rest, center), maps in zip(found, corners(LAW, ranges, UNITS), strict=True):
         for numbers, one in zip((rest, center), maps, strict=True):
@@ -129,9 +132,25 @@ def test_center_has_its_own_part_and_share_and_all_else_of_the_sample():
 
 def test_what_is_wanted_is_what_a_whole_way_leads_to():
     """The row of Y* against Y+ of a valve that goes the whole way; the lag counts as the error of the acceleration."""
-    whole = np.array(sample(LAW, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0), UNITS))[3]
-    assert wanted(LAW) == pytest.approx(whole[:STATES])
-    assert whole[4] == whole[STATES + DISTURBANCES.index("acceleration error")]
+    for pull in (1.0, 0.3):
+        whole = np.array(sample(LAW, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, pull), UNITS))[3]
+        assert wanted(LAW, pull) == pytest.approx(whole[:STATES])
+        assert whole[4] == whole[STATES + DISTURBANCES.index("acceleration error")]
+    assert wanted(LAW)[0] == pytest.approx(wanted(LAW, 0.5)[0] * 2.0)
+
+
+def test_ways_that_are_cut_lose_the_same_share_of_what_goes_and_of_the_mean():
+    """Y+ and the observer's mean of a way that is cut are those of so much less of the rest; not so the center's."""
+    ways = (Way(0.4, 0.6, 0.1, 0.5), Way(1.2, 0.6, 0.2, 0.9))
+    found = cut_to(ways, 0.25)
+    assert found == (*ways, Way(0.1, 0.6, 0.1, 0.125), Way(0.3, 0.6, 0.2, 0.225))
+    # A command error of 1 goes through the valve alone, and counts for as much less.
+    column = STATES + DISTURBANCES.index("command error")
+    whole, cut = (
+        np.array(sample(LAW, (0.9, 0.8, 1.1, each.part, each.late, each.seen, 1.0), UNITS))[:, column]
+        for each in (found[1], found[3])
+    )
+    assert cut[[0, 3]] == pytest.approx(0.25 * whole[[0, 3]])
 
 
 def test_ways_are_those_of_both_signs():

@@ -11,7 +11,7 @@ from wspd_design.certificates.search.slip_band.task import settling
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, lies_in
 from wspd_design.certificates.theorems.slip_band.friction import Parts
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, Loop, Steady, loop_of
-from wspd_design.certificates.theorems.slip_band.proof import Choice, Ellipsoid, ROOM
+from wspd_design.certificates.theorems.slip_band.proof import ROOM, Choice, Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
 from wspd_design.parameters.errors import WspdError
 
@@ -22,7 +22,7 @@ CHOICES = tuple(
 )
 """What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
 BEYOND = tuple(
-    tuple(map(Fraction, each)) for each in (("3/2", "1"), ("3/2", "3/2"), ("2", "1"), ("2", "2"), ("1", "1"))
+    (Fraction(beyond), Fraction(curve)) for beyond, curve in (("3/2", "1"), ("3/2", "3/2"), ("2", "2"))
 )
 """What may be wanted over what the longest pulse does, and predicted over where the braking curve begins."""
 LONG = Fraction(
@@ -188,17 +188,24 @@ def best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) ->
     """
     last = chain.choice
     near = (each for each in CHOICES if each.near == last.near or each.pulse == last.pulse)
+    usual = last._replace(beyond=Fraction(1), curve=Fraction(1))
     tried = dict.fromkeys(
-        sought.in_time(last._replace(pulse=each.pulse, near=each.near)) for each in (last, *near)
+        map(
+            sought.in_time,
+            (last, usual, *(usual._replace(pulse=each.pulse, near=each.near) for each in near)),
+        )
     )
     found = {each: far(sought, cell, window, replace(chain, choice=each), spent) for each in tried}
     least = min(found, key=lambda each: found[each])
-    if found[least] >= 1.0:
-        for beyond, curve in BEYOND:
-            each = least._replace(pulse=Fraction(1), beyond=beyond, curve=curve)
-            if each not in found:
-                found[each] = far(sought, cell, window, replace(chain, choice=each), spent)
-        least = min(found, key=lambda each: found[each])
+    # With limits that leave a share of what is asked there is more room, and less is sure.
+    for beyond, curve in BEYOND:
+        if found[least] < 1.0:
+            break
+        further = least._replace(pulse=Fraction(1), beyond=beyond, curve=curve)
+        found[further] = far(sought, cell, window, replace(chain, choice=further), spent)
+        if found[further] >= found[least]:
+            break
+        least = further
     return least, found[least]
 
 

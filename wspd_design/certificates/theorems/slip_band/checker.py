@@ -25,7 +25,7 @@ from wspd_design.certificates.kernel.arb import Ball, above, least_of, most_of, 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.creep_slope import STEEPNESS
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, Pair, corners, wanted
+from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, Pair, corners
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.friction import Parts
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, Loop, Steady, loop_of
