@@ -197,15 +197,14 @@ def best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) ->
     )
     found = {each: far(sought, cell, window, replace(chain, choice=each), spent) for each in tried}
     least = min(found, key=lambda each: found[each])
-    # With limits that leave a share of what is asked there is more room, and less is sure.
-    for beyond, curve in BEYOND:
-        if found[least] < 1.0:
-            break
-        further = least._replace(pulse=Fraction(1), beyond=beyond, curve=curve)
-        found[further] = far(sought, cell, window, replace(chain, choice=further), spent)
-        if found[further] >= found[least]:
-            break
-        least = further
+    if found[least] >= 1.0:
+        # With limits that leave a share of what is asked there is more room, and less is sure.
+        for beyond, curve in BEYOND:
+            further = least._replace(pulse=Fraction(1), beyond=beyond, curve=curve)
+            found[further] = far(sought, cell, window, replace(chain, choice=further), spent)
+            if found[further] >= found[least]:
+                break
+        least = min(found, key=lambda each: found[each])
     return least, found[least]
 
 
