@@ -180,7 +180,8 @@ def ellipse(size, center, inside, moves=0, drift=0):
     """A ball of this radius about a point on the first axis."""
     matrix = tuple(tuple(Fraction(size) ** 2 * (i == j) for j in range(STATES)) for i in range(STATES))
     numbers = dict.fromkeys(
-        ("pulse", "supply", "alpha", "offset", "longest", "back", "room", "lag"), Fraction(1)
+        ("pulse", "supply", "alpha", "offset", "longest", "back", "room", "lag", "beyond", "curve"),
+        Fraction(1),
     )
     return Ellipsoid(
         **numbers,

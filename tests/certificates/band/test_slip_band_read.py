@@ -13,7 +13,7 @@ from wspd_design.certificates.theorems.slip_band.proof import MOST_CELLS, Ellips
 
 WINDOWS = 2
 TENTH, ONE = Fraction(1, 10), Fraction(1)
-ORDER = ["pulse", "supply", "near", "settled", "shortest", "longest", "back", "room"]
+ORDER = ["pulse", "supply", "near", "settled", "shortest", "longest", "back", "room", "beyond", "curve"]
 """Numbers of an ellipsoid before its matrix, as they are written."""
 
 
@@ -30,6 +30,8 @@ def an_ellipsoid(number):
         longest=Fraction(1, 4),
         back=Fraction(3, 8),
         room=next(each),
+        beyond=1 + next(each),
+        curve=1 + next(each),
         matrix=tuple(tuple(entries[max(i, j), min(i, j)] for j in range(STATES)) for i in range(STATES)),
         center=tuple(next(each) for _ in range(STATES)),
         drift=next(each),
@@ -131,6 +133,7 @@ PULSES = "from 0 to the longest one"
         *(("longest", value, PULSES) for value in ("12/100", "51/100")),
         *(("back", value, PULSES) for value in ("0", "-1/100", "51/100")),
         *(("room", value, "above the cylinder must be above 0") for value in ("0", "-1")),
+        *((name, "999/1000", "1 or more times its limit") for name in ("beyond", "curve")),
     ],
 )
 def test_number_of_an_ellipsoid_beyond_its_range_is_refused(written, name, value, reason):
