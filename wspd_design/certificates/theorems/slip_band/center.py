@@ -17,9 +17,11 @@ from wspd_design.certificates.setting.slip_loop import (
     wanted,
     ways_about,
 )
+from wspd_design.certificates.theorems.slip_band.limits import Limit, in_time
 from wspd_design.certificates.theorems.slip_band.loop import Loop
-from wspd_design.certificates.theorems.slip_band.pulses import Limit, Pulses, Row, in_time, loop_law
+from wspd_design.certificates.theorems.slip_band.pulses import Pulses, loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
+from wspd_design.certificates.theorems.slip_band.wants import Row
 from wspd_design.model.generated.slip_loop import share_after, share_left
 
 LEVEL = 1e-9  # growth of errors over a sample that counts as none

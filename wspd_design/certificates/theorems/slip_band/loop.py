@@ -16,15 +16,13 @@ from wspd_design.certificates.kernel.arb import (
     below,
     ends_of,
     hull_of,
-    least_of,
     most_of,
     point,
 )
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.creep_slope import bend, fading_beside, steepness_of
-from wspd_design.certificates.setting.declared_law import LEAST
-from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, Way, latest_share, wanted
+from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, Way, latest_share
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
     Parts,
@@ -36,17 +34,9 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     slope_at,
 )
 from wspd_design.certificates.theorems.slip_band.lag import Fading, lag_of
+from wspd_design.certificates.theorems.slip_band.limits import Limit, below_curve, in_time, room_left
 from wspd_design.certificates.theorems.slip_band.proof import Choice
-from wspd_design.certificates.theorems.slip_band.pulses import (
-    Limit,
-    Pulses,
-    Row,
-    Wants,
-    in_time,
-    loop_law,
-    pulses_of,
-    seen_of,
-)
+from wspd_design.certificates.theorems.slip_band.pulses import Pulses, loop_law, pulses_of, seen_of
 from wspd_design.certificates.theorems.slip_band.reference import held_in
 from wspd_design.certificates.theorems.slip_band.statement import (
     JERK_FACTORS,
@@ -55,7 +45,8 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     Cell,
     fastest_loss,
 )
-from wspd_design.model.generated.slip_loop import added_by_supply, lateness, share_left
+from wspd_design.certificates.theorems.slip_band.wants import Curve, Wants, curve_of, dead_band_of, wants_of
+from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
 from wspd_design.parameters.bounds import Bounds
 from wspd_design.parameters.loading import constants
@@ -91,24 +82,6 @@ class Steady(NamedTuple):
     def away(self, drift: Ball) -> Ball:
         """Return the largest distance of the drift from one [rad/s]."""
         return most_of([abs(self.low - drift), abs(self.high - drift)])
-
-
-class Curve(NamedTuple):
-    """Braking curve of the law."""
-
-    error: Ball  # rad/s, predicted one at which it begins
-    times: Ball  # -, of that, that is predicted at most
-    beside: Pair  # rad/s, of the predicted error beside that of the state
-
-    @property
-    def left(self) -> Ball:
-        """Pull at the largest predicted error, over that at the beginning of the curve."""
-        return (2 * self.times - 1).sqrt()
-
-    def predicted(self, law: BandLaw) -> Row:
-        """Return the row that gives the predicted error from the state."""
-        ahead = point(law.ahead)
-        return point(1), point(0), ahead, -ahead, ahead
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -268,7 +241,7 @@ def loop_of(
     dead_band = (
         h
         / point(law.inertia)
-        * _dead_band(law, slip * (speed + point(conditions.noise)) / radius)
+        * dead_band_of(law, slip * (speed + point(conditions.noise)) / radius)
         * ball(Fraction(-1), Fraction(1))
     )
     uneven = sliding * most_of([(high * h).exp() - 1, 1 - (low * h).exp(), point(0)])
@@ -290,16 +263,9 @@ def loop_of(
     pulses = pulses_of(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
     late = point(0).union(latest_share(high * h, point(pulse), point(conditions.delay), added))
     seen = seen_of(law, pulse)
-    curve = _curve(law, choice, known, misread + apart)
-    beyond = point(choice.beyond)
-    wants = tuple(
-        _wants(law, pull, known, misread + apart)
-        for pull in (
-            point(1),
-            *(() if curve is None or choice.curve == 1 else (share_left(curve.left, curve.times, 0),)),
-        )
-    )
-    limits = _limits(law, choice, conditions.supply, held, turned * slowing)
+    curve = curve_of(law, choice, known, misread + apart)
+    wants, beyond = wants_of(law, curve, known, misread + apart), point(choice.beyond)
+    limits = room_left(law, choice, conditions.supply, held, turned * slowing)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
@@ -315,7 +281,7 @@ def loop_of(
         disturbances=tuple(map(ends_of, disturbed)),
         steady=steady,
         within=tuple(in_time(each, point(pulse), one, beyond) for each in pulses for one in wants),
-        others=(*_below(law, curve), *limits),
+        others=(*below_curve(law, curve), *limits),
         widest=_errors(reached(choice.near), slowest / widest_radius),
         settled=choice.settled,
         settles=_errors((FADINGS[0][0], FADINGS[-1][1]), slowest / widest_radius),
@@ -345,58 +311,6 @@ def _errors(strip: Strip, turning: Ball) -> Pair:
     return low * turning, high * turning
 
 
-def _limits(
-    law: BandLaw,
-    choice: Choice,
-    supply: Fraction,
-    held: Ball,
-    falling: Ball,
-) -> tuple[Limit, ...]:
-    """Return what keeps the state where the law is the written one, and torque and room are left.
-
-    Parameters
-    ----------
-    law : BandLaw
-        Its numbers.
-    choice : Choice
-        Longest pulse, and the error that errors are counted from.
-    supply : Fraction
-        Least share of the full pressure.
-    held : ball
-        Torque that holds the reference, over the inertia of the law [rad/s2].
-    falling : ball
-        Deceleration of the reference [rad/s2].
-    """
-    h = point(law.sample_time)
-    least_held, most_held = ends_of(h * held)
-    full = h * point(law.full_torque) / point(law.inertia)
-    least, room = point(LEAST) * full, point(supply) * full - most_held
-    venting, filling = (-h * point(choice.pulse) / point(each) for each in (law.vent_time, law.fill_time))
-    zero = point(0)
-    return (
-        Limit(
-            what="the observed friction above 0",
-            row=(zero, zero, point(-1), zero, zero),
-            bound=least_held - ends_of(h * falling)[1],
-        ),
-        Limit(
-            what="the torque that is left",
-            row=(zero, zero, zero, point(-1), zero),
-            bound=least_held - least / venting.exp(),
-        ),
-        Limit(
-            what="the torque that the brake can add",
-            row=(zero, zero, zero, point(1), zero),
-            bound=room - least / filling.exp(),
-        ),
-        Limit(
-            what="the room that a rising supply asks for",
-            row=(zero, zero, zero, point(1), zero),
-            bound=room - point(choice.room) * (1 - point(supply)) * full,
-        ),
-    )
-
-
 def _added(problem: Problem, law: BandLaw, fill: Ball, choice: Choice, conditions: Conditions) -> Ball:
     """Return what a rising supply adds to a way that fills, over the way."""
     if conditions.supply == 1:
@@ -409,52 +323,6 @@ def _added(problem: Problem, law: BandLaw, fill: Ball, choice: Choice, condition
         rate, fastest, h, point(choice.pulse), point(conditions.delay), point(choice.room)
     )
     return ends_of(added)[1]
-
-
-def _wants(law: BandLaw, pull: Ball, known: Ball, misread: Ball) -> Wants:
-    """Return what the law wants for a pull over k e.
-
-    Parameters
-    ----------
-    law : BandLaw
-        Its numbers.
-    pull : ball
-        Share of k e.
-    known : ball
-        Error of the acceleration of the reference in the law, beside the lag of its filter, times h [rad/s].
-    misread : ball
-        Error of the error of the wheel speed in the law, that from which errors are counted among it [rad/s].
-    """
-    asked = wanted(loop_law(law), pull)
-    return Wants(asked, ends_of(asked[4] * known + asked[0] * misread))
-
-
-def _curve(law: BandLaw, choice: Choice, known: Ball, misread: Ball) -> Curve | None:
-    """Return the braking curve of the law; the rest as :func:`_wants`."""
-    if law.torque_slew is None:
-        return None
-    begins = point(law.torque_slew) / point(law.inertia) / point(law.approach_rate) ** 2
-    return Curve(begins, point(choice.curve), ends_of(misread + point(law.ahead) * known))
-
-
-def _below(law: BandLaw, curve: Curve | None) -> tuple[Limit, ...]:
-    """Keep the predicted error within some times that at which the braking curve begins."""
-    if curve is None:
-        return ()
-    return (
-        Limit(
-            what="the beginning of the braking curve" if curve.times == 1 else "errors on the braking curve",
-            row=curve.predicted(law),
-            bound=curve.times * curve.error - curve.beside[1],
-        ),
-    )
-
-
-def _dead_band(law: BandLaw, sliding: Ball) -> Ball:
-    """Largest wanted change of the torque that the law leaves out [N m]."""
-    narrowed = point(law.dead_band_share) * sliding * point(law.inertia) * point(law.approach_rate)
-    shortest = -point(law.least_pulse) / point(min(law.fill_time, law.vent_time))
-    return most_of([least_of([point(law.dead_band), narrowed]), -point(law.full_torque) * shortest.expm1()])
 
 
 def _resistance(problem: Problem, speed: Ball, order: int = 0) -> Ball:

@@ -2,29 +2,10 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import NamedTuple, TypeAlias
 
 from wspd_design.certificates.kernel.arb import Ball, ends_of, hull_of, point
 from wspd_design.certificates.setting.slip_loop import LoopLaw, Pair, parts_of
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
-
-Row: TypeAlias = tuple[Ball, ...]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limit:
-    """A linear function of the state and what it must not exceed."""
-
-    what: str
-    row: Row
-    bound: Ball
-
-
-class Wants(NamedTuple):
-    """What the law wants of the torque, for a pull over k e."""
-
-    row: Row
-    beside: Pair  # rad/s, what it wants beside what the state asks for
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,21 +67,6 @@ def pulses_of(
             rises=-1,
         ),
         Pulses(parts=ends_of(venting), speedups=speedups[1], time=vent, height=ends_of(h * held), rises=1),
-    )
-
-
-def in_time(pulses: Pulses, longest: Ball, wants: Wants, times: Ball) -> Limit:
-    """Keep what is wanted within some times what pulses of a length over the sample time do."""
-    asked, beside, part = *wants, times * pulses.part(longest)
-    ways = tuple(each + (part - 1) * (k == 3) for k, each in enumerate(asked))
-    if pulses.rises < 0:
-        return Limit(
-            what="what filling adds in its longest pulse", row=ways, bound=part * pulses.height[0] - beside[1]
-        )
-    return Limit(
-        what="what venting takes off in its longest pulse",
-        row=tuple(-each for each in ways),
-        bound=part * pulses.height[0] + beside[0],
     )
 
 
