@@ -13,7 +13,7 @@ from wspd_design.controllers.protocol import Command
 from wspd_design.controllers.valve_inversion import ValveInversion
 from wspd_design.parameters.loading import load_rail
 from wspd_design.simulation.metrics import metrics
-from wspd_design.simulation.records import Fault, Scenario
+from wspd_design.simulation.records import Fault, Scenario, Sensing
 from wspd_design.simulation.stop import simulate
 
 RAILS = ("polach-dry", "polach-wet", "eurosprinter127", "low-adhesion")
@@ -58,6 +58,32 @@ def test_a_lost_speed_sensor_locks_no_wheel(er24pc, axle):
         found = judged(er24pc, law, rail, faults=(fault,))
         assert found.slip_max < 0.2
         assert found.efficiency > 0.85
+
+
+@pytest.mark.parametrize(
+    ("rail", "dead_band", "exact", "noisy"),
+    [
+        ("polach-wet", 0.0, 1371, 1347),
+        ("polach-wet", 60.0, 546, 1257),
+        ("polach-wet", 1800.0, 56, 96),
+        ("low-adhesion", 0.0, 4307, 3258),
+        ("low-adhesion", 60.0, 298, 3013),
+        ("low-adhesion", 1800.0, 84, 273),
+    ],
+)
+def test_a_small_dead_band_spares_switches_of_exact_speeds_and_a_large_one_those_of_noise(
+    er24pc, rail, dead_band, exact, noisy
+):
+    """The figures of docs/vehicle-laws.md; no stop is shorter or longer by it."""
+    law = protection(er24pc, rail=rail, reference="constant")
+    tracking = replace(law.core.tracking, dead_band=dead_band)
+    law = replace(law, core=replace(law.core, tracking=tracking))
+    for noise, switches in ((0.0, exact), (0.02, noisy)):
+        found = judged(er24pc, law, rail, sensing=Sensing(speed_noise=noise))
+        assert found.valve_switches == pytest.approx(switches, rel=0.05)
+        assert found.efficiency == pytest.approx(
+            {"polach-wet": 0.951, "low-adhesion": 0.958}[rail], abs=0.002
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
