@@ -15,9 +15,10 @@ from wspd_design.certificates.kernel.finding import Effort
 from wspd_design.certificates.records import Role, Status
 from wspd_design.certificates.replay import replay
 from wspd_design.certificates.search.slip_band import search
-from wspd_design.certificates.theorems.band import CELLS
+from wspd_design.certificates.search.slip_band.chain import OutOfBudget, Sought, Spent, begun
+from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, contact_held
 from wspd_design.certificates.theorems.slip_band.attempt import attempt_of, cells_of, effort_of
-from wspd_design.certificates.theorems.slip_band.statement import box_of
+from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of
 
 pytestmark = pytest.mark.slow
 FAILING = Fraction(7, 8)  # share that has no ellipsoids in the planted search
@@ -48,6 +49,40 @@ def planted(problem):
         patch.setattr(slip_band, "_reserved", lambda _: slip_band.Stated())
         patch.setattr(slip_band, "_departure", lambda _: slip_band.Stated())
         return certificate_of(problem)
+
+
+@pytest.mark.parametrize(("closed", "most"), [(0.0, 10), (0.2, 10), (0.5, 20), (1.0, 40)])
+def test_more_is_sought_the_more_of_the_box_has_closed(closed, most):
+    spent = Spent(10)
+    spent.closed = closed
+    for _ in range(most):
+        spent.one(0)
+    with pytest.raises(OutOfBudget):
+        spent.one(0)
+
+
+def test_half_of_a_cell_counts_for_half_of_it(problem, monkeypatch):
+    """A planted search that halves the box, then its first half, and finds ellipsoids in what is left."""
+    spent, seen = Spent(), []
+    left = iter((1, 1, -1, -1, -1))
+
+    def chain(*_):
+        seen.append(spent.closed)
+        return begun(sought, cell)
+
+    _, friction = slip_band.bounded_friction(problem, SLIP_BAND.obligations(problem))
+    law, cell = law_of(problem.controller), box_of(problem, Fraction(1))
+    sought = Sought(
+        problem=contact_held(problem), law=law, friction=friction, conditions=search.exactly(problem, law)
+    )
+    monkeypatch.setattr(search, "_chain", chain)
+    monkeypatch.setattr(search, "left_of", lambda *_: next(left))
+    monkeypatch.setattr(search, "_middle_has", lambda *_: True)
+    monkeypatch.setattr(search, "_letter", lambda *_: "m")
+    found = search.cover(sought, Fraction(1), spent)
+    assert found.steps == "mm..."
+    assert seen == [0.0, 0.0, 0.0, 0.25, 0.5]
+    assert spent.closed == 1.0
 
 
 def failed(shown):

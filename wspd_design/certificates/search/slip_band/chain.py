@@ -28,6 +28,7 @@ BEYOND = tuple(
 LONG = Fraction(
     45, 4
 )  # 1/s, room for a long sample over its time: ten times what a supply of 1.125 1/s may rise by
+LONGER = 4.0  # times as many ellipsoids may be sought for a box that is about to close
 FIRST, WIDEST = Choice(Fraction(1, 2), 1), Choice(Fraction(1, 2), 0)
 
 
@@ -36,17 +37,21 @@ class OutOfBudget(WspdError):
 
 
 class Spent:
-    """Ellipsoids that were sought, how many may be, and how far those that were looked at go to their limits."""
+    """Ellipsoids that were sought, how many may be, and how far those that were looked at go to their limits.
+
+    More may be sought the more of the box has closed, up to :data:`LONGER` times as many.
+    """
 
     def __init__(self, most: float = math.inf) -> None:
         self.most, self.count = most, 0
+        self.closed = 0.0  # share of the box, each half of a cell counting as half of it
         self.window = 0  # in which one was sought last
         self.known: dict[object, float] = {}
 
     def one(self, window: int) -> None:
         """Count one more in a window, or end the search."""
         self.count, self.window = self.count + 1, window
-        if self.count > self.most:
+        if self.count > self.most * max(1.0, LONGER * self.closed):
             raise OutOfBudget
 
 

@@ -41,16 +41,17 @@ MATTERS = {"m": 1.0, "i": 1.0, "r": 2.0, "u": 1.0, "t": 1.0, "f": 0.3, "v": 0.3}
 
 def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Attempt:
     """Find ellipsoids for a share of each range of the box, around its nominal value."""
-    waiting: list[tuple[Cell, Chain | None]] = [(box_of(sought.problem, share), None)]
+    waiting: list[tuple[Cell, Chain | None, float]] = [(box_of(sought.problem, share), None, 1.0)]
     cells: list[tuple[Ellipsoid | None, ...]] = []
     steps = ""
     try:
         while waiting:
-            cell, inherited = waiting.pop()
+            cell, inherited, part = waiting.pop()
             chain = _chain(sought, cell, inherited, spent)
             window = left_of(sought, chain)
             if window < 0:
                 steps, cells = f"{steps}.", [*cells, chain.ellipsoids[::-1]]
+                spent.closed += part
                 continue
             anew = begun(sought, cell, chain.choice)
             anew = replace(anew, choice=best(sought, cell, window, anew, spent)[0])
@@ -60,7 +61,7 @@ def cover(sought: Sought, share: Fraction, spent: Spent) -> Proof | Attempt:
             if letter is None:
                 return Attempt(share=share, steps=steps, window=window, tried=spent.count, cut=False)
             steps += letter
-            waiting += [(half, chain) for half in halved(cell, letter)[::-1]]
+            waiting += [(half, chain, part / 2.0) for half in halved(cell, letter)[::-1]]
     except OutOfBudget:
         return Attempt(share=share, steps=steps, window=spent.window, tried=spent.count, cut=True)
     return proof_of(sought, share, steps, cells)
