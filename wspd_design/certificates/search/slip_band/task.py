@@ -63,7 +63,6 @@ def task_of(
 ) -> Task | None:
     """Set the inequalities up; None if the center is beyond a limit or the loop does not contract so much."""
     import numpy as np
-    from scipy.linalg import solve_discrete_lyapunov
 
     ends = np.array([[float(end.mid()) for end in each] for each in loop.disturbances])
     spread = (ends[:, 1] - ends[:, 0]) / 2.0
@@ -72,59 +71,79 @@ def task_of(
     state, disturbed = maps[:, :, :STATES], maps[:, :, STATES:]
     mean, at = state.mean(axis=0), np.array(center, dtype=float)
     offset = at_center[:, :, :STATES] @ at - at + at_center[:, :, STATES:] @ _middle(loop)
-    columns = [offset[:, :, None], disturbed[:, :, used] * spread[list(used)]]
-    drift = _drift(loop)
-    far, change = (
-        float(each.mid()) for each in (loop.steady.away(point(drift)), spread_of(loop.steady.change))
-    )
-    moves = np.zeros(STATES)
-    if far > 0.0:
-        # The center goes to where the loop settles with another drift.
-        drifted = disturbed @ _drifting(loop)
-        moves = np.array(
-            [float(short(x)) for x in np.linalg.solve(np.eye(STATES) - mean, drifted.mean(axis=0))]
-        )
-        columns[0] = columns[0] - (moves * float(loop.steady.rise.mid()))[:, None]
-        left = state @ moves + drifted - moves
-        columns += [left[:, :, None] * far, np.broadcast_to(moves * change, left.shape)[:, :, None]]
+    moves, drifting_columns = _moving(loop, state, disturbed)
+    offset = offset - moves * float(loop.steady.rise.mid())
+    columns = [offset[:, :, None], disturbed[:, :, used] * spread[list(used)], *drifting_columns]
     added = np.concatenate(columns, axis=2)
-    reaching = [np.array([float(each.mid()) for each in limit.row]) for limit in loop.limits]
-    # The error, between samples nearly the same.
-    reaching += [np.eye(STATES)[0], -np.eye(STATES)[0]]
-    bounds = [
-        *(float(limit.bound.mid()) for limit in loop.limits),
-        *(
-            float(sign * (end - point(loop.settled)).mid())
-            for sign, end in zip((1, -1), loop.widest[::-1], strict=True)
-        ),
-    ]
-    rooms = [
-        bound - float(row @ at) - far * abs(float(row @ moves))
-        for row, bound in zip(reaching, bounds, strict=True)
-    ]
+    limits = _limits(loop, at, moves)
     contracting = max(abs(np.linalg.eigvals(mean))) ** 2 < kept
-    if min(rooms) <= 0.0 or not contracting:
+    if min(room for _, room in limits) <= 0.0 or not contracting:
         return None
-    # Coordinates in which what disturbs spreads alike in all directions.
-    stirred = np.einsum("nik,njk->ij", added, added) / len(added) + 1e-12 * np.eye(STATES)
-    spreads = solve_discrete_lyapunov(mean / kept**0.5, stirred)
-    basis = np.linalg.cholesky((spreads + spreads.T) / 2.0) / (1.0 - kept) ** 0.5
-    rows = [row @ basis for row in reaching]
-    widest = max(float(np.linalg.norm(row)) / room for row, room in zip(rows, rooms, strict=True))
-    basis = basis * max(1.0, SPREAD / widest)
+    basis = _basis(mean, added, limits, kept)
     back = np.linalg.inv(basis)
     return Task(
         maps=np.concatenate([back @ state @ basis, back @ added], axis=2),
         center=at,
-        drift=drift,
+        drift=_drift(loop),
         moves=moves,
         steady=loop.steady,
         lengths=lengths,
         basis=basis,
-        limits=tuple((row @ basis, room) for row, room in zip(reaching, rooms, strict=True)),
+        limits=tuple((row @ basis, room) for row, room in limits),
         used=used,
         kept=kept,
     )
+
+
+def _away(loop: Loop) -> float:
+    """Largest distance of the steady drift from the one that the center is for."""
+    return float(loop.steady.away(point(_drift(loop))).mid())
+
+
+def _moving(loop: Loop, state: "Array", disturbed: "Array") -> "tuple[Array, list[Array]]":
+    """Return how the center moves with the steady drift, and the columns that it and its change add, if there is one.
+
+    The center goes to where the loop settles with another drift.
+    """
+    import numpy as np
+
+    far, change = _away(loop), float(spread_of(loop.steady.change).mid())
+    if far <= 0.0:
+        return np.zeros(STATES), []
+    drifted, mean = disturbed @ _drifting(loop), state.mean(axis=0)
+    settles = np.linalg.solve(np.eye(STATES) - mean, drifted.mean(axis=0))
+    moves = np.array([float(short(x)) for x in settles])
+    left = state @ moves + drifted - moves
+    return moves, [left[:, :, None] * far, np.broadcast_to(moves * change, left.shape)[:, :, None]]
+
+
+def _limits(loop: Loop, at: "Array", moves: "Array") -> "list[tuple[Array, float]]":
+    """Rows of the limits and of the error, which between samples is nearly the same, with what they leave."""
+    import numpy as np
+
+    error = np.eye(STATES)[0]
+    reaching = [
+        *((np.array([float(each.mid()) for each in row.row]), float(row.bound.mid())) for row in loop.limits),
+        *(
+            (sign * error, float(sign * (end - point(loop.settled)).mid()))
+            for sign, end in zip((1, -1), loop.widest[::-1], strict=True)
+        ),
+    ]
+    far = _away(loop)
+    return [(row, bound - float(row @ at) - far * abs(float(row @ moves))) for row, bound in reaching]
+
+
+def _basis(mean: "Array", added: "Array", limits: "Sequence[tuple[Array, float]]", kept: float) -> "Array":
+    """Coordinates in which what disturbs spreads alike in all directions."""
+    import numpy as np
+    from scipy.linalg import solve_discrete_lyapunov
+
+    stirred = np.einsum("nik,njk->ij", added, added) / len(added) + 1e-12 * np.eye(STATES)
+    spreads = solve_discrete_lyapunov(mean / kept**0.5, stirred)
+    basis = np.linalg.cholesky((spreads + spreads.T) / 2.0) / (1.0 - kept) ** 0.5
+    widest = max(float(np.linalg.norm(row @ basis)) / room for row, room in limits)
+    found: Array = basis * max(1.0, SPREAD / widest)
+    return found
 
 
 def settling(law: BandLaw, loops: Callable[[Fraction], Loop]) -> Fraction:

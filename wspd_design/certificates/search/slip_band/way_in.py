@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.plant import plant_with
@@ -45,6 +45,15 @@ LATER = {False: 0.3, True: 1.5}  # s, what is followed from there, and at most u
 STEPS = 8  # strips between two stops that tell how long they are followed
 SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does
+
+
+class Wanted(NamedTuple):
+    """A row that is to be covered by strips."""
+
+    friction: tuple[float, float]  # -
+    supply: tuple[float, float]  # 1/s
+    powers: Powers
+    later: float  # s, that strips are followed for after they have come to the reference
 
 
 def powers_of(problem: Problem, law: Protection, share: float) -> dict[tuple[float, float], Powers]:
@@ -97,19 +106,21 @@ def plan(
         Of the range of the friction about its nominal value.
     """
     most, (low, high) = MOST * effort, _friction(problem, share)
+    later = LATER[asked is not None]
+    wanted = [Wanted((low, high), row, powers[row], later) for row in powers]
     tried = [
-        (row, half) for row in powers for half in HALVES if _number(high / low, row[1] / row[0], half) <= most
+        (each, half)
+        for each in wanted
+        for half in HALVES
+        if _number(high / low, each.supply[1] / each.supply[0], half) <= most
     ]
-    strips = [
-        _tried(problem, law, (low, high), row, half, powers[row], asked is not None) for row, half in tried
-    ]
-    found = courses(problem, law, strips, asked)
+    found = courses(problem, law, [_tried(problem, law, each, half) for each, half in tried], asked)
     rows: list[Row] = []
-    for row in powers:
-        held = [half for (at, half), there in zip(tried, found.there, strict=True) if at == row and there]
+    for each in wanted:
+        held = [half for (one, half), there in zip(tried, found.there, strict=True) if one is each and there]
         if not held:
             return None
-        rows.append(_row(problem, law, (low, high), row, held[0], powers[row], asked is not None))
+        rows.append(_row(problem, law, each, held[0]))
         if len(strips_of(rows)) > most:
             return None
     return tuple(rows)
@@ -121,49 +132,33 @@ def _number(friction: float, supply: float, half: float) -> float:
     return pieces * math.log(supply) / (WIDTH * half)
 
 
-def _tried(
-    problem: Problem,
-    law: Protection,
-    friction: tuple[float, float],
-    row: tuple[float, float],
-    half: float,
-    powers: Powers,
-    settled: bool,
-) -> Strip:
+def _tried(problem: Problem, law: Protection, wanted: Wanted, half: float) -> Strip:
     """Return a strip at the slow end of a row and the highest friction, wider than it has to be."""
-    low, high = friction
+    low, high = wanted.friction
     piece = (low, high)
     if math.log(high / low) > 2.0 * half:
         piece = (high * math.exp(-2.0 * half * MARGIN), high)
-    alone = _whole(problem, piece, row, powers)
-    slowest = row[0] - tilt(problem, alone)
+    alone = _whole(problem, piece, wanted.supply, wanted.powers)
+    slowest = wanted.supply[0] - tilt(problem, alone)
     alone = replace(alone, borders=(slowest, slowest * math.exp(WIDTH * half * MARGIN)))
-    return Strip(replace(alone, samples=_samples(problem, law, alone, LATER[settled])), 0)
+    return Strip(replace(alone, samples=_samples(problem, law, alone, wanted.later)), 0)
 
 
-def _row(
-    problem: Problem,
-    law: Protection,
-    friction: tuple[float, float],
-    row: tuple[float, float],
-    half: float,
-    powers: Powers,
-    settled: bool,
-) -> Row:
+def _row(problem: Problem, law: Protection, wanted: Wanted, half: float) -> Row:
     """Divide the friction into pieces, and each piece into strips of the supply rates of a row."""
-    (low, high), (slowest, fastest) = friction, row
+    (low, high), (slowest, fastest) = wanted.friction, wanted.supply
     count = max(1, math.ceil(math.log(high / low) / (2.0 * half)))
     edges = [low * (high / low) ** (k / count) for k in range(count)] + [high]
     found = []
     for ends in pairwise(edges):
-        alone = _whole(problem, ends, row, powers)
+        alone = _whole(problem, ends, wanted.supply, wanted.powers)
         shift = tilt(problem, alone) * (1.0 + 1e-9) + 1e-9 * slowest
         first, last = slowest - shift, fastest + shift
         number = max(1, math.ceil(math.log(last / first) / (WIDTH * half)))
         borders = tuple(first * (last / first) ** (k / number) for k in range(number + 1))
         piece = replace(alone, borders=borders, samples=(1,) * number)
-        found.append(replace(piece, samples=_samples(problem, law, piece, LATER[settled])))
-    return Row(supply=row, pieces=tuple(found))
+        found.append(replace(piece, samples=_samples(problem, law, piece, wanted.later)))
+    return Row(supply=wanted.supply, pieces=tuple(found))
 
 
 def _stop(
