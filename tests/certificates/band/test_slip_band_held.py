@@ -22,12 +22,13 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
     NAMES,
     PARTS,
+    SLOPES,
     Friction,
     fading_at,
     slope_at,
     strip_of,
 )
-from wspd_design.certificates.theorems.slip_band.reference import held_in, slips_held
+from wspd_design.certificates.theorems.slip_band.reference import held_in, slips_beside, slips_held
 from wspd_design.certificates.theorems.slip_band.statement import law_of, windows_of
 from wspd_design.controllers.references import ConstantSlip
 
@@ -149,3 +150,18 @@ def test_courses_of_wheels_that_may_turn_faster_than_the_train_are_refused(falli
         assert all(map(math.isfinite, enclosed(there, 0.02, (0.14, 0.15))))
         with pytest.raises(Refused, match="faster than the train"):
             enclosed(there, 0.02, (0.14, 0.17))
+
+
+@pytest.mark.parametrize("slip", [0.14, 0.02])
+def test_slips_of_a_strip_are_rounded_outwards(slip):
+    """Against exact fractions, also where wheels turn faster than the train."""
+    law = replace(law_of(falling_problem(WET, 0.5).controller), slip=Fraction(slip), falls=False)
+    window, slowest, radius = (2.7, 3.3), 10.0 / 3.6, (Fraction(11, 20),) * 2
+    for strip in SLOPES:
+        exact = [law.slip - end * Fraction(slowest) / Fraction(speed) for end in strip for speed in window]
+        sizes = [abs(each) for each in exact]
+        least = 0 if min(exact) < 0 < max(exact) else min(sizes)
+        low, high = slips_beside(law, window, radius, slowest, strip)
+        assert low <= least
+        assert high >= max(sizes)
+        assert (low, high) == pytest.approx((float(least), float(max(sizes))), rel=1e-15)

@@ -8,6 +8,7 @@ does where the train speed that it is told is wrong.
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 
 from wspd_design.certificates.kernel.arb import Ball, above, ball, below, point
 from wspd_design.certificates.theorems.slip_band.friction import Strip
@@ -55,10 +56,10 @@ def slips_beside(law: BandLaw, window: Ends, radius: Interval, slowest: float, s
 
     A wheel that turns faster than the train has the slope and the fading of one that slides as much the other way.
     """
-    low, high = slips_held(law, window, radius)
-    beside = [float(end) * slowest / speed for end in strip for speed in window]
+    low, high = map(Fraction, slips_held(law, window, radius))
+    beside = [end * Fraction(slowest) / Fraction(speed) for end in strip for speed in window]
     least, most = low - max(beside), high - min(beside)
-    return max(least, -most, 0.0), max(most, -least)
+    return max(below(point(max(least, -most))), 0.0), above(point(max(most, -least)))
 
 
 def slip_at(law: BandLaw, speed: float, radius: float) -> float:
