@@ -123,7 +123,10 @@ def _limits(loop: Loop, at: "Array", moves: "Array") -> "list[tuple[Array, float
 
     error = np.eye(STATES)[0]
     reaching = [
-        *((np.array([float(each.mid()) for each in row.row]), float(row.bound.mid())) for row in loop.limits),
+        *(
+            (np.array([float(each.mid()) for each in limit.row]), float(limit.bound.mid()))
+            for limit in loop.limits
+        ),
         *(
             (sign * error, float(sign * (end - point(loop.settled)).mid()))
             for sign, end in zip((1, -1), loop.widest[::-1], strict=True)

@@ -47,7 +47,7 @@ SLIDING = 0.6  # of the reference, where wheels of a strip have the same slip
 CHANGE = 0.01  # relative, by which a number is changed to see what it does
 
 
-class Wanted(NamedTuple):
+class WantedRow(NamedTuple):
     """A row that is to be covered by strips."""
 
     friction: tuple[float, float]  # -
@@ -107,7 +107,7 @@ def plan(
     """
     most, (low, high) = MOST * effort, _friction(problem, share)
     later = LATER[asked is not None]
-    wanted = [Wanted((low, high), row, powers[row], later) for row in powers]
+    wanted = [WantedRow((low, high), row, powers[row], later) for row in powers]
     tried = [
         (each, half)
         for each in wanted
@@ -132,7 +132,7 @@ def _number(friction: float, supply: float, half: float) -> float:
     return pieces * math.log(supply) / (WIDTH * half)
 
 
-def _tried(problem: Problem, law: Protection, wanted: Wanted, half: float) -> Strip:
+def _tried(problem: Problem, law: Protection, wanted: WantedRow, half: float) -> Strip:
     """Return a strip at the slow end of a row and the highest friction, wider than it has to be."""
     low, high = wanted.friction
     piece = (low, high)
@@ -144,7 +144,7 @@ def _tried(problem: Problem, law: Protection, wanted: Wanted, half: float) -> St
     return Strip(replace(alone, samples=_samples(problem, law, alone, wanted.later)), 0)
 
 
-def _row(problem: Problem, law: Protection, wanted: Wanted, half: float) -> Row:
+def _row(problem: Problem, law: Protection, wanted: WantedRow, half: float) -> Row:
     """Divide the friction into pieces, and each piece into strips of the supply rates of a row."""
     (low, high), (slowest, fastest) = wanted.friction, wanted.supply
     count = max(1, math.ceil(math.log(high / low) / (2.0 * half)))
