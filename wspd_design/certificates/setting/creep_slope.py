@@ -66,18 +66,8 @@ def steepness_of(problem: Problem) -> Ends:
         return _doubles(_steepness(problem))
 
 
-def slope_claim(
-    problem: Problem,
-    slips: Ends,
-    relation: Relation,
-    bound: Fraction,
-    *,
-    steepness: Ends | None = None,
-) -> Claim:
-    """Claim that -S stays on one side of a bound [s/m], for all slips of a range and all numbers of the domain.
-
-    With a range of :func:`steepness_of`, for those numbers whose steepness lies in it.
-    """
+def slope_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
+    """Claim that -S stays on one side of a bound [s/m], for all slips of a range and all numbers of the domain."""
 
     def expression(x: Values) -> Number:
         return slip_dynamics(*_normal(problem, x), 1.0, x[SLIDING], deceleration=0.0).pole
@@ -86,17 +76,10 @@ def slope_claim(
         return forces(*_normal(problem, x), 1.0, x[SLIDING], deceleration=0.0).pole
 
     name = "slope of the creep force over mu0 Q v, falling"
-    return _claim(problem, slips, name, expression, relation, bound, "s/m", steepness, form=arranged)
+    return _claim(problem, slips, name, expression, relation, bound, "s/m", form=arranged)
 
 
-def level_claim(
-    problem: Problem,
-    slips: Ends,
-    relation: Relation,
-    bound: Fraction,
-    *,
-    steepness: Ends | None = None,
-) -> Claim:
+def level_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
     """Claim that the creep force over mu0 Q stays on one side of a bound [-]; the rest as in :func:`slope_claim`."""
 
     def expression(x: Values) -> Number:
@@ -104,17 +87,10 @@ def level_claim(
         force = slip_dynamics(vehicle, rail, 1.0, x[SLIDING], deceleration=0.0).creep_force
         return force / static_wheel_load(vehicle)
 
-    return _claim(problem, slips, "creep force over mu0 Q", expression, relation, bound, "-", steepness)
+    return _claim(problem, slips, "creep force over mu0 Q", expression, relation, bound, "-")
 
 
-def fading_claim(
-    problem: Problem,
-    slips: Ends,
-    relation: Relation,
-    bound: Fraction,
-    *,
-    steepness: Ends | None = None,
-) -> Claim:
+def fading_claim(problem: Problem, slips: Ends, relation: Relation, bound: Fraction) -> Claim:
     """Claim a bound on how the creep force over mu0 Q changes with the sliding speed at a fixed slip [s/m]."""
 
     def expression(x: Values) -> Number:
@@ -126,7 +102,15 @@ def fading_claim(
         return creep_force_speed_derivative(1.0, x[SLIDING], load, *friction, *reductions, stiffness) / load
 
     name = "change of the creep force over mu0 Q with the sliding speed"
-    return _claim(problem, slips, name, expression, relation, bound, "s/m", steepness)
+    return _claim(problem, slips, name, expression, relation, bound, "s/m")
+
+
+def for_steepness(claim: Claim, slips: Ends, steepness: Ends) -> Claim:
+    """Restrict a claim about a range of slips to those numbers whose steepness lies in a range, a part of all of it."""
+    part = variable(STEEPNESS, _doubles(mul(_wide(slips), _wide(steepness))), "Pa")
+    return replace(
+        claim, variables=tuple(part if each.name == STEEPNESS else each for each in claim.variables)
+    )
 
 
 @lru_cache(maxsize=1000)
@@ -218,16 +202,14 @@ def _claim(
     relation: Relation,
     bound: Fraction,
     unit: str,
-    steepness: Ends | None,
     *,
     form: Expression | None = None,
 ) -> Claim:
     """Claim a bound about the normal wheel."""
-    modulus = _steepness(problem) if steepness is None else _wide(steepness)
     return Claim(
         name=name,
         variables=(
-            variable(STEEPNESS, _doubles(mul(_wide(slips), modulus)), "Pa"),
+            variable(STEEPNESS, _doubles(mul(_wide(slips), _steepness(problem))), "Pa"),
             variable(RATIO, _doubles(_quotient(problem, *REDUCTIONS)), "-"),
             *(variable(held, problem.nominal(held), QUANTITIES[held].unit) for held in HELD),
             variable(NORMAL_MASS, 1.0, "kg"),

@@ -67,7 +67,7 @@ NOISY = "ellipsoids with noise"
 DEPARTURE = "start at the reference"
 VARIED = (*NAMES, "resistance constant", "resistance linear", "resistance quadratic")
 DIRECTIONS: tuple[Relation, Relation] = (">=", "<=")
-BOUNDED: dict[str, Callable[..., Claim]] = {
+BOUNDED: dict[str, Callable[[Problem, Ends, Relation, Fraction], Claim]] = {
     "slope": creep_slope.slope_claim,
     "level": creep_slope.level_claim,
     "fading": creep_slope.fading_claim,
@@ -97,9 +97,8 @@ def claims(problem: Problem) -> dict[str, Claim]:
             strip, claim = strip_of(name), BOUNDED[name.split()[0]]
             slips = held if strip is None else slips_beside(law, window, radius, problem.speeds[0], strip)
             for relation in DIRECTIONS:
-                found[key(name, part, k, relation)] = claim(
-                    there, slips, relation, Fraction(0), steepness=ends
-                )
+                whole = claim(there, slips, relation, Fraction(0))
+                found[key(name, part, k, relation)] = creep_slope.for_steepness(whole, slips, ends)
     return found
 
 
@@ -110,10 +109,10 @@ def _parts(problem: Problem) -> tuple[Ends, ...]:
 
 def proved_friction(problem: Problem, findings: Findings) -> tuple[Parts, ...] | None:
     """Proved bounds of the friction for each window, or none if one is open."""
-    found = []
+    found, ranges = [], _parts(problem)
     for k in range(len(windows_of(problem))):
         parts = []
-        for part, steepness in enumerate(_parts(problem)):
+        for part, steepness in enumerate(ranges):
             ends = tuple(
                 (findings[key(name, part, k, ">=")].low, findings[key(name, part, k, "<=")].high)
                 for name in BOUNDS

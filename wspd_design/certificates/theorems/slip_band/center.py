@@ -17,7 +17,7 @@ from wspd_design.certificates.setting.slip_loop import (
     wanted,
     ways_about,
 )
-from wspd_design.certificates.theorems.slip_band.limits import Limit, in_time
+from wspd_design.certificates.theorems.slip_band.limits import Limit, within_pulses
 from wspd_design.certificates.theorems.slip_band.loop import Loop
 from wspd_design.certificates.theorems.slip_band.pulses import Pulses, loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
@@ -85,10 +85,11 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
             shares_center=known,
         ),
         disturbances=tuple(map(ends_of, disturbances)),
-        within=tuple(
-            in_time(each, pulse if each is side else back, wants, loop.beyond)
-            for each in loop.pulses
-            for wants in loop.wants
+        within=within_pulses(
+            loop.pulses,
+            [pulse if each is side else back for each in loop.pulses],
+            loop.wants,
+            loop.beyond,
         ),
         others=(*loop.others, *_center_in_time(side, abs(way), (shortest, longest))),
     )
@@ -103,7 +104,7 @@ def _on_curve(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Loop:
     if not there < curve.error:
         raise Refused("the center is on the braking curve")
     least = share_left(curve.left, curve.times, there / curve.error)
-    return replace(loop, ranges=replace(loop.ranges, pulls=(point(1), *ends_of(least)[:1])))
+    return replace(loop, ranges=replace(loop.ranges, pulls=(point(1), ends_of(least)[0])))
 
 
 def _shares(

@@ -1,5 +1,6 @@
 """What keeps the state where the law is the written one, pulses end in their sample, and torque and room are left."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -20,8 +21,18 @@ class Limit:
     bound: Ball
 
 
-def in_time(pulses: Pulses, longest: Ball, wants: Wants, times: Ball) -> Limit:
-    """Keep what is wanted within some times what pulses of a length over the sample time do."""
+def within_pulses(
+    pulses: Sequence[Pulses], lengths: Sequence[Ball], wants: Sequence[Wants], times: Ball
+) -> tuple[Limit, ...]:
+    """Keep all that is wanted within some times what pulses of each kind do, of a length over the sample time."""
+    return tuple(
+        _in_time(each, longest, one, times)
+        for each, longest in zip(pulses, lengths, strict=True)
+        for one in wants
+    )
+
+
+def _in_time(pulses: Pulses, longest: Ball, wants: Wants, times: Ball) -> Limit:
     asked, beside, part = *wants, times * pulses.part(longest)
     ways = tuple(each + (part - 1) * (k == 3) for k, each in enumerate(asked))
     if pulses.rises < 0:

@@ -34,7 +34,7 @@ from wspd_design.certificates.theorems.slip_band.friction import (
     slope_at,
 )
 from wspd_design.certificates.theorems.slip_band.lag import Fading, lag_of
-from wspd_design.certificates.theorems.slip_band.limits import Limit, below_curve, in_time, room_left
+from wspd_design.certificates.theorems.slip_band.limits import Limit, below_curve, room_left, within_pulses
 from wspd_design.certificates.theorems.slip_band.proof import Choice
 from wspd_design.certificates.theorems.slip_band.pulses import Pulses, loop_law, pulses_of, seen_of
 from wspd_design.certificates.theorems.slip_band.reference import held_in
@@ -280,7 +280,7 @@ def loop_of(
         ),
         disturbances=tuple(map(ends_of, disturbed)),
         steady=steady,
-        within=tuple(in_time(each, point(pulse), one, beyond) for each in pulses for one in wants),
+        within=within_pulses(pulses, (point(pulse),) * 2, wants, beyond),
         others=(*below_curve(law, curve), *limits),
         widest=_errors(reached(choice.near), slowest / widest_radius),
         settled=choice.settled,
