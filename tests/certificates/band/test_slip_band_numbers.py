@@ -343,6 +343,32 @@ def test_filter_of_a_speed_that_is_told_wrong_lags_within_its_bounds(plain, numb
     assert all(within(each, ends[0]) for each in rates)
 
 
+@pytest.mark.parametrize("factor", JERK_FACTORS)
+@pytest.mark.parametrize("smoothing", [Fraction(3, 10), Fraction(20), Fraction(1000)])
+def test_lag_that_has_settled_shrinks_with_what_the_rims_take_part_in(plain, smoothing, factor):
+    """A slip that falls takes the rims less along at lower speeds, and a filter that is slow lags far behind."""
+    law = replace(laws(plain)[2], acceleration_time=smoothing)
+    ends = doubles(loop_in(plain, law).disturbances[9])
+    _, slip = wandering(law, plain)
+    stop = Steered(plain, law, slip, float(factor))
+    h, radius = float(law.sample_time), plain.vehicle.wheel_radius
+    kept = math.exp(-float(law.sample_time / law.acceleration_time))
+    speeds = stop.speeds(SPEED, (0.0, h))
+    turned = [h * turning_at(law, v, radius) / radius for v in speeds]
+
+    def later(lag):
+        """The lag after a sample."""
+        filtered = -stop.braking(speeds[0], None) - lag / turned[0]
+        filtered += (1.0 - kept) * ((speeds[1] - speeds[0]) / h - filtered)
+        return turned[1] * (-stop.braking(speeds[1], None) - filtered)
+
+    # What it is after a sample goes in proportion to what it was.
+    settled = later(0.0) / (1.0 - (later(1.0) - later(0.0)))
+    assert later(settled) == pytest.approx(settled)
+    for lag in (0.0, settled):
+        assert within(later(lag) - kept * lag, ends)
+
+
 def test_train_that_may_lose_more_speed_than_windows_overlap_or_gain_some_is_refused(plain):
     law = laws(plain)[0]
     friction = friction_of(plain, law, WINDOW)

@@ -233,10 +233,10 @@ def loop_of(
         # It is the one with which the sample begins; what it changes by within it adds half of that until its end.
         drift += change / 2
         mean_drift += change / 2 * ball(Fraction(0), Fraction(1))
-    # The part of the change of the speed that the rims take part in changes where the slip falls. Settled, the lag D is
-    # at most (1 - share + bent) D + drift.
+    # The part of the change of the speed that the rims take part in falls with the speed where the slip does, by a part
+    # bent of it in a sample, and D as much: before that it is at most (1 - share) D + drift, settled drift/share.
     bent = reference.bend * h * braking / reference.turning
-    lag_drift += bent * lag_drift / (share - bent) * ball(Fraction(-1), Fraction(1))
+    lag_drift += bent * lag_drift / share * ball(Fraction(-1), Fraction(1))
     known = sliding + misread_rate
     dead_band = (
         h
