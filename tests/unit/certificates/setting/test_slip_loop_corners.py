@@ -1,10 +1,12 @@
 """Corners of the sampled slip loop: they enclose what a sample can be."""
 
 import math
+from itertools import product
 
 import flint
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from wspd_design.certificates.setting.slip_loop import (
     DISTURBANCES,
@@ -202,3 +204,39 @@ def test_shares_that_go_together_lie_between_their_corners():
         assert not all(inside(each, list(shares_together(*narrower))) for each in points)
     # Apart from each other they may be anything.
     assert not inside((0.0, 0.3), list(outline))
+
+
+def counted(way, part, late, seen):
+    """What a wanted way goes, what of that the wheel sees, and what of it the law counts in its mean."""
+    return np.array([part, part * (1.0 - late), seen]) * way
+
+
+def distance(corners_of, there):
+    """Least distance of a point from the mixtures of some points."""
+    count, rows = len(corners_of), np.array(corners_of).T
+    found = linprog(
+        [*np.zeros(count), 1.0],
+        A_ub=np.concatenate([np.column_stack([sign * rows, -np.ones(len(rows))]) for sign in (1.0, -1.0)]),
+        b_ub=np.concatenate([there, -there]),
+        A_eq=[[*np.ones(count), 0.0]],
+        b_eq=[1.0],
+    )
+    assert found.status == 0
+    return float(found.fun)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_ways_with_any_shares_are_mixtures_of_the_corners(seed):
+    """Further than the one at the center, by its own shares; and from none to the other side, by those of that side."""
+    random = np.random.default_rng(seed)
+    side, other = (tuple(np.sort(random.uniform(0.4, 1.2, 2))) for _ in range(2))
+    own, opposite, center = random.random((3, 2)), random.random((4, 2)), random.random(2)
+    most = random.uniform(0.3, 3.0)  # to the other side, over the way at the center
+    ways = ways_about(side, other, most / (most + 1.0), (own, opposite), center)
+    outline = [[*counted(1.0, each.part, each.late, each.seen), each.part_center] for each in ways]
+    for rho in side:
+        for share in own:
+            assert distance(outline, np.array([*counted(1.0, rho, *share), rho])) < 1e-9
+        for there, share, way in product(other, opposite, (0.0, -0.4 * most, -most)):
+            beside = counted(way, there, *share) - counted(1.0, rho, *center)
+            assert distance(outline, np.array([*beside / (way - 1.0), rho])) < 1e-9
