@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import wspd_design as wd
+from tests.certificates.band import sampled_runs
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.test_slip_band_read import an_ellipsoid, parts
 from wspd_design.certificates.kernel.affine import Affine
@@ -215,6 +216,68 @@ def test_wheels_outside_of_the_speeds_or_with_less_supply_have_not_arrived(monke
         ((22.0, 1.0), (0.55, 0.1), False),
     ):
         assert bool(arrived(None, None, state_of(speed, supply), asked)[0]) is there
+
+
+# Speed, sliding speed, innovation, observed friction, torque, acceleration, change of the speed, supply, half widths
+SETTLING = np.array([30.0, 4.1, 0.003, 7600.0, 7500.0, -0.7, -0.0145, 0.9])
+WIDTHS = np.array([0.5, 0.3, 0.01, 800.0, 800.0, 0.2, 0.004, 0.05])
+
+
+@pytest.mark.parametrize("settled", [0.0, 0.04, -0.01])
+@pytest.mark.parametrize("wide", [1e-6, 0.02, 0.3])
+def test_state_in_the_coordinates_of_the_band_is_that_of_every_wheel_of_a_box(problem, wide, settled):
+    """Wheels, pads and valves are not the nominal ones: the definitions of the band, on the plant of the attack."""
+    random, law, names = np.random.default_rng(6), problem.controller, followed_plant.NUMBERS
+    boxes, points, size, first = 8, 200, 40, 16
+    z = random.choice([-1.0, 1.0, 0.3, -0.6], (boxes, size, points))
+    nominal = np.array([problem.nominal(name) for name in names])
+    middles = nominal * random.uniform(0.9, 1.1, (boxes, len(names)))
+    halves = 0.01 * wide * middles
+
+    def form(values, half, symbol):
+        slopes = np.zeros((boxes, size))
+        slopes[:, symbol] = half
+        return Affine(np.array(values), slopes, np.zeros(boxes))
+
+    numbers = {name: form(middles[:, k], halves[:, k], k) for k, name in enumerate(names)}
+    full = law.valve.brake.max_torque
+    plant = followed_plant.plant_of(problem.vehicle, problem.rail, full, numbers, len(names))
+    state = followed_plant.State(
+        *(form([SETTLING[k]] * boxes, wide * WIDTHS[k], first + k) for k in range(STATES))
+    )
+    found = arrival.in_band(law, plant, state, settled)
+
+    drawn = dict(
+        zip(names, np.moveaxis(middles[:, :, None] + halves[:, :, None] * z[:, :8], 1, 0), strict=True)
+    )
+    held = {name: problem.nominal(name) for name in sampled_runs.BESIDE} | {SUPPLY: drawn[SUPPLY]}
+    wheels = sampled_runs.plant_of(problem, {name: drawn[name] for name in sampled_runs.BOX} | held)
+    at = SETTLING[:, None] + wide * WIDTHS[:, None] * z[:, first : first + STATES]
+    speed, sliding, innovation, friction, torque, acceleration, change, _ = np.moveaxis(at, 1, 0)
+    radius, h, inertia = wheels.wheel_radius, law.sample_time, law.wheelset_inertia
+    away, wheel = 0.86 * speed / radius + settled, (speed - sliding) / radius
+    slowing, _ = sampled_runs.motion(wheels, speed, wheel, 0.0)
+    _, released = sampled_runs.motion(wheels, speed, away, 0.0)
+    rate = 0.86 * slowing / radius
+    t0 = (released - rate) * wheels.wheelset_inertia / (wheels.max_torque / full) / inertia
+    pole, r = np.exp(-law.observer_rate * h), innovation / radius
+    learned = friction + inertia / h * (1.0 - pole) ** 2 * r
+    new = -np.expm1(-h / law.source.acceleration_time)
+    known = 0.86 / radius * (acceleration + new * (change / h - acceleration))
+    wanted = (
+        wheel - away,
+        -(pole**2) * r,
+        h * (learned / inertia - t0 - rate),
+        h * (torque / inertia - t0),
+        h * (rate - known),
+    )
+    symbols = [*range(len(names)), *range(first, first + STATES)]
+    rest = [k for k in range(size) if k not in symbols]
+    for x, values in zip(found, wanted, strict=True):
+        said = x.center[:, None] + np.einsum("bs,bsp->bp", x.slopes[:, symbols], z[:, symbols])
+        error = x.error + np.abs(x.slopes[:, rest]).sum(axis=1)
+        assert np.all(np.abs(values - said) <= error[:, None] + 1e-9)
+        assert np.all(error < 0.05 * wide + 1e-6)
 
 
 def test_what_a_band_asks_for_is_that_of_its_fastest_window(problem, monkeypatch):
