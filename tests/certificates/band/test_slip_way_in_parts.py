@@ -103,15 +103,16 @@ def test_torque_on_the_way_is_between_both_ends_where_it_is_open_which_it_is():
 
 @pytest.mark.parametrize("power", [0.4, 1.0, 1.7])
 @pytest.mark.parametrize("more", [0.0, 30.0])
-def test_way_that_is_asked_goes_as_far_as_both_valves_go(power, more):
+@pytest.mark.parametrize("wide", [0.03, 0.3])
+def test_way_that_is_asked_goes_as_far_as_both_valves_go(power, more, wide):
     """In little room, up or down, with a supply that may have more or less than the room says."""
     random = np.random.default_rng(2)
     lengths = (18.0, 18.0)
     longest = -np.expm1(-1.0 / 18.0)
-    for ends in ((-60.0, 40.0), (5.0, 50.0), (-70.0, -10.0)):
+    for ends in ((-60.0, 40.0), (5.0, 50.0), (-70.0, -10.0), (50.0, 50.0), (-70.0, -70.0)):
         asked = form_of(0.5 * sum(ends), [0.5 * (ends[1] - ends[0])])
         rooms = form_of(1000.0, [0.0, 100.0]), form_of(1500.0, [0.0, 0.0, 100.0])
-        powers = form_of(power, [0.0, 0.0, 0.0, 0.03]), form_of(1.2 * power, [0.0, 0.0, 0.0, -0.03])
+        powers = form_of(power, [0.0, 0.0, 0.0, wide]), form_of(1.2 * power, [0.0, 0.0, 0.0, -wide])
         found = followed_law.went(asked, rooms, powers, lengths, more)
         for _ in range(300):
             z = random.choice([-1.0, 1.0, random.uniform(-1.0, 1.0)], SYMBOLS)
@@ -119,7 +120,7 @@ def test_way_that_is_asked_goes_as_far_as_both_valves_go(power, more):
             kind = 0 if way > 0.0 else 1
             room = rooms[kind].center[0] + rooms[kind].slopes[0] @ z
             there = room + (random.choice([-more, more]) if kind == 0 else 0.0)
-            own = power + 0.03 * z[3] if kind == 0 else 1.2 * power - 0.03 * z[3]
+            own = power + wide * z[3] if kind == 0 else 1.2 * power - wide * z[3]
             y = min(abs(way) / room, longest)
             if abs(way) / room <= longest:
                 assert holds(found, np.sign(way) * there * (1.0 - (1.0 - y) ** own), z, 0.0, 1e-9)
