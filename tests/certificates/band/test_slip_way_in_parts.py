@@ -109,7 +109,7 @@ def test_way_that_is_asked_goes_as_far_as_both_valves_go(power, more, wide):
     random = np.random.default_rng(2)
     lengths = (18.0, 18.0)
     longest = -np.expm1(-1.0 / 18.0)
-    for ends in ((-60.0, 40.0), (5.0, 50.0), (-70.0, -10.0), (50.0, 50.0), (-70.0, -70.0)):
+    for ends in ((-60.0, 40.0), (5.0, 50.0), (-70.0, -10.0), (50.0, 50.0), (5.0, 5.0), (-70.0, -70.0)):
         asked = form_of(0.5 * sum(ends), [0.5 * (ends[1] - ends[0])])
         rooms = form_of(1000.0, [0.0, 100.0]), form_of(1500.0, [0.0, 0.0, 100.0])
         powers = form_of(power, [0.0, 0.0, 0.0, wide]), form_of(1.2 * power, [0.0, 0.0, 0.0, -wide])

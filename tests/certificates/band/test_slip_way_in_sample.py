@@ -260,6 +260,22 @@ def test_brake_pulls_at_every_instant_as_the_forms_say(valves, kind, wide):
         assert beyond <= 1e-6
 
 
+@pytest.mark.parametrize(("torque", "friction"), [(17_500.0, 15_820.0), (22_000.0, 21_850.0)])
+def test_torque_bends_within_a_pulse_of_nearly_all_of_the_sample(torque, friction):
+    """With valves that go just what is asked for: nothing else covers for that."""
+    center = (25.0, 3.5, 0.0, friction, torque, -0.7, -0.0145, 0.6)
+    found = Sample(
+        problem_with((0.36, 0.36), (0.6, 0.6), 0.0), center, 1e-6 * WIDTHS, [0.0] * len(NUMBERS), 4
+    )
+    assert found.decided.even[0]
+    shares = found.seen["fill"] + found.seen["vent"]
+    assert 0.9 < shares.min() <= shares.max() < 1.0
+    for part, on_the_way in enumerate(found.on_the_way):
+        for time in np.linspace(-1.0, 1.0, 9):
+            at = (part + (time + 1.0) / 2.0) / len(found.on_the_way)
+            assert found.beyond(on_the_way, found.pulls(at), time)[0] <= 1e-9
+
+
 def test_slip_that_is_largest_in_the_middle_of_a_part_is_not_exceeded(problem):
     """While venting, at torques that a wheel follows at first and does not any more later in the sample."""
     nominal = dict(zip(NUMBERS, (np.array([problem.nominal(name)]) for name in NUMBERS), strict=True))
