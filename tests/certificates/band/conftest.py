@@ -1,22 +1,20 @@
 import json
-import math
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
 import wspd_design as wd
+from tests.certificates.band.courses import LOCO, WET, falling_problem
 from wspd_design.certificates import suite
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.kernel.file import certificate_text
 from wspd_design.certificates.search.budget import Budget
-from wspd_design.certificates.theorems.band import contact_held
+from wspd_design.certificates.theorems.band import CELLS, contact_held
 from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.friction import Part
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of
 from wspd_design.design import certification
 
-LOCO, WET = wd.load_vehicle("er24pc"), wd.load_rail("polach-wet")
 PLENTY = 10**9
 SLOW = 10.0 / 3.6, 14.4 / 3.6
 """Two windows: bounding the friction in each takes the most time of many a proof [m/s]."""
@@ -51,11 +49,6 @@ def told_of(problem, proof, **asked):
     return checker(contact_held(problem), problem.controller, **asked)(proof, Work(PLENTY))
 
 
-def everywhere(friction):
-    """Bounds of the friction for wheels of any steepness."""
-    return (Part((0.0, math.inf), friction),)
-
-
 def refused(problem, proof):
     """Why the checker refuses a proof."""
     with pytest.raises(Refused) as reason:
@@ -78,3 +71,33 @@ def proved(half):
 def document(proved):
     """The file as JSON, to be changed."""
     return json.loads(certificate_text(proved))
+
+
+@pytest.fixture
+def proof(document):
+    """The ellipsoids in it."""
+    return document["findings"][CELLS]["proof"]
+
+
+# --- trains on a falling slip that no proof comes near ----------------------------------------------------------------
+@pytest.fixture(scope="session")
+def plain():
+    """The locomotive with its nominal numbers."""
+    return falling_problem(WET, 0.0, slip=0.5, largest=0.5)
+
+
+@pytest.fixture(scope="session")
+def oiled(plain):
+    """What slows the wheels down is most of what holds them."""
+    return replace(plain, vehicle=replace(plain.vehicle, wheel_damping=1000.0))
+
+
+@pytest.fixture(scope="session")
+def damped(plain):
+    """Wheels in oil and a train against the wind: what is negligible of the locomotive is not here."""
+    vehicle = plain.vehicle
+    return replace(
+        plain,
+        vehicle=replace(vehicle, wheel_damping=100.0, resistance_linear=0.03 * vehicle.mass),
+        bounds=type(plain.bounds).of({name: ends for name, ends in plain.bounds.items() if name in NAMES}),
+    )

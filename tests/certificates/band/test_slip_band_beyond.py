@@ -10,9 +10,10 @@ from flint import arb
 
 import wspd_design as wd
 from tests.certificates.band.band_attack import SETTLED, boundary, follow, sets_of
-from tests.certificates.band.conftest import certificate_of, everywhere, problem_of, refused, told_of
+from tests.certificates.band.conftest import certificate_of, problem_of, refused, told_of
+from tests.certificates.band.courses import everywhere
+from tests.certificates.band.forging import BACK, BEYOND, CURVE
 from tests.certificates.band.sampled_runs import Law, supplied
-from tests.certificates.band.test_slip_band import BACK, BEYOND, CURVE
 from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.search.slip_band.chain import Sought, Spent, begun, continued

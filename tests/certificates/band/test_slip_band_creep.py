@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.certificates.band.conftest import LOCO, SLOW, WET, problem_of
-from tests.certificates.band.test_slip_band_departure import polach
+from tests.certificates.band.courses import polach
 from wspd_design.certificates.setting.creep_slope import (
     NORMAL_MASS,
     RATIO,

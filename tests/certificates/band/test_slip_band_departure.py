@@ -10,6 +10,7 @@ import pytest
 
 import wspd_design as wd
 from tests.certificates.band.conftest import LOCO, problem_of
+from tests.certificates.band.courses import polach
 from tests.certificates.round_trip import keep, no_word_can_be_changed, refused
 from wspd_design.certificates.checks.region import slip_band
 from wspd_design.certificates.kernel.checker import Refused, Work
@@ -71,20 +72,6 @@ def no_ellipsoids(monkeypatch):
 def decided(problem, place):
     (asked,) = (each for each in SLIP_BAND.obligations(problem) if each.key == DEPARTURE)
     return asked.decide(Stated(place=place), Work(PLENTY))
-
-
-def polach(rail, vehicle, mu0, slip, speed, load):
-    """Polach's creep force, written once more [N]."""
-    contact = vehicle.contact
-    grown = (load / contact.reference_load) ** (2.0 / 3.0)
-    area = contact.semi_axis_rolling * contact.semi_axis_lateral * grown
-    sliding = slip * speed
-    friction = mu0 * (
-        (1.0 - rail.friction_ratio) * math.exp(-rail.friction_decay * sliding) + rail.friction_ratio
-    )
-    gradient = contact.shear_modulus * math.pi * area * contact.kalker_c11 / (4.0 * load * friction) * slip
-    elastic = rail.adhesion_reduction * gradient / (1.0 + (rail.adhesion_reduction * gradient) ** 2)
-    return 2.0 * load * friction / math.pi * (elastic + math.atan(rail.slip_reduction * gradient))
 
 
 @pytest.mark.usefixtures("no_ellipsoids")

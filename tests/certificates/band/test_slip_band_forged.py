@@ -10,13 +10,12 @@ import pytest
 from flint import arb, ctx
 
 from tests.certificates.band.conftest import WET, refused, told_of
+from tests.certificates.band.courses import doubles, falling_problem, laws, loop_in
+from tests.certificates.band.forging import CHANGE, OFFSET, SHARES, STEADY, SUPPLY
 from tests.certificates.band.test_declared_law import problem_with
-from tests.certificates.band.test_slip_band import CHANGE, OFFSET, SHARES, STEADY, SUPPLY
-from tests.certificates.band.test_slip_band_numbers import doubles, laws, loop_in
-from tests.certificates.band.test_slip_band_reference import falling_problem
 from wspd_design.certificates.kernel.arb import above, below, point
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
-from wspd_design.certificates.theorems.band import CELLS, contact_held
+from wspd_design.certificates.theorems.band import contact_held
 from wspd_design.certificates.theorems.slip_band import checker
 from wspd_design.certificates.theorems.slip_band.checker import Set, holds_more, is_positive, steady_of
 from wspd_design.certificates.theorems.slip_band.proof import read
@@ -24,11 +23,6 @@ from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import box_of, law_of, windows_of
 
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture
-def proof(document):
-    return document["findings"][CELLS]["proof"]
 
 
 @pytest.mark.parametrize("place", [OFFSET, *range(SHARES, SHARES + len(DISTURBANCES)), STEADY, CHANGE])

@@ -13,7 +13,7 @@ import pytest
 from flint import ctx
 
 from tests.certificates.band.conftest import WET
-from tests.certificates.band.test_slip_band_reference import falling_problem
+from tests.certificates.band.courses import falling_problem
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.setting.creep_slope import bend, fading_beside

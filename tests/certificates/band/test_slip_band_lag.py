@@ -10,14 +10,15 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import SLOW, everywhere, problem_of, refused, told_of
-from tests.certificates.band.test_slip_band_reference import (
+from tests.certificates.band.conftest import SLOW, problem_of, refused, told_of
+from tests.certificates.band.courses import (
     EXACT,
     WINDOW,
     Course,
+    everywhere,
     falling_problem,
     friction_at,
-    inside,
+    within,
 )
 from wspd_design.certificates.checks.region.slip_band import bounded_friction
 from wspd_design.certificates.kernel.arb import above, ball, below, ends_of, point
@@ -143,9 +144,9 @@ def test_lag_of_a_train_lies_beside_its_share_of_the_drift(settled, share):
     before, after = course.lags(speed, 1)
     moved = after - kept * before
     for j in (0.75, 1.0, 1.25):
-        assert inside(j * moved - k * steady, ends)
+        assert within(j * moved - k * steady, ends)
     assert ends[1] - ends[0] < 0.75 * abs(moved)
-    assert bool(inside(moved, ends)) is (share == 0)
+    assert bool(within(moved, ends)) is (share == 0)
 
 
 def test_loop_tells_what_fades(monkeypatch):

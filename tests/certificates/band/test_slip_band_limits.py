@@ -1,6 +1,6 @@
-"""Limits of the state and changes that are left out, where only one thing makes the difference.
+"""Limits of the state: within them the law is the written one, and pulses, torque, room and friction are left.
 
-Wheels much lighter than the law takes them for, a reference that drifts and no noise, a told speed that is too high.
+With all of them at once, and where only one thing makes the difference.
 """
 
 import math
@@ -8,27 +8,75 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
+import numpy as np
 import pytest
 
-from tests.certificates.band.conftest import WET
-from tests.certificates.band.test_slip_band_numbers import (
+from tests.certificates.band.courses import (
     DRIFT,
-    LEAST,
+    EXACT,
     NOISE,
     PULSE,
+    WINDOW,
     Course,
     Stop,
     doubles,
-    friction_of,
     laws,
     loop_in,
+    misjudged,
 )
-from tests.certificates.band.test_slip_band_reference import EXACT, WINDOW, falling_problem
+
+SUPPLY = Fraction(9, 10)
+LEAST, ROOM = 0.002, 0.25  # of the full torque; of what the supply lacks
 
 
-@pytest.fixture(scope="module")
-def plain():
-    return falling_problem(WET, 0.0, slip=0.5, largest=0.5)
+@pytest.mark.parametrize("settled", [-0.01, 0.05])
+@pytest.mark.parametrize("kind", ["plain", "damped"])
+def test_states_within_the_limits_are_those_of_the_written_law(request, kind, settled):
+    """A state at each limit, whatever is held, measured and supplied: longest pulses, torque and room do."""
+    problem = request.getfixturevalue(kind)
+    law = replace(laws(problem)[0], vent_time=laws(problem)[0].vent_time / 2)
+    course, h, inertia = Course(problem, law, None), float(law.sample_time), float(law.inertia)
+    loop = loop_in(problem, law, settled, conditions=EXACT._replace(supply=SUPPLY, noise=NOISE))
+    limits = [
+        (each.what, [float(x.mid()) for x in each.row], float(each.bound.mid())) for each in loop.limits
+    ]
+    full, k, ahead, slew = map(float, (law.full_torque, law.approach_rate, law.ahead, law.torque_slew))
+    times, radius = (float(law.fill_time), float(law.vent_time)), problem.vehicle.wheel_radius
+    noise = []
+    for sign, of_rim in product((-1.0, 1.0), repeat=2):
+        off, rate = misjudged(law, problem, 0.0, [-sign * float(NOISE)] * 60 + [sign * float(NOISE)])
+        noise.append((of_rim * float(NOISE) / radius - off, rate))
+    slowing = max(Stop(problem, law, None, x).braking(v, 0.18) for x in (-0.02, 0.04) for v in WINDOW)
+    worst = {}
+    for what, row, bound in limits:
+        for place in (j for j in range(5) if row[j]):
+            state = np.zeros(5)
+            state[place] = (1.0 - 1e-6) * bound / row[place]
+            e, _, n, y, lag = state
+            for v, slow, supply, (misread, known) in product(
+                WINDOW, (0.0, slowing), (float(SUPPLY), 1.0), noise
+            ):
+                turning = -(1.0 - 0.18) / radius * slow
+                held = course.holding(v, 0.18, settled) - problem.vehicle.wheelset_inertia * turning
+                torque, observed = held + inertia * y / h, held + inertia * (n / h + turning)
+                rate = turning - (lag + known) / h
+                error = e + settled + misread + ahead * h * ((observed - torque) / inertia - rate)
+                target = observed - inertia * (rate - k * error)
+                room, least, longest = supply * full - torque, LEAST * full, float(PULSE) * h
+                taken = torque * -math.expm1(-longest / times[1])
+                added = room * -math.expm1(-longest / times[0])
+                margin = {
+                    "what filling adds in its longest pulse": torque + added - target,
+                    "what venting takes off in its longest pulse": target - torque + taken,
+                    "the observed friction above 0": observed,
+                    "the torque that is left": torque - taken - least,
+                    "the torque that the brake can add": room - added - least,
+                    "the room that a rising supply asks for": room - ROOM * (1.0 - float(SUPPLY)) * full,
+                    "the beginning of the braking curve": slew / inertia / k**2 - error,
+                }[what]
+                worst[what] = min(worst.get(what, math.inf), margin)
+    assert len(worst) == 7
+    assert all(margin >= -1e-9 for margin in worst.values()), worst
 
 
 def limit_of(loop, what):
@@ -79,24 +127,3 @@ def test_longest_pulse_leaves_the_least_torque_and_room(plain, what, time):
     y = bound / row[3]
     there = venting[0] + y if time else float(supply) * full - venting[1] - y
     assert there * kept == pytest.approx(LEAST * full, rel=1e-6)
-
-
-def test_dead_band_is_that_of_the_told_speed(plain):
-    """It narrows with the desired slip, of which a train speed that is told too high has more."""
-    law = replace(laws(plain)[0], dead_band=Fraction(10**6), dead_band_share=Fraction(1, 5))
-    friction = friction_of(plain, law, WINDOW)
-    wide, none = (
-        doubles(
-            loop_in(
-                plain,
-                replace(law, dead_band_share=share),
-                friction=friction,
-                conditions=EXACT._replace(noise=NOISE),
-            ).disturbances[1]
-        )
-        for share in (law.dead_band_share, Fraction(0))
-    )
-    sliding = 0.18 * (WINDOW[1] + float(NOISE)) / plain.vehicle.wheel_radius
-    left_out = float(law.sample_time * law.dead_band_share * law.approach_rate) * sliding
-    assert wide[1] - none[1] == pytest.approx(left_out, rel=1e-6)
-    assert none[0] - wide[0] == pytest.approx(left_out, rel=1e-6)

@@ -14,8 +14,8 @@ import pytest
 from flint import ctx
 from scipy.integrate import quad
 
-from tests.certificates.band.conftest import everywhere, problem_of
-from tests.certificates.band.test_slip_band_reference import EXACT
+from tests.certificates.band.conftest import problem_of
+from tests.certificates.band.courses import EXACT, everywhere
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, shares_together
 from wspd_design.certificates.theorems.band import contact_held

@@ -10,124 +10,26 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import LOCO, SLOW, WET, certificate_of, everywhere
-from tests.certificates.band.test_slip_band_departure import polach
+from tests.certificates.band.conftest import SLOW, WET, certificate_of
+from tests.certificates.band.courses import (
+    EXACT,
+    LAW_SPEEDS,
+    WINDOW,
+    Course,
+    everywhere,
+    falling_problem,
+    friction_at,
+    within,
+)
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Status
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
 from wspd_design.certificates.theorems.slip_band import loop
 from wspd_design.certificates.theorems.slip_band.checker import checker
-from wspd_design.certificates.theorems.slip_band.friction import FADINGS, SLOPES, Friction
-from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Choice
-from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held, turning_at
+from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of, law_of, windows_of
-from wspd_design.design.problem import stability_problem
-from wspd_design.parameters.bounds import Bounds
-from wspd_design.parameters.loading import constants
-
-WINDOW = (8.0, 8.05)
-EXACT = Conditions(supply=Fraction(1), delay=Fraction(0), noise=Fraction(0))
-LAW_SPEEDS = (10.0 / 3.6, 120.0 / 3.6)
-
-
-def falling_problem(rail, share, **numbers):
-    """Closed loop of the designed law on a slip c/sqrt(v), without dead band, on a part of the stated box."""
-    specification = wd.Specification(sample_time=0.02, reference="falling", speeds=LAW_SPEEDS)
-    law = wd.design_controller(LOCO, rail, specification, law="observer-smc").build(LOCO, rail)
-    law = replace(law, core=replace(law.core, tracking=replace(law.core.tracking, dead_band=0.0)))
-    problem = stability_problem(
-        LOCO, rail, replace(law, reference=replace(law.reference, **numbers)), specification
-    )
-    ends = {}
-    for name in NAMES:
-        (low, high), middle = problem.span(name), problem.nominal(name)
-        ends[name] = (middle + share * (low - middle), middle + share * (high - middle))
-    return replace(problem, bounds=Bounds.of(ends))
-
-
-class Course:
-    """A train all of whose wheels hold a slip over time exactly, in equations of its own."""
-
-    def __init__(self, problem, law, slip):
-        self.problem, self.law, self.slip = problem, law, slip
-
-    def braking(self, speed, slip):
-        vehicle, mass = self.problem.vehicle, self.problem.nominal("mass")
-        drag = vehicle.resistance_constant + vehicle.resistance_linear * speed
-        drag += vehicle.resistance_quadratic * speed**2
-        return (8.0 * self.force(speed, slip) + drag) / mass
-
-    def force(self, speed, slip):
-        load = self.problem.nominal("mass") * constants().gravity / 8.0
-        return polach(self.problem.rail, self.problem.vehicle, self.problem.rail.mu0, slip, speed, load)
-
-    def speeds(self, speed, times):
-        found = [speed]
-        for before, after in pairwise(times):
-            middle = found[-1] - (after - before) / 2.0 * self.braking(
-                found[-1], self.slip(before, found[-1])
-            )
-            at = (before + after) / 2.0
-            found.append(found[-1] - (after - before) * self.braking(middle, self.slip(at, middle)))
-        return np.array(found)
-
-    def numbers(self, speed, start=0.0, settled=0.0):
-        """h (change of t0), h (change of w_r' at a fixed course of the slip) and what the slip moves, in a sample.
-
-        t0 holds a wheel beside the train's, of which the speed differs from the reference by one that is settled.
-        """
-        h, radius = float(self.law.sample_time), self.problem.vehicle.wheel_radius
-        inertia = self.problem.vehicle.wheelset_inertia
-        times = start + np.linspace(0.0, h, 21)
-        speeds = self.speeds(speed, times)
-        known = []
-        for t, v in zip(times, speeds, strict=True):
-            slip = self.slip(t, v)
-            aside = slip - slip_at(self.law, v, radius)
-            rate = -self.braking(v, slip) * (turning_at(self.law, v, radius) - aside) / radius
-            known.append((self.holding(v, slip, settled) / inertia - rate, rate))
-        (t0, rate0), (t1, rate1) = known[0], known[-1]
-        asides = [self.slip(t, v) - slip_at(self.law, v, radius) for t, v in zip(times, speeds, strict=True)]
-        middle = (speeds[1:] + speeds[:-1]) / 2.0
-        return h * (t1 - t0), h * (rate1 - rate0), float(np.sum(np.diff(asides) * middle)) / radius
-
-    def holding(self, speed, slip, settled):
-        """Torque of friction and damping on a wheel that is faster than the reference by a settled error [N m]."""
-        radius = self.problem.vehicle.wheel_radius
-        wheel = (1.0 - slip) * speed / radius + settled
-        torque = 2.0 * radius * self.force(speed, 1.0 - radius * wheel / speed)
-        return torque - 2.0 * self.problem.vehicle.wheel_damping * wheel
-
-    def lags(self, speed, samples):
-        """Errors of the filtered acceleration of the reference, times h, from the moment when the filter is exact."""
-        h, radius = float(self.law.sample_time), self.problem.vehicle.wheel_radius
-        kept = math.exp(-h / float(self.law.acceleration_time))
-        filtered, found = -self.braking(speed, self.slip(0.0, speed)), [0.0]
-        for k in range(samples):
-            after = self.speeds(speed, h * (k + np.linspace(0.0, 1.0, 21)))[-1]
-            filtered += (1.0 - kept) * ((after - speed) / h - filtered)
-            speed = after
-            rate = -self.braking(speed, self.slip(h * (k + 1), speed))
-            found.append(h * turning_at(self.law, speed, radius) / radius * (rate - filtered))
-        return found
-
-
-def friction_at(problem, window, slips):
-    """Friction in the neighborhood of a reference, by differences."""
-    course = Course(problem, None, None)
-    weight = problem.nominal("mass") * constants().gravity / 8.0 * problem.rail.mu0
-    slopes, levels, fadings = [], [], []
-    for v in window:
-        for slip in np.linspace(*slips, 9):
-            d = 1e-5
-            force = course.force(v, slip) / weight
-            levels.append(force)
-            slopes.append(-(course.force(v, slip + d) - course.force(v, slip - d)) / (2 * d * v) / weight)
-            fade = (course.force(v + d, slip) - course.force(v - d, slip)) / (2 * d) / weight
-            fadings.append(fade / slip)
-    slope, level, fading = ((min(each) - 1e-4, max(each) + 1e-4) for each in (slopes, levels, fadings))
-    return Friction((slope,) * len(SLOPES), level, (fading,) * len(FADINGS))
 
 
 def loop_at(problem, law, settled=0.0, *, window=WINDOW, friction=None, cell=None):
@@ -150,10 +52,6 @@ def loop_numbers(problem, law, *, told=None, settled=0.0):
     return [tuple(each) for each in ends]
 
 
-def inside(value, ends):
-    return ends[0] - 1e-9 <= value <= ends[1] + 1e-9
-
-
 @pytest.fixture(scope="module")
 def falling():
     return falling_problem(WET, 0.0, slip=0.5, largest=0.5)
@@ -164,8 +62,8 @@ def test_drift_along_a_falling_slip_is_in_its_bounds(falling):
     course = Course(falling, law, lambda _, v: slip_at(law, v, falling.vehicle.wheel_radius))
     ends = loop_numbers(falling, law)
     torque, turning, moved = course.numbers(8.03)
-    assert inside(torque, ends[2])
-    assert inside(turning, ends[4])
+    assert within(torque, ends[2])
+    assert within(turning, ends[4])
     assert moved == pytest.approx(0.0, abs=1e-12)
     assert ends[6] == ends[7] == (0.0, 0.0)
 
@@ -179,7 +77,7 @@ def test_torque_that_holds_another_speed_than_the_reference_drifts_within_its_bo
         law = replace(law, falls=False, slip=Fraction(9, 50))
     course = Course(falling, law, lambda _, v: slip_at(law, v, falling.vehicle.wheel_radius))
     torque, reference = course.numbers(8.03, settled=settled)[0], course.numbers(8.03)[0]
-    assert inside(torque, loop_numbers(falling, law, settled=settled)[2])
+    assert within(torque, loop_numbers(falling, law, settled=settled)[2])
     there, here = (drift_by_friction(falling, law, each) for each in (settled, 0.0))
     assert there - here == pytest.approx(torque - reference, rel=0.03)
 
@@ -342,11 +240,11 @@ def test_lag_of_the_filter_drifts_within_its_bounds(falling, falls):
     ends = loop_numbers(falling, law)[9]
     # In the window for as long as the train takes to lose .05 m/s.
     lags = course.lags(8.049, 2)
-    assert all(inside(after - kept * before, ends) for before, after in pairwise(lags))
+    assert all(within(after - kept * before, ends) for before, after in pairwise(lags))
     # More than the width of the bounds: not any lag would do, and what is kept is not left out.
     settled = course.lags(8.35, 12)[-2:]
-    assert inside(settled[1] - kept * settled[0], ends)
-    assert not inside(settled[1], ends)
+    assert within(settled[1] - kept * settled[0], ends)
+    assert not within(settled[1], ends)
     assert abs(settled[1]) > 2.0 * (ends[1] - ends[0])
 
 
@@ -367,7 +265,7 @@ def test_wrong_slope_of_the_reference_would_be_left(falling):
     constant = replace(law, falls=False, slip=Fraction(slip_at(law, 8.03, falling.vehicle.wheel_radius)))
     ends = loop_numbers(falling, law, told=constant)
     torque, turning, _ = course.numbers(8.03)
-    assert not (inside(torque, ends[2]) and inside(turning, ends[4]))
+    assert not (within(torque, ends[2]) and within(turning, ends[4]))
 
 
 @pytest.mark.parametrize("falls", [True, False])
@@ -383,13 +281,13 @@ def test_slip_that_wanders_is_in_its_bounds_and_a_smaller_rate_would_be_left(fal
     course, ends = Course(falling, law, slip), loop_numbers(falling, law)
     seen = [course.numbers(8.03, start) for start in np.linspace(0.0, 2.0 * math.pi / pace, 13)]
     for torque, turning, moved in seen:
-        assert inside(torque, ends[2])
-        assert inside(turning, ends[4])
-        assert inside(moved, ends[6])
+        assert within(torque, ends[2])
+        assert within(turning, ends[4])
+        assert within(moved, ends[6])
     assert max(moved for *_, moved in seen) > 0.95 * ends[6][1]
     slower = loop_numbers(falling, law, told=replace(law, slip_drift=Fraction(1, 5)))
-    assert not all(inside(moved, slower[6]) for *_, moved in seen)
-    assert not all(inside(torque, slower[2]) for torque, *_ in seen)
+    assert not all(within(moved, slower[6]) for *_, moved in seen)
+    assert not all(within(torque, slower[2]) for torque, *_ in seen)
 
 
 def test_reference_with_worn_wheels_goes_by_the_speed_that_the_law_has(falling):

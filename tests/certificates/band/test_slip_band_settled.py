@@ -28,22 +28,12 @@ from wspd_design.certificates.theorems.slip_band import center, checker
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Choice, read
-from wspd_design.certificates.theorems.slip_band.statement import (
-    NAMES,
-    box_of,
-    law_of,
-    windows_of,
-)
+from wspd_design.certificates.theorems.slip_band.statement import NAMES, box_of, law_of, windows_of
 from wspd_design.parameters.bounds import Bounds
 
 pytestmark = pytest.mark.slow
 SETTLES, SHORTEST, LONGEST, BACK = 3, 4, 5, 6
 PULSE = Fraction(1, 2)
-
-
-@pytest.fixture
-def proof(document):
-    return document["findings"][CELLS]["proof"]
 
 
 def forged(proof, window, place, change):

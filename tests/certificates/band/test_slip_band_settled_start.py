@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tests.certificates.band.conftest import WET, problem_of
-from tests.certificates.band.test_slip_band_reference import Course, falling_problem
+from tests.certificates.band.courses import Course, falling_problem
 from wspd_design.certificates.theorems.slip_band import departure
 from wspd_design.certificates.theorems.slip_band.reference import slip_at, turning_at
 from wspd_design.certificates.theorems.slip_band.statement import NAMES, law_of

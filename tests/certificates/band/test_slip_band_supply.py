@@ -12,8 +12,9 @@ import pytest
 from flint import ctx
 
 import wspd_design as wd
-from tests.certificates.band.conftest import certificate_of, everywhere, problem_of, refused, told_of
-from tests.certificates.band.test_slip_band import ROOM, SUPPLY, Q
+from tests.certificates.band.conftest import certificate_of, problem_of, refused, told_of
+from tests.certificates.band.courses import everywhere
+from tests.certificates.band.forging import ROOM, SUPPLY, Q
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Status

@@ -10,7 +10,7 @@ import pytest
 
 import wspd_design as wd
 from tests.certificates.band.conftest import problem_of
-from tests.certificates.band.test_slip_band import Q
+from tests.certificates.band.forging import Q
 from wspd_design.certificates import suite
 from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.kernel.checker import Refused, Work
