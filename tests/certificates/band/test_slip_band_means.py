@@ -75,7 +75,7 @@ class Sample:
             )
             rest = [point(0)] * STATES
             one = [point(int(k == 2)) for k in range(STATES)]
-            none, some = (way_at(self.law, self.before, each) for each in (rest, one))
+            none, some = (way_at(self.before, each) for each in (rest, one))
             at = [each * (point(Fraction(way)) - none) / (some - none) for each in one]
             self.after = about(self.law, self.before, at, lengths)
 
@@ -178,7 +178,7 @@ def test_way_at_a_center_is_the_wanted_change_with_what_disturbs_in_its_middle(p
     with ctx.workprec(128):
         ends = [tuple(map(point, each)) for each in (acceleration, command)]
         loop = replace(run.before, disturbances=(*ends, *run.before.disturbances[2:]))
-        found = float(way_at(law, loop, [point(each) for each in (e, 0.5, n, y, lag)]).mid())
+        found = float(way_at(loop, [point(each) for each in (e, 0.5, n, y, lag)]).mid())
     gain, lag = float(law.approach_rate * law.sample_time), lag + sum(acceleration) / 2.0
     wanted = n + gain * (e + float(law.ahead) * (n - y + lag)) + lag
     assert found == pytest.approx(wanted - y + sum(command) / 2.0, rel=1e-9)

@@ -86,7 +86,7 @@ def test_pulses_back_that_the_states_do_not_keep_are_refused(half, proof, window
     law = law_of(half.controller)
     with ctx.workprec(128):
         loop, each = loop_in(half, proof, window)
-        way = way_at(law, loop, [point(x) for x in each.center])
+        way = way_at(loop, [point(x) for x in each.center])
         side = "venting" if way > 0 else "filling"
         told, least = each.back, Fraction(0)
         while told - least > Fraction(1, 1000):
@@ -177,9 +177,7 @@ def centered(problem, loop, way):
     with ctx.workprec(128):
         zero = [point(0)] * STATES
         one = [point(0), point(0), point(1), point(0), point(0)]
-        friction = (point(Fraction(way)) - way_at(law, loop, zero)) / (
-            way_at(law, loop, one) - way_at(law, loop, zero)
-        )
+        friction = (point(Fraction(way)) - way_at(loop, zero)) / (way_at(loop, one) - way_at(loop, zero))
         center = [point(0), point(0), friction, point(0), point(0)]
         return law, about(law, loop, center, LENGTHS)
 

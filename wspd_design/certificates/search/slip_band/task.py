@@ -54,7 +54,7 @@ def centered(law: BandLaw, loop: Loop) -> tuple[Loop, tuple[Fraction, ...], Leng
     """Return the loop about where it settles, that state, and the lengths of pulses there."""
     center = _center(law, loop)
     exact = [point(each) for each in center]
-    lengths = _lengths(law, loop, exact)
+    lengths = _lengths(loop, exact)
     return about(law, loop, exact, lengths), center, lengths
 
 
@@ -202,9 +202,9 @@ def _drifting(loop: Loop) -> "Array":
     return np.array([float(each.mid()) for each in drifting(loop.steady)])
 
 
-def _lengths(law: BandLaw, loop: Loop, center: Sequence[Any]) -> Lengths:
+def _lengths(loop: Loop, center: Sequence[Any]) -> Lengths:
     """Return pulses of the way at the center if their height does not change much, and to as far on its other side."""
-    way = float(way_at(law, loop, center).mid())
+    way = float(way_at(loop, center).mid())
     side, other = loop.pulses if way > 0.0 else loop.pulses[::-1]
     torque, time = side.rises * float(center[3].mid()), float(side.time.mid())
     longest = float(loop.pulse.mid())

@@ -14,12 +14,11 @@ from wspd_design.certificates.setting.slip_loop import (
     cut_to,
     parts_of,
     shares_together,
-    wanted,
     ways_about,
 )
 from wspd_design.certificates.theorems.slip_band.limits import Limit, within_pulses
 from wspd_design.certificates.theorems.slip_band.loop import Loop
-from wspd_design.certificates.theorems.slip_band.pulses import Pulses, loop_law
+from wspd_design.certificates.theorems.slip_band.pulses import Pulses
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 from wspd_design.certificates.theorems.slip_band.wants import Row
 from wspd_design.model.generated.slip_loop import share_after, share_left
@@ -49,7 +48,7 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
     lengths : Lengths
         What pulses are kept to.
     """
-    way = way_at(law, loop, center)
+    way = way_at(loop, center)
     loop = _on_curve(law, loop, center)
     if not (way > 0 or way < 0):
         if loop.beyond > 1:
@@ -66,11 +65,14 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
     # A way to the other side counts for its part of the distance from the center, at most as it does for the longest.
     most_back = other.part(back) * ends_of(loop.pulses[0].height[1] + loop.pulses[1].height[1])[1]
     far = most_back / (most_back + abs(way))
-    (own, opposite), (late, seen) = _shares(law, loop, (side, other), (shortest, longest, back))
+    own = _together(law, loop, _from_center(law, loop, side, longest))
+    opposite = _together(law, loop, _from_none(other, back))
+    late = _center_late(law, loop, side, shortest, longest)
+    seen = _center_seen(law, side, shortest, longest)
     disturbances = [low.union(high) for low, high in loop.disturbances]
     known = tuple(point(Fraction(float(each.mid()))) for each in (late, seen))
     disturbances[DISTURBANCES.index("mean reference drift")] += (seen - known[1]) * way
-    growth = most_of([loop.ranges.secants[1] * point(law.sample_time), point(LEVEL)])
+    _, growth = _growths(law, loop)
     most = side.parts[1] * loop.ranges.effects[1] * growth.expm1() / growth
     disturbances[DISTURBANCES.index("uneven slip drift")] += (late - known[0]) * way * most
     ways = ways_about(side.parts, other.parts, far, (own, opposite), known)
@@ -79,11 +81,7 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
         ways = cut_to(ways, share_left(1, loop.beyond, side.part(longest) / side.part(pulse)))
     return replace(
         loop,
-        ranges=replace(
-            loop.ranges,
-            ways=ways,
-            shares_center=known,
-        ),
+        ranges=replace(loop.ranges, ways=ways, shares_center=known),
         disturbances=tuple(map(ends_of, disturbances)),
         within=within_pulses(
             loop.pulses,
@@ -107,86 +105,95 @@ def _on_curve(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Loop:
     return replace(loop, ranges=replace(loop.ranges, pulls=(point(1), ends_of(least)[0])))
 
 
-def _shares(
-    law: BandLaw, loop: Loop, sides: tuple[Pulses, Pulses], lengths: tuple[Ball, Ball, Ball]
-) -> tuple[tuple[tuple[Pair, ...], tuple[Pair, ...]], tuple[Ball, Ball]]:
-    """Return late shares and shares in the mean torque of the law: corners on both sides, and those of the center.
+def _growths(law: BandLaw, loop: Loop) -> tuple[Ball, Ball]:
+    """Return growths of errors over a sample, as exponents other than 0: the smallest and the largest."""
+    h = point(law.sample_time)
+    low, high = loop.ranges.secants
+    return least_of([low * h, point(-LEVEL)]), most_of([high * h, point(LEVEL)])
+
+
+class _Change(NamedTuple):
+    """Change of what the valve does, from a pulse of some length to one that is longer, up to the longest one.
 
     What a longer pulse changes counts in a mean over the sample from its end on. So a part l of a change counts in the
     mean torque that the law works out, times the rate of the way that it goes by its nominal times; and nearly the same
     part in what the wheel sees, which is weighted by how errors grow, comes later with a late pulse, and goes by the
     true times. Lengths are convex over ways: l is at least as large as halfway between the ends of the change.
-
-    Parameters
-    ----------
-    law : BandLaw
-        Its numbers.
-    loop : Loop
-        As :func:`loop_of` returns it.
-    sides : tuple of Pulses
-        To the side of the way at the center, and to the other one.
-    lengths : tuple of ball
-        Shortest and longest pulse of the way at the center, and the longest to the other side.
     """
-    share, (side, other), (shortest, longest, back) = point(law.time_share), sides, lengths
-    fastest, slowest = (
-        extreme([end * point(law.sample_time), point(level)])
-        for end, extreme, level in zip(
-            loop.ranges.secants[::-1], (most_of, least_of), (LEVEL, -LEVEL), strict=True
-        )
-    )
+
+    pulses: Pulses
+    longest: Ball  # pulse over the sample time
+    left: Ball  # -, smallest l
+    uneven: Ball  # -, factor by which the part gone in a change differs from that of all of a way at most
+    uneven_law: Ball  # -, the same by the times of the law
+
+
+def _from_center(law: BandLaw, loop: Loop, side: Pulses, longest: Ball) -> _Change:
+    """Return changes from the way at the center, whose pulse is that long at most, to others on its side."""
     # The part gone on the way from the center differs by so much from that on the way from none.
     begun = side.part(longest) / side.part(loop.pulse)
 
     def uneven(speedup: Ball) -> Ball:
         return 1 + ((abs(1 - speedup) * loop.pulse / side.time).exp() - 1) * begun
 
-    def together(
-        pulses: Pulses, longest_one: Ball, left: Ball, uneven_true: Ball, uneven_law: Ball
-    ) -> tuple[Pair, ...]:
-        """Parts of a change from some length to the longest one, of which at least a part counts."""
-        weights = most_of(
-            [(abs(end - share) * longest_one / pulses.time).exp() for end in pulses.speedups]
-        ).sqrt()
-        aside = longest_one * (weights - 1) / (weights + 1)  # parts have other weights than those of the law
-        later = most_of([share_after(fastest, left - aside - loop.delay), point(0)]) / uneven_true
-        earlier = share_after(slowest, left + aside) * uneven_true + loop.added
-        least, most = parts_of((share, share), longest_one / pulses.time)
-        return shares_together(
-            (left, point(1)),
-            (later / (1 + loop.added) / left, earlier / (1 + loop.added) / left),
-            ends_of((least / uneven_law).union(most * uneven_law)),
-        )
-
-    own = together(
-        side,
-        loop.pulse,
-        1 - (loop.pulse + longest) / 2,
-        most_of([uneven(end) for end in side.speedups]),
-        uneven(share),
+    return _Change(
+        pulses=side,
+        longest=loop.pulse,
+        left=1 - (loop.pulse + longest) / 2,
+        uneven=most_of([uneven(end) for end in side.speedups]),
+        uneven_law=uneven(point(law.time_share)),
     )
-    opposite = together(other, back, 1 - back / 2, point(1), point(1))
-    # Of the center itself, over the part that is gone on the whole way.
+
+
+def _from_none(other: Pulses, back: Ball) -> _Change:
+    """Return changes from no pulse to those to the other side."""
+    return _Change(pulses=other, longest=back, left=1 - back / 2, uneven=point(1), uneven_law=point(1))
+
+
+def _together(law: BandLaw, loop: Loop, change: _Change) -> tuple[Pair, ...]:
+    """Return corners of the late share and the share in the mean torque of the law, of a change."""
+    share, (slowest, fastest) = point(law.time_share), _growths(law, loop)
+    pulses, longest, left, uneven, uneven_law = change
+    weights = most_of([(abs(end - share) * longest / pulses.time).exp() for end in pulses.speedups]).sqrt()
+    aside = longest * (weights - 1) / (weights + 1)  # parts have other weights than those of the law
+    later = most_of([share_after(fastest, left - aside - loop.delay), point(0)]) / uneven
+    earlier = share_after(slowest, left + aside) * uneven + loop.added
+    least, most = parts_of((share, share), longest / pulses.time)
+    return shares_together(
+        (left, point(1)),
+        (later / (1 + loop.added) / left, earlier / (1 + loop.added) / left),
+        ends_of((least / uneven_law).union(most * uneven_law)),
+    )
+
+
+def _center_seen(law: BandLaw, side: Pulses, shortest: Ball, longest: Ball) -> Ball:
+    """Return the share of the way at the center in the mean torque of the law."""
+    share = point(law.time_share)
     least, most = parts_of((share, share), longest / side.time)
-    fading = (
-        -share * longest / side.time
-    ).exp()  # the rate at the end of the pulse over that at its beginning
-    seen = (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
+    # The rate at the end of the pulse over that at its beginning.
+    fading = (-share * longest / side.time).exp()
+    return (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
+
+
+def _center_late(law: BandLaw, loop: Loop, side: Pulses, shortest: Ball, longest: Ball) -> Ball:
+    """Return the late share of the way at the center, over the part of it that is gone by any pulse on its side."""
+    slowest, fastest = _growths(law, loop)
+    # That part differs from the one gone at the center by so much, in the exponent, to either side.
     shorter = [abs(1 - end) * longest for end in side.speedups]
-    differs = [
+    less, more = (
         most_of([sign * (1 - end) * loop.pulse, *shorter]) / side.time
         for sign, end in zip((1, -1), side.speedups, strict=True)
-    ]
-    faster = (-side.speedups[1] * longest / side.time).exp()
-    last = most_of([share_after(fastest, 1 - longest / 2 - loop.delay), point(0)]) * (-differs[0]).exp()
-    first = share_after(slowest, 1 - faster * shortest / 2) * differs[1].exp() + loop.added
-    return (own, opposite), (1 - last.union(first) / (1 + loop.added), seen)
+    )
+    fading = (-side.speedups[1] * longest / side.time).exp()
+    last = most_of([share_after(fastest, 1 - longest / 2 - loop.delay), point(0)]) * (-less).exp()
+    first = share_after(slowest, 1 - fading * shortest / 2) * more.exp() + loop.added
+    return 1 - last.union(first) / (1 + loop.added)
 
 
-def way_at(law: BandLaw, loop: Loop, center: Sequence[Ball]) -> Ball:
+def way_at(loop: Loop, center: Sequence[Ball]) -> Ball:
     """Return the wanted change of the torque at a center, what disturbs being in its middle [rad/s]."""
     known, command = ((low + high) / 2 for low, high in loop.disturbances[:2])
-    asked = wanted(loop_law(law))
+    asked = loop.wants[0].row
     return sum(map(mul, asked, center), command + asked[4] * known - center[3])
 
 
