@@ -204,6 +204,35 @@ def test_wheels_that_have_arrived_are_in_the_ellipsoid_wherever_its_center_is(mo
         assert max(sizes) > 0.9
 
 
+def test_points_that_have_arrived_are_in_the_ellipsoid_in_exact_numbers(monkeypatch):
+    """The farthest one, whose length is rounded."""
+    random = np.random.default_rng(12)
+    for _ in range(20):
+        axes, _ = np.linalg.qr(random.normal(size=(FORMS, FORMS)))
+        matrix = axes @ np.diag(10.0 ** np.linspace(-4.0, 4.0, FORMS)) @ axes.T
+        asked = asked_for(random, matrix=0.5 * (matrix + matrix.T), moved=[0.0] * FORMS)
+        direction = axes[:, 0]  # in which the ellipsoid is longest, and rounding counts most
+
+        def forms(size, center=asked.center, direction=direction):
+            still = np.zeros((1, 1))
+            return tuple(
+                Affine(np.array([c + size * d]), still, np.zeros(1))
+                for c, d in zip(center, direction, strict=True)
+            )
+
+        least, most = 0.0, 1e3
+        while most - least > 1e-16 * most and least < (middle := 0.5 * (least + most)) < most:
+            monkeypatch.setattr(arrival, "in_band", lambda *_, size=middle: forms(size))
+            there = bool(arrived(None, None, state_of(), asked)[0])
+            least, most = (middle, most) if there else (least, middle)
+        x = [
+            Fraction(each.center[0]) - Fraction(float(c))
+            for each, c in zip(forms(least), asked.center, strict=True)
+        ]
+        length = sum(Fraction(asked.matrix[i, j]) * x[i] * x[j] for i, j in product(range(FORMS), repeat=2))
+        assert 1.0 - 1e-5 < length <= 1
+
+
 def test_wheels_outside_of_the_speeds_or_with_less_supply_have_not_arrived(monkeypatch):
     asked = asked_for(np.random.default_rng(1))
     still = tuple(Affine(np.array([c]), np.zeros((1, 1)), np.zeros(1)) for c in asked.center)

@@ -260,16 +260,20 @@ def test_brake_pulls_at_every_instant_as_the_forms_say(valves, kind, wide):
         assert beyond <= 1e-6
 
 
-@pytest.mark.parametrize(("torque", "friction"), [(17_500.0, 15_820.0), (22_000.0, 21_850.0)])
-def test_torque_bends_within_a_pulse_of_nearly_all_of_the_sample(torque, friction):
+@pytest.mark.parametrize(
+    ("torque", "friction", "wide"),
+    [
+        *((17_500.0, 15_820.0, 1e-3), (22_000.0, 21_850.0, 1e-3), (17_500.0, 16_232.0, 400.0)),
+        *((17_500.0, 14_000.0, 800.0), (22_000.0, 25_000.0, 800.0)),
+    ],
+)
+def test_torque_bends_within_a_pulse_of_nearly_all_of_the_sample_or_all_of_it(torque, friction, wide):
     """With valves that go just what is asked for: nothing else covers for that."""
-    center = (25.0, 3.5, 0.0, friction, torque, -0.7, -0.0145, 0.6)
-    found = Sample(
-        problem_with((0.36, 0.36), (0.6, 0.6), 0.0), center, 1e-6 * WIDTHS, [0.0] * len(NUMBERS), 4
-    )
-    assert found.decided.even[0]
-    shares = found.seen["fill"] + found.seen["vent"]
-    assert 0.9 < shares.min() <= shares.max() < 1.0
+    center, widths = (25.0, 3.5, 0.0, friction, torque, -0.7, -0.0145, 0.6), 1e-6 * WIDTHS
+    widths[4] = wide
+    found = Sample(problem_with((0.36, 0.36), (0.6, 0.6), 0.0), center, widths, [0.0] * len(NUMBERS), 4)
+    assert bool(found.decided.even[0]) is (wide < 800.0)
+    assert 0.9 < (found.seen["fill"] + found.seen["vent"]).max() <= 1.0
     for part, on_the_way in enumerate(found.on_the_way):
         for time in np.linspace(-1.0, 1.0, 9):
             at = (part + (time + 1.0) / 2.0) / len(found.on_the_way)
