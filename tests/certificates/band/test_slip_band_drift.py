@@ -156,26 +156,27 @@ def test_filter_of_a_speed_that_is_told_wrong_lags_within_its_bounds(plain, numb
 
 
 @pytest.mark.parametrize("factor", JERK_FACTORS)
-@pytest.mark.parametrize("smoothing", [Fraction(3, 10), Fraction(20), Fraction(1000)])
-def test_lag_that_has_settled_shrinks_with_what_the_rims_take_part_in(plain, smoothing, factor):
+@pytest.mark.parametrize("before", JERK_FACTORS)
+@pytest.mark.parametrize("smoothing", [Fraction(1, 50), Fraction(3, 10), Fraction(20), Fraction(1000)])
+def test_lag_that_has_settled_shrinks_with_what_the_rims_take_part_in(plain, smoothing, before, factor):
     """A slip that falls takes the rims less along at lower speeds, and a filter that is slow lags far behind."""
     law = replace(laws(plain)[2], acceleration_time=smoothing)
     ends = doubles(loop_in(plain, law).disturbances[9])
     _, slip = wandering(law, plain)
-    stop = Steered(plain, law, slip, float(factor))
     h, radius = float(law.sample_time), plain.vehicle.wheel_radius
     kept = math.exp(-float(law.sample_time / law.acceleration_time))
-    speeds = stop.speeds(SPEED, (0.0, h))
-    turned = [h * turning_at(law, v, radius) / radius for v in speeds]
 
-    def later(lag):
-        """The lag after a sample."""
+    def later(lag, factor):
+        """The lag after a sample in which the deceleration rises by a factor of what it does."""
+        stop = Steered(plain, law, slip, float(factor))
+        speeds = stop.speeds(SPEED, (0.0, h))
+        turned = [h * turning_at(law, v, radius) / radius for v in speeds]
         filtered = -stop.braking(speeds[0], None) - lag / turned[0]
         filtered += (1.0 - kept) * ((speeds[1] - speeds[0]) / h - filtered)
         return turned[1] * (-stop.braking(speeds[1], None) - filtered)
 
     # What it is after a sample goes in proportion to what it was.
-    settled = later(0.0) / (1.0 - (later(1.0) - later(0.0)))
-    assert later(settled) == pytest.approx(settled)
+    settled = later(0.0, before) / (1.0 - (later(1.0, before) - later(0.0, before)))
+    assert later(settled, before) == pytest.approx(settled)
     for lag in (0.0, settled):
-        assert within(later(lag) - kept * lag, ends)
+        assert within(later(lag, factor) - kept * lag, ends)
