@@ -143,7 +143,9 @@ THEOREMS = (
         " n, and changes by little from one sample to the next; for a vector b the state less c + b (s - n) goes on "
         "as above, with (A b + B_s - b)(s - n) and b times the rest of what s changes by among what disturbs, n in its "
         "middle and b times the middle of what s changes by taken off o. The friction that moves the torque also makes "
-        "the train brake harder: of what the lag of the filtered acceleration drifts by, k s is in B_s, for any k."
+        "the train brake harder: of the drift t of the reference, h times what its acceleration changes by, k s is in "
+        "B_s, for any k. What t brings along of other disturbances counts as one with it: by its column of B, those of "
+        "the torque, of its mean, of w_r and of the lag of the filtered acceleration go with it."
         " If Q > 0, shares D > 0 and alpha > 0 with alpha + sum D <= 1 make Q - A Q A'/alpha - [o Br] D^-1 [o Br]' "
         "positive definite at the corners of all numbers of a sample, then no sample leads out of that ellipsoid "
         "about c + b (s - n), and w - w_r stays within the root of the first entry of Q around E plus the first "
@@ -166,10 +168,11 @@ THEOREMS = (
             "drift of torque and reference, and of the error of the filtered acceleration, between their bounds: while "
             "the train slows down, the friction at the reference rises; where the slip falls as c/sqrt(v), the filter "
             "has settled",
-            "where the slip is constant, the change of the steady drift from enclosures of the second derivative of "
-            "the friction along the speeds w_r + E for the masses and frictions of the cell, and from the jerk; what "
-            "the lag drifts by beside k s from enclosures of how much more the friction fades along the reference than "
-            "along w_r + E; else there is no steady drift, b = 0, k = 0",
+            "where the slip is constant, the steady drift from its proved bounds and from enclosures of the derivative "
+            "of the friction along the speeds w_r + E for the masses and frictions of the cell, its change from those "
+            "of the second derivative and from the jerk; what the reference drifts by beside k s from enclosures of "
+            "how much more the friction fades along the reference than along w_r + E; else there is no steady drift, "
+            "b = 0, k = 0",
             "the deceleration of the train rises 3/4 to 5/4 times as fast as at that deceleration it would with all "
             "wheels at the reference",
         ),
@@ -215,7 +218,12 @@ THEOREMS = (
             ),
             Identity("share of the last part of a sample with that weight", slip_loop.share_after_residual),
             Identity("error of the filtered acceleration", slip_loop.filter_residual),
-            Identity("what it drifts by beside k s", slip_loop.lag_beside_residual),
+            Identity("what the reference drifts by beside k s", slip_loop.lag_beside_residual),
+            Identity("a drift t of the reference moves the torque by -t/g", slip_loop.turning_residual),
+            Identity("a steady weight differs from its mean by 1/4", slip_loop.even_residual),
+            Identity("that of the filter by 1/4 of what it corrects", slip_loop.filtered_residual),
+            Identity("one that falls at once, at M, by 2 M (1 - M)", slip_loop.at_once_residual),
+            Identity("that is 1/2 less a square", slip_loop.most_aside_residual),
             Identity("rho_a (u - u_c) + rho_c u_c = rho u", slip_loop.about_residual),
             Identity("a longer pulse counts in the mean from its end on", slip_loop.mean_residual),
             Identity("change of the way over that of the wanted one", slip_loop.rate_residual),

@@ -175,7 +175,7 @@ _filtered = (
 )  # v' - a, while v' changes steadily
 _weighed = sp.integrate(_jerk * (1 - (1 - _kept) * (1 - _gone_by / h)), (_gone_by, 0, h))  # or in any way
 filter_residual = sp.simplify(_filtered - (_kept * _d + _weighed))
-# What D drifts by beside k s, while the train loses y h a sample and the held torque moves by s.
+# What it, or the reference, drifts by beside k s, while the train loses y h a sample and the held torque moves by s.
 _y, _g, _k, _force, _more_force, _turned, _weight_torque, _damped, _resisted, _times = sp.symbols(
     "y g k F delta T W d_w r_w j", real=True
 )
@@ -187,6 +187,36 @@ _together -= _k * _weight_torque * (_g * _more_force + _resisted)
 lag_beside_residual = sp.expand(_lag_moves - _k * _steady - h * _y * (_together - _k * _damped))
 _earlier = sp.summation((1 - _kept) * (_kept ** (_j - 1) - _kept**_j), (_j, 1, _count))
 earlier_residual = sp.simplify(_earlier - (1 - _kept) * (1 - _kept**_count))
+
+# --- what a drift of the reference brings along: of the torque that holds it, and of what weighs w_r'' in a sample ---
+_I, _pads, _tau, _more_rate, _mean = sp.symbols("I pads tau more_rate mean", positive=True)
+
+
+def _held_at(rotation: sp.Expr) -> sp.Expr:
+    """Torque that holds a reference that turns faster and faster, as the law counts it."""
+    return (_tau - _I * rotation) / (_pads * J)
+
+
+turning_residual = sp.simplify(
+    h * (_held_at(rate + _more_rate) - _held_at(rate)) + h * _more_rate / (_pads * J / _I)
+)
+
+
+def _aside(weight: sp.Expr, crossing: sp.Expr) -> sp.Expr:
+    """Mean of how far a weight lies from its mean, which it falls or rises to at a part of the sample."""
+    differs = weight - sp.integrate(weight, (u, 0, 1))
+    return sp.integrate(differs, (u, 0, crossing)) - sp.integrate(differs, (u, crossing, 1))
+
+
+even_residual = sp.simplify(_aside(1 - u, sp.Rational(1, 2)) - sp.Rational(1, 4))
+filtered_residual = sp.simplify(-_aside(1 - (1 - _kept) * (1 - u), sp.Rational(1, 2)) - (1 - _kept) / 4)
+# A weight that falls from 1 to 0 and is above its mean M up to c lies beyond that by at most c (1 - M) there, and by
+# M (1 - c): together at most as one that falls at once, at M.
+_at_once = sp.integrate(1 - _mean, (u, 0, _mean)) + sp.integrate(_mean, (u, _mean, 1))
+at_once_residual = sp.expand(_at_once - 2 * _mean * (1 - _mean))
+most_aside_residual = sp.expand(
+    sp.Rational(1, 2) - 2 * _mean * (1 - _mean) - 2 * (_mean - sp.Rational(1, 2)) ** 2
+)
 
 # --- the share of a rise that is still to come, weighted by exp(q (h - t)); it is steady and ends with the pulse ------
 m = sp.Symbol("m", real=True, nonzero=True)  # q h

@@ -274,11 +274,25 @@ def friction_of(problem, law, window):
     )
 
 
-def loop_in(problem, law, settled=0.0, *, friction=None, conditions=EXACT, window=WINDOW, near=0):
+def loop_in(
+    problem, law, settled=0.0, *, friction=None, conditions=EXACT, window=WINDOW, near=0, ranges=None
+):
+    """Return the loop of the nominal numbers, or of some ranges of them."""
     with ctx.workprec(128):
-        cell = tuple((Fraction(problem.nominal(name)),) * 2 for name in NAMES)
+        ends = {name: (problem.nominal(name),) * 2 for name in NAMES} | (ranges or {})
+        cell = tuple(tuple(map(Fraction, each)) for each in ends.values())
         parts = everywhere(friction or friction_of(problem, law, window))
         return loop_of(problem, law, cell, window, parts, Choice(PULSE, near, Fraction(settled)), conditions)
+
+
+def left_beside(loop, seen, steady=0.0):
+    """What is left of all that is seen, by the number of the disturbance, beside what the loop counts elsewhere.
+
+    That is what comes with the steady drift, and with the drift of the reference.
+    """
+    drifted = {2: 1.0, 3: float(loop.steady.share.mid()), 4: float(loop.steady.lag.mid())}
+    brought = [float(each.mid()) for each in loop.ranges.brought]
+    return {k: each - drifted.get(k, 0.0) * steady - brought[k] * seen[4] for k, each in seen.items()}
 
 
 def doubles(ends):

@@ -33,7 +33,7 @@ LOW = wd.load_rail("low-adhesion")
 STARTS = 20_000
 SHARE = Fraction(3, 8)  # of each range
 FAST = 100.0 / 3.6, 120.0 / 3.6  # m/s, a window
-ANY = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.1, -0.09),) * len(FADINGS))
+ANY = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.3, 0.0),) * len(FADINGS))
 EXACT = Conditions(supply=Fraction(63, 64), delay=Fraction(0), noise=Fraction(0))
 
 

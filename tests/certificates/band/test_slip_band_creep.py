@@ -17,7 +17,7 @@ from wspd_design.certificates.setting.creep_slope import (
     RATIO,
     SLIDING,
     STEEPNESS,
-    bend,
+    along_speed,
     fading_beside,
     fading_claim,
     level_claim,
@@ -131,6 +131,24 @@ def alone(request, box):
     )
 
 
+def test_derivative_along_a_course_beside_the_reference_is_enclosed(box, wheels, alone):
+    """Of a wheel that slides slower by a speed that does not change."""
+
+    def seen(wheel, speed, less):
+        d = 1e-5 * speed
+        forces = [wheel.force(SLIP - less / v, v) for v in (speed - d, speed + d)]
+        return (forces[1] - forces[0]) / (2.0 * d)
+
+    problem, beside, places = alone
+    found = [seen(*each) for each in places]
+    ends = along_speed(problem, SLIP, beside)[0]
+    assert all(inside(each, ends, 1e-7) for each in found)
+    if problem.speeds[1] < 8.01:
+        assert ends[1] - ends[0] < 0.05 * abs(found[0])
+    ends = along_speed(box, SLIP, BESIDE)[0]
+    assert all(inside(seen(*each), ends, 1e-7) for each in product(wheels, SPEEDS, (*BESIDE, 0.0)))
+
+
 def test_second_derivative_along_a_course_beside_the_reference_is_enclosed(box, wheels, alone):
     """Of a wheel that slides slower by a speed that does not change."""
 
@@ -141,11 +159,11 @@ def test_second_derivative_along_a_course_beside_the_reference_is_enclosed(box, 
 
     problem, beside, places = alone
     found = [seen(*each) for each in places]
-    low, high = bend(problem, SLIP, beside)
+    low, high = along_speed(problem, SLIP, beside)[1]
     assert all(inside(each, (low, high), 1e-7) for each in found)
     if problem.speeds[1] < 8.01:
         assert high - low < 0.2 * abs(found[0])
-    ends = bend(box, SLIP, BESIDE)
+    ends = along_speed(box, SLIP, BESIDE)[1]
     assert all(inside(seen(*each), ends, 1e-7) for each in product(wheels, SPEEDS, (*BESIDE, 0.0)))
 
 

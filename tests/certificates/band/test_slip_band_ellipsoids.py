@@ -150,9 +150,9 @@ def test_drift_that_a_center_is_for_is_part_of_the_statement(half, proof):
 def test_narrower_slope_counts_only_as_far_as_it_is_bounded(half, proof):
     """An error that leaves the narrower range is refused there, whatever the slope is in it."""
     each = proof["ellipsoids"][0]
-    # At 10 km/h the band reaches farther above the reference than the narrowest reach, which lies below it.
+    # At 10 km/h the band reaches nearer to the reference than a reach that begins beside it.
     assert float(each[NEAR]) == 1.0
-    each[NEAR] = "2.0"
+    each[NEAR] = "11.0"
     assert "range in which the slope of the friction is bounded" in refused(half, proof)
     each[NEAR] = "1.0"
     each[Q] = [repr(9.0 * float(number)) for number in each[Q]]

@@ -16,7 +16,7 @@ from tests.certificates.band.conftest import WET
 from tests.certificates.band.courses import falling_problem
 from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
-from wspd_design.certificates.setting.creep_slope import bend, fading_beside
+from wspd_design.certificates.setting.creep_slope import along_speed, fading_beside
 from wspd_design.certificates.theorems.band import claims, key
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
@@ -146,8 +146,8 @@ def test_wheels_that_turn_faster_than_the_train_are_asked_about_as_those_that_sl
 def test_courses_of_wheels_that_may_turn_faster_than_the_train_are_refused(falling):
     """What is enclosed along them holds for wheels that slide."""
     there = replace(falling, speeds=(8.0, 8.1))
-    for enclosed in (bend, fading_beside):
-        assert all(map(math.isfinite, enclosed(there, 0.02, (0.14, 0.15))))
+    for enclosed in (along_speed, fading_beside):
+        assert np.all(np.isfinite(enclosed(there, 0.02, (0.14, 0.15))))
         with pytest.raises(Refused, match="faster than the train"):
             enclosed(there, 0.02, (0.14, 0.17))
 

@@ -82,12 +82,11 @@ def test_every_mean_from_an_error_to_another_is_between_its_bounds(reach, seed):
     random = np.random.default_rng(seed)
     friction = drawn(random)
     first, after = REACHES[reach]
-    strips = SLOPES[first:after]
     ends = [float(each) for each in reached(reach)]
-    others = [*edges_of(strips), *random.uniform(*ends, 30)]
-    for low, high in errors_of(random, strips):
+    others = [*edges_of(SLOPES[first:after]), *random.uniform(*ends, 30)]
+    for low, high in errors_of(random, SLOPES):
         found = mean_slope(friction, ball(*map(as_in_strips, (low, high))), reach)
-        for course in courses(random, strips, friction.slopes[first:after]):
+        for course in courses(random, SLOPES, friction.slopes):
             for one in np.linspace(low, high, 1 if low == high else 7):
                 means = [course.mean(one, other) for other in others if abs(other - one) > 1e-7]
                 assert all(encloses(found, each) for each in (*means, *course.at(one)))

@@ -33,7 +33,7 @@ BRIEF, SHORT, LONG = (
 WAYS = (0.003, -0.003)  # rad/s, at the center
 SPEEDUPS = (0.5, 1.0, 2.0)  # assumed over true times of the valve
 ROUNDING = 1e-6
-ANY = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.1, -0.09),) * len(FADINGS))
+ANY = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.3, 0.0),) * len(FADINGS))
 
 
 @pytest.fixture(scope="module")

@@ -26,6 +26,7 @@ from wspd_design.certificates.records import Status
 from wspd_design.certificates.theorems.band import CELLS, SLIP_BAND, claims, key
 from wspd_design.certificates.theorems.slip_band import loop
 from wspd_design.certificates.theorems.slip_band.checker import checker
+from wspd_design.certificates.theorems.slip_band.friction import FADINGS
 from wspd_design.certificates.theorems.slip_band.loop import loop_of
 from wspd_design.certificates.theorems.slip_band.proof import Choice
 from wspd_design.certificates.theorems.slip_band.reference import held_in, slip_at, slips_held
@@ -49,6 +50,8 @@ def loop_numbers(problem, law, *, told=None, settled=0.0):
     steady = np.array([float(end.mid()) for end in (found.steady.low, found.steady.high)])
     ends[2] += steady
     ends[3] += float(found.steady.share.mid()) * steady
+    brought = np.array([float(each.mid()) for each in found.ranges.brought])
+    ends += np.sort(brought[:, None] * ends[4])
     return [tuple(each) for each in ends]
 
 
@@ -89,11 +92,15 @@ def drift_by_friction(problem, law, settled):
         friction_at(problem, (8.03,), (each - 1e-6, each + 1e-6))
         for each in (slip - settled * problem.vehicle.wheel_radius / 8.03, slip)
     )
+    friction = at._replace(level=level.level)
+    if not law.falls:  # the loop knows how that of a constant slip fades from the numbers of the box
+        friction = friction._replace(fadings=((-1.0, 0.0),) * len(FADINGS))
     with ctx.workprec(128):
-        found = loop_at(problem, law, settled, window=(8.029, 8.031), friction=at._replace(level=level.level))
+        found = loop_at(problem, law, settled, window=(8.029, 8.031), friction=friction)
         torque, rims = (float((low + high).mid()) / 2.0 for low, high in found.disturbances[2:5:2])
         torque += float((found.steady.low + found.steady.high).mid()) / 2.0
-    return torque + problem.nominal("wheelset inertia") / float(law.inertia) * rims
+        brought = float(found.ranges.brought[2].mid())
+    return torque + (problem.nominal("wheelset inertia") / float(law.inertia) + brought) * rims
 
 
 @pytest.mark.parametrize("settled", [-0.01, 0.0, 0.05])
@@ -183,7 +190,7 @@ def test_drift_that_changes_adds_half_of_that_until_the_end_of_a_sample(falling,
     law = replace(law_of(falling.controller), falls=False, slip=Fraction(9, 50))
     found = []
     for bent in (0.1, 0.2):
-        monkeypatch.setattr(loop, "bend", lambda *_, bent=bent: (bent, bent))
+        monkeypatch.setattr(loop, "along_speed", lambda *_, bent=bent: ((-1.0, 0.0), (bent, bent)))
         found.append(loop_at(falling, law))
     (low, high), (mean_low, mean_high) = (
         [float((two - one).mid()) for one, two in zip(*(each.disturbances[k] for each in found), strict=True)]

@@ -65,7 +65,7 @@ def test_clip_of_what_is_held_is_that_of_the_reserve(half):
     """Half of the wet box takes up to 69 %; a reserve takes what is beyond off the room for filling, and no more."""
     with ctx.workprec(128):
         law, box = law_of(half.controller), box_of(half, Fraction(1))
-        friction = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.1, -0.09),) * len(FADINGS))
+        friction = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.3, 0.0),) * len(FADINGS))
         exact = Conditions(supply=Fraction(1), delay=Fraction(0), noise=Fraction(0))
         found = {
             reserve: loop_of(

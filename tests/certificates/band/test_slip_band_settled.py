@@ -119,7 +119,7 @@ def test_band_reaches_as_far_as_the_states_do(half, proved, proof):
         middle, reach = float(each.settled + each.center[0]), math.sqrt(each.matrix[0][0])
         slip = half.span("wheel radius")[1] / windows[k][0]
         numbers = proved.findings[CELLS].numbers
-        assert slip * (middle + reach) <= numbers[f"band {k} below"] <= 1.3 * slip * (middle + reach)
+        assert slip * (middle + reach) <= numbers[f"band {k} below"] <= 1.35 * slip * (middle + reach)
         assert slip * (reach - middle) <= numbers[f"band {k} above"]
 
 

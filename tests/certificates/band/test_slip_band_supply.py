@@ -34,7 +34,7 @@ DELAY = Fraction(1, 10)
 
 def loop_with(problem, room, pulse):
     """The loop with nominal numbers at the lowest speeds, for a room above the cylinder."""
-    friction = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.1, -0.09),) * len(FADINGS))
+    friction = Friction(((-0.2, 0.02),) * len(SLOPES), (0.86, 0.91), ((-0.3, 0.0),) * len(FADINGS))
     with ctx.workprec(128):
         return loop_of(
             problem,

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.test_slip_band_read import an_ellipsoid
 from wspd_design.certificates.kernel.checker import Refused
-from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, Friction, Part
+from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, SLOPES, Friction, Part
 from wspd_design.certificates.theorems.slip_band.proof import Proof, write
 from wspd_design.certificates.theorems.slip_band.statement import windows_of
 from wspd_design.certificates.theorems.slip_band.way_in import _supply_rises, around
@@ -33,7 +33,7 @@ def problem():
 
 def friction_of(k, part):
     """Bounds that differ in each window and part; the slope of one strip is the steepest, on either side of 0."""
-    slopes = [(-0.01, 0.01)] * 6
+    slopes = [(-0.01, 0.01)] * len(SLOPES)
     slopes[2 + part] = (-0.15 + 0.01 * k, 0.02) if part == 1 else (-0.01, 0.1)
     level = 0.2 + 0.02 * k + 0.01 * part
     bounds = (*slopes, (level - 0.1, level), *[(-0.1, -0.09)] * 3)

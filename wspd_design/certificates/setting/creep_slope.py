@@ -33,7 +33,11 @@ from wspd_design.parameters.loading import constants
 from wspd_design.parameters.records import Rail, Vehicle
 
 BITS = 128  # of the balls that the bend of the force is enclosed in
-PARTS = 4  # of each range, in which the bend of the force is enclosed
+PARTS = (
+    16,
+    4,
+    8,
+)  # of speed, what a wheel slides slower, and steepness, in which derivatives of the force are enclosed
 FINER = 32, 16  # parts of speed and steepness, in which differences of its change are enclosed
 REDUCTIONS = "slip reduction", "adhesion reduction"
 STEEPNESS, RATIO, SLIDING, NORMAL_MASS = "steepness", "kS/kA", "sliding speed", "normal mass"
@@ -114,25 +118,29 @@ def for_steepness(claim: Claim, slips: Ends, steepness: Ends) -> Claim:
 
 
 @lru_cache(maxsize=1000)
-def bend(problem: Problem, slip: float, beside: Ends) -> Ends:
-    """Enclose the second derivative of the creep force over mu0 Q in the train speed [s2/m2].
+def along_speed(problem: Problem, slip: float, beside: Ends) -> tuple[Ends, Ends]:
+    """Enclose both derivatives of the creep force over mu0 Q in the train speed [s/m, s2/m2].
 
-    The wheel slides slower than at a slip by a speed that does not change, from a range [m/s]. The derivative is that
-    of power series in balls, over parts of the ranges.
+    The wheel slides slower than at a slip by a speed that does not change, from a range [m/s]. The derivatives are
+    those of power series in balls, over parts of the ranges.
     """
     from flint import ctx
 
     with ctx.workprec(BITS):
         ratio = _quotient(problem, *REDUCTIONS)
         found = [
-            2 * _force_along(problem, slip, (*parts, ratio[0].union(ratio[1])))[2]
+            _force_along(problem, slip, (*parts, ratio[0].union(ratio[1])))
             for parts in product(
-                _parts(_span(problem, "speed")),
-                _parts(_wide(beside)),
-                _parts(_steepness(problem)),
+                _parts(_span(problem, "speed"), PARTS[0]),
+                _parts(_wide(beside), PARTS[1]),
+                _parts(_steepness(problem), PARTS[2]),
             )
         ]
-        return min(map(below, found)), max(map(above, found))
+        first, second = ([times * each[times] for each in found] for times in (1, 2))
+        return (min(map(below, first)), max(map(above, first))), (
+            min(map(below, second)),
+            max(map(above, second)),
+        )
 
 
 @lru_cache(maxsize=1000)
@@ -187,9 +195,11 @@ def _force_along(problem: Problem, slip: float, numbers: tuple[Ball, Ball, Ball,
     return force / load
 
 
-def _parts(ends: Balls, count: int = PARTS) -> tuple[Ball, ...]:
-    """Divide a range into balls."""
+def _parts(ends: Balls, count: int) -> tuple[Ball, ...]:
+    """Divide a range into balls; one number is one."""
     low, high = ends
+    if low == high:
+        return (low,)
     edges = [low + (high - low) * k / count for k in range(count + 1)]
     return tuple(one.union(other) for one, other in pairwise(edges))
 

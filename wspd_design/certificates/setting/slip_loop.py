@@ -21,12 +21,13 @@ Matrix: TypeAlias = tuple[Any, ...]
 """Its rows."""
 
 STATES = 5
+REFERENCE_DRIFT = "reference drift"
 DISTURBANCES = (
     "acceleration error",
     "command error",
     "torque drift",
     "mean torque drift",
-    "reference drift",
+    REFERENCE_DRIFT,
     "mean reference drift",
     "slip drift",
     "uneven slip drift",
@@ -67,6 +68,9 @@ class LoopRanges:
     ways: tuple[Way, ...]  # corners
     shares_center: Pair  # -, late share and share in the mean torque of the law, of the way at the center
     pulls: tuple[Number, ...] = (1.0,)  # -, corners of the pull over k e, of what is beside the center
+    brought: tuple[Number, ...] = (0.0,) * len(
+        DISTURBANCES
+    )  # -, what a reference drift of 1 brings along of each disturbance
 
 
 def polygon(secants: Pair, sample_time: Number) -> tuple[Pair, ...]:
@@ -208,8 +212,16 @@ def corners(law: LoopLaw, ranges: LoopRanges, units: Sequence[Any]) -> Iterator[
     units : sequence
         Rows of the identity, as anything that adds up and takes a factor; d in the order of :data:`DISTURBANCES`.
     """
+    units = with_reference(units, ranges.brought)
     for rest, center in numbers_at_corners(law, ranges):
         yield sample(law, rest, units), sample(law, center, units)
+
+
+def with_reference(units: Sequence[Any], brought: Sequence[Number]) -> list[Any]:
+    """Add to each disturbance what the drift of the reference brings along of it; units as in :func:`corners`."""
+    drift = units[STATES + DISTURBANCES.index(REFERENCE_DRIFT)]
+    disturbed = [each + share * drift for each, share in zip(units[STATES:], brought, strict=True)]
+    return [*units[:STATES], *disturbed]
 
 
 def wanted(law: LoopLaw, pull: Number = 1.0) -> tuple[Number, ...]:

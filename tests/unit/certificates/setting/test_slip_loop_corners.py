@@ -1,6 +1,7 @@
 """Corners of the sampled slip loop: they enclose what a sample can be."""
 
 import math
+from dataclasses import replace
 from itertools import product
 
 import flint
@@ -10,6 +11,7 @@ from scipy.optimize import linprog
 
 from wspd_design.certificates.setting.slip_loop import (
     DISTURBANCES,
+    REFERENCE_DRIFT,
     STATES,
     LoopLaw,
     LoopRanges,
@@ -111,6 +113,23 @@ def test_constant_errors_are_at_rest():
         rest = np.array(matrix)[:, :STATES] - np.eye(STATES)
         assert np.linalg.matrix_rank(rest) == STATES
     assert len(wanted(LAW)) == STATES
+
+
+def test_drift_of_the_reference_brings_others_along_at_all_corners():
+    """Its column has what it brings along of theirs, for the rest and for the center."""
+    drift = STATES + DISTURBANCES.index(REFERENCE_DRIFT)
+    alone = LoopRanges(
+        secants=(-3.0, 1.0),
+        effects=(0.7, 1.3),
+        ways=(Way(0.4, 0.6, 0.0, 0.6), Way(1.2, 0.9, 0.5, 0.3)),
+        shares_center=(0.1, 0.5),
+    )
+    shares = np.linspace(-1.0, 1.0, len(DISTURBANCES))
+    shares[DISTURBANCES.index(REFERENCE_DRIFT)] = 0.0
+    together = replace(alone, brought=tuple(shares))
+    before, after = (np.array(list(corners(LAW, each, UNITS)), dtype=float) for each in (alone, together))
+    before[..., drift] += before[..., STATES:] @ shares
+    np.testing.assert_allclose(after, before, rtol=1e-12, atol=1e-12)
 
 
 def test_center_has_its_own_part_and_share_and_all_else_of_the_sample():

@@ -65,7 +65,7 @@ def about(law: BandLaw, loop: Loop, center: Sequence[Ball], lengths: Lengths) ->
     # A way to the other side counts for its part of the distance from the center, at most as it does for the longest.
     most_back = other.part(back) * ends_of(loop.pulses[0].height[1] + loop.pulses[1].height[1])[1]
     far = most_back / (most_back + abs(way))
-    own = _together(law, loop, _from_center(law, loop, side, longest))
+    own = _together(law, loop, _from_center(law, loop, side, shortest, longest))
     opposite = _together(law, loop, _from_none(other, back))
     late = _center_late(law, loop, side, shortest, longest)
     seen = _center_seen(law, side, shortest, longest)
@@ -118,18 +118,19 @@ class _Change(NamedTuple):
     What a longer pulse changes counts in a mean over the sample from its end on. So a part l of a change counts in the
     mean torque that the law works out, times the rate of the way that it goes by its nominal times; and nearly the same
     part in what the wheel sees, which is weighted by how errors grow, comes later with a late pulse, and goes by the
-    true times. Lengths are convex over ways: l is at least as large as halfway between the ends of the change.
+    true times. Lengths are convex over ways: l is at least as large as halfway between the ends of the change. It is
+    largest towards no pulse at all, where it is that of the whole way.
     """
 
     pulses: Pulses
     longest: Ball  # pulse over the sample time
-    left: Ball  # -, smallest l
+    left: Pair  # -, smallest and largest l
     uneven: Ball  # -, factor by which the part gone in a change differs from that of all of a way at most
     uneven_law: Ball  # -, the same by the times of the law
 
 
-def _from_center(law: BandLaw, loop: Loop, side: Pulses, longest: Ball) -> _Change:
-    """Return changes from the way at the center, whose pulse is that long at most, to others on its side."""
+def _from_center(law: BandLaw, loop: Loop, side: Pulses, shortest: Ball, longest: Ball) -> _Change:
+    """Return changes from the way at the center, whose pulse has one of these lengths, to others on its side."""
     # The part gone on the way from the center differs by so much from that on the way from none.
     begun = side.part(longest) / side.part(loop.pulse)
 
@@ -139,7 +140,7 @@ def _from_center(law: BandLaw, loop: Loop, side: Pulses, longest: Ball) -> _Chan
     return _Change(
         pulses=side,
         longest=loop.pulse,
-        left=1 - (loop.pulse + longest) / 2,
+        left=(1 - (loop.pulse + longest) / 2, _most_left(law, side, shortest, longest)),
         uneven=most_of([uneven(end) for end in side.speedups]),
         uneven_law=uneven(point(law.time_share)),
     )
@@ -147,20 +148,22 @@ def _from_center(law: BandLaw, loop: Loop, side: Pulses, longest: Ball) -> _Chan
 
 def _from_none(other: Pulses, back: Ball) -> _Change:
     """Return changes from no pulse to those to the other side."""
-    return _Change(pulses=other, longest=back, left=1 - back / 2, uneven=point(1), uneven_law=point(1))
+    return _Change(
+        pulses=other, longest=back, left=(1 - back / 2, point(1)), uneven=point(1), uneven_law=point(1)
+    )
 
 
 def _together(law: BandLaw, loop: Loop, change: _Change) -> tuple[Pair, ...]:
     """Return corners of the late share and the share in the mean torque of the law, of a change."""
     share, (slowest, fastest) = point(law.time_share), _growths(law, loop)
-    pulses, longest, left, uneven, uneven_law = change
+    pulses, longest, (left, most_left), uneven, uneven_law = change
     weights = most_of([(abs(end - share) * longest / pulses.time).exp() for end in pulses.speedups]).sqrt()
     aside = longest * (weights - 1) / (weights + 1)  # parts have other weights than those of the law
     later = most_of([share_after(fastest, left - aside - loop.delay), point(0)]) / uneven
     earlier = share_after(slowest, left + aside) * uneven + loop.added
     least, most = parts_of((share, share), longest / pulses.time)
     return shares_together(
-        (left, point(1)),
+        (left, most_left),
         (later / (1 + loop.added) / left, earlier / (1 + loop.added) / left),
         ends_of((least / uneven_law).union(most * uneven_law)),
     )
@@ -170,9 +173,14 @@ def _center_seen(law: BandLaw, side: Pulses, shortest: Ball, longest: Ball) -> B
     """Return the share of the way at the center in the mean torque of the law."""
     share = point(law.time_share)
     least, most = parts_of((share, share), longest / side.time)
+    return (least * (1 - longest / 2)).union(most * _most_left(law, side, shortest, longest))
+
+
+def _most_left(law: BandLaw, side: Pulses, shortest: Ball, longest: Ball) -> Ball:
+    """Return the largest part of a way, by a pulse of one of these lengths, that counts in the mean of the law."""
     # The rate at the end of the pulse over that at its beginning.
-    fading = (-share * longest / side.time).exp()
-    return (least * (1 - longest / 2)).union(most * (1 - fading * shortest / 2))
+    fading = (-point(law.time_share) * longest / side.time).exp()
+    return 1 - fading * shortest / 2
 
 
 def _center_late(law: BandLaw, loop: Loop, side: Pulses, shortest: Ball, longest: Ball) -> Ball:

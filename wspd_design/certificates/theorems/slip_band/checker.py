@@ -5,7 +5,7 @@ disturbance; the ellipsoid is (X - c)'Q^-1(X - c) <= 1. What disturbs lies betwe
 -1 <= z <= 1, and X+ - c = A (X - c) + o + B r z with o = A_c c - c + B_c m: the change of the torque at the center has
 numbers of its own. The drift s of the torque that comes from the fading friction is nearly the same in the next sample;
 the center, c for a stated drift n, moves with it: c + b (s - n), which adds A b + B_s - b times s - n, and b times what
-s changes by. A stated share of what the lag of the filtered acceleration drifts by counts as one with it.
+s changes by. A stated share of what the reference drifts by counts as one with it.
 From the ellipsoid the next state has at most alpha + sum of the shares <= 1 if
 
     Q - A Q A'/alpha - o o'/(share of o) - sum of B r r B'/share
@@ -25,10 +25,17 @@ from wspd_design.certificates.kernel.arb import Ball, above, least_of, most_of, 
 from wspd_design.certificates.kernel.checker import Refused, Work
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.setting.creep_slope import STEEPNESS
-from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES, LoopLaw, Pair, corners
+from wspd_design.certificates.setting.slip_loop import (
+    DISTURBANCES,
+    REFERENCE_DRIFT,
+    STATES,
+    LoopLaw,
+    Pair,
+    corners,
+)
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.friction import Parts
-from wspd_design.certificates.theorems.slip_band.loop import Conditions, Loop, Steady, loop_of
+from wspd_design.certificates.theorems.slip_band.loop import Conditions, Loop, Steady, loop_of, spread_of
 from wspd_design.certificates.theorems.slip_band.proof import Choice, Ellipsoid, Proof, read
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import (
@@ -218,12 +225,6 @@ def errors(law: BandLaw, loop: Loop, found: Ellipsoid) -> Pair:
     return lowest, highest
 
 
-def spread_of(ends: Pair) -> Ball:
-    """Return by how much an end differs from the middle."""
-    low, high = ends
-    return (high - low) / 2
-
-
 class Set(NamedTuple):
     """States of an ellipsoid, its center anywhere on a line."""
 
@@ -242,7 +243,7 @@ class Set(NamedTuple):
 
 def drifting(steady: Steady) -> list[Ball]:
     """Return what the disturbances have of a steady drift of 1."""
-    share = {"torque drift": point(1), "mean torque drift": steady.share, "lag drift": steady.lag}
+    share = {"torque drift": point(1), "mean torque drift": steady.share, REFERENCE_DRIFT: steady.lag}
     return [share.get(name, point(0)) for name in DISTURBANCES]
 
 
@@ -352,8 +353,12 @@ def _within(law: LoopLaw, loop: Loop, states: Set) -> Pair:
     h, (low, high) = law.sample_time, loop.ranges.secants
     lowest, highest = states.center[0], states.center[0]
     farthest = most_of([end for each in loop.pulses for end in each.parts])
-    _, _, _, mean, _, _, moved, uneven, *_ = (a.union(b) for a, b in loop.disturbances)
-    mean += loop.steady.share * loop.steady.low.union(loop.steady.high)
+    _, _, _, mean, turning, _, moved, uneven, *_ = (a.union(b) for a, b in loop.disturbances)
+    steady = loop.steady.low.union(loop.steady.high)
+    mean += loop.steady.share * steady
+    mean += loop.ranges.brought[DISTURBANCES.index("mean torque drift")] * (
+        turning + loop.steady.lag * steady
+    )
     for part in range(PARTS):
         begin, end = h * part / PARTS, h * (part + 1) / PARTS
         phis = [(q * t).exp() for q in (low, high) for t in (begin, end)]

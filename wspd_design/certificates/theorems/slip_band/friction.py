@@ -25,11 +25,11 @@ def _strips(edges: tuple[str, ...]) -> tuple[Strip, ...]:
     return tuple(pairwise(ends))
 
 
-SLOPES = _strips(("-0.02", "-0.01", "-0.002", "0.004", "0.01", "0.018", "0.04"))
+SLOPES = _strips(("-0.02", "-0.01", "-0.002", "0.004", "0.01", "0.018", "0.024", "0.03", "0.04"))
 """Strips in which the slope is bounded, e R over the lowest speed [-]."""
 FADINGS = _strips(("-0.013", "0.004", "0.012", "0.027"))
 """The same for the fading, where a loop may settle."""
-REACHES = ((0, 6), (1, 5), (2, 5), (2, 6))
+REACHES = ((0, 8), (1, 5), (2, 5), (2, 8), (2, 6), (2, 7), (3, 6), (3, 7), (4, 6), (4, 7), (4, 8), (3, 5))
 """First strip of the slope and the one after the last, that errors of an ellipsoid are kept in: it takes one."""
 
 
@@ -136,11 +136,12 @@ def mean_slope(friction: Friction, error: Ball, reach: int) -> Ball:
     The mean from the error to another one goes towards the bounds of the strip that this one lies in, so that it is
     largest and smallest at edges of strips, or next to the error.
     """
-    if not _inside(error, reached(reach)):
-        raise Refused("errors are counted from outside of those that are reached")
     found = slope_at(friction, error)
     first, after = REACHES[reach]
-    strips = list(zip(SLOPES, friction.slopes, strict=True))[first:after]
+    between = [k for k, (low, high) in enumerate(SLOPES) if not (error < point(low) or error > point(high))]
+    strips = list(zip(SLOPES, friction.slopes, strict=True))[
+        min(first, *between) : max(after, between[-1] + 1)
+    ]
     for k, ((low, high), own) in enumerate(strips):
         if error < point(low) or error > point(high):
             continue

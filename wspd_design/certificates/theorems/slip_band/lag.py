@@ -1,13 +1,13 @@
-"""How the lag D of the filtered acceleration drifts where the slip is constant: partly as the torque does.
+"""How the reference drifts where the slip is constant: partly as the torque does, and the filtered lag with it.
 
 The friction that fades with the speed makes the train brake harder while it slows down, and it is the same friction
 that moves the torque. While the train loses the speed y h in a sample, the held torque moves by the steady drift
 
     s = -h y (W g F - d),   F the change of the force over mu0 Q along the speeds w_r + E,
 
-and D by the mean over the sample, with weights, of h y j T (g (F + delta) + r). T is what D moves by for a change of
+and the reference by the mean over the sample of h y j T (g (F + delta) + r). T is what it moves by for a change of
 the deceleration, j how fast that changes over what it would with all wheels at the reference, where F is F + delta; r
-comes from the running resistance. So for any k, D drifts by k s, and beside it by the mean of
+comes from the running resistance. So for any k, it drifts by k s, and beside it by the mean of
 
     h y ((j T + k W) (g (F + delta) + r) - k W (g delta + r) - k d)
 
@@ -38,16 +38,16 @@ class Fading:
 
 
 def lag_of(fading: Fading, lag: Fraction, turned: Ball, loss: Ball, change: Ball) -> tuple[Ball, Ball]:
-    """Return the share of the steady drift that the lag drifts by, and what it drifts by beside that [rad/s].
+    """Return the share of the steady drift that the reference drifts by, and what it drifts by beside that [rad/s].
 
     Parameters
     ----------
     fading : Fading
         What fades.
     lag : Fraction
-        Share of the lag's drift that is counted as one with the steady drift, about.
+        Share of the reference's drift that is counted as one with the steady drift, about.
     turned : ball
-        What the lag drifts by for a change of the train's deceleration, over h y, T [rad s/m].
+        What the reference drifts by for a change of the train's deceleration, over h y, T [rad s/m].
     loss : ball
         Speed that the train loses in a sample, times the sample time, h y [m].
     change : ball

@@ -3,6 +3,7 @@
 All of them are worked out in balls from the box and from the proved bounds of the friction, and rounded outwards.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
@@ -16,12 +17,13 @@ from wspd_design.certificates.kernel.arb import (
     below,
     ends_of,
     hull_of,
+    least_of,
     most_of,
     point,
 )
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.records import Problem
-from wspd_design.certificates.setting.creep_slope import bend, fading_beside, steepness_of
+from wspd_design.certificates.setting.creep_slope import along_speed, fading_beside, steepness_of
 from wspd_design.certificates.setting.slip_loop import LoopRanges, Pair, Way, latest_share
 from wspd_design.certificates.theorems.slip_band.friction import (
     FADINGS,
@@ -45,10 +47,11 @@ from wspd_design.certificates.theorems.slip_band.statement import (
     Cell,
     fastest_loss,
 )
+from wspd_design.certificates.theorems.slip_band.turning import brought_along
 from wspd_design.certificates.theorems.slip_band.wants import Curve, Wants, curve_of, dead_band_of, wants_of
 from wspd_design.model.generated.slip_loop import added_by_supply, lateness
 from wspd_design.model.slip import wheels
-from wspd_design.parameters.bounds import Bounds
+from wspd_design.parameters.bounds import Bounds, Ends
 from wspd_design.parameters.loading import constants
 
 RADIUS = NAMES.index("wheel radius")
@@ -72,7 +75,7 @@ class Steady(NamedTuple):
     high: Ball
     change: Pair  # rad/s, that it rises by from one sample to the next, at least and at most
     share: Ball  # -, of the drift, that its mean over a sample counts
-    lag: Ball  # -, of the drift, that the lag of the filtered acceleration drifts by
+    lag: Ball  # -, of the drift, that the reference drifts by
 
     @property
     def rise(self) -> Ball:
@@ -158,7 +161,6 @@ def loop_of(
     braking = pulled * used + drag
     if not braking < point(fastest_loss(problem)) or not braking > 0:
         raise Refused("the train may lose more speed in a sample than the windows overlap, or gain some")
-    slowing = ball(Fraction(0), Fraction(above(braking)))
     pads = torque / point(law.full_torque)
     seen_inertia = pads * point(law.inertia)  # true torque over the number Y h counts it in
     effect, full = seen_inertia / inertia, point(law.full_torque) / point(law.inertia)
@@ -170,20 +172,27 @@ def loop_of(
         # Nothing is claimed of numbers and speeds at which more is held.
         weight = weight.min((point(conditions.reserve) * full + damped) / point(friction.level[0]))
         rolled = rolled.min(ends_of(weight)[1] * ends_of(effect)[1])
-    held = weight * ball(*friction.level) - damped + inertia * turned * slowing / seen_inertia
+    held = weight * ball(*friction.level) - damped + inertia * turned * braking / seen_inertia
     if conditions.reserve < 1:
         held = held.min(point(conditions.reserve) * full)
     # At the speed w_r + E; its sliding speed is E R less.
     held += (weight * mean_slope(friction, none, choice.near) * radius - damping / seen_inertia) * apart
     # Friction over mu0 Q that a wheel at the reference gains in time: by its speed, and by the slip it holds.
     fading, moving = slip * fades, speed * reference.fall * braking + reference.drift
+    constant, part = not (law.falls or law.slip_error or law.slip_drift), replace(inside, speeds=window)
+    if constant:
+        fading = _closer(fading, _along(part, law, none)[0])
     moved, moved_there = (slope_at(friction, error) * moving for error in (none, settled))
     secants = radius * rolled * mean_slope(friction, settled, choice.near) - damping / inertia
     # While the train slows down the friction at the reference rises, and with it the deceleration.
     rising = -pulled * fading - _resistance(problem, speed, 1) / mass
     jerk = ball(*JERK_FACTORS) * (braking * rising - pulled * moved)
-    bending = reference.bend / radius * braking**2 + reference.drift / speed / radius * braking
-    turning = h * h * (bending - turned * jerk)
+    # The rims take part in less or more of the deceleration as the slip changes.
+    bending, slipping = (
+        h * h * each / radius * braking for each in (reference.bend * braking, reference.drift / speed)
+    )
+    slowly = -h * h * turned * jerk
+    turning = bending + slipping + slowly
     # By how much a wheel and its reference seem to turn faster or slower. The filter shows an error of the train speed
     # at most twice, its first step over the sample time; a wrong speed also asks for another share of the deceleration.
     turns = point(conditions.noise) / radius * ball(Fraction(-1), Fraction(1))
@@ -195,29 +204,28 @@ def loop_of(
     # The slip at w_r + E is E R/v less, and falls with the speed.
     there = (slip - apart * radius / speed) * fades_there
     there -= slope_at(friction, settled) * apart * radius / speed
+    less = apart * radius  # m/s, that the wheel slides slower
+    if constant:
+        own, bent_force = _along(part, law, less)
+        there = _closer(there, own)
     # The share of a steady drift that a sample has seen; a later weight sees more of it.
     low, high = ends_of(secants)
     half_way = (1 - lateness(high * h, 1, 0)).union(1 - lateness(low * h, 1, 0))
-    drift = -h * h * weight * moved_there + (h * damping * sliding - inertia * turning) / seen_inertia
+    drift = -h * h * weight * moved_there + h * damping * sliding / seen_inertia
     fading_torque = weight * there - damping * turned / seen_inertia  # of the reference, over the train speed
     steadily, share_seen = -h * h * fading_torque * braking, point(Fraction(float(half_way.mid())))
-    slowly = h * h * (reference.drift / speed / radius * braking - turned * jerk)
-    lag_drift = slowly * (1 - share / 2)
-    if law.falls or law.slip_error or law.slip_drift:
+    beside = turning
+    if not constant:
         steady = Steady(none, none, (none, none), share_seen, none)
         drift += steadily
         mean_drift = drift * half_way
     else:
-        less = apart * radius  # m/s, that the wheel slides slower
-        part = replace(inside, speeds=window)
-        along = part, float(law.slip), (below(less), above(less))
-        bent_force = bend(*along)
         # Of two enclosures the closer one takes longer.
-        more = ball(*fading_beside(*along)) if choice.lag else fading - there
-        if not all(map(isfinite, (*bent_force, below(more), above(more)))):
-            raise Refused("a derivative of the friction is not enclosed")
+        more = fading - there
+        if choice.lag:
+            more = ball(*_enclosed(fading_beside(part, float(law.slip), (below(less), above(less)))))
         # The speed falls by the braking, which itself rises with the jerk.
-        change = h**3 * (weight * ball(*bent_force) * braking**2 - fading_torque * jerk)
+        change = h**3 * (weight * bent_force * braking**2 - fading_torque * jerk)
         fades_with = Fading(
             pulled=pulled,
             weight=2 * radius * mass / wheels(vehicle) / seen_inertia,
@@ -227,16 +235,18 @@ def loop_of(
             damping=damping * turned / seen_inertia,
             resistance=_resistance(problem, speed, 1) / mass,
         )
-        lagging, lag_drift = lag_of(fades_with, choice.lag, turned * (1 - share / 2), h * h * braking, change)
+        lagging, beside = lag_of(fades_with, choice.lag, turned, h * h * braking, change)
         steady = Steady(*ends_of(steadily), ends_of(change), share_seen, lagging)
         mean_drift = drift * half_way + steadily * (half_way - share_seen)
         # It is the one with which the sample begins; what it changes by within it adds half of that until its end.
         drift += change / 2
         mean_drift += change / 2 * ball(Fraction(0), Fraction(1))
     # The part of the change of the speed that the rims take part in falls with the speed where the slip does, by a part
-    # bent of it in a sample, and D as much: before that it is at most (1 - share) D + drift, settled drift/share.
+    # bent of it in a sample, and D as much: before that it is at most (1 - share) D + drift, settled drift/share. Where
+    # the slip moves beside that, D is at most what all of the deceleration makes. Neither moves D as it moves w_r'.
     bent = reference.bend * h * braking / reference.turning
-    lag_drift += bent * lag_drift / share * ball(Fraction(-1), Fraction(1))
+    lag_drift = (bent * slowly / share * ball(-1, 1) - bending - slipping) * (1 - share / 2) + slipping
+    brought = brought_along(turning, beside, inertia / seen_inertia, (half_way, share_seen), share)
     known = sliding + misread_rate
     dead_band = (
         h
@@ -250,22 +260,22 @@ def loop_of(
     disturbed = (
         known,
         left_out,
-        drift,
-        mean_drift,
-        turning,
-        turning / 2,
+        drift + brought.torque,
+        mean_drift + brought.mean_torque,
+        beside,
+        brought.mean_reference,
         sliding,
         uneven,
         turns,
-        lag_drift,
+        lag_drift + brought.lag,
     )
-    widest_radius = point(problem.span("wheel radius")[1])
+    turnings = [slowest / point(each) for each in problem.span("wheel radius")]
     pulses = pulses_of(law, (fill, vent), pulse, added, (point(conditions.supply) * full).union(full), held)
     late = point(0).union(latest_share(high * h, point(pulse), point(conditions.delay), added))
     seen = seen_of(law, pulse)
     curve = curve_of(law, choice, known, misread + apart)
     wants, beyond = wants_of(law, curve, known, misread + apart), point(choice.beyond)
-    limits = room_left(law, choice, conditions.supply, held, turned * slowing)
+    limits = room_left(law, choice, conditions.supply, held, turned * braking)
     return Loop(
         ranges=LoopRanges(
             secants=(low, high),
@@ -277,14 +287,15 @@ def loop_of(
                 )
             ),
             shares_center=(late, hull_of(seen)),
+            brought=brought.shares,
         ),
         disturbances=tuple(map(ends_of, disturbed)),
         steady=steady,
         within=within_pulses(pulses, (point(pulse),) * 2, wants, beyond),
         others=(*below_curve(law, curve), *limits),
-        widest=_errors(reached(choice.near), slowest / widest_radius),
+        widest=_errors(reached(choice.near), turnings),
         settled=choice.settled,
-        settles=_errors((FADINGS[0][0], FADINGS[-1][1]), slowest / widest_radius),
+        settles=_errors((FADINGS[0][0], FADINGS[-1][1]), turnings),
         holding=holding,
         pulse=point(pulse),
         delay=point(conditions.delay),
@@ -297,6 +308,31 @@ def loop_of(
     )
 
 
+def _along(problem: Problem, law: BandLaw, less: Ball) -> tuple[Ball, Ball]:
+    """Both derivatives of the friction over mu0 Q in the train speed, of wheels that slide slower by less [m/s]."""
+    first, second = along_speed(problem, float(law.slip), (below(less), above(less)))
+    return ball(*_enclosed(first)), ball(*_enclosed(second))
+
+
+def _closer(one: Ball, other: Ball) -> Ball:
+    """Return what both balls enclose of one number."""
+    if not one.overlaps(other):
+        raise Refused("the friction does not fade as the numbers of the box say")
+    return one.intersection(other)
+
+
+def _enclosed(ends: Ends) -> Ends:
+    if not all(map(isfinite, ends)):
+        raise Refused("a derivative of the friction is not enclosed")
+    return ends
+
+
+def spread_of(ends: Pair) -> Ball:
+    """Return by how much an end differs from the middle."""
+    low, high = ends
+    return (high - low) / 2
+
+
 def _bounds(problem: Problem, cell: Cell) -> Bounds:
     """Ranges of the box, those that a cell divides no wider than there."""
     ends = {
@@ -305,10 +341,10 @@ def _bounds(problem: Problem, cell: Cell) -> Bounds:
     return Bounds.of({**dict(problem.bounds.items()), **ends})
 
 
-def _errors(strip: Strip, turning: Ball) -> Pair:
-    """Errors of the wheel speed in a strip, at the wheel speed of the lowest train speed."""
-    low, high = map(point, strip)
-    return low * turning, high * turning
+def _errors(strip: Strip, turnings: Sequence[Ball]) -> Pair:
+    """Errors of the wheel speed that are in a strip for all wheel speeds of the lowest train speed."""
+    lows, highs = ([point(end) * each for each in turnings] for end in strip)
+    return most_of(lows), least_of(highs)
 
 
 def _added(problem: Problem, law: BandLaw, fill: Ball, choice: Choice, conditions: Conditions) -> Ball:

@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.term import text
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.friction import NAMES, PARTS, REACHES, Friction, Part, Parts
 
-FORMAT = "wspd-slip-band/10"
+FORMAT = "wspd-slip-band/11"
 MOST_CELLS, MOST_LETTERS = 4_000, 60  # of a proof, and of a number in it
 ENTRIES = [(i, j) for i in range(STATES) for j in range(i + 1)]
 
@@ -27,7 +27,7 @@ class Choice(NamedTuple):
     near: int  # which errors are kept to: the number of a reach
     settled: Fraction = Fraction(0)  # rad/s, error of the wheel speed that errors are counted from, E
     room: Fraction = ROOM  # -, of what the supply lacks, that the cylinder lacks of the supply at least
-    lag: Fraction = Fraction(0)  # -, of what the lag of the filter drifts by, that goes with the steady drift
+    lag: Fraction = Fraction(0)  # -, of what the reference drifts by, that goes with the steady drift
     beyond: Fraction = Fraction(1)  # -, times what the longest pulse does, that is wanted at most
     curve: Fraction = Fraction(
         1
@@ -57,7 +57,7 @@ class Ellipsoid:
     alpha: Fraction  # of the function that is left after a sample
     offset: Fraction  # what the way of the center adds at most
     shares: tuple[Fraction, ...]  # what each disturbance adds at most, in the order of the disturbances
-    lag: Fraction  # -, of what the lag of the filter drifts by, that goes with the steady drift
+    lag: Fraction  # -, of what the reference drifts by, that goes with the steady drift
     steady: Fraction  # what the steady drift adds at most
     change: Fraction  # what its change does
     inside: Fraction  # multiplier that shows that the ellipsoid of the next faster window lies in this one
