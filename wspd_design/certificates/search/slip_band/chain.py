@@ -9,18 +9,16 @@ from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.ellipsoids import Faster, Loops, ellipsoid, excess
 from wspd_design.certificates.search.slip_band.task import settling
 from wspd_design.certificates.theorems.slip_band.checker import errors, holds_more, lies_in
-from wspd_design.certificates.theorems.slip_band.friction import Parts
+from wspd_design.certificates.theorems.slip_band.friction import REACHES, Parts, reached
 from wspd_design.certificates.theorems.slip_band.loop import Conditions, Loop, Steady, loop_of
 from wspd_design.certificates.theorems.slip_band.proof import ROOM, Choice, Ellipsoid
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw, Cell, windows_of
 from wspd_design.parameters.errors import WspdError
 
-CHOICES = tuple(
-    Choice(Fraction(pulse, 4), reach)
-    for reach, pulses in ((2, (4, 3)), (1, (4, 3, 2, 1)), (0, (4, 2, 1)), (3, (4, 3)))
-    for pulse in pulses
-)
-"""What an ellipsoid is sought for; shorter pulses leave less room, and less to be uncertain about."""
+PULSES = tuple(map(Fraction, ("1", "3/4", "5/8", "1/2", "1/4")))
+"""Longest pulses that an ellipsoid is sought for; shorter ones leave less room, and less to be uncertain about."""
+FITTED = 2  # times that the reach is fitted to the errors of an ellipsoid
+MARGIN = 1.2  # times these, that the reach has at least
 BEYOND = tuple(
     (Fraction(beyond), Fraction(curve)) for beyond, curve in (("3/2", "1"), ("3/2", "3/2"), ("2", "2"))
 )
@@ -29,7 +27,7 @@ LONG = Fraction(
     45, 4
 )  # 1/s, room for a long sample over its time: ten times what a supply of 1.125 1/s may rise by
 LONGER = 4.0  # times as many ellipsoids may be sought for a box that is about to close
-FIRST, WIDEST = Choice(Fraction(1, 2), 1), Choice(Fraction(1, 2), 0)
+FIRST, NARROW, WIDEST = (Choice(Fraction(1, 2), near) for near in (1, 2, 0))
 
 
 class OutOfBudget(WspdError):
@@ -46,7 +44,7 @@ class Spent:
         self.most, self.count = most, 0
         self.closed = 0.0  # share of the box, each half of a cell counting as half of it
         self.window = 0  # in which one was sought last
-        self.known: dict[object, float] = {}
+        self.known: dict[object, tuple[float, tuple[float, float]]] = {}
 
     def one(self, window: int) -> None:
         """Count one more in a window, or end the search."""
@@ -131,7 +129,7 @@ def begun(sought: Sought, cell: Cell, choice: Choice = FIRST) -> Chain:
         )
 
     try:
-        error = settled(CHOICES[0])
+        error = settled(NARROW)
     except Refused:  # it settles outside of that reach
         error = settled(WIDEST)
     return Chain(choice=choice._replace(settled=error, room=sought.room))
@@ -191,30 +189,55 @@ def best(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) ->
 
     That of the last ellipsoid is compared with those that have its reach or its pulse.
     """
-    last = chain.choice
-    near = (each for each in CHOICES if each.near == last.near or each.pulse == last.pulse)
+    last, found = chain.choice, dict[Choice, tuple[float, tuple[float, float]]]()
+
+    def least() -> Choice:
+        return min(found, key=lambda each: found[each][0])
+
+    def look_at(choice: Choice) -> None:
+        choice = sought.in_time(choice)
+        if choice not in found:
+            found[choice] = reached_by(sought, cell, window, replace(chain, choice=choice), spent)
+
     usual = last._replace(beyond=Fraction(1), curve=Fraction(1))
-    tried = dict.fromkeys(
-        map(
-            sought.in_time,
-            (last, usual, *(usual._replace(pulse=each.pulse, near=each.near) for each in near)),
-        )
-    )
-    found = {each: far(sought, cell, window, replace(chain, choice=each), spent) for each in tried}
-    least = min(found, key=lambda each: found[each])
-    if found[least] >= 1.0:
+    for each in (last, usual, *(usual._replace(pulse=pulse) for pulse in PULSES)):
+        look_at(each)
+    if math.isinf(found[least()][0]):
+        look_at(usual._replace(near=WIDEST.near))
+    for _ in range(FITTED):
+        best_one = least()
+        look_at(best_one._replace(near=_fitting(sought, best_one, found[best_one][1])))
+    if found[least()][0] >= 1.0:
         # With limits that leave a share of what is asked there is more room, and less is sure.
         for beyond, curve in BEYOND:
-            further = least._replace(pulse=Fraction(1), beyond=beyond, curve=curve)
-            found[further] = far(sought, cell, window, replace(chain, choice=further), spent)
-            if found[further] >= found[least]:
+            before = least()
+            look_at(before._replace(pulse=Fraction(1), beyond=beyond, curve=curve))
+            if before == least():
                 break
-        least = min(found, key=lambda each: found[each])
-    return least, found[least]
+    return least(), found[least()][0]
+
+
+def _fitting(sought: Sought, choice: Choice, errors: tuple[float, float]) -> int:
+    """Return the narrowest reach that some errors lie in, the widest if there is none."""
+    turning = sought.problem.speeds[0] / sought.problem.span("wheel radius")[1]
+    low, high = (MARGIN * each + float(choice.settled) for each in errors)
+    fitting = [
+        near
+        for near in range(len(REACHES))
+        if reached(near)[0] * turning <= low and high <= reached(near)[1] * turning
+    ]
+    return min(fitting, key=lambda near: reached(near)[1] - reached(near)[0], default=WIDEST.near)
 
 
 def far(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> float:
     """Return by how much an ellipsoid for the choice of a chain would exceed its tightest limit, squared."""
+    return reached_by(sought, cell, window, chain, spent)[0]
+
+
+def reached_by(
+    sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent
+) -> tuple[float, tuple[float, float]]:
+    """Return the same with the errors that the ellipsoid has."""
     choice = sought.in_time(chain.choice)
     looked_at = cell, window, choice, chain.faster
     if looked_at not in spent.known:
@@ -223,7 +246,7 @@ def far(sought: Sought, cell: Cell, window: int, chain: Chain, spent: Spent) -> 
         try:
             found = excess(sought.law, loops, sought.conditions.supply, chain.faster, chain.hints)
         except Refused:
-            found = math.inf
+            found = math.inf, (-math.inf, math.inf)
         spent.known[looked_at] = found
     return spent.known[looked_at]
 

@@ -10,7 +10,7 @@ from wspd_design.certificates.kernel.arb import point
 from wspd_design.certificates.kernel.checker import Refused
 from wspd_design.certificates.search.common_quadratic import unit_matrices
 from wspd_design.certificates.search.matrix_inequalities import Inequalities
-from wspd_design.certificates.search.slip_band.task import Task, centered, short, task_of
+from wspd_design.certificates.search.slip_band.task import Task, centered, contracts, short, task_of
 from wspd_design.certificates.setting.slip_loop import DISTURBANCES, STATES
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about
 from wspd_design.certificates.theorems.slip_band.checker import Set, beyond_limit, errors, lies_in
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from wspd_design.certificates.search.matrix_inequalities import Array
 
 KEPT = (0.95, 0.92, 0.85)  # of the function after a sample without disturbance; the first that succeeds
+SLOWER = 0.5  # of what the slowest corner takes off it, where that is less than by the first of them
 FIRST_CORNERS, MORE_CORNERS, ROUNDS = 8, 8, 8  # of the loop that the inequalities begin with, and are added
 SLACK = 1e-3  # what the inequalities ask beyond what is to be shown, so that rounding does not spoil it
 LEAST = 1e-6  # of what disturbs most, as which anything else counts at least
@@ -68,7 +69,7 @@ def ellipsoid(
         The ellipsoid, the steady drift there, and the corners that mattered.
     """
     there = centered(law, loops(supply))
-    for kept in KEPT:
+    for kept in _kept(law, there[0]):
         task = task_of(law, *there, kept)
         if task is None:
             return None
@@ -88,15 +89,38 @@ def ellipsoid(
     return None
 
 
-def excess(law: BandLaw, loops: Loops, supply: Fraction, faster: Faster, hints: Sequence[int]) -> float:
-    """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all."""
+def excess(
+    law: BandLaw, loops: Loops, supply: Fraction, faster: Faster, hints: Sequence[int]
+) -> tuple[float, tuple[float, float]]:
+    """Return by how much an ellipsoid would exceed its tightest limit, squared; infinite if there is none at all.
+
+    With it come its errors of the wheel speed, beside the one that errors are counted from, if it were
+    made as small as the limits ask for [rad/s].
+    """
     there = centered(law, loops(supply))
-    for kept in KEPT:
+    for kept in _kept(law, there[0]):
         task = task_of(law, *there, kept)
         solved = None if task is None else _solve(task, faster, hints, beyond=True)
         if task is not None and solved is not None:
-            return max(_used(task, solved[0]))
-    return math.inf
+            found = max(_used(task, solved[0]))
+            return found, _errors(task, solved[0] / max(found, 1.0))
+    return math.inf, (-math.inf, math.inf)
+
+
+def _kept(law: BandLaw, loop: Loop) -> tuple[float, ...]:
+    """Return what of the function may be kept: more where a corner hardly contracts, none if one does not."""
+    least = round(1.0 - SLOWER * (1.0 - contracts(law, loop)), 3)
+    return tuple(dict.fromkeys(max(each, least) for each in KEPT)) if least < 1.0 else ()
+
+
+def _errors(task: Task, q: "Array") -> tuple[float, float]:
+    """Return between what the errors of an ellipsoid lie, wherever its center is."""
+    import numpy as np
+
+    whole = task.basis @ q @ task.basis.T
+    moved = float(task.steady.away(point(task.drift)).mid()) * abs(float(task.moves[0]))
+    aside = float(np.sqrt(whole[0, 0])) + moved
+    return float(task.center[0]) - aside, float(task.center[0]) + aside
 
 
 def _least_supply(law: BandLaw, loops: Loops, supply: Fraction, found: Ellipsoid) -> Fraction:

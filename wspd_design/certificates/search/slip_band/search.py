@@ -7,7 +7,6 @@ from fractions import Fraction
 
 from wspd_design.certificates.records import Problem
 from wspd_design.certificates.search.slip_band.chain import (
-    CHOICES,
     FIRST,
     Chain,
     OutOfBudget,
@@ -112,11 +111,7 @@ def _middle_has(sought: Sought, cell: Cell, window: int, anew: Chain, spent: Spe
     """Whether the middle of a cell has an ellipsoid; no cell around it can do better."""
     middle = tuple(((low + high) / 2,) * 2 for low, high in cell)
     anew = begun(sought, middle, anew.choice)
-    every = (
-        anew.choice,
-        *(anew.choice._replace(pulse=each.pulse, near=each.near) for each in CHOICES),
-    )
-    return any(far(sought, middle, window, replace(anew, choice=each), spent) < 1.0 for each in every)
+    return best(sought, middle, window, anew, spent)[1] < 1.0
 
 
 def _letter(sought: Sought, cell: Cell, window: int, anew: Chain, spent: Spent) -> str | None:

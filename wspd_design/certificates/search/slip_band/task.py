@@ -15,10 +15,11 @@ from wspd_design.certificates.setting.slip_loop import (
     Way,
     numbers_at_corners,
     sample,
+    with_reference,
 )
 from wspd_design.certificates.theorems.slip_band.center import Lengths, about, way_at
-from wspd_design.certificates.theorems.slip_band.checker import drifting, spread_of
-from wspd_design.certificates.theorems.slip_band.loop import Loop, Steady
+from wspd_design.certificates.theorems.slip_band.checker import drifting
+from wspd_design.certificates.theorems.slip_band.loop import Loop, Steady, spread_of
 from wspd_design.certificates.theorems.slip_band.pulses import loop_law
 from wspd_design.certificates.theorems.slip_band.statement import BandLaw
 
@@ -30,7 +31,7 @@ SETTLING = 4  # times that what a loop settles at is looked for
 WITHIN = 0.99  # of the errors between which the fading is bounded
 LONGER = 0.04  # of the sample, by which the longest pulse at the center is longer than the shortest at least
 BACK = 0.2  # of the way at the center, to its other side, that there is room for at least
-HEIGHT = 0.9  # of the height that a pulse at the center goes a part of: it may fall to this, or rise to one over it
+HEIGHT = 0.95  # of the height that a pulse at the center goes a part of: it may fall to this, or rise to one over it
 DIGITS = 7  # of the numbers in the proof
 
 
@@ -93,6 +94,14 @@ def task_of(
         used=used,
         kept=kept,
     )
+
+
+def contracts(law: BandLaw, loop: Loop) -> float:
+    """Return the square of the largest eigenvalue of the loop at its corners, in size."""
+    import numpy as np
+
+    maps, _ = _maps(loop_law(law), loop.ranges)
+    return float(np.abs(np.linalg.eigvals(maps[:, :, :STATES])).max()) ** 2
 
 
 def _away(loop: Loop) -> float:
@@ -231,7 +240,7 @@ def _maps(law: LoopLaw, ranges: LoopRanges) -> "tuple[Array, Array]":
 
     law, ranges = _doubles(law), _doubles(ranges)
     both = np.array(list(numbers_at_corners(law, ranges)))
-    units = list(np.eye(STATES + len(DISTURBANCES)))
+    units = with_reference(list(np.eye(STATES + len(DISTURBANCES))), ranges.brought)
     rest, center = (
         np.stack(np.broadcast_arrays(*sample(law, list(numbers.T[:, :, None]), units)), axis=1)
         for numbers in (both[:, 0], both[:, 1])
