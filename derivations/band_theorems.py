@@ -84,6 +84,9 @@ _unit = _scaled.subs(
     simultaneous=True,
 )
 _scaled_residual = sp.simplify(_scaled - adhesion.Q * adhesion.mu0 * _unit)
+# With F what it is where all of the friction is used, and K s where all of the contact adheres, it is F S(K s/F).
+_F, _K, _a, _b = sp.symbols("F K a b", positive=True)
+_line_residual = sp.expand(_F * (_a * _K * _s / _F + _b) - (_a * _K * _s + _b * _F))
 
 THEOREMS = (
     Theorem(
@@ -106,8 +109,9 @@ THEOREMS = (
             "the law that is followed is the one that runs, compared at points in doubles",
             "IEEE 754, with exp, log, arctan and square root within 8 units in the last place",
         ),
-        sketch="What is not affine is replaced by its secant and the largest distance from it. Within a part of a "
-        "sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in it, then the "
+        sketch="What is not affine is replaced by its secant and the largest distance from it. The friction is F S(K s/F), "
+        "with F where all of it is used and K s where all of the contact adheres: along a line a z + b near S that is a K "
+        "s + b F, so that F hardly counts while nearly all adheres, whatever mu0 is. Within a part of a sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in it, then the "
         "rates there with the time as a symbol, whose mean counts. The torque goes from one sample to the next as the "
         "valve does, evenly but for h^2/8 of its second derivative. Where it is open whether a valve fills or vents, "
         "or for how long, the way x is one number from the longest venting to the longest filling: with the power q of "
@@ -126,6 +130,7 @@ THEOREMS = (
             Identity("it is 1/2 for short pulses", _lacks_at_zero),
             Identity("and falls with x/12", _lacks_slope),
             Identity("the force over load and mu0", _scaled_residual),
+            Identity("the force F S(K s/F) along a line S = a z + b", _line_residual),
         ),
         certificates=("slip_way_in",),
     ),

@@ -127,9 +127,9 @@ def test_way_that_is_asked_goes_as_far_as_both_valves_go(power, more, wide):
 
 
 CURVES = {
-    "adhesion": (lambda x: motion._adhesion_part(RAIL, x), lambda y: adhesion_part(y), (-1.0, 12.0)),
+    "adhesion": (lambda x: x.line(*motion._adhesion_part(RAIL, x)), lambda y: adhesion_part(y), (-1.0, 12.0)),
     "slip": (
-        lambda x: motion._slip_part(RAIL, x),
+        lambda x: x.line(*motion._slip_part(RAIL, x)),
         lambda y: 2.0 / np.pi * np.arctan(RAIL.slip_reduction * y),
         (-5.0, 60.0),
     ),

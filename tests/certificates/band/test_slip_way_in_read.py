@@ -83,7 +83,7 @@ def test_what_is_read_is_what_was_written():
     ("name", "value", "reason"),
     [
         ("format", "wspd-way-in/3", "format"),
-        ("share", "51/1000", f"not between 0 and {LARGEST_SHARE}"),
+        ("share", "63/1000", f"not between 0 and {LARGEST_SHARE}"),
         ("share", "-1/1000", f"not between 0 and {LARGEST_SHARE}"),
         ("rows", [], "no rows"),
         ("rows", {}, "no rows"),

@@ -20,11 +20,11 @@ from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS, 
 
 POINTS = 400
 FIRST_STATE, TIME, FRESH, SIZE = (
-    16,
-    24,
-    25,
-    80,
-)  # symbols: 8 numbers, 8 combinations of them, 8 states, time, others
+    18,
+    26,
+    27,
+    82,
+)  # symbols: 8 numbers, 10 combinations of them, 8 states, time, others
 KNOWN = [*range(8), *range(FIRST_STATE, TIME)]
 # Half widths of mass, inertia, radius, mu0, pads, both times and the supply rate, over the nominal values
 SPREAD = (0.01, 0.01, 0.002, 0.02, 0.01, 0.03, 0.03, 0.02)
@@ -388,6 +388,8 @@ def test_errors_of_the_numbers_of_a_plant_do_not_cancel(problem):
         "gripping": mu0 * load * 8.0 / mass,
         "turning": 2.0 * radius**2 / inertia * mu0 * load,
         "gradient": contact.shear_modulus * ellipse * contact.kalker_c11 / (4.0 * load * mu0),
+        "train_stiffness": contact.shear_modulus * ellipse * contact.kalker_c11 * 2.0 / mass,
+        "rim_stiffness": contact.shear_modulus * ellipse * contact.kalker_c11 / 2.0 * radius**2 / inertia,
         "supply_rate": supply,
     }
     assert {*seen, "vehicle", "rail"} == {each.name for each in fields(plant)}

@@ -126,7 +126,17 @@ class Affine:
         *,
         least: float = -np.inf,
     ) -> "Affine":
-        """Replace a function by its secant over the range.
+        """Replace a function by its secant over the range; parameters as of :meth:`secant`."""
+        return self.line(*self.secant(function, touching, least=least))
+
+    def secant(
+        self,
+        function: Callable[[Array], Array],
+        touching: Callable[[Array], tuple[Array, ...]],
+        *,
+        least: float = -np.inf,
+    ) -> tuple[Array, Array, Array]:
+        """Return slope, offset and largest distance of a straight line from a function over the range.
 
         Parameters
         ----------
@@ -147,7 +157,7 @@ class Affine:
         apart = [function(p) - slope * p for p in places]
         most, fewest = np.maximum.reduce(apart), np.minimum.reduce(apart)
         made = np.abs(at_low) + np.abs(at_high) + np.abs(slope) * (np.abs(low) + np.abs(high))
-        return self.line(slope, 0.5 * (most + fewest), 0.5 * (most - fewest) + ROUNDING * made)
+        return slope, 0.5 * (most + fewest), 0.5 * (most - fewest) + ROUNDING * made
 
     def inverse(self, *, least: float = -np.inf) -> "Affine":
         """Reciprocal; infinitely uncertain where the range holds zero."""
@@ -165,7 +175,7 @@ class Affine:
         away = self.low > 0.0
 
         def touching(slope: Array) -> tuple[Array, ...]:
-            return (np.maximum(slope / exponent, 1e-300) ** (1.0 / (exponent - 1.0)),)
+            return (np.maximum(slope / exponent, 1e-90) ** (1.0 / (exponent - 1.0)),)
 
         found = self.along(lambda x: np.maximum(x, 1e-300) ** exponent, touching)
         return Affine(found.center, found.slopes, np.where(away, found.error, np.inf))

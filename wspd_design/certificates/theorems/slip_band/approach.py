@@ -11,7 +11,7 @@ from wspd_design.certificates.theorems.slip_band.motion import STEP, motion
 from wspd_design.controllers.protection import Protection
 from wspd_design.parameters.records import Rail, Vehicle
 
-PARAMETERS = 16  # symbols that stand for the numbers of a box and their combinations, and are kept
+PARAMETERS = 18  # symbols that stand for the numbers of a box and their combinations, and are kept
 KEPT = 160  # symbols at the beginning of a sample
 STATES = len(State._fields)
 

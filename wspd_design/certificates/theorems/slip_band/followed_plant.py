@@ -47,6 +47,10 @@ class Plant:
     gripping: Affine  # m/s2, of the train by friction alone, over the force that is used
     turning: Affine  # m/s2, of the rim
     gradient: Affine  # -, initial slope of the force over mu0 times the load
+    train_stiffness: (
+        Affine  # m/s2, of the train over the slip, by contacts that adhere; mu0 has no part in it
+    )
+    rim_stiffness: Affine  # m/s2, of the rim
     effect: Affine  # m/s2 of the rim for a N m of the nominal torque
     fill_rate: Affine  # 1/s
     vent_rate: Affine  # 1/s
@@ -76,7 +80,7 @@ def plant_of(vehicle: Vehicle, rail: Rail, full: float, numbers: Mapping[str, Af
         combined.named(first + k)
         for k, combined in enumerate(_combined(vehicle, full, mass, inertia, radius, mu0, torque))
     )
-    curvature, over_mass, over_inertia, turning, gradient, effect = named
+    curvature, over_mass, over_inertia, turning, gradient, train_stiffness, rim_stiffness, effect = named
     return Plant(
         vehicle=vehicle,
         rail=rail,
@@ -87,9 +91,11 @@ def plant_of(vehicle: Vehicle, rail: Rail, full: float, numbers: Mapping[str, Af
         gripping=mu0 * constants().gravity,
         turning=turning,
         gradient=gradient,
+        train_stiffness=train_stiffness,
+        rim_stiffness=rim_stiffness,
         effect=effect,
-        fill_rate=fill.inverse().named(first + 6),
-        vent_rate=vent.inverse().named(first + 7),
+        fill_rate=fill.inverse().named(first + 8),
+        vent_rate=vent.inverse().named(first + 9),
         supply_rate=supply,
     )
 
@@ -106,5 +112,7 @@ def _combined(
         over_inertia,
         (radius**2 * over_inertia) * (load * mu0) * 2.0,
         load.power(-1.0 / 3.0) * mu0.inverse() * stiffness,
+        load.power(-1.0 / 3.0) * (stiffness * constants().gravity),
+        (radius**2 * over_inertia) * load.power(2.0 / 3.0) * (2.0 * stiffness),
         (radius * over_inertia) * (torque * (1.0 / full)),
     )

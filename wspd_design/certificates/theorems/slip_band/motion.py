@@ -104,12 +104,28 @@ def rates(plant: Plant, speed: Affine, sliding: Affine) -> tuple[Affine, Affine]
     rail = plant.rail
     # The force over mu0 times the load is that of a wheel with both 1, and falls with the sliding as the friction does.
     friction = adhesion.friction_coefficient(sliding, 1.0, rail.friction_ratio, rail.friction_decay)
-    gradient = adhesion.creep_gradient(sliding / speed, 1.0, friction, plant.gradient)
-    used = friction * (_adhesion_part(rail, gradient) + _slip_part(rail, gradient))
-    resisting = resistance(plant.vehicle, speed) * plant.mass
-    slowing = -(used * plant.gripping + resisting)
+    slip = sliding / speed
+    gradient = adhesion.creep_gradient(slip, 1.0, friction, plant.gradient)
+    straight = [_adhesion_part(rail, gradient), _slip_part(rail, gradient)]
+    line = tuple(np.add(*each) for each in zip(*straight, strict=True))
+    slowing = -(
+        _along(line, slip * plant.train_stiffness, plant.gripping * friction)
+        + resistance(plant.vehicle, speed) * plant.mass
+    )
+    used = _along(line, slip * plant.rim_stiffness, plant.turning * friction)
     damped = (speed - sliding) * plant.inertia * (2.0 * plant.vehicle.wheel_damping)
-    return slowing, slowing - (used * plant.turning - damped)
+    return slowing, slowing - (used - damped)
+
+
+def _along(line: tuple[Array, ...], adhering: Affine, sliding: Affine) -> Affine:
+    """Force of a contact, for a line near its shape: what sticks counts with the slope, and all of the friction beside.
+
+    The force is F S(z) with z the force while all adheres over F, and S between slope z + offset and a distance from it.
+    Written like this what F does while nearly all adheres, which is nothing, cancels before it is rounded off.
+    """
+    slope, offset, distance = line
+    beside = np.maximum(np.abs(sliding.low), np.abs(sliding.high)) * distance
+    return (adhering * slope + sliding * offset).widened(beside, beside)
 
 
 def _part(adhesion_reduction: float, slip_reduction: float) -> Callable[[Array], Array]:
@@ -119,8 +135,8 @@ def _part(adhesion_reduction: float, slip_reduction: float) -> Callable[[Array],
     )
 
 
-def _adhesion_part(rail: Rail, gradient: Affine) -> Affine:
-    """What the area of adhesion adds, (2/pi) z/(1 + z^2) with z the gradient times its factor."""
+def _adhesion_part(rail: Rail, gradient: Affine) -> tuple[Array, Array, Array]:
+    """Line near what the area of adhesion adds, (2/pi) z/(1 + z^2) with z the gradient times its factor."""
     factor = rail.adhesion_reduction
 
     def touching(slope: Array) -> tuple[Array, ...]:
@@ -131,11 +147,11 @@ def _adhesion_part(rail: Rail, gradient: Affine) -> Affine:
         roots = [np.sqrt(np.maximum(each, 0.0)) / factor for each in squares]
         return (*roots, *(-each for each in roots))
 
-    return gradient.along(_part(factor, 0.0), touching)
+    return gradient.secant(_part(factor, 0.0), touching)
 
 
-def _slip_part(rail: Rail, gradient: Affine) -> Affine:
-    """What the area of slip adds, (2/pi) atan(z) with z the gradient times its factor."""
+def _slip_part(rail: Rail, gradient: Affine) -> tuple[Array, Array, Array]:
+    """Line near what the area of slip adds, (2/pi) atan(z) with z the gradient times its factor."""
     factor = rail.slip_reduction
 
     def touching(slope: Array) -> tuple[Array, ...]:
@@ -143,7 +159,7 @@ def _slip_part(rail: Rail, gradient: Affine) -> Affine:
         root = np.sqrt(np.maximum(1.0 / wanted - 1.0, 0.0)) / factor
         return root, -root
 
-    return gradient.along(_part(0.0, factor), touching)
+    return gradient.secant(_part(0.0, factor), touching)
 
 
 Rates: TypeAlias = tuple[Affine, Affine]

@@ -36,14 +36,14 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-FORMAT = "wspd-way-in/4"
+FORMAT = "wspd-way-in/5"
 SUPPLY = "supply rate"
 VARIED = (FRICTION, SUPPLY)
 NEAR = tuple(name for name in NAMES if name not in VARIED)
 """Numbers that stay near their nominal values: within a share of the way to either end of their ranges."""
 TILTING = (FRICTION, *NEAR)
 """Numbers with which the supply rate of a strip changes."""
-LARGEST_SHARE = Fraction(1, 20)  # for which the friction of the band is bounded
+LARGEST_SHARE = Fraction(1, 16)  # for which the friction of the band is bounded
 MOST_STRIPS, MOST_SAMPLES, MOST_LETTERS = 20_000, 2_000, 60  # of a proof, of a strip, of a number
 AT_ONCE = 256  # strips that are followed together
 WORK = 25  # operations that a sample of a strip is worth
