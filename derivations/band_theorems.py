@@ -109,17 +109,18 @@ THEOREMS = (
             "the law that is followed is the one that runs, compared at points in doubles",
             "IEEE 754, with exp, log, arctan and square root within 8 units in the last place",
         ),
-        sketch="What is not affine is replaced by its secant and the largest distance from it. The friction is F S(K s/F), "
-        "with F where all of it is used and K s where all of the contact adheres: along a line a z + b near S that is a K "
-        "s + b F, so that F hardly counts while nearly all adheres, whatever mu0 is. Within a part of a sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in it, then the "
-        "rates there with the time as a symbol, whose mean counts. The torque goes from one sample to the next as the "
-        "valve does, evenly but for h^2/8 of its second derivative. Where it is open whether a valve fills or vents, "
-        "or for how long, the way x is one number from the longest venting to the longest filling: with the power q of "
-        "the times of the inversion over those of the valve, filling above 0 and venting below, its change is q x but "
-        "for a factor between 1 and (1 - (1 - y)^q)/(q y) at the largest share y of the room, which is a mean of (1 - "
-        "u)^(q - 1). A sum of symbols lies in an ellipsoid if the lengths of center and symbols, in its coordinates, "
-        "add up to less than 1. The supply lacks at most exp(-r t) of what it lacked, and t is at least the speed that "
-        "is lost over the largest deceleration.",
+        sketch="What is not affine is replaced by its secant and the largest distance from it. The friction is F "
+        "S(K s/F), with F where all of it is used and K s where all of the contact adheres: along a line a z + b "
+        "near S that is a K s + b F, so that F hardly counts while nearly all adheres, whatever mu0 is. Within a "
+        "part of a sample Picard's iteration encloses both speeds: rates that hold on all that they can reach in "
+        "it, then the rates there with the time as a symbol, whose mean counts. The torque goes from one sample to "
+        "the next as the valve does, evenly but for h^2/8 of its second derivative. Where it is open whether a "
+        "valve fills or vents, or for how long, the way x is one number from the longest venting to the longest "
+        "filling: with the power q of the times of the inversion over those of the valve, filling above 0 and "
+        "venting below, its change is q x but for a factor between 1 and (1 - (1 - y)^q)/(q y) at the largest share"
+        " y of the room, which is a mean of (1 - u)^(q - 1). A sum of symbols lies in an ellipsoid if the lengths "
+        "of center and symbols, in its coordinates, add up to less than 1. The supply lacks at most exp(-r t) of "
+        "what it lacked, and t is at least the speed that is lost over the largest deceleration.",
         not_said="Masses, inertias, radii, pads and valve times farther from the nominal ones; noise and dead time.",
         identities=(
             Identity("part of its room that a pulse for the share y goes", _way_gone),

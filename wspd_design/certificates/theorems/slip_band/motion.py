@@ -118,10 +118,10 @@ def rates(plant: Plant, speed: Affine, sliding: Affine) -> tuple[Affine, Affine]
 
 
 def _along(line: tuple[Array, ...], adhering: Affine, sliding: Affine) -> Affine:
-    """Force of a contact, for a line near its shape: what sticks counts with the slope, and all of the friction beside.
+    """Force of a contact by a line near its shape: what adheres counts with the slope, all of the friction beside it.
 
-    The force is F S(z) with z the force while all adheres over F, and S between slope z + offset and a distance from it.
-    Written like this what F does while nearly all adheres, which is nothing, cancels before it is rounded off.
+    The force is F S(z), with z what it is while all adheres over F, and S no farther from slope z + offset than the
+    distance. Written like this F drops out while nearly all adheres, and the products of what is unsure with it.
     """
     slope, offset, distance = line
     beside = np.maximum(np.abs(sliding.low), np.abs(sliding.high)) * distance
