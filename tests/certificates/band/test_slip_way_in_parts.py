@@ -1,5 +1,7 @@
 """Numbers within a part of a sample, as forms over its time: what is integrated, and what of a pulse is done."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -171,3 +173,16 @@ def test_curves_are_enclosed_over_wide_and_narrow_ranges(name):
                     found, float(curve(np.float64(middle + half * z))), np.full(SYMBOLS, z), 0.0, 1e-9
                 )
     assert widest < 2.0 * np.ptp(curve(np.linspace(low, high, 101)))
+
+
+@pytest.mark.parametrize("friction", [0.7, -0.7])
+def test_force_is_as_far_from_its_line_as_the_shape_is_anywhere(friction):
+    """With the shape at either end of its distance, and what adheres and the friction at the ends of their ranges."""
+    slope, offset, distance = (np.array([each]) for each in (0.3, 0.2, 0.05))
+    adhering, sliding = form_of(1.1, [0.2]), form_of(friction, [0.0, 0.3])
+    found = motion._along((slope, offset, distance), adhering, sliding)
+    for one, other, side in itertools.product((-1.0, 1.0), repeat=3):
+        used, force = friction + 0.3 * other, 0.3 * (1.1 + 0.2 * one)
+        value = force + (0.2 + 0.05 * side) * used
+        assert holds(found, value, np.array([one, other, 0.0, 0.0, 0.0]), 0.0)
+    assert found.error[0] <= 0.05 * 1.0 + 1e-9  # the largest friction is that far from 0
