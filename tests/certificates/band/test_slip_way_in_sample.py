@@ -15,7 +15,7 @@ from tests.certificates.band import sampled_runs
 from tests.certificates.band.conftest import problem_of
 from tests.certificates.band.sampled_runs import BOX, Law, Memory, Runs, plant_of, sampled
 from wspd_design.certificates.kernel.affine import Affine
-from wspd_design.certificates.theorems.slip_band import followed_law, followed_plant, motion
+from wspd_design.certificates.theorems.slip_band import approach, followed_law, followed_plant, motion
 from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS, State
 
 POINTS = 400
@@ -431,3 +431,16 @@ def named(problem, numbers):
     """Numbers of the plant of the attacker by their names."""
     held = {name: problem.nominal(name) for name in sampled_runs.BESIDE}
     return {name: number for name, number in zip(NUMBERS, numbers, strict=True) if name in BOX} | held
+
+
+def test_symbols_of_the_numbers_of_a_plant_are_kept_from_sample_to_sample(problem):
+    """A symbol that were put together with others would stand for two things in the next sample."""
+    numbers = {}
+    for k, name in enumerate(NUMBERS):
+        slopes = np.zeros((1, SIZE))
+        slopes[0, k] = 0.1 * problem.nominal(name)
+        numbers[name] = Affine(np.array([problem.nominal(name)]), slopes, np.zeros(1))
+    plant = followed_plant.plant_of(problem.vehicle, problem.rail, 6e4, numbers, len(NUMBERS))
+    forms = [getattr(plant, each.name) for each in fields(plant)]
+    used = np.max([np.flatnonzero(form.slopes[0]).max() for form in forms if isinstance(form, Affine)])
+    assert used == approach.PARAMETERS - 1
