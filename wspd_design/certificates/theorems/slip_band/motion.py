@@ -125,7 +125,7 @@ def _along(line: tuple[Array, ...], adhering: Affine, sliding: Affine) -> Affine
     """
     slope, offset, distance = line
     beside = np.maximum(np.abs(sliding.low), np.abs(sliding.high)) * distance
-    return (adhering * slope + sliding * offset).widened(beside, beside)
+    return (adhering.line(slope, 0.0, 0.0) + sliding.line(offset, 0.0, 0.0)).widened(beside, beside)
 
 
 def _part(adhesion_reduction: float, slip_reduction: float) -> Callable[[Array], Array]:
