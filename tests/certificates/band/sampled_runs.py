@@ -129,6 +129,27 @@ class Law:
         return fill, vent, (area + (h - fill - vent) * end) / h
 
 
+def measured_from(law, radius, states):
+    """Memory after a measurement, and the wheel speed, from the numbers of a sample that is followed from rolling.
+
+    These are the speed of the train, the sliding speed, the innovation times the radius, the observed friction before,
+    the torque, the acceleration before and the change of the speed since then; the supply comes last.
+    """
+    speed, sliding, innovation, friction, _, acceleration, change, _ = states
+    scale, wheel, r = law.radius / radius, (speed - sliding) / radius, innovation / radius
+    told = scale * speed
+    memory = Memory(
+        scale=scale,
+        told=told,
+        acceleration=law.filtered(scale * acceleration, told - scale * change, told),
+        observed=wheel - r + (1.0 - law.theta**2) * r,
+        friction=np.maximum(friction + (1.0 - law.theta) ** 2 * law.inertia / law.h * r, 0.0),
+        exact=told,
+        unspoiled=0.0 * told,
+    )
+    return memory, wheel
+
+
 @dataclass(frozen=True)
 class Disturbance:
     """Largest disturbances: drawn again for each sample, half of them at their ends."""

@@ -10,7 +10,7 @@ import pytest
 
 import wspd_design as wd
 from tests.certificates.band.conftest import problem_of
-from tests.certificates.band.sampled_runs import Law, Memory
+from tests.certificates.band.sampled_runs import Law, measured_from
 from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.theorems.slip_band.followed_law import decide
 from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS, State, plant_of
@@ -106,25 +106,15 @@ class Decision:
 
     def other(self, law, radius, states):
         """Pulses, and what the observer expects, in the words of the forms."""
-        speed, sliding, innovation, friction, torque, acceleration, change, supply = states
-        scale, wheel, r = law.radius / radius, (speed - sliding) / radius, innovation / radius
-        told = scale * speed
-        memory = Memory(
-            scale=scale,
-            told=told,
-            acceleration=law.filtered(scale * acceleration, told - scale * change, told),
-            observed=wheel - r + (1.0 - law.theta**2) * r,
-            friction=np.maximum(friction + (1.0 - law.theta) ** 2 * law.inertia / law.h * r, 0.0),
-            exact=told,
-            unspoiled=0.0 * told,
-        )
+        torque, supply = states[4], states[7]
+        memory, wheel = measured_from(law, radius, states)
         with np.errstate(all="ignore"):
             fill, vent, mean = law.pulses(memory, wheel, torque, law.full * supply)
         self.seen = {
             "fill": fill / law.h,
             "vent": vent / law.h,
             "friction": memory.friction,
-            "acceleration": memory.acceleration / scale,
+            "acceleration": memory.acceleration / memory.scale,
             "innovation": -radius * (memory.observed + law.h / law.inertia * (memory.friction - mean)),
         }
         up, down = (

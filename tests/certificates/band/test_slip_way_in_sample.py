@@ -13,7 +13,7 @@ import wspd_design as wd
 from tests.attack.plant import filled, vented
 from tests.certificates.band import sampled_runs
 from tests.certificates.band.conftest import problem_of
-from tests.certificates.band.sampled_runs import BOX, Law, Memory, Runs, plant_of, sampled
+from tests.certificates.band.sampled_runs import BOX, Law, Runs, measured_from, plant_of, sampled
 from wspd_design.certificates.kernel.affine import Affine
 from wspd_design.certificates.theorems.slip_band import approach, followed_law, followed_plant, motion
 from wspd_design.certificates.theorems.slip_band.followed_plant import NUMBERS, State
@@ -138,20 +138,9 @@ class Sample:
         plant = plant_of(
             problem, {name: named[name] for name in BOX} | held | {"supply rate": named["supply rate"]}
         )
-        speed, sliding, innovation, friction, torque, acceleration, change, supply = self.states
-        radius, scale = plant.wheel_radius, law.radius / plant.wheel_radius
-        wheel = (speed - sliding) / radius
-        r = innovation / radius
-        told = scale * speed
-        memory = Memory(
-            scale=scale,
-            told=told,
-            acceleration=law.filtered(scale * acceleration, told - scale * change, told),
-            observed=wheel - r + (1.0 - law.theta**2) * r,
-            friction=np.maximum(friction + (1.0 - law.theta) ** 2 * law.inertia / law.h * r, 0.0),
-            exact=told,
-            unspoiled=0.0 * told,
-        )
+        speed, torque, supply = self.states[0], self.states[4], self.states[7]
+        radius = plant.wheel_radius
+        memory, wheel = measured_from(law, radius, self.states)
         pads = plant.max_torque / law.full
         runs = Runs(
             plant=plant,
@@ -181,7 +170,7 @@ class Sample:
             "fill": fill / law.h,
             "vent": vent / law.h,
             "friction": memory.friction,
-            "acceleration": memory.acceleration / scale,
+            "acceleration": memory.acceleration / memory.scale,
             "innovation": -radius * expected,
             "speed": after.speed,
             "sliding": after.speed - radius * after.wheel,

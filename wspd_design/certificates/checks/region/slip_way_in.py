@@ -16,11 +16,11 @@ from wspd_design.certificates.search.slip_band.way_in import SHARES, plan, power
 from wspd_design.certificates.theorems.slip_band.friction import Parts
 from wspd_design.certificates.theorems.slip_band.proof import write as write_band
 from wspd_design.certificates.theorems.slip_band.statement import law_of
-from wspd_design.certificates.theorems.slip_band.way_in import around, asked_of, write
+from wspd_design.certificates.theorems.slip_band.way_in import LARGEST_SHARE, around, asked_of, write
 from wspd_design.certificates.theorems.way_in import SLIP_WAY_IN, STRIPS
 from wspd_design.controllers.protection import Protection
 
-OTHERS = tuple(map(Fraction, ("1/16", "1/20", "1/30", "1/50", "1/100", "1/200", "0")))
+OTHERS = (LARGEST_SHARE, *map(Fraction, ("1/20", "1/30", "1/50", "1/100", "1/200", "0")))
 """Shares of the ranges of the other numbers, each way from their nominal values."""
 NOISES = tuple(map(Fraction, ("0.002", "0.001", "0.0005", "0.0001", "0")))
 """Noise of measured speeds that a band may bear [m/s]: the more, the larger are the ellipsoids that wheels get into."""
