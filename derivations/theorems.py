@@ -8,6 +8,7 @@ from derivations import (
     band_theorems,
     brake_theorems,
     limit_theorems,
+    rolling_theorems,
     stop_theorems,
     surface_theorems,
     valve_theorems,
@@ -17,6 +18,7 @@ from derivations import (
 THEOREMS = (
     *valve_theorems.THEOREMS,
     *band_theorems.THEOREMS,
+    *rolling_theorems.THEOREMS,
     *limit_theorems.THEOREMS,
     *surface_theorems.THEOREMS,
     *stop_theorems.THEOREMS,
