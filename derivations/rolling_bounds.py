@@ -31,9 +31,7 @@ _slowing = -_speed_rate / _v  # L
 
 def _rate(value: sp.Expr) -> sp.Expr:
     """Rate along the motion of a function of slip, speed and torque, where the slip grows by q."""
-    return (
-        sp.diff(value, _s) * _slip_rate + sp.diff(value, _v) * _speed_rate + sp.diff(value, _T) * _T_rate
-    )
+    return sp.diff(value, _s) * _slip_rate + sp.diff(value, _v) * _speed_rate + sp.diff(value, _T) * _T_rate
 
 
 _error = (_s_r - _s) * _v / _R
@@ -53,7 +51,9 @@ drag_rate = -_kappa * _damped * _q - _slowing * (
     _kappa * _damped * (1 - _s) * _v / _R + _v * sp.diff(_resisted, _v)
 )
 drag_rate_residual = numerator((_rate(_whole_drag) - drag_rate).doit())
-steepness_rate_residual = sp.expand(_rate(_S) - (sp.diff(_S, _s) * _slip_rate - _slowing * _v * sp.diff(_S, _v)))
+steepness_rate_residual = sp.expand(
+    _rate(_S) - (sp.diff(_S, _s) * _slip_rate - _slowing * _v * sp.diff(_S, _v))
+)
 # At a level S q, where S' <= L S_l: (S q)' = S q' + S' q is at most S (q' + L (S_l/S) q).
 _S_level, _S_l, _q_rate, _L = sp.symbols("S S_l q_rate L", real=True)
 level_residual = sp.expand(
@@ -95,9 +95,10 @@ lacking_residual = sp.simplify(
 )  # W' = -z S_z''
 bend_residual = sp.simplify(
     -sp.diff(_shape, _z, 2)
-    - 4 / sp.pi * _z * (
-        _kA**3 * (3 - (_kA * _z) ** 2) / (1 + (_kA * _z) ** 2) ** 3 + _kS**3 / (1 + (_kS * _z) ** 2) ** 2
-    )
+    - 4
+    / sp.pi
+    * _z
+    * (_kA**3 * (3 - (_kA * _z) ** 2) / (1 + (_kA * _z) ** 2) ** 3 + _kS**3 / (1 + (_kS * _z) ** 2) ** 2)
 )
 # For k_A = 3 k_S, all rails that are shipped, -S_z'' is positive: with t = (k_S z)^2 it is z times this over a square.
 _t = sp.Symbol("t", positive=True)
@@ -110,7 +111,9 @@ share = 1 / (1 - sp.exp(-_x)) - 1 / _x  # of an exponential change in the mean o
 _mean = sp.integrate(1 - sp.exp(-_time), (_time, 0, _x)) / _x
 share_residual = sp.simplify(_mean / (1 - sp.exp(-_x)) - share)
 # With y = x/2 it is 1/2 and half of coth y - 1/y, which lies between 0 and y/3.
-halved_residual = sp.simplify((share.subs(_x, 2 * _y) - sp.Rational(1, 2) - (sp.coth(_y) - 1 / _y) / 2).rewrite(sp.exp))
+halved_residual = sp.simplify(
+    (share.subs(_x, 2 * _y) - sp.Rational(1, 2) - (sp.coth(_y) - 1 / _y) / 2).rewrite(sp.exp)
+)
 _above = _y * sp.cosh(_y) - sp.sinh(_y)
 _below = sp.sinh(_y) * (1 + _y**2 / 3) - _y * sp.cosh(_y)
 above_residual = sp.simplify(sp.diff(_above, _y) - _y * sp.sinh(_y))
@@ -129,7 +132,9 @@ _raised = sp.integrate(_time * sp.exp(-(_x - _time)), (_time, 0, _x))
 raised_residual = sp.simplify(_raised / (1 - sp.exp(-_x)) - _x * share)
 _times = sp.Symbol("r", positive=True)
 # Over the square of the pulse that is a mean of exponentials that fall: a third of the last is in the mean at least.
-raised_falls_residual = sp.simplify(_raised / _x**2 - sp.integrate((1 - _times) * sp.exp(-_x * _times), (_times, 0, 1)))
+raised_falls_residual = sp.simplify(
+    _raised / _x**2 - sp.integrate((1 - _times) * sp.exp(-_x * _times), (_times, 0, 1))
+)
 # D' = (risen - D)/T_F of what a rising supply adds, in its own time: over t^2 it falls where risen' >= D'.
 _added, _risen = (sp.Function(name)(_time) for name in ("D", "Q"))
 _D_rate = _risen - _added
@@ -142,9 +147,13 @@ added_falls_residual = sp.expand(
 added_grows_residual = sp.expand(
     sp.diff(_time * _D_rate - _added, _time).subs(sp.diff(_added, _time), _D_rate) - _time * _D_bend
 )
-_w, _m = sp.symbols("w m", positive=True)  # of a change the part w came with the rise, m of the rest is in the mean
+_w, _m = sp.symbols(
+    "w m", positive=True
+)  # of a change the part w came with the rise, m of the rest is in the mean
 _least = 1 - _l * (1 - ((1 - _w) * _m + _w / 3))
-in_mean_least_residual = sp.expand(_least - (1 - _l / 2 - _l * _w / 6) - _l * (1 - _w) * (_m - sp.Rational(1, 2)))
+in_mean_least_residual = sp.expand(
+    _least - (1 - _l / 2 - _l * _w / 6) - _l * (1 - _w) * (_m - sp.Rational(1, 2))
+)
 # The mean that the law works out, for the same pulse from a constant supply.
 _wanted, _power = sp.symbols("u rho", positive=True)
 _left = sp.Symbol("1 - u", positive=True)
@@ -202,13 +211,19 @@ cut_fades_residual = sp.simplify(
     _friction_next.subs(_cut, 0) - (_theta * _apart + _theta * (1 - _theta) * _z_d)
 )
 cut_fades_more_residual = sp.expand(
-    sp.simplify(_apart - _friction_next.subs(_cut, 0) - ((1 - _theta) * _beta * _p_d + (1 - _theta) ** 2 * _z_d))
+    sp.simplify(
+        _apart - _friction_next.subs(_cut, 0) - ((1 - _theta) * _beta * _p_d + (1 - _theta) ** 2 * _z_d)
+    )
 )
 # Before the cut the friction is at least (1 - theta) less m_0 and theta times what it was, as all inputs are at least -m_0.
 _j = sp.Symbol("j", integer=True, nonnegative=True)
 _weight = (_j + 1) * _theta**_j
-least_ratio_residual = sp.simplify((_weight.subs(_j, _j + 1) - _theta * _weight - _theta ** (_j + 1)) / _theta**_j)
-_most_cut = -(_theta * (_fhat - _apart) - (1 - _theta) * _m0) - (_theta * _apart + _theta * (1 - _theta) * _z_d)
+least_ratio_residual = sp.simplify(
+    (_weight.subs(_j, _j + 1) - _theta * _weight - _theta ** (_j + 1)) / _theta**_j
+)
+_most_cut = -(_theta * (_fhat - _apart) - (1 - _theta) * _m0) - (
+    _theta * _apart + _theta * (1 - _theta) * _z_d
+)
 most_cut_residual = sp.expand(
     _most_cut - ((1 - _theta) * _m0 - _theta * _fhat - _theta * (1 - _theta) * _z_d)
 )

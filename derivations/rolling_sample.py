@@ -132,7 +132,12 @@ def _reference_rate(acceleration: sp.Expr) -> sp.Expr:
 def _asked(friction: sp.Expr, acceleration: sp.Expr, pull: sp.Expr) -> sp.Expr:
     """Torque that the law asks for, times h/J."""
     target = tracking.target_torque.subs(
-        {tracking.tau: friction, tracking.w_rate: _reference_rate(acceleration), tracking.y: pull / h, tracking.J: J}
+        {
+            tracking.tau: friction,
+            tracking.w_rate: _reference_rate(acceleration),
+            tracking.y: pull / h,
+            tracking.J: J,
+        }
     )
     return h / J * target
 
@@ -204,14 +209,7 @@ way_next_residual = _left(way_next, _then[4])
 # What the error falls by and what is observed of it: the friction in between counts with kappa only.
 unseen_residual = sp.expand(
     (observed_next - fall_next)
-    - (
-        theta * (z - y)
-        - (1 - theta) * y
-        - c
-        + kappa * friction_change
-        - (1 - theta) * apart
-        + drag_change
-    )
+    - (theta * (z - y) - (1 - theta) * y - c + kappa * friction_change - (1 - theta) * apart + drag_change)
 )
 
 # --- sums over the samples before: what is put in is the change of the wheel speed and the mean torque of the law -------
@@ -231,9 +229,7 @@ _twice = _observe(*_once, _in_next)
 put_in_residual = numerator(_once[1].subs(_put_in, simultaneous=True) - h / J * _tau_next)
 put_in_error_residual = numerator(_once[0].subs(_put_in, simultaneous=True) - _p_next)
 friction_sum_residual = sp.expand(_twice[1] - 2 * theta * _once[1] + theta**2 * _fhat - quick * _in_next)
-error_sum_residual = sp.expand(
-    _twice[0] - 2 * theta * _once[0] + theta**2 * p + theta**2 * (_in_next - _in)
-)
+error_sum_residual = sp.expand(_twice[0] - 2 * theta * _once[0] + theta**2 * p + theta**2 * (_in_next - _in))
 weight = (_j + 1) * theta**_j  # of what was put in 1 + j samples ago; (1 - theta)^2 of it in fhat
 weight_residual = sp.simplify(
     (weight.subs(_j, _j + 2) - 2 * theta * weight.subs(_j, _j + 1) + theta**2 * weight) / theta**_j
@@ -241,10 +237,14 @@ weight_residual = sp.simplify(
 first_weights_residual = sp.Abs(weight.subs(_j, 0) - 1) + sp.Abs(
     sp.expand(weight.subs(_j, 1) - 2 * theta * weight.subs(_j, 0))
 )
-_many = 1 - (_j + 1) * theta**_j + _j * theta ** (_j + 1)  # of the weight of j samples, over (1 - theta)^-2: below 1
+_many = (
+    1 - (_j + 1) * theta**_j + _j * theta ** (_j + 1)
+)  # of the weight of j samples, over (1 - theta)^-2: below 1
 many_residual = sp.simplify((_many.subs(_j, _j + 1) - _many - quick * weight) / theta**_j)
 _K_next = h * _reference_rate(_acceleration_next)
-filter_sum_residual = numerator(_K_next - (kept * h * _reference_rate(told_acceleration) - (1 - kept) * _lost(0)))
+filter_sum_residual = numerator(
+    _K_next - (kept * h * _reference_rate(told_acceleration) - (1 - kept) * _lost(0))
+)
 asked_residual = numerator(
     _now[4] - P - (h / J * tau - _torque - h * _reference_rate(told_acceleration))
 )  # x - P = fhat - T - K
