@@ -1,11 +1,11 @@
 """Bounds on the way in that hold for all of its numbers: friction, pulses, filling, and an observer that is cut at 0.
 
-With q the rate at which the slip grows, s' = R q/v, S = (R/v) df/ds, L = -v'/v and a = (s_r - s)/(1 - s_r), time counted
-in samples:
+With q the rate at which the slip grows, s' = R q/v, S = (R/v) df/ds, L = -v'/v and a = (s_r - s)/(1 - s_r), time
+counted in samples:
 
 Claims: q' = g T' - (1 + kappa (1 + a)) (S q + f_v v') - (1 + a) drag' + L q, so that S q cannot grow beyond what the
 torque grows by, where S does not rise with the slip. A pulse of the part l of a sample fills what it would from a
-constant supply, and of what the supply rises by in the sample at most l/2 + l^2 h/(12 T_F) of what it fills of the room.
+constant supply, and of what the supply rises by in the sample at most l/2 + l^2 h/(12 T_F) of its part of the room.
 Of a change the share 1 - l/2 to 1 - l/2 + l^2 h/(12 T_F) is in the mean. While the valve only fills, rate and room at a
 torque grow with the supply rate, the rate falls and the room grows with T_F, and the rate has one maximum. An observer
 that takes no friction below 0 differs from one that does by bounded numbers.
@@ -17,7 +17,7 @@ from derivations import adhesion
 from derivations import brake_actuator as brake
 from derivations.notation import numerator
 
-# --- slip and friction along the motion: s, v and the torque over the time t --------------------------------------------
+# --- slip and friction along the motion: s, v and the torque over the time t ----------------------------------------
 _s, _v, _R, _g, _kappa, _s_r = sp.symbols("s v R g kappa s_r", positive=True)
 _q, _T, _T_rate, _damped = sp.symbols("q T T_rate q_d", real=True)
 _f, _drag = (sp.Function(name, real=True)(_s, _v) for name in ("f", "drag"))
@@ -36,6 +36,8 @@ def _rate(value: sp.Expr) -> sp.Expr:
 
 _error = (_s_r - _s) * _v / _R
 error_rate_residual = sp.simplify((_rate(_error) + _fall).subs(_q, _growth))
+_wheel = (1 - _s) * _v / _R
+wheel_rate_residual = numerator(_rate(_wheel) + (1 - _s) * _lost / (1 - _s_r) + _q)
 _S, _fixed = _R / _v * sp.diff(_f, _s), sp.diff(_f, _v) * _speed_rate  # and f_v v'
 friction_rate_residual = sp.expand(_rate(_f) - (_S * _q + _fixed))
 growth_rate = (
@@ -60,7 +62,7 @@ level_residual = sp.expand(
     _S_level * _q_rate + _L * _S_l * _q - _S_level * (_q_rate + _L * _S_l / _S_level * _q)
 )
 
-# --- Polach's curve: f = grip phi S_z(B s/phi) less q_d times the wheel speed -------------------------------------------
+# --- Polach's curve: f = grip phi S_z(B s/phi) less q_d times the wheel speed ---------------------------------------
 _grip, _B, _A, _D, _kA, _kS = sp.symbols("grip B A D k_A k_S", positive=True)
 _z = sp.Symbol("z", positive=True)
 _shape = (2 / sp.pi * adhesion.shape).subs({adhesion.gradient: _z, adhesion.kA: _kA, adhesion.kS: _kS})
@@ -105,7 +107,7 @@ _t = sp.Symbol("t", positive=True)
 _of_t = 27 * (3 - 9 * _t) * (1 + _t) ** 2 + (1 + 9 * _t) ** 3
 concave_residual = sp.expand(_of_t - (64 + 162 * (3 * _t + 1) * (_t - sp.Rational(1, 3)) ** 2))
 
-# --- a pulse of the length x over T_F: what is in its mean, and what a rising supply adds ------------------------------
+# --- a pulse of the length x over T_F: what is in its mean, and what a rising supply adds ---------------------------
 _x, _y, _time, _l, _eta = sp.symbols("x y t l eta", positive=True)
 share = 1 / (1 - sp.exp(-_x)) - 1 / _x  # of an exponential change in the mean over its pulse
 _mean = sp.integrate(1 - sp.exp(-_time), (_time, 0, _x)) / _x
@@ -161,7 +163,7 @@ own_power_residual = sp.simplify(
     1 - sp.exp(-_power * -sp.log(_left)) - (1 - _left**_power)
 )  # a pulse -T_a log(1 - u), with rho = T_a/T_F
 
-# --- nothing but filling: V = T' at the torque T, the supply Q = U (1 - exp(-s t)), tau = h/T_F -------------------------
+# --- nothing but filling: V = T' at the torque T, the supply Q = U (1 - exp(-s t)), tau = h/T_F ---------------------
 _U, _rate_s, _tau, _V, _r, _torque = sp.symbols("U s tau V r T", positive=True)
 _supply = _torque + _V / _tau
 _supply_rate = _rate_s * (_U - _supply)
@@ -199,7 +201,7 @@ one_maximum_residual = sp.simplify(
     + _tau * _rate_s * sp.diff(_Q_t, _filled_time)
 )  # V'' where V' = 0
 
-# --- an observer that takes no friction below 0: what it has less what one that is not cut has ---------------------------
+# --- an observer that takes no friction below 0: what it has less what one that is not cut has ----------------------
 _theta, _z_d, _p_d, _m0, _fhat, _cut = sp.symbols("theta z p m_0 fhat b", real=True)
 _beta = (1 - _theta) / _theta
 _apart = _z_d + _beta * _p_d  # of the friction
@@ -215,7 +217,7 @@ cut_fades_more_residual = sp.expand(
         _apart - _friction_next.subs(_cut, 0) - ((1 - _theta) * _beta * _p_d + (1 - _theta) ** 2 * _z_d)
     )
 )
-# Before the cut the friction is at least (1 - theta) less m_0 and theta times what it was, as all inputs are at least -m_0.
+# Before a cut the friction is at least theta times what it was less (1 - theta) m_0, as all inputs are at least -m_0.
 _j = sp.Symbol("j", integer=True, nonnegative=True)
 _weight = (_j + 1) * _theta**_j
 least_ratio_residual = sp.simplify(

@@ -2,8 +2,8 @@
 
 Rates of the wheel speed and torques are in rad/s per sample: a torque that the law has counts with h over its inertia
 J. With means over the sample of the creep force, the wheel speed and the resistance, f is the friction less the damping
-of the wheel, D = kappa f + drag what the reference w_r loses, g the true over the assumed effect of a torque. The torque
-changes by c, of which lambda c is in its mean; the law takes chi lambda c for that. In
+of the wheel, D = kappa f + drag what the reference w_r loses, g the true over the assumed effect of a torque. The
+torque changes by c, of which lambda c is in its mean; the law takes chi lambda c for that. In
 
     y = g T - (1 + kappa) f - drag, by which the error E = w - w_r would fall at the torque T,
     p = observed less true wheel speed, z = fhat - f + (g - 1) T - beta p, beta = (1 - theta)/theta,
@@ -11,8 +11,8 @@ changes by c, of which lambda c is in its mean; the law takes chi lambda c for t
 
 one sample makes the map below of means Df and D(drag) of the changes, whatever friction and speeds do in it.
 
-Claims: the map follows from the observer, the target, the filter and Newton's laws; y = P - x + z + beta p - e; what the
-observer and the filter have is a sum over all samples before.
+Claims: the map follows from the observer, the target, the filter and Newton's laws; y = P - x + z + beta p - e; what
+the observer and the filter have is a sum over all samples before.
 """
 
 from functools import partial
@@ -30,7 +30,7 @@ c, in_mean, own, apart = sp.symbols("change in_mean own means_apart", real=True)
 friction_change, drag_change, part = sp.symbols("friction_change drag_change part", real=True)
 beta, quick = (1 - theta) / theta, (1 - theta) ** 2
 
-# --- the map ----------------------------------------------------------------------------------------------------------
+# --- the map --------------------------------------------------------------------------------------------------------
 means_apart = in_mean * c * (g - own)
 fall = P - x + z + beta * p - e
 learned = (1 - kept) * e - quick * (z + p / theta + apart)
@@ -55,7 +55,7 @@ learned_residual = sp.expand(
 )  # of the same map, each state once
 part_residual = sp.expand(way_next.subs(c, part * x) - way_next_of_part)
 
-# --- Newton: what wheel and reference change by over a sample, from means ---------------------------------------------
+# --- Newton: what wheel and reference change by over a sample, from means -------------------------------------------
 h, J, inertia, R, m, R_law, pads, slip, damping = sp.symbols(
     "h J I R m R_law pads slip damping", positive=True
 )
@@ -104,7 +104,7 @@ _wheel_change = h * motion.wheel_acceleration.subs(
 _torque = h / J * T
 wheel_residual = numerator(_wheel_change - (_friction(0) - _g * (_torque + in_mean * c)))
 
-# --- the law: a measurement of the next sample, then what it asks for --------------------------------------------------
+# --- the law: a measurement of the next sample, then what it asks for -----------------------------------------------
 _measured = {
     observer.omega: w + _wheel_change,
     observer.w: w + p,
@@ -212,7 +212,7 @@ unseen_residual = sp.expand(
     - (theta * (z - y) - (1 - theta) * y - c + kappa * friction_change - (1 - theta) * apart + drag_change)
 )
 
-# --- sums over the samples before: what is put in is the change of the wheel speed and the mean torque of the law -------
+# --- sums over the samples before: what is put in is the change of the wheel speed and the mean torque of the law ---
 _j = sp.symbols("j", integer=True, nonnegative=True)
 _fhat, _in, _in_next, _K, _D = sp.symbols("fhat in_0 in_1 K D_0", real=True)
 

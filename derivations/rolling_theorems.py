@@ -8,29 +8,29 @@ THEOREMS = (
     Theorem(
         anchor="all-ways-in",
         title="One sample of the way in, for all numbers at once",
-        statement="Count torques of the law with h over its inertia J and all rates per sample. Let f be the mean over "
-        "a sample of friction less damping of a wheel, D = kappa f + drag what its reference loses in it, g the true "
-        "over the assumed effect of a torque, c the change of the torque T, lambda c what of it is in its mean and chi "
-        "lambda c what the law takes for that. Of y = g T - (1 + kappa) f - drag, z = fhat - f + (g - 1) T - beta p, p "
-        "the error of the observed wheel speed, beta = (1 - theta)/theta, e = K + D, K the filtered change of the "
-        "reference, and x = T* - T, the torque T* = fhat + P - K being wanted, one sample makes, with d = lambda c (g "
-        "- chi) and means f and drag that change by Df and Dd: y+ = y + g c - (1 + kappa) Df - Dd, z+ = theta z - Df + "
-        "(g - 1) c - (1 - theta) d, p+ = theta p + theta^2 (z + d), e+ = kept e + kappa Df + Dd, x+ = x - c + n + k "
-        "(ahead (n - c) - y - g lambda c), n = (1 - kept) e - (1 - theta)^2 (z + p/theta + d), k the change of the "
-        "pull over that of the predicted error. At each sample y = P - x + z + beta p - e, and the error of the wheel "
-        "speed falls by y + g lambda c. All of it is exact, whatever the friction does within a sample. From rest "
-        "fhat is the sum of (1 - theta)^2 (j + 1) theta^j times what was put in 1 + j samples ago, the change of the "
-        "wheel speed and the mean torque of the law; p is that of -theta^2 (j + 1) theta^j times what it changed by; "
-        "-K is the sum of (1 - kept) kept^j D.",
+        statement="Count torques of the law with h over its inertia J and all rates per sample. Let f be the mean "
+        "over a sample of friction less damping of a wheel, D = kappa f + drag what its reference loses in it, g the "
+        "true over the assumed effect of a torque, c the change of the torque T, lambda c what of it is in its mean "
+        "and chi lambda c what the law takes for that. Of y = g T - (1 + kappa) f - drag, z = fhat - f + (g - 1) T - "
+        "beta p, p the error of the observed wheel speed, beta = (1 - theta)/theta, e = K + D, K the filtered change "
+        "of the reference, and x = T* - T, the torque T* = fhat + P - K being wanted, one sample makes, with d = "
+        "lambda c (g - chi) and means f and drag that change by Df and Dd: y+ = y + g c - (1 + kappa) Df - Dd, z+ = "
+        "theta z - Df + (g - 1) c - (1 - theta) d, p+ = theta p + theta^2 (z + d), e+ = kept e + kappa Df + Dd, x+ = "
+        "x - c + n + k (ahead (n - c) - y - g lambda c), n = (1 - kept) e - (1 - theta)^2 (z + p/theta + d), k the "
+        "change of the pull over that of the predicted error. At each sample y = P - x + z + beta p - e, and the "
+        "error of the wheel speed falls by y + g lambda c. All of it is exact, whatever the friction does within a "
+        "sample. From rest fhat is the sum of (1 - theta)^2 (j + 1) theta^j times what was put in 1 + j samples ago, "
+        "the change of the wheel speed and the mean torque of the law; p is that of -theta^2 (j + 1) theta^j times "
+        "what it changed by; -K is the sum of (1 - kept) kept^j D.",
         hypotheses=(
             "all wheelsets do the same, at a constant slip that is wanted",
             "wheel speeds, train speed and pressure are measured exactly, and the scale of the train speed is that of "
             "rolling wheels",
             "the observed friction is above 0; where it is cut there, b is added to z+ and to n",
         ),
-        sketch="Newton's laws give the changes of both speeds from the means. The innovation of the observer is -(z + "
-        "p/theta + d), so that the mean friction, which the law does not know, is in z only. A sum over the samples "
-        "before has the weights that its recursion has. The map is affine in each of its numbers but theta.",
+        sketch="Newton's laws give the changes of both speeds from the means. The innovation of the observer is -(z "
+        "+ p/theta + d), so that the mean friction, which the law does not know, is in z only. A sum over the "
+        "samples before has the weights that its recursion has. The map is affine in each of its numbers but theta.",
         not_said="What f does: it has to be enclosed. What a change within a sample that is late has in its mean.",
         identities=(
             Identity("D = kappa f + drag", sample.reference_residual),
@@ -65,39 +65,42 @@ THEOREMS = (
     Theorem(
         anchor="bounds-of-ways-in",
         title="Bounds on the way in that need no simulation",
-        statement="Count time in samples. (a) With the slip s, q = s' v/R, S = (R/v) df/ds, L = -v'/v, S_l = -v dS/dv "
-        "and sigma = (s_r - s)/(1 - s_r): as long as s <= s_r, dS/ds <= 0, and q >= 0 or S >= 0, (1 + kappa) S q stays "
-        "below the largest of g T' + L q (1 + max(S_l, 0)/S) - (1 + sigma) drag' so far, of moments with q > 0 and S q "
-        "as large as that, unless it began above. (b) A pulse of the part l of a sample that begins with it, for the "
-        "share u of the room, fills room (1 - (1 - u)^rho) and of r, the first rate of the supply, between 0 and "
-        "(l/2 + l^2 h/(12 T_F)) r/room times it more, rho the time of the inversion over T_F. (c) Of its change the "
-        "share 1 - l/2 to 1 - l/2 + l^2 h/(12 T_F) is in the mean if the supply is constant, and at least 1 - l/2 - "
-        "l w/6 if the part w comes from its rise; venting, the same with T_V. (d) What the law takes for the change in "
-        "the mean is that of its nominal valve from a constant supply. (e) While the valve only fills, from an empty "
-        "cylinder one sample after the supply began, at a given torque T' and the room grow with the supply rate, T' "
-        "falls and the room grows with T_F >= h; T' has one maximum; what the torque grew by over a time before is "
-        "largest for the largest rate and the smallest T_F. (f) If what is put into the observer has been at least -m "
-        "since it rested, an observer that takes no friction below 0 has at most m more of it than one that is not "
-        "cut, at most theta^2 m/(1 - theta^2) more in p and m/(1 + theta) more in z, and less of none. A cut adds at "
-        "most (1 - theta) m - theta fhat, and none if that is negative. (g) While q = 0, q' = g T' - (1 + kappa (1 + "
-        "sigma)) f_v v' - (1 + sigma) drag': where that is positive, q does not fall through 0.",
+        statement="Count time in samples. (a) With the slip s, q = s' v/R, S = (R/v) df/ds, L = -v'/v, S_l = -v "
+        "dS/dv and sigma = (s_r - s)/(1 - s_r): as long as 0 <= s <= s_r, dS/ds <= 0, and q >= 0 or S >= 0, (1 + "
+        "kappa) S q stays below the largest of g T' + q (L (1 + max(S_l, 0)/S) - kappa sigma S) - (1 + sigma) drag' "
+        "- (1 + kappa (1 + sigma)) f_v v' so far, of moments with q > 0 and S q as large as that, unless it began "
+        "above. (b) A pulse of the part l of a sample that begins with it, for the share u of the room, fills room "
+        "(1 - (1 - u)^rho) and of r, the first rate of the supply, between 0 and (l/2 + l^2 h/(12 T_F)) r/room times "
+        "it more, rho the time of the inversion over T_F. (c) Of its change the share 1 - l/2 to 1 - l/2 + l^2 h/(12 "
+        "T_F) is in the mean if the supply is constant, and at least 1 - l/2 - l w/6 if the part w comes from its "
+        "rise; venting, the same with T_V. (d) What the law takes for the change in the mean is that of its nominal "
+        "valve from a constant supply. (e) While the valve only fills, from an empty cylinder one sample after the "
+        "supply began, at a given torque T' and the room grow with the supply rate, T' falls and the room grows with "
+        "T_F >= h; T' has one maximum; what the torque grew by over a time before is largest for the largest rate "
+        "and the smallest T_F. (f) If what is put into the observer has been at least -m since it rested, an "
+        "observer that takes no friction below 0 has at most m more of it than one that is not cut, at most theta^2 "
+        "m/(1 - theta^2) more in p and m/(1 + theta) more in z, and less of none. A cut adds at most (1 - theta) m - "
+        "theta fhat, and none if that is negative. What is put in is the mean torque of the law less the mean of (1 "
+        "- s) D/(1 - s_r) + q, and f - d - (g - 1) T. (g) While q = 0, q' = g T' - (1 + kappa (1 + sigma)) f_v v' - "
+        "(1 + sigma) drag': where that is positive, q does not fall through 0.",
         hypotheses=(
             "the friction is one of the slip and the speed, less the damping of the wheel",
             "for (c): s h and h/T_F at most 1/4",
             "for (e): h <= T_F, a supply by eq. (8)",
         ),
-        sketch="(a) (S q)' = S q' + S' q. Where S q is as large as is said, S' is at most L S_l, and q' by the identity "
-        "makes the rate at most 0. (b) The supply rises at most at its first rate. (c) The part of an exponential "
-        "change that is in the mean over its pulse is 1/2 and half of coth y - 1/y at half its length y, between 0 "
-        "and y/6. What the rise adds grows at least as t and at most as t^2, so that 1/3 to 1/2 of it is in that mean. "
-        "(e) dV/dT of V = T' grows with the supply rate, and with h/T_F where s (U - T) > V, which holds all the time "
-        "if it does in the beginning. A larger V at each torque takes less time. (f) Both differences are that "
-        "of the map from b >= 0. When it cuts, what is not cut is at least -m, as a mean of what was put in, and at "
-        "least theta times what it was less (1 - theta) m.",
-        not_said="That S falls where the friction curve is convex. The slip is not monotone at the start: a wheel rolls "
-        "with a small negative slip until the torque comes.",
+        sketch="(a) (S q)' = S q' + S' q. Where S q is as large as is said, S' is at most L S_l, and q' by the "
+        "identity makes the rate at most 0. (b) The supply rises at most at its first rate. (c) The part of an "
+        "exponential change that is in the mean over its pulse is 1/2 and half of coth y - 1/y at half its length y, "
+        "between 0 and y/6. What the rise adds grows at least as t and at most as t^2, so that 1/3 to 1/2 of it is "
+        "in that mean. (e) dV/dT of V = T' grows with the supply rate, and with h/T_F where s (U - T) > V, which "
+        "holds all the time if it does in the beginning. A larger V at each torque takes less time. (f) Both "
+        "differences are that of the map from b >= 0. When it cuts, what is not cut is at least -m, as a mean of "
+        "what was put in, and at least theta times what it was less (1 - theta) m.",
+        not_said="That S falls where the friction curve is convex. The slip is not monotone at the start: a wheel "
+        "rolls with a small negative slip until the torque comes.",
         identities=(
             Identity("E' = -y", bounds.error_rate_residual),
+            Identity("w' = -(1 - s) D/(1 - s_r) - q", bounds.wheel_rate_residual),
             Identity("f' = S q + f_v v'", bounds.friction_rate_residual),
             Identity(
                 "q' = g T' - (1 + kappa (1 + sigma)) (S q + f_v v') - (1 + sigma) drag' + L q",

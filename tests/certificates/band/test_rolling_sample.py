@@ -384,8 +384,3 @@ def test_what_the_observer_is_cut_by_is_bounded(stop):
         assert 0.0 <= z <= most / (1.0 + stop.theta) + 1e-9
         assert 0.0 <= p <= stop.theta**2 * most / (1.0 - stop.theta**2) + 1e-9
     assert np.all(stop.cut[30:] == 0.0)
-
-
-def test_rolling_wheel_puts_in_what_slows_it_down(stop):
-    """Never less than drag/(1 - slip), though the wheel lags behind a torque that begins."""
-    assert np.all(stop.put_in >= -stop.drag / (1.0 - 0.14) - 1e-9)
