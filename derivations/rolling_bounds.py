@@ -56,10 +56,20 @@ drag_rate_residual = numerator((_rate(_whole_drag) - drag_rate).doit())
 steepness_rate_residual = sp.expand(
     _rate(_S) - (sp.diff(_S, _s) * _slip_rate - _slowing * _v * sp.diff(_S, _v))
 )
-# At a level S q, where S' <= L S_l: (S q)' = S q' + S' q is at most S (q' + L (S_l/S) q).
-_S_level, _S_l, _q_rate, _L = sp.symbols("S S_l q_rate L", real=True)
-level_residual = sp.expand(
-    _S_level * _q_rate + _L * _S_l * _q - _S_level * (_q_rate + _L * _S_l / _S_level * _q)
+# Where S does not rise with the slip, S' <= L S_l, the level l = (1 + kappa) S q has l' <= (1 + kappa) S (B - l).
+_steep, _S_l, _L, _Ph, _drag_rate = sp.symbols("S S_l L Ph drag_rate", real=True)
+_q_rate = (
+    _g * _T_rate - (1 + _kappa * (1 + _aside)) * (_steep * _q + _Ph) - (1 + _aside) * _drag_rate + _L * _q
+)
+level_bound = (
+    _g * _T_rate
+    + _q * (_L * (1 + _S_l / _steep) - _kappa * _aside * _steep)
+    - (1 + _kappa * (1 + _aside)) * _Ph
+    - (1 + _aside) * _drag_rate
+)
+_level = (1 + _kappa) * _steep * _q
+level_residual = numerator(
+    (1 + _kappa) * (_steep * _q_rate + _L * _S_l * _q) - (1 + _kappa) * _steep * (level_bound - _level)
 )
 
 # --- Polach's curve: f = grip phi S_z(B s/phi) less q_d times the wheel speed ---------------------------------------

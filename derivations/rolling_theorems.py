@@ -66,36 +66,39 @@ THEOREMS = (
         anchor="bounds-of-ways-in",
         title="Bounds on the way in that need no simulation",
         statement="Count time in samples. (a) With the slip s, q = s' v/R, S = (R/v) df/ds, L = -v'/v, S_l = -v "
-        "dS/dv and sigma = (s_r - s)/(1 - s_r): as long as 0 <= s <= s_r, dS/ds <= 0, and q >= 0 or S >= 0, (1 + "
-        "kappa) S q stays below the largest of g T' + q (L (1 + max(S_l, 0)/S) - kappa sigma S) - (1 + sigma) drag' "
-        "- (1 + kappa (1 + sigma)) f_v v' so far, of moments with q > 0 and S q as large as that, unless it began "
-        "above. (b) A pulse of the part l of a sample that begins with it, for the share u of the room, fills room "
-        "(1 - (1 - u)^rho) and of r, the first rate of the supply, between 0 and (l/2 + l^2 h/(12 T_F)) r/room times "
-        "it more, rho the time of the inversion over T_F. (c) Of its change the share 1 - l/2 to 1 - l/2 + l^2 h/(12 "
-        "T_F) is in the mean if the supply is constant, and at least 1 - l/2 - l w/6 if the part w comes from its "
-        "rise; venting, the same with T_V. (d) What the law takes for the change in the mean is that of its nominal "
-        "valve from a constant supply. (e) While the valve only fills, from an empty cylinder one sample after the "
-        "supply began, at a given torque T' and the room grow with the supply rate, T' falls and the room grows with "
-        "T_F >= h; T' has one maximum; what the torque grew by over a time before is largest for the largest rate "
-        "and the smallest T_F. (f) If what is put into the observer has been at least -m since it rested, an "
-        "observer that takes no friction below 0 has at most m more of it than one that is not cut, at most theta^2 "
-        "m/(1 - theta^2) more in p and m/(1 + theta) more in z, and less of none. A cut adds at most (1 - theta) m - "
-        "theta fhat, and none if that is negative. What is put in is the mean torque of the law less the mean of (1 "
-        "- s) D/(1 - s_r) + q, and f - d - (g - 1) T. (g) While q = 0, q' = g T' - (1 + kappa (1 + sigma)) f_v v' - "
-        "(1 + sigma) drag': where that is positive, q does not fall through 0.",
+        "dS/dv and sigma = (s_r - s)/(1 - s_r): as long as 0 <= s <= s_r, dS/ds <= 0, q >= 0 and S > 0, l = (1 + "
+        "kappa) S q has l' <= (1 + kappa) S (B - l), B = g T' + q (L (1 + max(S_l, 0)/S) - kappa sigma S) - (1 + "
+        "sigma) drag' - (1 + kappa (1 + sigma)) f_v v', so that it stays below what it was and the largest B since, "
+        "of moments with q > 0 and l as large as that. (b) A pulse of the part l of a sample that begins with it, "
+        "for the share u of the room, fills room (1 - (1 - u)^rho) and of r, the first rate of the supply, between 0 "
+        "and (l/2 + l^2 h/(12 T_F)) r/room times it more, rho the time of the inversion over T_F. (c) Of its change "
+        "the share 1 - l/2 to 1 - l/2 + l^2 h/(12 T_F) is in the mean if the supply is constant, and at least 1 - "
+        "l/2 - l w/6 if the part w comes from its rise; venting, the same with T_V. (d) What the law takes for the "
+        "change in the mean is that of its nominal valve from a constant supply. (e) While the valve only fills, "
+        "from an empty cylinder one sample after the supply began, at a given torque T' and the room grow with the "
+        "supply rate, T' falls and the room grows with T_F >= h; T' has one maximum; what the torque grew by over a "
+        "time before is largest for the largest rate and the smallest T_F. (f) If what is put into the observer has "
+        "been at least -m since it rested, an observer that takes no friction below 0 has at most m more of it than "
+        "one that is not cut, at most theta^2 m/(1 - theta^2) more in p and m/(1 + theta) more in z, and less of "
+        "none. A cut adds at most (1 - theta) m - theta fhat, and none if that is negative. What is put in is the "
+        "mean torque of the law less the mean of (1 - s) D/(1 - s_r) + q, and f - d - (g - 1) T. f is never below "
+        "-drag (1 - s)/(1 - s_r + kappa (1 - s)) of the largest drag, unless it began so. (g) While q = 0, q' = g T' "
+        "- (1 + kappa (1 + sigma)) f_v v' - (1 + sigma) drag': where that is positive, q does not fall through 0; "
+        "where q < 0, q' is larger than that if (1 + kappa (1 + sigma)) S >= L + (1 + sigma) kappa q_d, q_d the "
+        "damping of a wheel.",
         hypotheses=(
             "the friction is one of the slip and the speed, less the damping of the wheel",
             "for (c): s h and h/T_F at most 1/4",
             "for (e): h <= T_F, a supply by eq. (8)",
         ),
-        sketch="(a) (S q)' = S q' + S' q. Where S q is as large as is said, S' is at most L S_l, and q' by the "
-        "identity makes the rate at most 0. (b) The supply rises at most at its first rate. (c) The part of an "
-        "exponential change that is in the mean over its pulse is 1/2 and half of coth y - 1/y at half its length y, "
-        "between 0 and y/6. What the rise adds grows at least as t and at most as t^2, so that 1/3 to 1/2 of it is "
-        "in that mean. (e) dV/dT of V = T' grows with the supply rate, and with h/T_F where s (U - T) > V, which "
-        "holds all the time if it does in the beginning. A larger V at each torque takes less time. (f) Both "
-        "differences are that of the map from b >= 0. When it cuts, what is not cut is at least -m, as a mean of "
-        "what was put in, and at least theta times what it was less (1 - theta) m.",
+        sketch="(a) (S q)' = S q' + S' q, and S' is at most L S_l: it rises only because v falls. (b) The supply "
+        "rises at most at its first rate. (c) The part of an exponential change that is in the mean over its pulse "
+        "is 1/2 and half of coth y - 1/y at half its length y, between 0 and y/6. What the rise adds grows at least "
+        "as t and at most as t^2, so that 1/3 to 1/2 of it is in that mean. (e) dV/dT of V = T' grows with the "
+        "supply rate, and with h/T_F where s (U - T) > V, which holds all the time if it does in the beginning. A "
+        "larger V at each torque takes less time. (f) Both differences are that of the map from b >= 0. When it "
+        "cuts, what is not cut is at least -m, as a mean of what was put in, and at least theta times what it was "
+        "less (1 - theta) m. (g) In the identity of q' all but the first three terms count with q.",
         not_said="That S falls where the friction curve is convex. The slip is not monotone at the start: a wheel "
         "rolls with a small negative slip until the torque comes.",
         identities=(
@@ -108,7 +111,7 @@ THEOREMS = (
             ),
             Identity("drag' of damping and resistance", bounds.drag_rate_residual),
             Identity("S' = dS/ds s' + L S_l", bounds.steepness_rate_residual),
-            Identity("(S q)' where S' = L S_l", bounds.level_residual),
+            Identity("l' = (1 + kappa) S (B - l) where S' = L S_l", bounds.level_residual),
             Identity("S of Polach's curve", bounds.steepness_residual),
             Identity("S_l of it", bounds.falling_steepness_residual),
             Identity("f_v v' of it", bounds.fixed_slip_residual),
